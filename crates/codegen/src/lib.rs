@@ -1,0 +1,1 @@
+//! From sdfc graphs to naga modules: lowering, linking, validation, writers, reflection.

@@ -1,0 +1,141 @@
+//! The table of codes: one row each, never renumbered, never reused.
+
+/// What a diagnostic is about: `E0201`, `W0601`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Code(pub &'static str);
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeInfo {
+    /// The code.
+    pub code: Code,
+    /// What it means, in a few words.
+    pub title: &'static str,
+    /// Why it is so and how to mend it, for the code's page.
+    pub page: &'static str,
+}
+
+macro_rules! codes {
+    ($($name:ident $code:literal $title:literal $page:literal;)*) => {
+        impl Code {
+            $(#[doc = $title] pub const $name: Code = Code($code);)*
+        }
+        /// Every code, in order.
+        pub const ALL_CODES: &[CodeInfo] =
+            &[$(CodeInfo { code: Code::$name, title: $title, page: $page }),*];
+    };
+}
+
+codes! {
+    UNKNOWN_CHARACTER "E0101" "A character that starts no token"
+        "Outside comments and strings a scene is written in ASCII. Often the character was pasted from a text with typographic quotes or dashes.";
+    BAD_STRING "E0102" "A string that does not end, or an unknown escape"
+        "A string ends on the line where it starts. Escapes are `\\\"`, `\\\\`, `\\n` and `\\u{...}`.";
+    BAD_COLOUR "E0103" "A colour with the wrong number of digits"
+        "Colours are `#rgb`, `#rgba`, `#rrggbb` or `#rrggbbaa` in hexadecimal digits.";
+    EXPECTED "E0104" "Something else was expected here"
+        "The parser names what it could have gone on with. Two shapes on one line are joined with `|`, or stand on lines of their own.";
+    BAD_NUMBER "E0105" "A number that is not written as numbers are"
+        "A decimal point has a digit on both sides, so that `0..8` reads as a range: write `0.5` and `1.0`. The units are `deg`, `turn` and `rad`, joined on.";
+    UNCLOSED "E0106" "A bracket that is never closed"
+        "The message points at the opening bracket. Brackets close in the order in which they opened.";
+    NESTING "E0107" "Nesting deeper than 256 levels"
+        "Brackets, blocks and conditions may be nested 256 deep. Name the inner parts with `let`.";
+    TOO_LARGE "E0108" "A file that is too large"
+        "A scene file has at most 4 MiB. Larger scenes are written with comprehensions, functions and imports.";
+    DOES_NOT_CHAIN "E0109" "Comparisons and ranges do not chain"
+        "`a < b < c` would compare a truth value with a number. Write `a < b && b < c`.";
+    RESERVED "E0110" "A reserved word used as a name"
+        "The reserved words are let, param, fn, solid, region, shape, import, if, else, for, in, true and false; `p` is reserved in a shape's formula.";
+
+    UNKNOWN_NAME "E0201" "A name that nothing has"
+        "Names are looked up from the block outwards: block, parameters, file, imports, library, kernel. `let` and `param` are visible only after their line.";
+    DECLARED_TWICE "E0202" "The same name declared twice in one file"
+        "At top level of a file a name has one meaning, except that one shape name may be declared once for solids and once for regions.";
+    SETTING_TWICE "E0203" "A setting that can stand only once stands twice"
+        "camera, ambient, sky, fog, background, ambient_occlusion, reflections, antialias and march stand at most once.";
+    MISPLACED_SETTING "E0204" "A setting that is not at top level"
+        "Settings such as `camera(...)` give no value; they are lines of their own in the scene.";
+    WRONG_CALL "E0205" "A call of something that takes other arguments"
+        "A shape without arguments in brackets is a shape already: calling it samples its distance at a point.";
+    ARGUMENTS "E0206" "Arguments that do not fit the parameters"
+        "Positional arguments come first, then named ones, each parameter once. Parameters after a variadic one are named only.";
+    UNUSED_VALUE "E0207" "A value at top level that nothing uses"
+        "Only solids and settings stand alone at top level. Name other values with `let`.";
+    NO_FIELD "E0208" "A field or swizzle that the value does not have"
+        "Vectors have `xyzw` and `rgba`, as far as they are long; ranges have `lo` and `hi`.";
+    IMPORT "E0209" "An import that cannot be followed"
+        "Imports are paths relative to the file, with `/`, inside the folder of the scene that was opened.";
+
+    REGION_FOR_SOLID "E0301" "A region (2D) where a solid (3D) is wanted"
+        "Regions become solids by `.extrude(h)` or `.revolve()`.";
+    SOLID_FOR_REGION "E0302" "A solid (3D) where a region (2D) is wanted"
+        "Regions are made by `circle`, `rect` and the other 2D entries of the library.";
+    TYPE_MISMATCH "E0303" "A value of the wrong type"
+        "The message names both types. The coercions are: int and angle to number, a number to a vector of equal parts, a value to a constant function.";
+    NOT_AN_ANGLE "E0304" "A plain number where an angle is wanted"
+        "Angles carry their unit: `90deg`, `0.25turn`, `1.57rad`; a computed number becomes one by `* 1rad`.";
+    BRANCH_TYPES "E0305" "The two branches of an `if` have different types"
+        "Both branches give one type in every case, whether or not the condition is known at compile time.";
+    BAD_OPERAND "E0307" "An operator on something it does not take"
+        "`+ - * /` and comparisons are for numbers, vectors and angles; `|`, `&`, `-` join shapes; `a.scale(2)` resizes one.";
+    NEEDS_RESULT_TYPE "E0308" "A recursive function without a result type"
+        "Result types are inferred from the body; a function that calls itself must say `-> T`.";
+    OUT_OF_RANGE "E0309" "An argument outside its parameter's range"
+        "A parameter's `in lo..hi` says which values make sense; both ends are included.";
+    REQUIREMENT "E0310" "A `require` of the library or the file does not hold"
+        "The message is the one that the entry's author wrote.";
+    NOT_FINITE "E0311" "A constant that is not a finite number"
+        "Division by a constant zero, the root of a negative constant and overflow have no value that a shader could hold.";
+    DEGENERATE "E0312" "An index, slice or list that does not exist"
+        "Lists are indexed from 0 with constants; a list has one type and some functions want it not empty.";
+
+    NOT_COMPILE_TIME "E0402" "Something that must be known at compile time is not"
+        "The sequence of `for`, list indices, strings and the condition around a recursive call are fixed when the scene compiles; a param moves without a recompile.";
+    RECURSION "E0405" "Recursion deeper than 64 levels"
+        "Functions are inlined at each call, so recursion must end at compile time.";
+    TOO_MANY_NODES "E0406" "More than a million graph nodes"
+        "Everything is inlined; a comprehension inside a comprehension multiplies. Use repetition (`repeat`) for copies.";
+    SHAPE_NESTING "E0407" "Shapes nested too deep"
+        "A shape may contain shapes 1,024 levels deep. Join many shapes in one `union(...)` instead of one by one.";
+    NO_POINT "E0408" "`p` outside a shape's formula"
+        "An argument cannot mention the point; pass a function of it: `fn(q) = q.y`.";
+    SELF_CALL "E0409" "A shape that calls itself"
+        "Shapes do not recurse; a `fn` that returns a shape may.";
+    ITERATIONS "E0410" "`iterate` with too many rounds"
+        "A loop known at compile time runs at most 4,096 rounds.";
+
+    NOT_YET "E0411" "A part of the language that this version does not have"
+        "The specification has it, this version of the compiler does not; nothing is drawn in its place.";
+
+    PROMISE_BROKEN "E0502" "A promise that sampling refutes"
+        "`exact`, `bound` and `lipschitz` are checked at sample points; the message gives one where it fails.";
+
+    NOT_EXACT "W0601" "An operator that wants an exact distance has only a bound"
+        "`shell`, `round` and soft shadows use the value of the distance, not only its sign; on a bound the result is uneven.";
+    UNCERTIFIED "W0602" "No Lipschitz constant could be derived"
+        "Rays may step through this part. State one with `lipschitz`, or use an operator whose constant is known.";
+    UNUSED "W0603" "A private name, a local `let` or an import that nothing uses"
+        "Remove it, or use it. Names with a leading `_` are private to their file.";
+    NOTHING_DRAWN "W0604" "A file that draws nothing"
+        "It can be imported, not rendered. Every solid that stands alone at top level is drawn.";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_unique_and_in_order_within_their_letter() {
+        for pair in ALL_CODES.windows(2) {
+            let (a, b) = (pair[0].code.0, pair[1].code.0);
+            assert!(a[..1] != b[..1] || a < b, "{a} before {b}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Typed builders. Every node outside this crate is made here, so folding and simplification
+//! happen as the graph grows and an equal value never gets a second node.
+//!
+//! Operands of different width are brought to one: a scalar fills a vector.
+
+use crate::{
+    Binary, Const, Dim, FrameInput, Graph, MaterialField, Node, NodeId, ShapeId, Ternary, Type,
+    Unary,
+};
+
+impl Graph {
+    /// A constant number.
+    pub fn number(&mut self, value: f64) -> NodeId {
+        self.constant(Type::Scalar, &[value])
+    }
+
+    /// A constant truth value.
+    pub fn boolean(&mut self, value: bool) -> NodeId {
+        self.constant(Type::Bool, &[f64::from(u8::from(value))])
+    }
+
+    /// A constant of any type.
+    pub fn constant(&mut self, ty: Type, lanes: &[f64]) -> NodeId {
+        self.intern(Node::Const(Const::new(ty, lanes)))
+    }
+
+    /// The point of the formula at a level.
+    pub fn point(&mut self, level: u16, dim: Dim) -> NodeId {
+        self.intern(Node::Point(level, dim))
+    }
+
+    /// A per-frame input.
+    pub fn frame_input(&mut self, input: FrameInput, ty: Type) -> NodeId {
+        self.intern(Node::Frame(input, ty))
+    }
+
+    /// An operation on one argument.
+    pub fn unary(&mut self, op: Unary, a: NodeId) -> NodeId {
+        self.intern(Node::Unary(op, a))
+    }
+
+    /// An operation on two arguments.
+    pub fn binary(&mut self, op: Binary, a: NodeId, b: NodeId) -> NodeId {
+        let [a, b] = self.widened([a, b]);
+        self.intern(Node::Binary(op, a, b))
+    }
+
+    /// `Mix`, `Clamp` or `Smoothstep`; `Select` has its own builder.
+    pub fn ternary(&mut self, op: Ternary, a: NodeId, b: NodeId, c: NodeId) -> NodeId {
+        let arguments = self.widened([a, b, c]);
+        self.intern(Node::Ternary(op, arguments))
+    }
+
+    /// `yes` where the condition holds, else `no`.
+    pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
+        let [yes, no] = self.widened([yes, no]);
+        self.intern(Node::Ternary(Ternary::Select, [condition, yes, no]))
+    }
+
+    /// A vector of equal parts.
+    pub fn splat(&mut self, ty: Type, a: NodeId) -> NodeId {
+        if self.ty(a) == ty {
+            return a;
+        }
+        self.intern(Node::Splat(ty, a))
+    }
+
+    /// A vector of 2 to 4 scalar parts; of one part, the part.
+    pub fn compose(&mut self, parts: &[NodeId]) -> NodeId {
+        let Some(ty) = Type::of_width(parts.len()).filter(|_| parts.len() > 1) else {
+            return parts.first().copied().unwrap_or_else(|| self.number(0.0));
+        };
+        let mut list = [parts[0]; 4];
+        list[..parts.len()].copy_from_slice(parts);
+        self.intern(Node::Compose(ty, list))
+    }
+
+    /// Components of a vector by index.
+    pub fn swizzle(&mut self, a: NodeId, lanes: &[u8]) -> NodeId {
+        let ty = Type::of_width(lanes.len()).unwrap_or(Type::Scalar);
+        let mut list = [0; 4];
+        for (place, lane) in list.iter_mut().zip(lanes) {
+            *place = *lane;
+        }
+        self.intern(Node::Swizzle(ty, a, list))
+    }
+
+    /// One component of a vector; of a scalar, itself.
+    pub fn component(&mut self, a: NodeId, lane: u8) -> NodeId {
+        if self.ty(a).width() == 1 { a } else { self.swizzle(a, &[lane]) }
+    }
+
+    /// `c0 * v.x + c1 * v.y + c2 * v.z`
+    pub fn transform(&mut self, columns: [NodeId; 3], v: NodeId) -> NodeId {
+        self.intern(Node::Transform(columns, v))
+    }
+
+    /// Distance of a shape at a point.
+    pub fn sample(&mut self, shape: ShapeId, point: NodeId) -> NodeId {
+        self.intern(Node::Sample(shape, point))
+    }
+
+    /// Material of a shape at a point.
+    pub fn material_at(&mut self, shape: ShapeId, point: NodeId, field: MaterialField) -> NodeId {
+        self.intern(Node::MaterialAt(shape, point, field))
+    }
+
+    fn widened<const N: usize>(&mut self, arguments: [NodeId; N]) -> [NodeId; N] {
+        let widest = arguments.map(|a| self.ty(a)).into_iter().max().unwrap_or(Type::Scalar);
+        if widest.width() == 1 {
+            return arguments;
+        }
+        arguments.map(|a| self.splat(widest, a))
+    }
+}
+
+macro_rules! shorthand {
+    ($($(#[$doc:meta])* $name:ident = $method:ident($op:expr; $($arg:ident),*);)*) => {
+        impl Graph {$(
+            $(#[$doc])*
+            pub fn $name(&mut self, $($arg: NodeId),*) -> NodeId {
+                self.$method($op, $($arg),*)
+            }
+        )*}
+    };
+}
+
+shorthand! {
+    /// `-a`
+    neg = unary(Unary::Neg; a);
+    /// `|a|`, componentwise
+    abs = unary(Unary::Abs; a);
+    /// Euclidean length
+    length = unary(Unary::Length; a);
+    /// `a + b`
+    add = binary(Binary::Add; a, b);
+    /// `a - b`
+    sub = binary(Binary::Sub; a, b);
+    /// `a * b`
+    mul = binary(Binary::Mul; a, b);
+    /// `a / b`
+    div = binary(Binary::Div; a, b);
+    /// The lesser, componentwise
+    min = binary(Binary::Min; a, b);
+    /// The greater, componentwise
+    max = binary(Binary::Max; a, b);
+    /// Scalar product
+    dot = binary(Binary::Dot; a, b);
+    /// `a < b`
+    lt = binary(Binary::Lt; a, b);
+    /// `a <= b`
+    le = binary(Binary::Le; a, b);
+}

@@ -1,0 +1,219 @@
+//! The arena: interning, types, stages.
+
+use std::hash::{Hash, Hasher};
+
+use rustc_hash::{FxHashMap, FxHasher};
+
+use crate::{Arg, Binary, Node, NodeId, Shape, ShapeId, Stage, Ternary, Type, Unary};
+
+/// What is known of a node beside its operation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Facts {
+    ty: Type,
+    stage: Stage,
+    /// One more than the highest level of a point that it depends on; 0 for none.
+    levels: u16,
+}
+
+/// Hash-consed nodes and shape instances. Equal nodes have equal ids.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    facts: Vec<Facts>,
+    ids: FxHashMap<Node, NodeId>,
+    shapes: Vec<Shape>,
+    shape_ids: FxHashMap<u64, Vec<ShapeId>>,
+}
+
+impl Graph {
+    /// An empty arena.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many nodes there are.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// How many shapes there are.
+    pub fn shape_count(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The node.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id.index()]
+    }
+
+    /// The node's type.
+    pub fn ty(&self, id: NodeId) -> Type {
+        self.facts[id.index()].ty
+    }
+
+    /// The node's stage.
+    pub fn stage(&self, id: NodeId) -> Stage {
+        self.facts[id.index()].stage
+    }
+
+    /// One more than the highest level of a point that the node depends on; 0 for none.
+    pub fn levels(&self, id: NodeId) -> u16 {
+        self.facts[id.index()].levels
+    }
+
+    /// All ids in order: arguments before their uses.
+    pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
+        (0..self.nodes.len() as u32).map(NodeId)
+    }
+
+    /// All shape ids in order: children before parents.
+    pub fn shape_ids(&self) -> impl Iterator<Item = ShapeId> + use<> {
+        (0..self.shapes.len() as u32).map(ShapeId)
+    }
+
+    /// The shape.
+    pub fn shape(&self, id: ShapeId) -> &Shape {
+        &self.shapes[id.index()]
+    }
+
+    /// The number, if the node is a constant scalar.
+    pub fn as_number(&self, id: NodeId) -> Option<f64> {
+        match self.node(id) {
+            Node::Const(value) => value.scalar(),
+            _ => None,
+        }
+    }
+
+    /// The id of a node exactly as given: no folding. Callers use the typed builders.
+    pub(crate) fn intern(&mut self, node: Node) -> NodeId {
+        if let Some(&id) = self.ids.get(&node) {
+            return id;
+        }
+        let facts = self.facts_of(&node);
+        let id = NodeId(self.nodes.len() as u32);
+        self.nodes.push(node);
+        self.facts.push(facts);
+        self.ids.insert(node, id);
+        id
+    }
+
+    fn facts_of(&self, node: &Node) -> Facts {
+        let (mut stage, mut levels) = (Stage::Const, 0);
+        for argument in node.arguments() {
+            stage = stage.max(self.stage(argument));
+            levels = levels.max(self.levels(argument));
+        }
+        match *node {
+            Node::Point(level, _) => (stage, levels) = (Stage::Point, level + 1),
+            Node::Frame(..) => stage = Stage::Frame,
+            Node::Sample(shape, _) | Node::MaterialAt(shape, ..) => {
+                // The shape's own arguments may depend on outer points.
+                levels = levels.max(self.shape(shape).level);
+                stage = Stage::Point;
+            }
+            Node::Const(_)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..) => {}
+        }
+        Facts { ty: self.type_of(node), stage, levels }
+    }
+
+    fn type_of(&self, node: &Node) -> Type {
+        match *node {
+            Node::Const(value) => value.ty(),
+            Node::Point(_, dim) => dim.point_type(),
+            Node::Frame(_, ty)
+            | Node::Splat(ty, _)
+            | Node::Compose(ty, _)
+            | Node::Swizzle(ty, ..) => ty,
+            Node::Unary(Unary::Length, _) => Type::Scalar,
+            Node::Unary(_, a) => self.ty(a),
+            Node::Binary(op, a, _) => match op {
+                Binary::Dot => Type::Scalar,
+                Binary::Lt | Binary::Le | Binary::Eq | Binary::Ne | Binary::And | Binary::Or => {
+                    Type::Bool
+                }
+                Binary::Add
+                | Binary::Sub
+                | Binary::Mul
+                | Binary::Div
+                | Binary::Rem
+                | Binary::Min
+                | Binary::Max
+                | Binary::Pow
+                | Binary::Atan2
+                | Binary::Step
+                | Binary::Cross => self.ty(a),
+            },
+            Node::Ternary(Ternary::Select, [_, yes, _]) => self.ty(yes),
+            Node::Ternary(_, [a, ..]) => self.ty(a),
+            Node::Transform(..) => Type::Vec3,
+            Node::Sample(..) => Type::Scalar,
+            Node::MaterialAt(.., field) => field.ty(),
+        }
+    }
+
+    /// The instance equal to this one in definition, dimension, level and arguments, or this one as
+    /// a new instance. Its name, if given, is kept by the first.
+    pub fn add_shape(&mut self, shape: Shape) -> ShapeId {
+        let key = shape_key(&shape.definition, shape.dim, shape.level, &shape.args);
+        if let Some(id) = self.find(key, &shape.definition, shape.dim, shape.level, &shape.args) {
+            return id;
+        }
+        let id = ShapeId(self.shapes.len() as u32);
+        self.shapes.push(shape);
+        self.shape_ids.entry(key).or_default().push(id);
+        id
+    }
+
+    /// The instance with these arguments, if it was built before: saves elaborating it again.
+    pub fn find_shape(
+        &self,
+        definition: &str,
+        dim: crate::Dim,
+        level: u16,
+        args: &[Arg],
+    ) -> Option<ShapeId> {
+        self.find(shape_key(definition, dim, level, args), definition, dim, level, args)
+    }
+
+    fn find(
+        &self,
+        key: u64,
+        definition: &str,
+        dim: crate::Dim,
+        level: u16,
+        args: &[Arg],
+    ) -> Option<ShapeId> {
+        let candidates = self.shape_ids.get(&key)?;
+        candidates.iter().copied().find(|&id| {
+            let shape = self.shape(id);
+            shape.definition == definition
+                && shape.dim == dim
+                && shape.level == level
+                && shape.args == args
+        })
+    }
+
+    /// Names a shape after the scene's `let`; the first name stays.
+    pub fn name_shape(&mut self, id: ShapeId, name: &str) {
+        let shape = &mut self.shapes[id.index()];
+        shape.name.get_or_insert_with(|| name.to_owned());
+    }
+}
+
+fn shape_key(definition: &str, dim: crate::Dim, level: u16, args: &[Arg]) -> u64 {
+    let mut hasher = FxHasher::default();
+    (definition, dim, level, args).hash(&mut hasher);
+    hasher.finish()
+}

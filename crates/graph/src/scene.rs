@@ -1,0 +1,118 @@
+//! A scene: the graph, what is drawn, and how.
+
+use crate::{Graph, NodeId, ShapeId, Type};
+
+/// A param of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Its name.
+    pub name: String,
+    /// What kind of value it takes.
+    pub kind: ParamKind,
+    /// Type of its node.
+    pub ty: Type,
+    /// Its default, as lanes of its type; a choice by its index.
+    pub default: [f64; 4],
+    /// Lowest and highest value where it has a range.
+    pub range: Option<[f64; 2]>,
+    /// Names of the choices.
+    pub choices: Vec<String>,
+    /// First line of its documentation.
+    pub summary: String,
+}
+
+/// Kinds of params, as a user interface shows them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ParamKind {
+    /// Any number.
+    Number,
+    /// Whole numbers.
+    Int,
+    /// Radians.
+    Angle,
+    /// 0 or 1.
+    Bool,
+    /// Linear red, green, blue, alpha.
+    Color,
+    /// Index of a choice.
+    Choice,
+}
+
+/// How the scene is drawn. Nodes are of stage `Const` or `Frame`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// None: fitted to the bounds.
+    pub camera: Option<Camera>,
+    /// None at all: a head light.
+    pub lights: Vec<Light>,
+    /// Linear colour of light from everywhere (strength applied).
+    pub ambient: Option<NodeId>,
+    /// Linear colour behind everything.
+    pub background: Option<NodeId>,
+    /// How rays are marched.
+    pub march: March,
+}
+
+/// A perspective camera, right-handed, y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Position, 3-vector.
+    pub eye: NodeId,
+    /// What is in the middle of the picture, 3-vector.
+    pub target: NodeId,
+    /// Upward direction, 3-vector.
+    pub up: NodeId,
+    /// Vertical field of view, radians.
+    pub fov: NodeId,
+}
+
+/// A directional light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Towards the light, 3-vector, of any length.
+    pub direction: NodeId,
+    /// Linear colour times strength, 3-vector.
+    pub color: NodeId,
+    /// Its shadow.
+    pub shadow: Shadow,
+}
+
+/// How a light's shadow is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadow {
+    /// None.
+    #[default]
+    Off,
+    /// Without penumbra.
+    Hard,
+    /// Penumbra; the node is its sharpness.
+    Soft(NodeId),
+}
+
+/// `march(...)`: `None` leaves the choice to the compiler.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct March {
+    /// At most so many steps (`fixed`, `sphere`).
+    pub steps: Option<u32>,
+    /// A hit is nearer than this (`fixed`, `sphere`).
+    pub epsilon: Option<f64>,
+    /// Rays end here.
+    pub distance: Option<f64>,
+    /// Name of the method.
+    pub method: Option<String>,
+}
+
+/// What elaboration yields.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Shapes and math.
+    pub graph: Graph,
+    /// All that is drawn, as one solid; `None` if the file draws nothing.
+    pub root: Option<ShapeId>,
+    /// In order of declaration; `FrameInput::Param` counts in it.
+    pub params: Vec<Param>,
+    /// Camera, lights, method.
+    pub settings: Settings,
+    /// Whether anything states a material: without, no material code is emitted.
+    pub painted: bool,
+}

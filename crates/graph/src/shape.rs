@@ -1,0 +1,75 @@
+//! Shape instances: the upper level of the arena.
+
+use crate::{Dim, NodeId, ShapeId};
+
+/// What a shape instance was made from; equal arguments make the same instance.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Arg {
+    /// A number, vector, truth value.
+    Node(NodeId),
+    /// A shape.
+    Shape(ShapeId),
+    /// A list, range or material.
+    List(Vec<Arg>),
+    /// A string.
+    Text(String),
+    /// A function value; the number is unique to the closure.
+    Function(u32),
+}
+
+/// What a field promises on one side of its surface, conditions being truth-valued nodes of
+/// stage `Const` or `Frame`. `None`: not stated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct SidePromise {
+    /// |f| is the distance.
+    pub exact: Option<NodeId>,
+    /// |f| never exceeds the distance.
+    pub bound: Option<NodeId>,
+}
+
+/// What an instance's clauses state, given exact / bound / 1-Lipschitz children.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Contract {
+    /// Where the field is positive.
+    pub outside: SidePromise,
+    /// Where it is negative.
+    pub inside: SidePromise,
+    /// The Lipschitz constant, to be multiplied by max(1, the largest child's).
+    pub lipschitz: Option<NodeId>,
+    /// Lowest and highest point; `lo > hi` nowhere, infinities allowed.
+    pub bounds: Option<[NodeId; 2]>,
+}
+
+/// Where an instance's material comes from. Fields are in the order of `MaterialField::ALL`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MaterialRule {
+    /// The shares ∂f/∂sample of this scalar (the formula itself unless stated otherwise).
+    Shares(NodeId),
+    /// Stated field by field, in terms of the instance's point and `MaterialAt` nodes.
+    Stated([NodeId; 6]),
+}
+
+/// One shape instance.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// Name of its definition.
+    pub definition: String,
+    /// Its dimension.
+    pub dim: Dim,
+    /// Level of the `Point` node that its formula is written in.
+    pub level: u16,
+    /// Its arguments.
+    pub args: Vec<Arg>,
+    /// A scalar in `Point(level, dim)`, constants, per-frame inputs and samples.
+    pub formula: NodeId,
+    /// What its clauses state.
+    pub contract: Contract,
+    /// Its material.
+    pub material: MaterialRule,
+    /// The shapes that its formula samples, in order of first use.
+    pub children: Vec<ShapeId>,
+    /// Longest chain of children, itself included.
+    pub depth: u32,
+    /// The name that the scene gave it by `let`, if one did.
+    pub name: Option<String>,
+}

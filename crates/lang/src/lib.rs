@@ -1,0 +1,3 @@
+//! Names, types, stages and elaboration of sdfc scenes; the library in `std`.
+pub mod hir;
+pub mod settings;

@@ -1,0 +1,86 @@
+//! Ray methods and shading, one `.wgsl` file each, around stubs that codegen fills.
+//!
+//! The uniform block below is what `view.wgsl` declares; its layout is WGSL's.
+
+/// At most so many lights in one scene.
+pub const MAX_LIGHTS: usize = 8;
+
+/// Shadow kind of a [`LightBlock`]: none.
+pub const SHADOW_OFF: u32 = 0;
+/// Shadow kind of a [`LightBlock`]: hard.
+pub const SHADOW_HARD: u32 = 1;
+
+/// A directional light as the shader sees it: 32 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct LightBlock {
+    /// Unit vector towards the light.
+    pub direction: [f32; 3],
+    /// `SHADOW_OFF` or `SHADOW_HARD`.
+    pub shadow: u32,
+    /// Linear colour times strength.
+    pub color: [f32; 3],
+    /// Unused.
+    pub pad: f32,
+}
+
+/// Binding 0 of group 0: camera, tile, limits, lights. Lengths are in scene units.
+///
+/// The ray through the centre of pixel (x, y), y downwards, has direction
+/// `normalize(forward + (2 (x + 0.5) / width - 1) * right - (2 (y + 0.5) / height - 1) * up)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct ViewBlock {
+    /// Where rays start.
+    pub eye: [f32; 3],
+    /// Half the width of a pixel at distance 1.
+    pub pixel_radius: f32,
+    /// Half the width of the picture at distance 1, as a vector.
+    pub right: [f32; 3],
+    /// Rays end here.
+    pub t_max: f32,
+    /// Half the height of the picture at distance 1, as a vector.
+    pub up: [f32; 3],
+    /// A hit is nearer than this, absolute (`fixed`, `sphere`).
+    pub epsilon: f32,
+    /// Unit vector into the picture.
+    pub forward: [f32; 3],
+    /// At most so many steps a ray.
+    pub steps: u32,
+    /// Size of the picture in pixels.
+    pub size: [u32; 2],
+    /// First pixel of this tile.
+    pub tile_origin: [u32; 2],
+    /// Size of this tile in pixels; the output buffer holds `tile_size.x * tile_size.y` pixels, row by row.
+    pub tile_size: [u32; 2],
+    /// How many of `lights` are used.
+    pub light_count: u32,
+    /// Length of one step (`fixed`).
+    pub fixed_step: f32,
+    /// Linear colour of light from everywhere.
+    pub ambient: [f32; 3],
+    /// Unused.
+    pub pad0: f32,
+    /// Linear colour behind everything.
+    pub background: [f32; 3],
+    /// Unused.
+    pub pad1: f32,
+    /// The lights.
+    pub lights: [LightBlock; MAX_LIGHTS],
+}
+
+/// One pixel of binding 2 of group 0: 32 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct PixelBlock {
+    /// Linear red, green, blue; alpha 1.
+    pub color: [f32; 4],
+    /// Distance along the (unit) ray of the hit, or where the ray ended.
+    pub depth: f32,
+    /// 0 miss, 1 hit, 2 capped (ran out of steps).
+    pub status: u32,
+    /// Evaluations of the field for this pixel, shadows included.
+    pub evaluations: u32,
+    /// Evaluations of the field for the primary ray.
+    pub primary_evaluations: u32,
+}

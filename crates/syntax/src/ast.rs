@@ -1,0 +1,338 @@
+//! The tree that the parser builds: what was written, nothing inferred.
+
+use sdfc_diagnostics::Span;
+
+/// A name and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// The name as written.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+}
+
+/// Documentation: the `///` lines right before a declaration, without the slashes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Docs {
+    /// One string a line, its leading space removed.
+    pub lines: Vec<String>,
+}
+
+/// A parsed file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct File {
+    /// The items in order. An item that could not be parsed is absent, its error reported.
+    pub items: Vec<Item>,
+}
+
+/// What stands at top level.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// `import a, b as c from "path"`
+    Import(Import),
+    /// `param k = 0.4 in 0..1`
+    Param(Param),
+    /// `fn`, `solid`, `region`, `shape`
+    Decl(Box<Decl>),
+    /// `let a = ...`
+    Let(Let),
+    /// A solid to draw, or a setting.
+    Expr(Expr),
+}
+
+/// `import a, b as c from "path"`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// Each name with its new name.
+    pub names: Vec<(Name, Option<Name>)>,
+    /// The path, unescaped.
+    pub path: Name,
+    /// The whole item.
+    pub span: Span,
+}
+
+/// `param NAME [: type] = default [in range]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Documentation.
+    pub docs: Docs,
+    /// Its name.
+    pub name: Name,
+    /// Its type, if written.
+    pub ty: Option<TypeExpr>,
+    /// Its default.
+    pub default: Expr,
+    /// A range, or a list of choices.
+    pub range: Option<Expr>,
+    /// The whole item.
+    pub span: Span,
+}
+
+/// `let NAME = value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Let {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: Expr,
+    /// The whole item.
+    pub span: Span,
+}
+
+/// Which word a declaration starts with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DeclKind {
+    /// `fn`
+    Fn,
+    /// `solid`: a function of a 3D point
+    Solid,
+    /// `region`: a function of a 2D point
+    Region,
+    /// `shape`: either
+    Shape,
+}
+
+/// A declaration with a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decl {
+    /// Documentation.
+    pub docs: Docs,
+    /// `fn`, `solid`, `region` or `shape`.
+    pub kind: DeclKind,
+    /// Its name.
+    pub name: Name,
+    /// Parameters, result type, clauses.
+    pub signature: Signature,
+    /// What stands after `=`.
+    pub body: Expr,
+    /// The whole item, documentation not included.
+    pub span: Span,
+}
+
+/// `(parameters) [-> type] clauses`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signature {
+    /// The parameters in order.
+    pub parms: Vec<Parm>,
+    /// The result type, if written.
+    pub result: Option<TypeExpr>,
+    /// The clauses in order.
+    pub clauses: Vec<Clause>,
+    /// From `(` to the last clause.
+    pub span: Span,
+}
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parm {
+    /// Its name.
+    pub name: Name,
+    /// Its type, if written.
+    pub ty: Option<TypeExpr>,
+    /// Whether `...` follows the type.
+    pub variadic: bool,
+    /// Its default.
+    pub default: Option<Expr>,
+    /// The values that make sense.
+    pub range: Option<Expr>,
+    /// All of it.
+    pub span: Span,
+}
+
+/// Which side of the surface a promise is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// Where the field is positive.
+    Outside,
+    /// Where the field is negative.
+    Inside,
+}
+
+/// One clause of a signature.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clause {
+    /// What it says.
+    pub kind: ClauseKind,
+    /// All of it.
+    pub span: Span,
+}
+
+/// What a clause says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ClauseKind {
+    /// `exact [side] [if condition]`
+    Exact(Option<Side>, Option<Expr>),
+    /// `bound [side] [if condition]`
+    Bound(Option<Side>, Option<Expr>),
+    /// `lipschitz number`
+    Lipschitz(Expr),
+    /// `bounds lo..hi`
+    Bounds(Expr),
+    /// `material e`
+    Material(Expr),
+    /// `require condition, "message"`; the message unescaped.
+    Require(Expr, Name),
+}
+
+/// A type as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TypeExpr {
+    /// What it is.
+    pub kind: TypeExprKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The forms of a type.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TypeExprKind {
+    /// `number`, `solid`, `vec3`: any one word, known or not.
+    Named(String),
+    /// `[T]`
+    List(Box<TypeExpr>),
+    /// `fn(A, B) -> R`
+    Fn(Vec<TypeExpr>, Box<TypeExpr>),
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    /// What it is.
+    pub kind: ExprKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// The unit joined to a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Unit {
+    /// Degrees.
+    Deg,
+    /// Full turns.
+    Turn,
+    /// Radians.
+    Rad,
+}
+
+/// The forms of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// A number as written, before its unit is applied. `whole`: neither point, exponent nor unit.
+    Number {
+        /// The digits' value.
+        value: f64,
+        /// The unit joined on.
+        unit: Option<Unit>,
+        /// Written without point, exponent and unit.
+        whole: bool,
+    },
+    /// Red, green, blue, alpha as written, sRGB, 0 to 255.
+    Color([u8; 4]),
+    /// A string, unescaped.
+    Text(String),
+    /// `true` or `false`.
+    Bool(bool),
+    /// A name.
+    Name(String),
+    /// `(e)`; kept for the formatter.
+    Paren(Box<Expr>),
+    /// `{ let a = ...; result }`
+    Block(Vec<Let>, Box<Expr>),
+    /// `if condition { a } else { b }`; the branches are blocks, or another `if` after `else`.
+    If(Box<Expr>, Box<Expr>, Box<Expr>),
+    /// `fn(parameters) = body`
+    Lambda(Box<Signature>, Box<Expr>),
+    /// `[a, b, for ...]`
+    List(Vec<Element>),
+    /// `callee(arguments)`; `x.f(a)` is a call whose callee is `Field(x, f)`.
+    Call(Box<Expr>, Vec<Arg>),
+    /// `base.name`
+    Field(Box<Expr>, Name),
+    /// `base[index]`; a slice is an index by a range.
+    Index(Box<Expr>, Box<Expr>),
+    /// `-a`, `!a`
+    Unary(UnaryOp, Box<Expr>),
+    /// `a op b`; the span is the operator's.
+    Binary(BinaryOp, Span, Box<Expr>, Box<Expr>),
+    /// Where parsing failed; an error was reported, later phases stay silent about it.
+    Error,
+}
+
+/// An element of a list, or an argument.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Element {
+    /// One value.
+    Expr(Expr),
+    /// `for name in over [if condition]: body`
+    For(Box<Comprehension>),
+}
+
+/// `for name in over [if condition]: body`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comprehension {
+    /// The variable.
+    pub name: Name,
+    /// The sequence.
+    pub over: Expr,
+    /// Which values to keep.
+    pub condition: Option<Expr>,
+    /// What each gives.
+    pub body: Element,
+    /// All of it.
+    pub span: Span,
+}
+
+/// One argument of a call.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arg {
+    /// The parameter it names; only on `Element::Expr`.
+    pub name: Option<Name>,
+    /// The value.
+    pub value: Element,
+}
+
+/// Prefix operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum UnaryOp {
+    /// `-`
+    Neg,
+    /// `!`
+    Not,
+}
+
+/// Infix operators.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// `*`
+    Mul,
+    /// `/`
+    Div,
+    /// `%`
+    Rem,
+    /// `+`
+    Add,
+    /// `-`
+    Sub,
+    /// `|`: union
+    Union,
+    /// `&`: intersection
+    Intersect,
+    /// `lo..hi`
+    Range,
+    /// `==`
+    Eq,
+    /// `!=`
+    Ne,
+    /// `<`
+    Lt,
+    /// `<=`
+    Le,
+    /// `>`
+    Gt,
+    /// `>=`
+    Ge,
+    /// `&&`
+    And,
+    /// `||`
+    Or,
+}
