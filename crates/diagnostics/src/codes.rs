@@ -72,6 +72,8 @@ codes! {
         "Vectors have `xyzw` and `rgba`, as far as they are long; ranges have `lo` and `hi`.";
     IMPORT "E0209" "An import that cannot be followed"
         "Imports are paths relative to the file, with `/`, inside the folder of the scene that was opened.";
+    MISPLACED_CLAUSE "E0210" "A clause, default or result type that does not belong here"
+        "`exact`, `bound`, `bounds` and `material` are for shapes; `fn` and lambdas have only `lipschitz` and `require`. Each clause but `exact`, `bound` and `require` stands once.";
 
     REGION_FOR_SOLID "E0301" "A region (2D) where a solid (3D) is wanted"
         "Regions become solids by `.extrude(h)` or `.revolve()`.";

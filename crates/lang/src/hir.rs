@@ -77,6 +77,9 @@ pub struct Program {
     pub settings: Vec<Setting>,
     /// The library's `union` of solids, which joins what is drawn.
     pub union: Option<ShapeDefId>,
+    /// How many locals any expression of a param, of `drawn` or of a setting needs at most;
+    /// each of these expressions counts its own from 0.
+    pub locals: u32,
 }
 
 /// One parameter of a function or shape; its local is its position.
@@ -337,7 +340,7 @@ pub enum Element {
     One(Expr),
     /// All values of a list, in order (a list given for a variadic parameter).
     Spread(Expr),
-    /// `for local in over [if condition]: body`; `over` is a range of ints, a list or a vector.
+    /// `for local in over [if condition]: body`; `over` is a range, a list or a vector.
     For(Box<Comprehension>),
 }
 
@@ -346,7 +349,8 @@ pub enum Element {
 pub struct Comprehension {
     /// The variable.
     pub local: LocalId,
-    /// The sequence.
+    /// The sequence: a list, a vector, or a half-open range. The ends of a range of `Number`
+    /// are whole where elaboration knows them, else the sequence is not known.
     pub over: Expr,
     /// Which values to keep.
     pub condition: Option<Expr>,
