@@ -80,6 +80,8 @@ pub struct Program {
     /// How many locals any expression of a param, of `drawn` or of a setting needs at most;
     /// each of these expressions counts its own from 0.
     pub locals: u32,
+    /// Files of the library: what goes wrong in one of them is reported at the scene's call.
+    pub library: Vec<FileId>,
 }
 
 /// One parameter of a function or shape; its local is its position.
