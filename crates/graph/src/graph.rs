@@ -83,10 +83,7 @@ impl Graph {
 
     /// The number, if the node is a constant scalar.
     pub fn as_number(&self, id: NodeId) -> Option<f64> {
-        match self.node(id) {
-            Node::Const(value) => value.scalar(),
-            _ => None,
-        }
+        if let Node::Const(value) = self.node(id) { value.scalar() } else { None }
     }
 
     /// The id of a node exactly as given: no folding. Callers use the typed builders.
@@ -125,42 +122,7 @@ impl Graph {
             | Node::Swizzle(..)
             | Node::Transform(..) => {}
         }
-        Facts { ty: self.type_of(node), stage, levels }
-    }
-
-    fn type_of(&self, node: &Node) -> Type {
-        match *node {
-            Node::Const(value) => value.ty(),
-            Node::Point(_, dim) => dim.point_type(),
-            Node::Frame(_, ty)
-            | Node::Splat(ty, _)
-            | Node::Compose(ty, _)
-            | Node::Swizzle(ty, ..) => ty,
-            Node::Unary(Unary::Length, _) => Type::Scalar,
-            Node::Unary(_, a) => self.ty(a),
-            Node::Binary(op, a, _) => match op {
-                Binary::Dot => Type::Scalar,
-                Binary::Lt | Binary::Le | Binary::Eq | Binary::Ne | Binary::And | Binary::Or => {
-                    Type::Bool
-                }
-                Binary::Add
-                | Binary::Sub
-                | Binary::Mul
-                | Binary::Div
-                | Binary::Rem
-                | Binary::Min
-                | Binary::Max
-                | Binary::Pow
-                | Binary::Atan2
-                | Binary::Step
-                | Binary::Cross => self.ty(a),
-            },
-            Node::Ternary(Ternary::Select, [_, yes, _]) => self.ty(yes),
-            Node::Ternary(_, [a, ..]) => self.ty(a),
-            Node::Transform(..) => Type::Vec3,
-            Node::Sample(..) => Type::Scalar,
-            Node::MaterialAt(.., field) => field.ty(),
-        }
+        Facts { ty: result_type(node, |id| self.ty(id)), stage, levels }
     }
 
     /// The instance equal to this one in definition, dimension, level and arguments, or this one as
@@ -209,6 +171,42 @@ impl Graph {
     pub fn name_shape(&mut self, id: ShapeId, name: &str) {
         let shape = &mut self.shapes[id.index()];
         shape.name.get_or_insert_with(|| name.to_owned());
+    }
+}
+
+/// The type of a node, given those of its arguments.
+pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
+    match *node {
+        Node::Const(value) => value.ty(),
+        Node::Point(_, dim) => dim.point_type(),
+        Node::Frame(_, own)
+        | Node::Splat(own, _)
+        | Node::Compose(own, _)
+        | Node::Swizzle(own, ..) => own,
+        Node::Unary(Unary::Length, _) => Type::Scalar,
+        Node::Unary(_, a) => ty(a),
+        Node::Binary(op, a, _) => match op {
+            Binary::Dot => Type::Scalar,
+            Binary::Lt | Binary::Le | Binary::Eq | Binary::Ne | Binary::And | Binary::Or => {
+                Type::Bool
+            }
+            Binary::Add
+            | Binary::Sub
+            | Binary::Mul
+            | Binary::Div
+            | Binary::Rem
+            | Binary::Min
+            | Binary::Max
+            | Binary::Pow
+            | Binary::Atan2
+            | Binary::Step
+            | Binary::Cross => ty(a),
+        },
+        Node::Ternary(Ternary::Select, [_, yes, _]) => ty(yes),
+        Node::Ternary(_, [a, ..]) => ty(a),
+        Node::Transform(..) => Type::Vec3,
+        Node::Sample(..) => Type::Scalar,
+        Node::MaterialAt(.., field) => field.ty(),
     }
 }
 

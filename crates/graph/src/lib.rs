@@ -1,6 +1,7 @@
 //! Shape instances and typed math in one hash-consed arena, with its evaluators.
 
 mod build;
+pub mod eval;
 mod graph;
 mod node;
 mod program;

@@ -1,0 +1,212 @@
+//! Forward-mode derivatives.
+
+use super::Number;
+
+/// A number and its derivatives by the three coordinates of the point, in f64.
+///
+/// At kinks the derivative is that of a branch: `min`, `max`, `clamp` on a tie that of the first argument, `abs` at 0
+/// +1. `sqrt` and `length` at 0 have derivative 0, jumps (`floor`, `sign`, comparisons) everywhere. A part
+/// that is 0 stays 0 even where the outer derivative is infinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual {
+    /// The value.
+    pub value: f64,
+    /// Its derivatives by x, y, z.
+    pub partials: [f64; 3],
+}
+
+impl Dual {
+    /// The coordinates of a point, as the variables that derivatives are taken by.
+    pub fn point([x, y, z]: [f64; 3]) -> [Self; 3] {
+        [
+            Self { value: x, partials: [1.0, 0.0, 0.0] },
+            Self { value: y, partials: [0.0, 1.0, 0.0] },
+            Self { value: z, partials: [0.0, 0.0, 1.0] },
+        ]
+    }
+
+    fn flat(value: f64) -> Self {
+        Self { value, partials: [0.0; 3] }
+    }
+
+    /// A function of this number, by its value and derivative.
+    fn chain(self, value: f64, slope: f64) -> Self {
+        Self { value, partials: self.partials.map(|part| scaled(part, slope)) }
+    }
+
+    /// A function of two numbers, by its value and derivatives.
+    fn chain2(self, y: Self, value: f64, slopes: [f64; 2]) -> Self {
+        let part =
+            |i: usize| scaled(self.partials[i], slopes[0]) + scaled(y.partials[i], slopes[1]);
+        Self { value, partials: [part(0), part(1), part(2)] }
+    }
+}
+
+/// The product, 0 where the part is 0 whatever the slope.
+fn scaled(part: f64, slope: f64) -> f64 {
+    if part == 0.0 { 0.0 } else { part * slope }
+}
+
+impl Number for Dual {
+    fn constant(value: f64) -> Self {
+        Self::flat(value)
+    }
+
+    fn neg(self) -> Self {
+        self.chain(-self.value, -1.0)
+    }
+    fn abs(self) -> Self {
+        self.chain(self.value.abs(), if self.value < 0.0 { -1.0 } else { 1.0 })
+    }
+    fn sign(self) -> Self {
+        Self::flat(Number::sign(self.value))
+    }
+    fn floor(self) -> Self {
+        Self::flat(self.value.floor())
+    }
+    fn ceil(self) -> Self {
+        Self::flat(self.value.ceil())
+    }
+    fn round(self) -> Self {
+        Self::flat(Number::round(self.value))
+    }
+    fn trunc(self) -> Self {
+        Self::flat(self.value.trunc())
+    }
+    fn fract(self) -> Self {
+        self.chain(Number::fract(self.value), 1.0)
+    }
+    fn square(self) -> Self {
+        self.chain(self.value * self.value, 2.0 * self.value)
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, if self.value == 0.0 { 0.0 } else { 0.5 / root })
+    }
+    fn inverse_sqrt(self) -> Self {
+        let value = self.value.inverse_sqrt();
+        self.chain(value, -0.5 * value / self.value)
+    }
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value)
+    }
+    fn exp2(self) -> Self {
+        let value = self.value.exp2();
+        self.chain(value, value * std::f64::consts::LN_2)
+    }
+    fn log(self) -> Self {
+        self.chain(self.value.ln(), 1.0 / self.value)
+    }
+    fn log2(self) -> Self {
+        self.chain(self.value.log2(), std::f64::consts::LOG2_E / self.value)
+    }
+    fn sin(self) -> Self {
+        self.chain(self.value.sin(), self.value.cos())
+    }
+    fn cos(self) -> Self {
+        self.chain(self.value.cos(), -self.value.sin())
+    }
+    fn tan(self) -> Self {
+        let value = self.value.tan();
+        self.chain(value, 1.0 + value * value)
+    }
+    fn asin(self) -> Self {
+        self.chain(self.value.asin(), (1.0 - self.value * self.value).inverse_sqrt())
+    }
+    fn acos(self) -> Self {
+        self.chain(self.value.acos(), -(1.0 - self.value * self.value).inverse_sqrt())
+    }
+    fn atan(self) -> Self {
+        self.chain(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
+    }
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        self.chain(value, 1.0 - value * value)
+    }
+    fn not(self) -> Self {
+        Self::flat(self.value.not())
+    }
+
+    fn add(self, y: Self) -> Self {
+        self.chain2(y, self.value + y.value, [1.0, 1.0])
+    }
+    fn sub(self, y: Self) -> Self {
+        self.chain2(y, self.value - y.value, [1.0, -1.0])
+    }
+    fn mul(self, y: Self) -> Self {
+        self.chain2(y, self.value * y.value, [y.value, self.value])
+    }
+    fn div(self, y: Self) -> Self {
+        let value = self.value / y.value;
+        self.chain2(y, value, [1.0 / y.value, -value / y.value])
+    }
+    fn rem(self, y: Self) -> Self {
+        let whole = (self.value / y.value).floor();
+        self.chain2(y, self.value.rem(y.value), [1.0, -whole])
+    }
+    fn min(self, y: Self) -> Self {
+        if y.value < self.value { y } else { self }
+    }
+    fn max(self, y: Self) -> Self {
+        if y.value > self.value { y } else { self }
+    }
+    fn pow(self, y: Self) -> Self {
+        let value = self.value.pow(y.value);
+        let by_base = y.value * self.value.pow(y.value - 1.0);
+        // x^y ln x tends to 0 with x for the positive powers that are defined there.
+        let by_power = if self.value == 0.0 { 0.0 } else { value * self.value.ln() };
+        self.chain2(y, value, [by_base, by_power])
+    }
+    fn atan2(self, x: Self) -> Self {
+        let norm = self.value * self.value + x.value * x.value;
+        let slopes = if norm == 0.0 { [0.0; 2] } else { [x.value / norm, -self.value / norm] };
+        self.chain2(x, self.value.atan2(x.value), slopes)
+    }
+    fn step(self, x: Self) -> Self {
+        Self::flat(self.value.step(x.value))
+    }
+    fn direction(self, length: Self) -> Self {
+        if length.value == 0.0 { Self::flat(0.0) } else { self.div(length) }
+    }
+    fn lt(self, y: Self) -> Self {
+        Self::flat(Number::lt(self.value, y.value))
+    }
+    fn le(self, y: Self) -> Self {
+        Self::flat(Number::le(self.value, y.value))
+    }
+    fn eq(self, y: Self) -> Self {
+        Self::flat(Number::eq(self.value, y.value))
+    }
+    fn ne(self, y: Self) -> Self {
+        Self::flat(Number::ne(self.value, y.value))
+    }
+    fn and(self, y: Self) -> Self {
+        Self::flat(self.value.and(y.value))
+    }
+    fn or(self, y: Self) -> Self {
+        Self::flat(self.value.or(y.value))
+    }
+
+    fn mix(self, y: Self, t: Self) -> Self {
+        let by_t = t.chain(0.0, y.value - self.value);
+        let Self { partials, .. } = self.chain2(y, 0.0, [1.0 - t.value, t.value]).add(by_t);
+        Self { value: self.value.mix(y.value, t.value), partials }
+    }
+    fn clamp(self, lo: Self, hi: Self) -> Self {
+        self.max(lo).min(hi)
+    }
+    fn smoothstep(self, hi: Self, x: Self) -> Self {
+        let t = x.sub(self).div(hi.sub(self)).saturate();
+        t.square().mul(Self::flat(3.0).sub(t.add(t)))
+    }
+    fn select(self, yes: Self, no: Self) -> Self {
+        if self.value != 0.0 { yes } else { no }
+    }
+}

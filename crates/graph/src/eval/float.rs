@@ -1,0 +1,221 @@
+//! Plain floating point: `f64` is the reference, `f32` the twin of the shader.
+//!
+//! Both follow WGSL, so that `f32` differs from a device only by the accuracy that WGSL allows it:
+//! `round` goes to even, `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN
+//! or infinite. `min` and `max` pass on a NaN of their first argument only; WGSL leaves this open.
+
+use super::Number;
+
+macro_rules! float {
+    ($float:ident) => {
+        impl Number for $float {
+            #[inline]
+            fn constant(value: f64) -> Self {
+                value as Self
+            }
+
+            #[inline]
+            fn neg(self) -> Self {
+                -self
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline]
+            fn sign(self) -> Self {
+                if self > 0.0 {
+                    1.0
+                } else if self < 0.0 {
+                    -1.0
+                } else {
+                    self * 0.0
+                }
+            }
+            #[inline]
+            fn floor(self) -> Self {
+                self.floor()
+            }
+            #[inline]
+            fn ceil(self) -> Self {
+                self.ceil()
+            }
+            #[inline]
+            fn round(self) -> Self {
+                self.round_ties_even()
+            }
+            #[inline]
+            fn trunc(self) -> Self {
+                self.trunc()
+            }
+            #[inline]
+            fn fract(self) -> Self {
+                self - self.floor()
+            }
+            #[inline]
+            fn square(self) -> Self {
+                self * self
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline]
+            fn inverse_sqrt(self) -> Self {
+                1.0 / self.sqrt()
+            }
+            #[inline]
+            fn exp(self) -> Self {
+                self.exp()
+            }
+            #[inline]
+            fn exp2(self) -> Self {
+                self.exp2()
+            }
+            #[inline]
+            fn log(self) -> Self {
+                self.ln()
+            }
+            #[inline]
+            fn log2(self) -> Self {
+                self.log2()
+            }
+            #[inline]
+            fn sin(self) -> Self {
+                self.sin()
+            }
+            #[inline]
+            fn cos(self) -> Self {
+                self.cos()
+            }
+            #[inline]
+            fn tan(self) -> Self {
+                self.tan()
+            }
+            #[inline]
+            fn asin(self) -> Self {
+                self.asin()
+            }
+            #[inline]
+            fn acos(self) -> Self {
+                self.acos()
+            }
+            #[inline]
+            fn atan(self) -> Self {
+                self.atan()
+            }
+            #[inline]
+            fn sinh(self) -> Self {
+                self.sinh()
+            }
+            #[inline]
+            fn cosh(self) -> Self {
+                self.cosh()
+            }
+            #[inline]
+            fn tanh(self) -> Self {
+                self.tanh()
+            }
+            #[inline]
+            fn not(self) -> Self {
+                1.0 - self
+            }
+
+            #[inline]
+            fn add(self, y: Self) -> Self {
+                self + y
+            }
+            #[inline]
+            fn sub(self, y: Self) -> Self {
+                self - y
+            }
+            #[inline]
+            fn mul(self, y: Self) -> Self {
+                self * y
+            }
+            #[inline]
+            fn div(self, y: Self) -> Self {
+                self / y
+            }
+            #[inline]
+            fn rem(self, y: Self) -> Self {
+                self - y * (self / y).floor()
+            }
+            #[inline]
+            fn min(self, y: Self) -> Self {
+                if y < self { y } else { self }
+            }
+            #[inline]
+            fn max(self, y: Self) -> Self {
+                if y > self { y } else { self }
+            }
+            #[inline]
+            fn pow(self, y: Self) -> Self {
+                if self < 0.0 { Self::NAN } else { self.powf(y) }
+            }
+            #[inline]
+            fn atan2(self, x: Self) -> Self {
+                self.atan2(x)
+            }
+            #[inline]
+            fn step(self, x: Self) -> Self {
+                truth(x >= self)
+            }
+            #[inline]
+            fn direction(self, length: Self) -> Self {
+                if length == 0.0 { 0.0 } else { self / length }
+            }
+            #[inline]
+            fn lt(self, y: Self) -> Self {
+                truth(self < y)
+            }
+            #[inline]
+            fn le(self, y: Self) -> Self {
+                truth(self <= y)
+            }
+            #[inline]
+            fn eq(self, y: Self) -> Self {
+                truth(self == y)
+            }
+            #[inline]
+            fn ne(self, y: Self) -> Self {
+                truth(self != y)
+            }
+            #[inline]
+            fn and(self, y: Self) -> Self {
+                self * y
+            }
+            #[inline]
+            fn or(self, y: Self) -> Self {
+                Number::max(self, y)
+            }
+
+            #[inline]
+            fn mix(self, y: Self, t: Self) -> Self {
+                self + (y - self) * t
+            }
+            #[inline]
+            fn clamp(self, lo: Self, hi: Self) -> Self {
+                Number::min(Number::max(self, lo), hi)
+            }
+            #[inline]
+            fn smoothstep(self, hi: Self, x: Self) -> Self {
+                let t = ((x - self) / (hi - self)).saturate();
+                t * t * (3.0 - 2.0 * t)
+            }
+            #[inline]
+            fn select(self, yes: Self, no: Self) -> Self {
+                if self != 0.0 { yes } else { no }
+            }
+        }
+    };
+}
+
+float!(f32);
+float!(f64);
+
+/// 1 or 0.
+#[inline]
+fn truth<F: From<bool>>(holds: bool) -> F {
+    F::from(holds)
+}

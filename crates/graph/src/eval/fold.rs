@@ -1,0 +1,45 @@
+//! Constant folding.
+
+use super::op::Op;
+use super::scalarise::{Lanes, Machine, scalarise};
+use crate::graph::result_type;
+use crate::{Const, Node, NodeId, Type};
+
+/// Computes in f64 at once; has no inputs.
+struct Folding;
+
+impl Machine for Folding {
+    type Value = f64;
+
+    fn constant(&mut self, value: f64) -> f64 {
+        value
+    }
+
+    fn apply(&mut self, op: Op, arguments: [f64; 3]) -> f64 {
+        op.apply(|i| arguments[i])
+    }
+
+    fn input(&mut self, _: &Node) -> Option<Lanes<f64>> {
+        None
+    }
+}
+
+/// The value of a node whose arguments, in order, are these constants. `None` for a node that is no
+/// operation, and where a lane of the result is not finite: such an operation stays, to be reported
+/// or to run, rather than become a literal that no shader can hold.
+pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
+    let find = |id: NodeId| {
+        let position = node.arguments().position(|argument| argument == id);
+        position.and_then(|position| arguments.get(position)).copied()
+    };
+    if node.arguments().any(|id| find(id).is_none()) {
+        return None;
+    }
+    let argument = |id| find(id).unwrap_or(Const::new(Type::Scalar, &[]));
+    let lanes = scalarise(&mut Folding, node, |id| {
+        let (lanes, width) = (argument(id).lanes(), argument(id).ty().width());
+        Lanes::new(width, |i| lanes[i])
+    })?;
+    let finite = lanes.as_slice().iter().all(|lane| lane.is_finite());
+    finite.then(|| Const::new(result_type(node, |id| argument(id).ty()), lanes.as_slice()))
+}

@@ -1,0 +1,92 @@
+//! The scalar operations that tapes are made of.
+
+use super::Number;
+
+macro_rules! operations {
+    (
+        unary { $($unary:ident = $unary_method:ident,)* }
+        binary { $($binary:ident = $binary_method:ident,)* }
+        ternary { $($ternary:ident = $ternary_method:ident,)* }
+    ) => {
+        /// An operation on scalars; each is a method of [`Number`].
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub(crate) enum Op { $($unary,)* $($binary,)* $($ternary,)* }
+
+        impl Op {
+            /// Number of arguments, 1 to 3.
+            pub(crate) fn arity(self) -> usize {
+                match self {
+                    $(Self::$unary)|* => 1,
+                    $(Self::$binary)|* => 2,
+                    $(Self::$ternary)|* => 3,
+                }
+            }
+
+            /// The result; `argument` gives the arguments by position.
+            #[inline]
+            pub(crate) fn apply<N: Number>(self, argument: impl Fn(usize) -> N) -> N {
+                match self {
+                    $(Self::$unary => argument(0).$unary_method(),)*
+                    $(Self::$binary => argument(0).$binary_method(argument(1)),)*
+                    $(Self::$ternary => argument(0).$ternary_method(argument(1), argument(2)),)*
+                }
+            }
+        }
+    };
+}
+
+operations! {
+    unary {
+        Neg = neg,
+        Abs = abs,
+        Sign = sign,
+        Floor = floor,
+        Ceil = ceil,
+        Round = round,
+        Trunc = trunc,
+        Fract = fract,
+        Square = square,
+        Sqrt = sqrt,
+        InverseSqrt = inverse_sqrt,
+        Exp = exp,
+        Exp2 = exp2,
+        Log = log,
+        Log2 = log2,
+        Sin = sin,
+        Cos = cos,
+        Tan = tan,
+        Asin = asin,
+        Acos = acos,
+        Atan = atan,
+        Sinh = sinh,
+        Cosh = cosh,
+        Tanh = tanh,
+        Saturate = saturate,
+        Not = not,
+    }
+    binary {
+        Add = add,
+        Sub = sub,
+        Mul = mul,
+        Div = div,
+        Rem = rem,
+        Min = min,
+        Max = max,
+        Pow = pow,
+        Atan2 = atan2,
+        Step = step,
+        Direction = direction,
+        Lt = lt,
+        Le = le,
+        Eq = eq,
+        Ne = ne,
+        And = and,
+        Or = or,
+    }
+    ternary {
+        Mix = mix,
+        Clamp = clamp,
+        Smoothstep = smoothstep,
+        Select = select,
+    }
+}
