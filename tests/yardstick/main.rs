@@ -1,0 +1,109 @@
+//! The compiler's fields against those that a careful person writes; README.md says what is counted.
+//!
+//! Without `spirv-opt` the trials that count are reported as ignored.
+
+mod run;
+mod spirv;
+mod thirty;
+
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+
+/// A hand-written field, and its row of the table in README.md.
+const HAND_WRITTEN: [(&str, usize); 4] =
+    [("blend", 21), ("thirty", 421), ("tight/blend", 19), ("tight/thirty", 371)];
+
+fn main() {
+    let countable = spirv::has_optimizer();
+    let counting = |name: String, run: fn(&str) -> Result<(), Failed>, of: &'static str| {
+        Trial::test(name, move || run(of)).with_ignored_flag(!countable)
+    };
+    let mut trials =
+        vec![Trial::test("thirty_is_what_its_generator_writes", generated_files_are_current)];
+    for (name, _) in HAND_WRITTEN {
+        trials.push(counting(format!("count_of_{name}"), hand_written_count_is_the_table_s, name));
+    }
+    for name in ["blend", "thirty"] {
+        trials.push(counting(format!("values_of_{name}"), tight_form_is_the_same_field, name));
+    }
+    trials.push(counting("values_by_formula".into(), blend_is_its_formula, "blend"));
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn generated_files_are_current() -> Result<(), Failed> {
+    for (path, text) in thirty::files() {
+        if std::env::var_os("YARDSTICK_UPDATE").is_some() {
+            std::fs::write(root().join(path), &text)?;
+        }
+        if std::fs::read_to_string(root().join(path))?.replace("\r\n", "\n") != text {
+            return Err(format!("{path} is not what thirty.rs writes").into());
+        }
+    }
+    Ok(())
+}
+
+fn hand_written(name: &str) -> Result<spirv::Words, Failed> {
+    let wgsl = std::fs::read_to_string(root().join(format!("tests/yardstick/{name}.wgsl")))?;
+    Ok(spirv::optimize(&spirv::compile(&wgsl)?)?)
+}
+
+fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
+    let stated = HAND_WRITTEN.iter().find(|row| row.0 == name).map(|row| row.1);
+    let counted = spirv::arithmetic(&hand_written(name)?);
+    if stated != Some(counted) {
+        return Err(format!("{name}: {counted} arithmetic instructions, stated {stated:?}").into());
+    }
+    let row = format!("| {counted} |");
+    let readme = std::fs::read_to_string(root().join("tests/yardstick/README.md"))?;
+    let start = format!("| `{name}.wgsl` |");
+    if !readme.lines().any(|line| line.starts_with(&start) && line.ends_with(&row)) {
+        return Err(format!("README.md has no row for {name} with {counted}").into());
+    }
+    Ok(())
+}
+
+/// Points in and around the scenes, from a lattice that meets no symmetry of theirs.
+fn points() -> impl Iterator<Item = [f32; 3]> {
+    // The plastic number's powers spread points evenly (Roberts 2018).
+    const STEP: [f64; 3] = [0.819_172_5, 0.671_043_6, 0.549_700_5];
+    (0..2000).map(|i| STEP.map(|step| ((0.5 + step * f64::from(i)).fract() * 6.0 - 3.0) as f32))
+}
+
+fn compare(
+    what: &str,
+    mut of: impl FnMut([f32; 3]) -> Result<(f32, f32), String>,
+) -> Result<(), Failed> {
+    for point in points() {
+        let (a, b) = of(point)?;
+        // A few roundings of numbers below 8, after another order of operations.
+        if (a - b).abs() > 1e-5 {
+            return Err(format!("{what} at {point:?}: {a} and {b}").into());
+        }
+    }
+    Ok(())
+}
+
+fn tight_form_is_the_same_field(name: &str) -> Result<(), Failed> {
+    let (plain, tight) = (hand_written(name)?, hand_written(&format!("tight/{name}"))?);
+    compare(name, |p| Ok((run::field(&plain, p)?, run::field(&tight, p)?)))
+}
+
+/// The runner and the hand-written text, against the definition in f64.
+fn blend_is_its_formula(name: &str) -> Result<(), Failed> {
+    let words = hand_written(name)?;
+    compare(name, |p| Ok((run::field(&words, p)?, blend(p.map(f64::from)) as f32)))
+}
+
+fn blend([x, y, z]: [f64; 3]) -> f64 {
+    let length = |v: [f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let ball = length([x - 0.4, y - 0.7, z - 0.4]) - 0.8;
+    let q = [x.abs() - 0.8, y.abs() - 0.5, z.abs() - 0.8];
+    let block = length(q.map(|c| c.max(0.0))) + q[0].max(q[1]).max(q[2]).min(0.0);
+    let h = (0.5 + 0.5 * (block - ball) / 0.4).clamp(0.0, 1.0);
+    (block * (1.0 - h) + ball * h - 0.4 * h * (1.0 - h)).min(y + 0.5)
+}
