@@ -1,0 +1,197 @@
+//! From text to tokens; comments are kept aside.
+
+use logos::Logos;
+use sdfc_diagnostics::{Code, Diagnostic, FileId, Span};
+
+use crate::token::{Token, TokenKind};
+
+/// A comment: where it stands, slashes included, line break not.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Comment {
+    /// Offset of its first slash.
+    pub start: u32,
+    /// Offset after its last character that is not white.
+    pub end: u32,
+    /// How many tokens stand before it.
+    pub tokens_before: usize,
+}
+
+impl Comment {
+    /// Its text, slashes included.
+    pub fn text(self, text: &str) -> &str {
+        &text[self.start as usize..self.end as usize]
+    }
+
+    /// The documentation in it; nothing in `//` and in rulers of four slashes and more.
+    pub fn doc(self, text: &str) -> Option<&str> {
+        let line = self.text(text).strip_prefix("///")?;
+        (!line.starts_with('/')).then(|| line.strip_prefix(' ').unwrap_or(line))
+    }
+}
+
+/// What a file consists of.
+#[derive(Debug)]
+pub(crate) struct Lexed {
+    /// The tokens; the last one is `Eof`.
+    pub tokens: Vec<Token>,
+    /// The comments in order.
+    pub comments: Vec<Comment>,
+    /// Characters that start no token.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Splits a text into tokens. Its length must fit `u32`.
+pub(crate) fn lex(text: &str, file: FileId) -> Lexed {
+    let mut lexed = Lexed { tokens: Vec::new(), comments: Vec::new(), diagnostics: Vec::new() };
+    let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let mut lexer = TokenKind::lexer(text);
+    lexer.bump(start);
+    let mut previous_end = start;
+    let mut first = true;
+    while let Some(found) = lexer.next() {
+        let range = lexer.span();
+        first |= text[previous_end..range.start].contains('\n');
+        previous_end = range.end;
+        let mut token = Token {
+            kind: found.unwrap_or(TokenKind::Unknown),
+            first,
+            start: range.start as u32,
+            end: range.end as u32,
+        };
+        if token.kind == TokenKind::Comment {
+            let end = range.start + text[range].trim_end().len();
+            let tokens_before = lexed.tokens.len();
+            lexed.comments.push(Comment { start: token.start, end: end as u32, tokens_before });
+            continue;
+        }
+        if token.kind == TokenKind::Unknown {
+            token.kind = lexed.unknown(text, token, file);
+        }
+        if let Some(token) = lexed.joined(token) {
+            lexed.tokens.push(token);
+        }
+        first = false;
+    }
+    let end = text.len() as u32;
+    lexed.tokens.push(Token { kind: TokenKind::Eof, first: true, start: end, end });
+    lexed
+}
+
+impl Lexed {
+    /// The token, unless it continues a run of unknown characters, which is one token.
+    fn joined(&mut self, token: Token) -> Option<Token> {
+        match self.tokens.last_mut() {
+            Some(last)
+                if last.kind == TokenKind::Unknown
+                    && token.kind == TokenKind::Unknown
+                    && last.end == token.start =>
+            {
+                last.end = token.end;
+                None
+            }
+            Some(_) | None => Some(token),
+        }
+    }
+
+    /// Reports a character that starts no token; the kind that was likely meant, or `Unknown`.
+    fn unknown(&mut self, text: &str, token: Token, file: FileId) -> TokenKind {
+        let span = token.span(file);
+        let Some(c) = text[token.start as usize..].chars().next() else {
+            return TokenKind::Unknown;
+        };
+        let (meant, help) = meaning(c);
+        if meant == TokenKind::Unknown && self.extends_last(span) {
+            return meant;
+        }
+        let shown = if c.is_control() || c.is_whitespace() {
+            format!("U+{:04X}", c as u32)
+        } else {
+            c.to_string()
+        };
+        let found = Diagnostic::error(
+            Code::UNKNOWN_CHARACTER,
+            span,
+            format!("the character `{shown}` is not part of the language"),
+        );
+        self.diagnostics.push(if help.is_empty() { found } else { found.help(help) });
+        meant
+    }
+
+    /// Whether the character right before was unknown too; the report then covers both.
+    fn extends_last(&mut self, span: Span) -> bool {
+        let joins = self
+            .tokens
+            .last()
+            .is_some_and(|last| last.kind == TokenKind::Unknown && last.end == span.start);
+        if let (true, Some(last)) = (joins, self.diagnostics.last_mut()) {
+            last.span.end = span.end;
+        }
+        joins
+    }
+}
+
+/// What a character that starts no token was likely meant to be, and what to write instead.
+fn meaning(c: char) -> (TokenKind, &'static str) {
+    match c {
+        '\u{2018}' | '\u{2019}' | '\'' => (TokenKind::Unknown, "strings stand between `\"`"),
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => (TokenKind::Minus, "write the minus sign as `-`"),
+        '\u{d7}' | '\u{b7}' | '\u{22c5}' => (TokenKind::Star, "write `*`"),
+        '\u{f7}' => (TokenKind::Slash, "write `/`"),
+        '\u{2026}' => (TokenKind::DotDot, "a range is written with two dots: `0..1`"),
+        '\u{2264}' => (TokenKind::LessEq, "write `<=`"),
+        '\u{2265}' => (TokenKind::GreaterEq, "write `>=`"),
+        '\u{2260}' => (TokenKind::NotEq, "write `!=`"),
+        '\u{b0}' => (TokenKind::Unknown, "angles are written `90deg`"),
+        '\u{3c0}' => (TokenKind::Name, "write `pi`"),
+        '\u{221e}' => (TokenKind::Name, "write `inf`"),
+        '^' => (TokenKind::Unknown, "powers are written `pow(x, 2)`"),
+        '?' => (TokenKind::Unknown, "choices are written `if c { a } else { b }`"),
+        '@' | '$' | '~' | '`' | '\\' => (TokenKind::Unknown, ""),
+        c if c.is_whitespace() => (TokenKind::Unknown, "replace it by a plain space"),
+        c if c.is_alphabetic() => {
+            (TokenKind::Unknown, "names are written with the letters a to z, digits and `_`")
+        }
+        _ => (TokenKind::Unknown, ""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(text: &str) -> Vec<TokenKind> {
+        lex(text, FileId(0)).tokens.iter().map(|token| token.kind).collect()
+    }
+
+    #[test]
+    fn ranges_numbers_and_points_are_told_apart() {
+        use TokenKind::{Dot, DotDot, Ellipsis, Eof, Name, Number, PointNumber};
+        assert_eq!(kinds("0..8"), [Number, DotDot, Number, Eof]);
+        assert_eq!(kinds("0.5..1.5e-3deg"), [Number, DotDot, Number, Eof]);
+        assert_eq!(kinds("0.._n"), [Number, DotDot, Name, Eof]);
+        assert_eq!(kinds(".5 a.x 1.x"), [PointNumber, Name, Dot, Name, Number, Dot, Name, Eof]);
+        assert_eq!(kinds("shapes..."), [Name, Ellipsis, Eof]);
+    }
+
+    #[test]
+    fn lines_begin_after_line_feeds_only() {
+        let firsts = |text: &str| -> Vec<bool> {
+            lex(text, FileId(0)).tokens.iter().map(|token| token.first).collect()
+        };
+        assert_eq!(firsts("a b\r\nc // d\ne"), [true, false, true, true, true]);
+        assert_eq!(firsts("\u{feff}a // b"), [true, true]);
+    }
+
+    #[test]
+    fn a_string_ends_at_its_quote_or_its_line() {
+        let texts = |text: &str| -> Vec<String> {
+            let lexed = lex(text, FileId(0));
+            let tokens = lexed.tokens.iter();
+            tokens.map(|t| text[t.start as usize..t.end as usize].to_owned()).collect()
+        };
+        assert_eq!(texts("\"a\\\"b\" c"), ["\"a\\\"b\"", "c", ""]);
+        assert_eq!(texts("\"ab\r\nc"), ["\"ab", "c", ""]);
+        assert_eq!(texts("\"a\\\\\" b"), ["\"a\\\\\"", "b", ""]);
+        assert_eq!(texts("“a” b"), ["“a”", "b", ""]);
+    }
+}

@@ -1,0 +1,243 @@
+//! Operators: precedence, prefixes, postfixes.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+
+use super::{Parsed, Parser};
+use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Name, UnaryOp};
+use crate::literal;
+use crate::token::TokenKind;
+
+/// The levels of infix operators, loose to tight.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Or,
+    And,
+    Compare,
+    Range,
+    Sum,
+    Product,
+    Prefix,
+}
+
+impl Level {
+    /// The level of operands on the right: all operators associate to the left.
+    fn tighter(self) -> Level {
+        match self {
+            Level::Or => Level::And,
+            Level::And => Level::Compare,
+            Level::Compare => Level::Range,
+            Level::Range => Level::Sum,
+            Level::Sum => Level::Product,
+            Level::Product | Level::Prefix => Level::Prefix,
+        }
+    }
+
+    /// Why operators of this level do not follow each other.
+    fn does_not_chain(self) -> Option<&'static str> {
+        match self {
+            Level::Compare => Some("comparisons do not chain"),
+            Level::Range => Some("a range has two ends"),
+            Level::Or | Level::And | Level::Sum | Level::Product | Level::Prefix => None,
+        }
+    }
+}
+
+/// The infix operators.
+const INFIX: &[(TokenKind, BinaryOp, Level)] = &[
+    (TokenKind::OrOr, BinaryOp::Or, Level::Or),
+    (TokenKind::AndAnd, BinaryOp::And, Level::And),
+    (TokenKind::EqEq, BinaryOp::Eq, Level::Compare),
+    (TokenKind::NotEq, BinaryOp::Ne, Level::Compare),
+    (TokenKind::Less, BinaryOp::Lt, Level::Compare),
+    (TokenKind::LessEq, BinaryOp::Le, Level::Compare),
+    (TokenKind::Greater, BinaryOp::Gt, Level::Compare),
+    (TokenKind::GreaterEq, BinaryOp::Ge, Level::Compare),
+    (TokenKind::DotDot, BinaryOp::Range, Level::Range),
+    (TokenKind::Plus, BinaryOp::Add, Level::Sum),
+    (TokenKind::Minus, BinaryOp::Sub, Level::Sum),
+    (TokenKind::Or, BinaryOp::Union, Level::Sum),
+    (TokenKind::And, BinaryOp::Intersect, Level::Sum),
+    (TokenKind::Star, BinaryOp::Mul, Level::Product),
+    (TokenKind::Slash, BinaryOp::Div, Level::Product),
+    (TokenKind::Percent, BinaryOp::Rem, Level::Product),
+];
+
+impl Parser<'_> {
+    /// An expression.
+    pub(super) fn expr(&mut self) -> Parsed<Expr> {
+        self.binary(Level::Or)
+    }
+
+    /// The infix operator that comes next, with its level.
+    fn infix(&self) -> Option<(BinaryOp, Level)> {
+        let kind = self.kind();
+        INFIX.iter().find(|row| row.0 == kind).map(|&(_, op, level)| (op, level))
+    }
+
+    /// Operands joined by operators of this level and tighter ones.
+    fn binary(&mut self, loosest: Level) -> Parsed<Expr> {
+        self.measured(|parser| {
+            let mut left = parser.prefix()?;
+            let mut unchained = None;
+            while let Some((op, level)) = parser.infix().filter(|&(_, level)| level >= loosest) {
+                let place = parser.span();
+                parser.bump();
+                let right = parser.binary(level.tighter())?;
+                parser.link(place)?;
+                let span = left.span.to(right.span);
+                let kind = match level.does_not_chain() {
+                    Some(why) if unchained == Some(level) => {
+                        parser.report_chain(why, place, &left, &right);
+                        ExprKind::Error
+                    }
+                    Some(_) | None => ExprKind::Binary(op, place, Box::new(left), Box::new(right)),
+                };
+                left = Expr { kind, span };
+                unchained = Some(level);
+            }
+            Ok(left)
+        })
+    }
+
+    /// Reports the second of two operators that do not chain.
+    fn report_chain(&mut self, why: &str, place: Span, left: &Expr, right: &Expr) {
+        let mut found = Diagnostic::error(Code::DOES_NOT_CHAIN, place, why);
+        if let ExprKind::Binary(op, _, _, middle) = &left.kind
+            && *op != BinaryOp::Range
+        {
+            let [left, middle, operator, right] =
+                [left.span, middle.span, place, right.span].map(|span| self.slice(span));
+            if left.len() + middle.len() + right.len() < 60 {
+                found = found.help(format!("write {left} && {middle} {operator} {right}"));
+            }
+        }
+        self.report(found);
+    }
+
+    /// `-` and `!` before an operand.
+    fn prefix(&mut self) -> Parsed<Expr> {
+        let mut operators = Vec::new();
+        loop {
+            let op = match self.kind() {
+                TokenKind::Minus => UnaryOp::Neg,
+                TokenKind::Not => UnaryOp::Not,
+                _ => break,
+            };
+            operators.push((op, self.span()));
+            self.bump();
+        }
+        let mut operand = self.postfix()?;
+        for (op, place) in operators.into_iter().rev() {
+            self.link(place)?;
+            let span = place.to(operand.span);
+            operand = Expr { kind: ExprKind::Unary(op, Box::new(operand)), span };
+        }
+        Ok(operand)
+    }
+
+    /// An operand with its calls, fields and indices.
+    fn postfix(&mut self) -> Parsed<Expr> {
+        let start = self.span();
+        let mut base = self.primary()?;
+        loop {
+            let next = self.next();
+            let place = self.span();
+            let kind = match next.kind {
+                TokenKind::Dot => {
+                    let name = self.field(&base)?;
+                    ExprKind::Field(Box::new(base), name)
+                }
+                TokenKind::OpenParen if !next.first => {
+                    let args = self.arguments()?;
+                    ExprKind::Call(Box::new(base), args)
+                }
+                TokenKind::OpenBracket if !next.first => {
+                    let index = self.index()?;
+                    ExprKind::Index(Box::new(base), Box::new(index))
+                }
+                TokenKind::PointNumber if !next.first => return self.glued_number(&base),
+                _ => return Ok(base),
+            };
+            self.link(place)?;
+            base = Expr { kind, span: self.since(start) };
+        }
+    }
+
+    /// `.name`
+    fn field(&mut self, base: &Expr) -> Parsed<Name> {
+        let point = self.span();
+        self.bump();
+        let number = matches!(base.kind, ExprKind::Number { .. });
+        let next = self.next();
+        if number && base.span.end == point.start && (next.kind != TokenKind::Name || next.first) {
+            let written = format!("{}.", self.slice(base.span));
+            return self.fail(literal::bare_point(&written, base.span.to(point)));
+        }
+        self.name("a name after `.`")
+    }
+
+    /// `a.5`: neither a field nor a number of its own.
+    fn glued_number(&mut self, base: &Expr) -> Parsed<Expr> {
+        let number = matches!(base.kind, ExprKind::Number { .. });
+        let written = self.slice(self.span());
+        if number || base.span.end != self.next().start {
+            return self.fail(literal::bare_point(written, self.span()));
+        }
+        let found = Diagnostic::error(Code::EXPECTED, self.span(), "expected a name after `.`")
+            .help(format!("parts of a list or vector are written [{}]", &written[1..]));
+        self.fail(found)
+    }
+
+    /// `[index]`
+    fn index(&mut self) -> Parsed<Expr> {
+        let opener = self.open();
+        let depth = self.open.len();
+        let index = self.nested(opener.span, |parser| parser.expr_or_skip(&[]));
+        self.open.truncate(depth);
+        self.close(opener, "an operator")?;
+        index
+    }
+
+    /// `(arguments)`
+    fn arguments(&mut self) -> Parsed<Vec<Arg>> {
+        self.bracketed("argument", Self::argument, |span| {
+            let value = Element::Expr(Expr { kind: ExprKind::Error, span });
+            Some(Arg { name: None, value })
+        })
+    }
+
+    fn argument(&mut self) -> Parsed<Arg> {
+        let named = self.peek(1).kind == TokenKind::Colon
+            && (self.kind() == TokenKind::Name || self.kind().is_reserved());
+        if !named {
+            let arg = Arg { name: None, value: self.element()? };
+            self.refuse_equals(&arg)?;
+            return Ok(arg);
+        }
+        let name = self.name("an argument")?;
+        self.bump();
+        if self.kind() == TokenKind::For {
+            return self.expected_with(
+                "one value for a named argument",
+                &["put a sequence in brackets: [for ...]"],
+            );
+        }
+        let value = Element::Expr(self.expr_or_skip(&[TokenKind::Comma])?);
+        Ok(Arg { name: Some(name), value })
+    }
+
+    /// `f(x = 1)`
+    fn refuse_equals(&mut self, arg: &Arg) -> Parsed<()> {
+        let Element::Expr(Expr { kind: ExprKind::Name(name), .. }) = &arg.value else {
+            return Ok(());
+        };
+        if self.kind() != TokenKind::Eq {
+            return Ok(());
+        }
+        let found =
+            Diagnostic::error(Code::EXPECTED, self.span(), "expected `,` or `)`, found `=`")
+                .help(format!("a named argument is written with a colon: {name}: ..."))
+                .help("equality is written `==`");
+        self.fail(found)
+    }
+}

@@ -1,0 +1,292 @@
+//! What stands at top level.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+
+use super::{Failed, Parsed, Parser};
+use crate::ast::{
+    Decl, DeclKind, Docs, Expr, ExprKind, File, Import, Item, Name, Param, Signature,
+};
+use crate::literal;
+use crate::token::TokenKind;
+
+impl Parser<'_> {
+    /// The whole file.
+    pub(super) fn file(&mut self) -> File {
+        let mut items = Vec::new();
+        while self.kind() != TokenKind::Eof {
+            let at = self.at;
+            self.open.clear();
+            self.height = 0;
+            self.in_shape = false;
+            match self.item() {
+                Ok(item) => items.extend(item),
+                Err(Failed) => self.skip_item(at),
+            }
+            self.abandoned = false;
+            if self.at == at {
+                self.bump();
+            }
+        }
+        File { items }
+    }
+
+    /// One item and its end. Nothing for one that was left out after an error.
+    fn item(&mut self) -> Parsed<Option<Item>> {
+        let item = match self.kind() {
+            TokenKind::Import => self.import().map(Item::Import).map(Some),
+            TokenKind::Param => self.param().map(Item::Param).map(Some),
+            TokenKind::Let => Ok(self.binding()?.map(Item::Let)),
+            TokenKind::Solid => self.decl(DeclKind::Solid),
+            TokenKind::Region => self.decl(DeclKind::Region),
+            TokenKind::Shape => self.decl(DeclKind::Shape),
+            TokenKind::Fn if self.peek(1).kind != TokenKind::OpenParen => self.decl(DeclKind::Fn),
+            kind if kind.is_closer() => return self.stray_closer(),
+            _ => self.expr().map(Item::Expr).map(Some),
+        }?;
+        self.end_of_item();
+        Ok(item)
+    }
+
+    /// Skips to the line that begins the next item.
+    fn skip_item(&mut self, at: usize) {
+        if self.at == at {
+            self.bump();
+        }
+        while self.kind() != TokenKind::Eof && !self.at_new_item() {
+            if self.eat(TokenKind::Semicolon) {
+                return;
+            }
+            self.bump();
+        }
+    }
+
+    /// Takes the end of an item, or reports what stands behind it on the same line and skips that.
+    fn end_of_item(&mut self) {
+        if self.eat(TokenKind::Semicolon) || self.next().first {
+            return;
+        }
+        if self.kind().is_closer() {
+            return;
+        }
+        self.report_no_end();
+        self.skip_item(self.at);
+    }
+
+    /// Reports something behind a complete expression.
+    pub(super) fn report_no_end(&mut self) {
+        let text = self.slice(self.span());
+        let diagnostic = Diagnostic::error(
+            Code::EXPECTED,
+            self.span(),
+            "expected an operator or the end of the line",
+        );
+        let help = match (self.kind(), text) {
+            (TokenKind::Unknown, _) => return,
+            (TokenKind::PointNumber, _) => {
+                let found = literal::bare_point(text, self.span());
+                return self.report(found);
+            }
+            (TokenKind::Name, "and") => "write `&&`",
+            (TokenKind::Name, "or") => "write `||`",
+            (TokenKind::Name, "not") => "write `!`",
+            (TokenKind::Eq, _) => "`let` names a value: let a = 1; equality is written `==`",
+            (TokenKind::Else, _) => "`else` follows the `}` of an `if`",
+            (TokenKind::Comma, _) => "commas separate arguments and elements of lists",
+            (kind, _) if kind.declares() => "start a new line, or separate the two with `;`",
+            (kind, _) if kind.starts_primary() => "join solids with `|`, or start a new line",
+            _ => "",
+        };
+        self.report(if help.is_empty() { diagnostic } else { diagnostic.help(help) });
+    }
+
+    /// A closer that nothing opened.
+    fn stray_closer(&mut self) -> Parsed<Option<Item>> {
+        let closer = self.kind();
+        if !self.was_missing(closer) {
+            let message = format!("this `{}` closes nothing", self.slice(self.span()));
+            let found = Diagnostic::error(Code::EXPECTED, self.span(), message)
+                .help("remove it, or open the bracket that it should close");
+            self.report(found);
+        }
+        self.bump();
+        self.end_after_stray();
+        Ok(None)
+    }
+
+    /// What follows a stray closer on its line belonged inside.
+    fn end_after_stray(&mut self) {
+        while !self.next().first && !self.kind().is_closer() {
+            self.bump();
+        }
+    }
+
+    /// `import a, b as c from "path"`
+    fn import(&mut self) -> Parsed<Import> {
+        let start = self.span();
+        self.bump();
+        let mut names = Vec::new();
+        loop {
+            let name = self.name("a name to import")?;
+            let renamed = if self.at_word("as") {
+                self.bump();
+                Some(self.name("a new name after `as`")?)
+            } else {
+                None
+            };
+            names.push((name, renamed));
+            if !self.eat(TokenKind::Comma) {
+                break;
+            }
+        }
+        if !self.at_word("from") {
+            return self.expected_with(
+                "`from` and a path",
+                &["an import is written: import spur, rack as bar from \"parts/gear.sdf\""],
+            );
+        }
+        self.bump();
+        let path = self.string("a path in quotes")?;
+        Ok(Import { names, path, span: self.since(start) })
+    }
+
+    /// A string, unescaped.
+    pub(super) fn string(&mut self, what: &str) -> Parsed<Name> {
+        let span = self.span();
+        if self.kind() != TokenKind::Text {
+            return self.expected(what);
+        }
+        let (text, problem) = literal::text(self.slice(span), span);
+        if let Some(problem) = problem {
+            self.report(problem);
+        }
+        self.bump();
+        Ok(Name { text, span })
+    }
+
+    /// `param NAME [: type] = default [in range]`
+    fn param(&mut self) -> Parsed<Param> {
+        let docs = self.docs();
+        let start = self.span();
+        self.bump();
+        let name = self.declared_name("a name after `param`")?;
+        let ty = if self.eat(TokenKind::Colon) { Some(self.type_expr()?) } else { None };
+        let default = match self.eat(TokenKind::Eq) {
+            true => self.expr_or_skip(&[TokenKind::In, TokenKind::Semicolon])?,
+            false => {
+                let what = format!("`=` and a default for `{}`", name.text);
+                let _reported: Parsed<()> = self.expected(&what);
+                let at = self.span();
+                self.skip_to(at, &[TokenKind::In, TokenKind::Semicolon])?
+            }
+        };
+        let range = match self.eat(TokenKind::In) {
+            true => Some(self.expr_or_skip(&[TokenKind::Semicolon])?),
+            false => None,
+        };
+        Ok(Param { docs, name, ty, default, range, span: self.since(start) })
+    }
+
+    /// `fn`, `solid`, `region`, `shape` with a name, a signature and a body. What cannot be read
+    /// behind the name is left out, so that the name is still known.
+    fn decl(&mut self, kind: DeclKind) -> Parsed<Option<Item>> {
+        let docs = self.docs();
+        let start = self.span();
+        let word = self.slice(start);
+        self.bump();
+        let name = self.declared_name(&format!("a name after `{word}`"))?;
+        self.in_shape = kind != DeclKind::Fn;
+        let signature_start = self.span();
+        let signature = match self.signature(kind) {
+            Ok(signature) => signature,
+            Err(Failed) => {
+                let body = self.skip_to(signature_start, &[])?;
+                let signature = Signature {
+                    parms: Vec::new(),
+                    result: None,
+                    clauses: Vec::new(),
+                    span: signature_start,
+                };
+                let span = self.since(start);
+                return Ok(Some(boxed(Decl { docs, kind, name, signature, body, span })));
+            }
+        };
+        let body = self.body(&name)?;
+        let span = self.since(start);
+        Ok(Some(boxed(Decl { docs, kind, name, signature, body, span })))
+    }
+
+    fn body(&mut self, name: &Name) -> Parsed<Expr> {
+        let start = self.span();
+        match self.body_follows() {
+            Ok(()) if self.at_new_declaration() || self.kind() == TokenKind::Eof => {
+                let what = format!("the formula of `{}` after `=`", name.text);
+                let _reported: Parsed<()> = self.expected(&what);
+                Ok(Expr { kind: ExprKind::Error, span: self.since(start) })
+            }
+            Ok(()) => self.expr_or_skip(&[TokenKind::Semicolon]),
+            Err(Failed) => self.skip_to(start, &[TokenKind::Semicolon]),
+        }
+    }
+
+    /// The `///` lines right above the next token, plain comments among them left out.
+    fn docs(&self) -> Docs {
+        let mut below = self.next().start;
+        let before = self.comments.partition_point(|comment| comment.tokens_before <= self.at);
+        let mut lines = Vec::new();
+        for comment in self.comments[..before].iter().rev() {
+            let between = &self.text[comment.end as usize..below as usize];
+            let own_line = self.text[..comment.start as usize]
+                .rsplit('\n')
+                .next()
+                .is_some_and(|line| line.trim_matches(['\u{feff}', ' ', '\t']).is_empty());
+            if comment.tokens_before < self.at || !own_line || between.matches('\n').count() != 1 {
+                break;
+            }
+            lines.extend(comment.doc(self.text).map(str::to_owned));
+            below = comment.start;
+        }
+        lines.reverse();
+        Docs { lines }
+    }
+
+    /// A name that is used or defined here. A reserved word in its place is reported and taken.
+    pub(super) fn name(&mut self, what: &str) -> Parsed<Name> {
+        let span = self.span();
+        let next = self.next();
+        let text = self.slice(span).to_owned();
+        if next.kind == TokenKind::Name {
+            self.bump();
+            return Ok(Name { text, span });
+        }
+        if !next.kind.is_reserved() || (next.first && next.kind.declares()) {
+            return self.expected(what);
+        }
+        self.report(reserved(&text, span));
+        self.bump();
+        Ok(Name { text, span })
+    }
+
+    /// A name that is declared here: in a shape, not `p`.
+    pub(super) fn declared_name(&mut self, what: &str) -> Parsed<Name> {
+        let name = self.name(what)?;
+        if self.in_shape && name.text == "p" {
+            let found = Diagnostic::error(
+                Code::RESERVED,
+                name.span,
+                "`p` is the point here and cannot be declared",
+            )
+            .help("choose another name: `q` is usual for a moved point");
+            self.report(found);
+        }
+        Ok(name)
+    }
+}
+
+fn boxed(decl: Decl) -> Item {
+    Item::Decl(Box::new(decl))
+}
+
+fn reserved(word: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(Code::RESERVED, span, format!("`{word}` is a reserved word, not a name"))
+        .help(format!("choose another name, `{word}_` for example"))
+}

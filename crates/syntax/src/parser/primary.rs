@@ -1,0 +1,314 @@
+//! What stands alone: literals, names, brackets, blocks, conditions, lambdas.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+
+use super::{Failed, Parsed, Parser};
+use crate::ast::{Comprehension, DeclKind, Element, Expr, ExprKind, Let};
+use crate::literal;
+use crate::token::TokenKind;
+
+impl Parser<'_> {
+    /// An operand without its postfixes.
+    pub(super) fn primary(&mut self) -> Parsed<Expr> {
+        let start = self.span();
+        let kind = match self.kind() {
+            TokenKind::Number => self.literal(literal::number, |kind| kind),
+            TokenKind::PointNumber => {
+                let found = literal::bare_point(self.slice(start), start);
+                self.report(found);
+                self.bump();
+                ExprKind::Error
+            }
+            TokenKind::Color => self.literal(literal::color, ExprKind::Color),
+            TokenKind::Text => self.literal(literal::text, ExprKind::Text),
+            TokenKind::True => self.word(ExprKind::Bool(true)),
+            TokenKind::False => self.word(ExprKind::Bool(false)),
+            TokenKind::Name => self.word(ExprKind::Name(self.slice(start).to_owned())),
+            TokenKind::Unknown => self.word(ExprKind::Error),
+            TokenKind::OpenParen => self.parenthesized()?,
+            TokenKind::OpenBracket => self.list()?,
+            TokenKind::OpenBrace => return self.block(),
+            TokenKind::If => return self.condition(),
+            TokenKind::Fn => self.lambda()?,
+            _ => return self.expected_expression(),
+        };
+        Ok(Expr { kind, span: self.since(start) })
+    }
+
+    fn word(&mut self, kind: ExprKind) -> ExprKind {
+        self.bump();
+        kind
+    }
+
+    fn literal<T>(
+        &mut self,
+        read: impl Fn(&str, Span) -> literal::Checked<T>,
+        make: impl Fn(T) -> ExprKind,
+    ) -> ExprKind {
+        let span = self.span();
+        let (value, problem) = read(self.slice(span), span);
+        self.bump();
+        match problem {
+            Some(problem) => {
+                self.report(problem);
+                ExprKind::Error
+            }
+            None => make(value),
+        }
+    }
+
+    fn expected_expression(&mut self) -> Parsed<Expr> {
+        let before = match self.previous() {
+            Some(token) if token.kind.wants_operand() => self.slice(token.span(self.file)),
+            Some(_) | None => "",
+        };
+        let place = if before.is_empty() { String::new() } else { format!(" after `{before}`") };
+        let help: &[&str] = match self.kind() {
+            TokenKind::For => &["`for` stands in a list or among arguments: [for i in 0..3: i]"],
+            TokenKind::Let => &["`let` stands at top level, or in a block: { let a = 1; a + 1 }"],
+            TokenKind::Solid
+            | TokenKind::Region
+            | TokenKind::Shape
+            | TokenKind::Param
+            | TokenKind::Import
+                if !self.next().first =>
+            {
+                &["declarations stand at top level, each on a line of its own"]
+            }
+            TokenKind::Else => &["`else` follows the `}` of an `if`"],
+            TokenKind::Star if before == "*" => &["powers are written `pow(x, 2)`"],
+            TokenKind::Greater if before == "=" => {
+                &["a function without a name is written fn(x) = x"]
+            }
+            _ => &[],
+        };
+        self.expected_with(&format!("an expression{place}"), help)
+    }
+
+    /// `(e)`
+    fn parenthesized(&mut self) -> Parsed<ExprKind> {
+        let opener = self.open();
+        let depth = self.open.len();
+        let inner = self.nested(opener.span, |parser| parser.expr_or_skip(&[]));
+        self.open.truncate(depth);
+        self.close(opener, "an operator")?;
+        Ok(ExprKind::Paren(Box::new(inner?)))
+    }
+
+    /// `[a, b, for ...]`
+    fn list(&mut self) -> Parsed<ExprKind> {
+        let elements = self.bracketed("element", Self::element, |span| {
+            Some(Element::Expr(Expr { kind: ExprKind::Error, span }))
+        })?;
+        Ok(ExprKind::List(elements))
+    }
+
+    /// One value, or `for name in over [if condition]: element`.
+    pub(super) fn element(&mut self) -> Parsed<Element> {
+        if self.kind() != TokenKind::For {
+            return Ok(Element::Expr(self.expr()?));
+        }
+        let start = self.span();
+        self.nested(start, |parser| {
+            parser.bump();
+            let name = parser.declared_name("a name after `for`")?;
+            if !parser.eat(TokenKind::In) {
+                return parser.expected_with(
+                    "`in` and a sequence",
+                    &["for i in 0..3: ...", "for x in list: ..."],
+                );
+            }
+            let over = parser.expr()?;
+            let condition = if parser.eat(TokenKind::If) { Some(parser.expr()?) } else { None };
+            if !parser.eat(TokenKind::Colon) {
+                return parser.expected("`:` and what each one gives");
+            }
+            let body = parser.element()?;
+            let span = parser.since(start);
+            let comprehension = Comprehension { name, over, condition, body, span };
+            Ok(Element::For(Box::new(comprehension)))
+        })
+    }
+
+    /// `{ let a = 1; a }`
+    fn block(&mut self) -> Parsed<Expr> {
+        let opener = self.open();
+        let depth = self.open.len();
+        let contents = self.nested(opener.span, |parser| parser.block_contents());
+        self.open.truncate(depth);
+        let closed = self.close(opener, "the end of the line");
+        let (lets, result) = contents?;
+        closed?;
+        let span = self.since(opener.span);
+        Ok(Expr { kind: ExprKind::Block(lets, Box::new(result)), span })
+    }
+
+    fn block_contents(&mut self) -> Parsed<(Vec<Let>, Expr)> {
+        let mut lets = Vec::new();
+        let mut result: Option<Expr> = None;
+        loop {
+            let at = self.at;
+            if self.block_ends() {
+                break;
+            }
+            if let Some(earlier) = &result
+                && !matches!(earlier.kind, ExprKind::Error)
+            {
+                let span = earlier.span;
+                self.report_second_value(span);
+            }
+            if self.kind() == TokenKind::Let {
+                lets.extend(self.binding()?);
+                result = result.filter(|value| matches!(value.kind, ExprKind::Error));
+            } else {
+                result = Some(self.expr_or_skip(&[TokenKind::Semicolon])?);
+            }
+            self.end_of_line_in_block()?;
+            if self.at == at {
+                self.bump();
+            }
+        }
+        match result {
+            Some(result) => Ok((lets, result)),
+            None => {
+                let span = self.span();
+                if self.kind() == TokenKind::CloseBrace {
+                    self.report_no_value();
+                }
+                Ok((lets, Expr { kind: ExprKind::Error, span }))
+            }
+        }
+    }
+
+    /// Whether the block's closer comes next, or something that cannot stand in a block.
+    fn block_ends(&self) -> bool {
+        self.kind().is_closer()
+            || self.kind() == TokenKind::Eof
+            || (self.at_new_declaration() && self.kind() != TokenKind::Let)
+    }
+
+    fn end_of_line_in_block(&mut self) -> Parsed<()> {
+        if self.eat(TokenKind::Semicolon) || self.at_end() {
+            return Ok(());
+        }
+        let start = self.span();
+        self.report_no_end();
+        self.skip_to(start, &[TokenKind::Semicolon])?;
+        self.eat(TokenKind::Semicolon);
+        Ok(())
+    }
+
+    fn report_second_value(&mut self, first: Span) {
+        let found =
+            Diagnostic::error(Code::EXPECTED, first, "a block has one value, in its last line")
+                .label("not the last line")
+                .help("name this with `let`, or join it to the next line with an operator");
+        self.report(found);
+    }
+
+    fn report_no_value(&mut self) {
+        let found = Diagnostic::error(
+            Code::EXPECTED,
+            self.span(),
+            "expected the block's value before `}`",
+        )
+        .help("a block ends with an expression: { let a = 1; a + 1 }")
+        .help("a line that starts with an operator, `-` included, continues the line before it");
+        self.report(found);
+    }
+
+    /// `let name = value`; a value that cannot be read is `Error`. Nothing where the name is missing.
+    pub(super) fn binding(&mut self) -> Parsed<Option<Let>> {
+        let stops = &[TokenKind::Semicolon];
+        let start = self.span();
+        self.bump();
+        let Ok(name) = self.declared_name("a name after `let`") else {
+            self.skip_to(start, stops)?;
+            return Ok(None);
+        };
+        let value = match self.equals(&format!("`=` and a value for `{}`", name.text)) {
+            Ok(()) => self.expr_or_skip(stops)?,
+            Err(Failed) => {
+                let at = self.span();
+                self.skip_to(at, stops)?
+            }
+        };
+        Ok(Some(Let { name, value, span: self.since(start) }))
+    }
+
+    /// `=`, with advice on what is likely to stand in its place.
+    pub(super) fn equals(&mut self, what: &str) -> Parsed<()> {
+        match self.kind() {
+            TokenKind::Eq => {
+                self.bump();
+                Ok(())
+            }
+            TokenKind::Colon => {
+                self.expected_with(what, &["a `let` takes its type from its value"])
+            }
+            TokenKind::EqEq => self.expected_with(what, &["`==` compares; `=` gives a value"]),
+            _ => self.expected(what),
+        }
+    }
+
+    /// `if c { a } else if d { b } else { e }`
+    fn condition(&mut self) -> Parsed<Expr> {
+        let start = self.span();
+        let mut branches = Vec::new();
+        let mut last = loop {
+            let place = self.span();
+            self.bump();
+            let condition = self.expr()?;
+            let then = self.branch()?;
+            branches.push((place, condition, then));
+            if !self.eat(TokenKind::Else) {
+                return self.expected_with(
+                    "`else`",
+                    &["an `if` gives a value, so it has both branches: if c { a } else { b }"],
+                );
+            }
+            if self.kind() != TokenKind::If {
+                break self.branch()?;
+            }
+        };
+        let end = self.since(start);
+        for (place, condition, then) in branches.into_iter().rev() {
+            self.link(place)?;
+            let kind = ExprKind::If(Box::new(condition), Box::new(then), Box::new(last));
+            last = Expr { kind, span: place.to(end) };
+        }
+        Ok(last)
+    }
+
+    fn branch(&mut self) -> Parsed<Expr> {
+        if self.kind() == TokenKind::OpenBrace {
+            return self.block();
+        }
+        self.expected_with("`{`", &["branches stand in braces: if c { a } else { b }"])
+    }
+
+    /// `fn(parameters) = body`
+    fn lambda(&mut self) -> Parsed<ExprKind> {
+        let start = self.span();
+        self.nested(start, |parser| {
+            parser.bump();
+            if parser.kind() == TokenKind::Name {
+                let name = parser.slice(parser.span());
+                let found = Diagnostic::error(
+                    Code::EXPECTED,
+                    parser.span(),
+                    format!(
+                        "expected `(`: a `fn` with a name stands at top level, not `fn {name}`"
+                    ),
+                )
+                .help(format!("in a block, write: let {name} = fn(...) = ..."));
+                parser.report(found);
+                parser.bump();
+            }
+            let signature = parser.signature(DeclKind::Fn)?;
+            parser.body_follows()?;
+            let body = parser.expr()?;
+            Ok(ExprKind::Lambda(Box::new(signature), Box::new(body)))
+        })
+    }
+}

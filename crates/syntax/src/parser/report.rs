@@ -1,0 +1,151 @@
+//! What is reported, and how the parser finds its way after an error.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+
+use super::{Failed, Parsed, Parser};
+use crate::MAX_ERRORS;
+use crate::ast::{Expr, ExprKind};
+use crate::token::{Token, TokenKind};
+
+/// The findings so far.
+#[derive(Default)]
+pub(super) struct Reports {
+    found: Vec<Diagnostic>,
+    /// How many came after the last one that is kept.
+    dropped: usize,
+}
+
+impl Parser<'_> {
+    /// Reports, unless something was reported at the same place.
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        let start = diagnostic.span.start;
+        let reports = &mut self.reports;
+        if reports.found.iter().rev().any(|earlier| earlier.span.start == start) {
+            return;
+        }
+        if reports.found.len() < MAX_ERRORS {
+            reports.found.push(diagnostic);
+        } else {
+            reports.dropped += 1;
+        }
+    }
+
+    /// All findings, in the order of the text.
+    pub(super) fn findings(self) -> Vec<Diagnostic> {
+        let Reports { mut found, dropped } = self.reports;
+        found.sort_by_key(|diagnostic| diagnostic.span.start);
+        if dropped > 0
+            && let Some(last) = found.pop()
+        {
+            found.push(last.note(format!("{dropped} more errors in this file are not shown")));
+        }
+        found
+    }
+
+    /// Reports and fails.
+    pub(super) fn fail<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
+        self.report(diagnostic);
+        Err(Failed)
+    }
+
+    /// Reports that a limit was passed and skips the rest of the item.
+    pub(super) fn abandon<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
+        self.report(diagnostic);
+        self.abandoned = true;
+        while self.kind() != TokenKind::Eof && !self.at_new_item() {
+            self.bump();
+        }
+        Err(Failed)
+    }
+
+    /// Fails because something else was expected: `what` completes "expected ...".
+    pub(super) fn expected<T>(&mut self, what: &str) -> Parsed<T> {
+        self.expected_with(what, &[])
+    }
+
+    /// The same with ways to mend it.
+    pub(super) fn expected_with<T>(&mut self, what: &str, help: &[&str]) -> Parsed<T> {
+        let diagnostic = self.expectation(what);
+        let diagnostic = help.iter().fold(diagnostic, |found, help| found.help(*help));
+        self.fail(diagnostic)
+    }
+
+    /// "expected ...": at the next token, or behind the one before where that one ends its line.
+    pub(super) fn expectation(&mut self, what: &str) -> Diagnostic {
+        let next = self.next();
+        if next.kind == TokenKind::Unknown {
+            // The lexer has reported the character at this very place.
+            return Diagnostic::error(Code::EXPECTED, self.span(), format!("expected {what}"));
+        }
+        let found = self.found();
+        let span = match self.previous() {
+            Some(previous) if self.at_line_end() => previous.span(self.file).after(),
+            Some(_) | None => self.span(),
+        };
+        Diagnostic::error(Code::EXPECTED, span, format!("expected {what}, found {found}"))
+    }
+
+    /// Whether the line ended too early: the next token begins something new on another one.
+    fn at_line_end(&self) -> bool {
+        let Token { kind, first, .. } = self.next();
+        first && (kind == TokenKind::Eof || kind.starts_primary() || kind.declares())
+    }
+
+    /// The next token in words.
+    pub(super) fn found(&self) -> String {
+        let next = self.next();
+        let text = self.slice(self.span());
+        if next.kind == TokenKind::Eof {
+            "the end of the file".to_owned()
+        } else if self.at_line_end() {
+            "the end of the line".to_owned()
+        } else if next.kind == TokenKind::Text {
+            "a string".to_owned()
+        } else if next.kind.is_reserved() {
+            format!("the reserved word `{text}`")
+        } else if text.len() > 40 {
+            format!("`{}...`", text.chars().take(32).collect::<String>())
+        } else {
+            format!("`{text}`")
+        }
+    }
+
+    /// An expression, or `Error` for one that could not be read. The rest of a wrong one is
+    /// skipped up to one of `stops` or the closer of the innermost bracket.
+    ///
+    /// # Errors
+    ///
+    /// Fails only where the item is abandoned.
+    pub(super) fn expr_or_skip(&mut self, stops: &[TokenKind]) -> Parsed<Expr> {
+        let start = self.span();
+        match self.expr() {
+            Ok(expr) => Ok(expr),
+            Err(Failed) => self.skip_to(start, stops),
+        }
+    }
+
+    /// Skips to one of `stops`, to the closer of the innermost bracket or to the next item; what
+    /// was skipped is an `Error`.
+    pub(super) fn skip_to(&mut self, start: Span, stops: &[TokenKind]) -> Parsed<Expr> {
+        if self.abandoned {
+            return Err(Failed);
+        }
+        let mut inner = 0_usize;
+        loop {
+            let kind = self.kind();
+            if kind == TokenKind::Eof || self.at_new_item() {
+                break;
+            }
+            if inner == 0 && (kind.is_closer() || stops.contains(&kind)) {
+                break;
+            }
+            if kind.closer().is_some() {
+                inner += 1;
+            } else if kind.is_closer() {
+                inner -= 1;
+            }
+            self.bump();
+        }
+        Ok(Expr { kind: ExprKind::Error, span: self.since(start) })
+    }
+}

@@ -1,0 +1,180 @@
+//! Parameters, types, clauses.
+
+use sdfc_diagnostics::{Code, Diagnostic};
+
+use super::{Parsed, Parser};
+use crate::ast::{
+    Clause, ClauseKind, DeclKind, Expr, Parm, Side, Signature, TypeExpr, TypeExprKind,
+};
+use crate::token::TokenKind;
+
+/// The words that clauses start with. `hits` is specified but not read by this version.
+const CLAUSES: [&str; 7] = ["exact", "bound", "lipschitz", "bounds", "material", "require", "hits"];
+
+impl Parser<'_> {
+    /// `(parameters) [-> type] clauses`
+    pub(super) fn signature(&mut self, kind: DeclKind) -> Parsed<Signature> {
+        let start = self.span();
+        if self.kind() != TokenKind::OpenParen {
+            let help: &[&str] = match kind {
+                DeclKind::Fn => &["a function without parameters is written fn name() = ..."],
+                DeclKind::Solid => &["a solid without parameters is written solid name() = ..."],
+                DeclKind::Region => &["a region without parameters is written region name() = ..."],
+                DeclKind::Shape => &["a shape without parameters is written shape name() = ..."],
+            };
+            return self.expected_with("`(` and the parameters", help);
+        }
+        let parms = self.bracketed("parameter", Self::parm, |_| None)?;
+        let result = if self.eat(TokenKind::Arrow) { Some(self.type_expr()?) } else { None };
+        let mut clauses = Vec::new();
+        while let Some(word) = self.clause_word() {
+            clauses.push(self.clause(word, kind)?);
+        }
+        Ok(Signature { parms, result, clauses, span: self.since(start) })
+    }
+
+    /// The `=` before a body.
+    pub(super) fn body_follows(&mut self) -> Parsed<()> {
+        if self.eat(TokenKind::Eq) {
+            return Ok(());
+        }
+        if self.kind() == TokenKind::OpenBrace {
+            let found = self.expectation("`=` before the body").help("write fn f(x) = { ... }");
+            self.report(found);
+            return Ok(());
+        }
+        if self.kind() == TokenKind::Colon {
+            return self
+                .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
+        }
+        self.expected_with(
+            "`=` or a clause",
+            &["the clauses are exact, bound, lipschitz, bounds, material and require"],
+        )
+    }
+
+    /// `NAME [: type [...]] [= default] [in range]`
+    fn parm(&mut self) -> Parsed<Parm> {
+        let start = self.span();
+        let name = self.declared_name("a parameter's name")?;
+        let ty = if self.eat(TokenKind::Colon) { Some(self.type_expr()?) } else { None };
+        let variadic = ty.is_some() && self.eat(TokenKind::Ellipsis);
+        if self.kind() == TokenKind::Ellipsis {
+            return self.expected_with("a type before `...`", &["write parts: shape..."]);
+        }
+        let default = if self.eat(TokenKind::Eq) {
+            Some(self.expr_or_skip(&[TokenKind::Comma, TokenKind::In])?)
+        } else {
+            None
+        };
+        let range = if self.eat(TokenKind::In) {
+            Some(self.expr_or_skip(&[TokenKind::Comma])?)
+        } else {
+            None
+        };
+        Ok(Parm { name, ty, variadic, default, range, span: self.since(start) })
+    }
+
+    /// The word that a clause starts with, if one comes next.
+    fn clause_word(&self) -> Option<&'static str> {
+        CLAUSES.into_iter().find(|word| self.at_word(word))
+    }
+
+    fn clause(&mut self, word: &str, of: DeclKind) -> Parsed<Clause> {
+        let start = self.span();
+        if of == DeclKind::Fn && !matches!(word, "lipschitz" | "require") {
+            let found = Diagnostic::error(
+                Code::EXPECTED,
+                start,
+                format!("`{word}` is a clause of shapes, and this is a `fn`"),
+            )
+            .help("a `fn` may state `lipschitz` and `require`");
+            self.report(found);
+        }
+        self.bump();
+        let kind = match word {
+            "exact" => {
+                let side = self.side();
+                ClauseKind::Exact(side, self.clause_condition()?)
+            }
+            "bound" => {
+                let side = self.side();
+                ClauseKind::Bound(side, self.clause_condition()?)
+            }
+            "lipschitz" => ClauseKind::Lipschitz(self.expr()?),
+            "bounds" => ClauseKind::Bounds(self.expr()?),
+            "material" => ClauseKind::Material(self.expr()?),
+            "require" => self.requirement()?,
+            _ => {
+                let message = "closed-form intersections (`hits`) cannot be stated yet";
+                return self.fail(Diagnostic::error(Code::NOT_YET, start, message));
+            }
+        };
+        Ok(Clause { kind, span: self.since(start) })
+    }
+
+    fn side(&mut self) -> Option<Side> {
+        let side = if self.at_word("outside") {
+            Side::Outside
+        } else if self.at_word("inside") {
+            Side::Inside
+        } else {
+            return None;
+        };
+        self.bump();
+        Some(side)
+    }
+
+    fn clause_condition(&mut self) -> Parsed<Option<Expr>> {
+        if self.eat(TokenKind::If) { Ok(Some(self.expr()?)) } else { Ok(None) }
+    }
+
+    /// `condition, "message"`
+    fn requirement(&mut self) -> Parsed<ClauseKind> {
+        let condition = self.expr()?;
+        if !self.eat(TokenKind::Comma) {
+            return self.expected_with(
+                "`,` and a message",
+                &["a requirement says what is wrong: require r > 0, \"the radius is zero\""],
+            );
+        }
+        Ok(ClauseKind::Require(condition, self.string("a message in quotes")?))
+    }
+
+    /// A type.
+    pub(super) fn type_expr(&mut self) -> Parsed<TypeExpr> {
+        let start = self.span();
+        let kind = match self.kind() {
+            TokenKind::Name | TokenKind::Solid | TokenKind::Region | TokenKind::Shape => {
+                self.bump();
+                TypeExprKind::Named(self.slice(start).to_owned())
+            }
+            TokenKind::OpenBracket => {
+                let opener = self.open();
+                let of = self.nested(start, Self::type_expr)?;
+                self.close(opener, "the type of the elements")?;
+                TypeExprKind::List(Box::new(of))
+            }
+            TokenKind::Fn => self.nested(start, Self::fn_type)?,
+            _ => {
+                return self
+                    .expected_with("a type", &["types are words such as number, vec3 and solid"]);
+            }
+        };
+        Ok(TypeExpr { kind, span: self.since(start) })
+    }
+
+    /// `fn(A, B) -> R`
+    fn fn_type(&mut self) -> Parsed<TypeExprKind> {
+        self.bump();
+        if self.kind() != TokenKind::OpenParen {
+            return self.expected("`(` and the types of the parameters");
+        }
+        let parameters = self.bracketed("type", Self::type_expr, |_| None)?;
+        if !self.eat(TokenKind::Arrow) {
+            return self.expected_with("`->` and the result's type", &["write fn(vec3) -> length"]);
+        }
+        let result = self.type_expr()?;
+        Ok(TypeExprKind::Fn(parameters, Box::new(result)))
+    }
+}

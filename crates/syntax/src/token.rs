@@ -1,0 +1,259 @@
+//! The kinds of token, after section 2 of the language reference.
+
+use logos::Logos;
+use sdfc_diagnostics::{FileId, Span};
+
+/// What a token is. The text is looked up by its span.
+#[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
+#[logos(skip r"[ \t\r\n\x0C]+")]
+pub(crate) enum TokenKind {
+    /// `//` to the end of the line; never reaches the parser.
+    #[regex(r"//[^\n]*", allow_greedy = true)]
+    Comment,
+    #[regex(r"[A-Za-z_][A-Za-z0-9_]*")]
+    Name,
+    /// Digits with whatever is joined on behind; `literal::number` checks the unit.
+    #[regex(r"[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?([A-Za-z_][A-Za-z0-9_]*)?")]
+    Number,
+    /// `.5`: recognised so that it can be refused by name.
+    #[regex(r"\.[0-9]+(e[+-]?[0-9]+)?([A-Za-z_][A-Za-z0-9_]*)?")]
+    PointNumber,
+    #[regex(r"#[A-Za-z0-9_]*")]
+    Color,
+    /// From its quote to the closing one or the end of the line; `literal::text` checks it.
+    #[token("\"", scan_string)]
+    #[token("\u{201c}", scan_string)]
+    #[token("\u{201d}", scan_string)]
+    #[token("\u{201e}", scan_string)]
+    Text,
+
+    #[token("let")]
+    Let,
+    #[token("param")]
+    Param,
+    #[token("fn")]
+    Fn,
+    #[token("solid")]
+    Solid,
+    #[token("region")]
+    Region,
+    #[token("shape")]
+    Shape,
+    #[token("import")]
+    Import,
+    #[token("if")]
+    If,
+    #[token("else")]
+    Else,
+    #[token("for")]
+    For,
+    #[token("in")]
+    In,
+    #[token("true")]
+    True,
+    #[token("false")]
+    False,
+
+    #[token("...")]
+    Ellipsis,
+    #[token("..")]
+    DotDot,
+    #[token(".")]
+    Dot,
+    #[token("->")]
+    Arrow,
+    #[token("==")]
+    EqEq,
+    #[token("!=")]
+    NotEq,
+    #[token("<=")]
+    LessEq,
+    #[token(">=")]
+    GreaterEq,
+    #[token("<")]
+    Less,
+    #[token(">")]
+    Greater,
+    #[token("&&")]
+    AndAnd,
+    #[token("||")]
+    OrOr,
+    #[token("&")]
+    And,
+    #[token("|")]
+    Or,
+    #[token("!")]
+    Not,
+    #[token("=")]
+    Eq,
+    #[token("+")]
+    Plus,
+    #[token("-")]
+    Minus,
+    #[token("*")]
+    Star,
+    #[token("/")]
+    Slash,
+    #[token("%")]
+    Percent,
+    #[token(",")]
+    Comma,
+    #[token(":")]
+    Colon,
+    #[token(";")]
+    Semicolon,
+    #[token("(")]
+    OpenParen,
+    #[token(")")]
+    CloseParen,
+    #[token("[")]
+    OpenBracket,
+    #[token("]")]
+    CloseBracket,
+    #[token("{")]
+    OpenBrace,
+    #[token("}")]
+    CloseBrace,
+
+    /// Characters that start no token; reported by the lexer.
+    Unknown,
+    /// Behind the last token.
+    Eof,
+}
+
+/// Extends a string over its line: to an unescaped closing quote, or to the line's end.
+fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
+    let typographic = !lexer.slice().starts_with('"');
+    let mut escaped = false;
+    let mut length = 0;
+    for c in lexer.remainder().chars() {
+        if c == '\n' {
+            break;
+        }
+        length += c.len_utf8();
+        let closes = c == '"' || (typographic && matches!(c, '\u{201c}' | '\u{201d}'));
+        if closes && !escaped {
+            break;
+        }
+        escaped = c == '\\' && !escaped;
+    }
+    let rest = &lexer.remainder()[..length];
+    // A carriage return before the line feed belongs to the line's end, not to the string.
+    lexer.bump(rest.strip_suffix('\r').unwrap_or(rest).len());
+}
+
+/// One token.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Token {
+    /// What it is.
+    pub kind: TokenKind,
+    /// Whether it is the first token of its line.
+    pub first: bool,
+    /// Offset of its first byte.
+    pub start: u32,
+    /// Offset after its last byte.
+    pub end: u32,
+}
+
+impl Token {
+    /// Where it stands in `file`.
+    pub fn span(self, file: FileId) -> Span {
+        Span::new(file, self.start, self.end)
+    }
+}
+
+impl TokenKind {
+    /// Whether it is one of the 13 reserved words.
+    pub fn is_reserved(self) -> bool {
+        use TokenKind::{
+            Else, False, Fn, For, If, Import, In, Let, Param, Region, Shape, Solid, True,
+        };
+        matches!(
+            self,
+            Let | Param
+                | Fn
+                | Solid
+                | Region
+                | Shape
+                | Import
+                | If
+                | Else
+                | For
+                | In
+                | True
+                | False
+        )
+    }
+
+    /// Whether it is a word that declarations start with.
+    pub fn declares(self) -> bool {
+        use TokenKind::{Fn, Import, Let, Param, Region, Shape, Solid};
+        matches!(self, Let | Param | Fn | Solid | Region | Shape | Import)
+    }
+
+    /// Whether an expression may start with it, `-` and `!` left out.
+    pub fn starts_primary(self) -> bool {
+        use TokenKind::{
+            Color, False, Fn, If, Name, Number, OpenBrace, OpenBracket, OpenParen, PointNumber,
+            Text, True,
+        };
+        matches!(
+            self,
+            Name | Number
+                | PointNumber
+                | Color
+                | Text
+                | True
+                | False
+                | Fn
+                | If
+                | OpenParen
+                | OpenBracket
+                | OpenBrace
+        )
+    }
+
+    /// Whether an expression has to follow it.
+    pub fn wants_operand(self) -> bool {
+        use TokenKind::{
+            CloseBrace, CloseBracket, CloseParen, Color, False, Name, Number, OpenBrace,
+            OpenBracket, OpenParen, PointNumber, Semicolon, Text, True, Unknown,
+        };
+        !matches!(
+            self,
+            CloseBrace
+                | CloseBracket
+                | CloseParen
+                | Color
+                | False
+                | Name
+                | Number
+                | OpenBrace
+                | OpenBracket
+                | OpenParen
+                | PointNumber
+                | Semicolon
+                | Text
+                | True
+                | Unknown
+        )
+    }
+
+    /// The closer that belongs to an opener.
+    pub fn closer(self) -> Option<TokenKind> {
+        if self == TokenKind::OpenParen {
+            Some(TokenKind::CloseParen)
+        } else if self == TokenKind::OpenBracket {
+            Some(TokenKind::CloseBracket)
+        } else if self == TokenKind::OpenBrace {
+            Some(TokenKind::CloseBrace)
+        } else {
+            None
+        }
+    }
+
+    /// Whether it closes a bracket.
+    pub fn is_closer(self) -> bool {
+        matches!(self, TokenKind::CloseParen | TokenKind::CloseBracket | TokenKind::CloseBrace)
+    }
+}
