@@ -4,7 +4,7 @@ use std::hash::{Hash, Hasher};
 
 use rustc_hash::{FxHashMap, FxHasher};
 
-use crate::{Arg, Binary, Node, NodeId, Shape, ShapeId, Stage, Ternary, Type, Unary};
+use crate::{Arg, Binary, Const, Node, NodeId, Shape, ShapeId, Stage, Ternary, Type, Unary};
 
 /// What is known of a node beside its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +84,18 @@ impl Graph {
     /// The number, if the node is a constant scalar.
     pub fn as_number(&self, id: NodeId) -> Option<f64> {
         if let Node::Const(value) = self.node(id) { value.scalar() } else { None }
+    }
+
+    /// The constant, if the node is one.
+    pub fn as_const(&self, id: NodeId) -> Option<Const> {
+        if let Node::Const(value) = self.node(id) { Some(value) } else { None }
+    }
+
+    /// The number that every component is, if the node is a constant of equal components.
+    pub fn as_uniform(&self, id: NodeId) -> Option<f64> {
+        let value = self.as_const(id)?;
+        let lanes = value.lanes();
+        lanes[1..value.ty().width()].iter().all(|&lane| lane == lanes[0]).then_some(lanes[0])
     }
 
     /// The id of a node exactly as given: no folding. Callers use the typed builders.

@@ -1,14 +1,24 @@
 //! Shape instances and typed math in one hash-consed arena, with its evaluators.
 
 mod build;
+mod derive;
+mod dump;
 pub mod eval;
+mod expand;
 mod graph;
+mod hoist;
 mod node;
 mod program;
 mod scene;
 mod shape;
+mod transforms;
+mod walk;
 
+pub use derive::{adjoints, gradient};
+pub use dump::{dump, operation_count};
+pub use expand::{ExpandError, Expander, NODE_LIMIT};
 pub use graph::Graph;
+pub use hoist::uniforms;
 pub use node::{
     Binary, Const, Dim, FrameInput, MaterialField, Node, NodeId, ShapeId, Stage, Ternary, Type,
     Unary,
@@ -16,3 +26,5 @@ pub use node::{
 pub use program::Program;
 pub use scene::{Camera, Light, March, Param, ParamKind, Scene, Settings, Shadow};
 pub use shape::{Arg, Contract, MaterialRule, Shape, SidePromise};
+pub use transforms::{Rewritten, fold_transforms};
+pub use walk::{reachable, reachable_where};

@@ -239,6 +239,21 @@ impl MaterialField {
         Self::Occlusion,
     ];
 
+    /// Position in [`MaterialField::ALL`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its value where nothing is painted: light grey, half rough, no metal, no light of its own.
+    pub fn unpainted(self) -> [f64; 4] {
+        match self {
+            Self::Color => [0.8, 0.8, 0.8, 0.0],
+            Self::Coverage | Self::Metallic | Self::Emission => [0.0; 4],
+            Self::Roughness => [0.5, 0.0, 0.0, 0.0],
+            Self::Occlusion => [1.0, 0.0, 0.0, 0.0],
+        }
+    }
+
     /// Its type.
     pub fn ty(self) -> Type {
         match self {

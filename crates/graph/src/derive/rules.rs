@@ -1,0 +1,458 @@
+//! The derivative of each operation: what a node hands down to its arguments.
+
+use super::{Sweep, zero};
+use crate::{Binary, Graph, Node, NodeId, Ternary, Type, Unary};
+
+/// Lengths below this count as 0 where a derivative divides by them. Squares of shorter vectors vanish in
+/// f32, so that nothing shorter has a direction there.
+pub(crate) const TINY: f64 = 1e-18;
+
+/// Whether a node's value moves with its arguments other than in jumps.
+pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
+    match graph.node(id) {
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => false,
+        Node::Unary(op, _) => !matches!(
+            op,
+            Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Not
+        ),
+        Node::Binary(op, ..) => !matches!(
+            op,
+            Binary::Step
+                | Binary::Lt
+                | Binary::Le
+                | Binary::Eq
+                | Binary::Ne
+                | Binary::And
+                | Binary::Or
+        ),
+        Node::Ternary(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..)
+        | Node::Transform(..) => graph.ty(id) != Type::Bool,
+    }
+}
+
+impl Sweep<'_> {
+    /// Gives each argument its part of the node's adjoint.
+    pub(super) fn hand_down(&mut self, id: NodeId, adjoint: NodeId) {
+        match self.graph.node(id) {
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => {}
+            Node::Unary(op, a) => {
+                if self.live.contains(&a) {
+                    let part = self.unary(op, id, a, adjoint);
+                    self.give(a, part);
+                }
+            }
+            Node::Binary(op, a, b) => self.binary(op, id, [a, b], adjoint),
+            Node::Ternary(op, arguments) => self.ternary(op, arguments, adjoint),
+            Node::Splat(_, a) => {
+                let sum = self.sum_of_lanes(adjoint);
+                self.give(a, sum);
+            }
+            Node::Compose(ty, parts) => {
+                for (lane, &part) in (0..).zip(&parts[..ty.width()]) {
+                    let component = self.graph.component(adjoint, lane);
+                    self.give(part, component);
+                }
+            }
+            Node::Swizzle(ty, a, lanes) => self.swizzle(a, &lanes[..ty.width()], adjoint),
+            Node::Transform(columns, v) => self.transform(columns, v, adjoint),
+        }
+    }
+
+    fn swizzle(&mut self, a: NodeId, lanes: &[u8], adjoint: NodeId) {
+        let width = self.graph.ty(a).width();
+        let source = |lane: usize| lanes.iter().position(|&from| usize::from(from) == lane);
+        let back: Option<Vec<u8>> = (0..width).map(|lane| source(lane).map(|i| i as u8)).collect();
+        if let Some(back) = back.filter(|_| lanes.len() == width) {
+            let turned_back = self.graph.swizzle(adjoint, &back);
+            return self.give(a, turned_back);
+        }
+        for (i, &lane) in (0..).zip(lanes) {
+            let component = self.graph.component(adjoint, i);
+            self.give_lane(a, lane, component);
+        }
+    }
+
+    fn transform(&mut self, columns: [NodeId; 3], v: NodeId, adjoint: NodeId) {
+        if self.live.contains(&v) {
+            let transposed = [0, 1, 2].map(|row| {
+                let parts = columns.map(|column| self.graph.component(column, row));
+                self.graph.compose(&parts)
+            });
+            let part = self.graph.transform(transposed, adjoint);
+            self.give(v, part);
+        }
+        for (lane, column) in (0..).zip(columns) {
+            if self.live.contains(&column) {
+                let factor = self.graph.component(v, lane);
+                let part = self.graph.mul(adjoint, factor);
+                self.give(column, part);
+            }
+        }
+    }
+
+    fn unary(&mut self, op: Unary, id: NodeId, a: NodeId, adjoint: NodeId) -> NodeId {
+        match op {
+            Unary::Neg => self.graph.neg(adjoint),
+            Unary::Abs => self.signed_by(adjoint, a),
+            Unary::Fract => adjoint,
+            Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Not => {
+                self.zero_of(a)
+            }
+            Unary::Sqrt => self.half_over_root(adjoint, id),
+            Unary::InverseSqrt => {
+                let square = self.graph.mul(id, id);
+                let cube = self.graph.mul(square, id);
+                self.product(adjoint, cube, -0.5)
+            }
+            Unary::Exp => self.graph.mul(adjoint, id),
+            Unary::Exp2 => self.product(adjoint, id, std::f64::consts::LN_2),
+            Unary::Log => self.graph.div(adjoint, a),
+            Unary::Log2 => {
+                let slope = self.graph.div(adjoint, a);
+                self.scaled(slope, std::f64::consts::LOG2_E)
+            }
+            Unary::Sin => self.times_function(Unary::Cos, a, adjoint, 1.0),
+            Unary::Cos => self.times_function(Unary::Sin, a, adjoint, -1.0),
+            Unary::Tan => {
+                let square = self.graph.mul(id, id);
+                let slope = self.offset(square, 1.0);
+                self.graph.mul(adjoint, slope)
+            }
+            Unary::Asin => self.over_root_of_one_minus_square(adjoint, a),
+            Unary::Acos => {
+                let part = self.over_root_of_one_minus_square(adjoint, a);
+                self.graph.neg(part)
+            }
+            Unary::Atan => {
+                let square = self.graph.mul(a, a);
+                let divisor = self.offset(square, 1.0);
+                self.graph.div(adjoint, divisor)
+            }
+            Unary::Sinh => self.times_function(Unary::Cosh, a, adjoint, 1.0),
+            Unary::Cosh => self.times_function(Unary::Sinh, a, adjoint, 1.0),
+            Unary::Tanh => {
+                let square = self.graph.mul(id, id);
+                let slope = self.one_minus(square);
+                self.graph.mul(adjoint, slope)
+            }
+            Unary::Saturate => {
+                let (nought, one) = (self.number_like(a, 0.0), self.number_like(a, 1.0));
+                let below = self.where_le(adjoint, a, one);
+                self.where_le(below, nought, a)
+            }
+            Unary::Length => self.direction(adjoint, id, a),
+            Unary::Normalize => {
+                let along = self.graph.dot(id, adjoint);
+                let radial = self.graph.mul(id, along);
+                let across = self.graph.sub(adjoint, radial);
+                let length = self.graph.length(a);
+                let inverse = self.inverse(length);
+                self.graph.mul(across, inverse)
+            }
+        }
+    }
+
+    fn binary(&mut self, op: Binary, id: NodeId, [a, b]: [NodeId; 2], adjoint: NodeId) {
+        match op {
+            Binary::Add => {
+                self.give(a, adjoint);
+                self.give(b, adjoint);
+            }
+            Binary::Sub => {
+                self.give(a, adjoint);
+                self.give_with(b, |s| s.graph.neg(adjoint));
+            }
+            Binary::Mul if a == b => self.give_with(a, |s| s.product(adjoint, a, 2.0)),
+            Binary::Mul => {
+                self.give_with(a, |s| s.graph.mul(adjoint, b));
+                self.give_with(b, |s| s.graph.mul(adjoint, a));
+            }
+            Binary::Div => {
+                self.give_with(a, |s| s.graph.div(adjoint, b));
+                self.give_with(b, |s| {
+                    let slope = s.graph.div(id, b);
+                    s.product(adjoint, slope, -1.0)
+                });
+            }
+            Binary::Rem => {
+                self.give(a, adjoint);
+                self.give_with(b, |s| {
+                    let quotient = s.graph.div(a, b);
+                    let whole = s.graph.unary(Unary::Floor, quotient);
+                    s.product(adjoint, whole, -1.0)
+                });
+            }
+            Binary::Min => self.selection([a, b], [a, b], id, adjoint),
+            Binary::Max => self.selection([a, b], [b, a], id, adjoint),
+            Binary::Pow => self.power(id, [a, b], adjoint),
+            Binary::Atan2 => self.angle([a, b], adjoint),
+            Binary::Dot if a == b => self.give_with(a, |s| {
+                let twice = s.scaled(adjoint, 2.0);
+                s.graph.mul(a, twice)
+            }),
+            Binary::Dot => {
+                self.give_with(a, |s| s.graph.mul(b, adjoint));
+                self.give_with(b, |s| s.graph.mul(a, adjoint));
+            }
+            Binary::Cross => {
+                self.give_with(a, |s| s.graph.binary(Binary::Cross, b, adjoint));
+                self.give_with(b, |s| s.graph.binary(Binary::Cross, adjoint, a));
+            }
+            Binary::Step
+            | Binary::Lt
+            | Binary::Le
+            | Binary::Eq
+            | Binary::Ne
+            | Binary::And
+            | Binary::Or => {}
+        }
+    }
+
+    fn ternary(&mut self, op: Ternary, [a, b, c]: [NodeId; 3], adjoint: NodeId) {
+        match op {
+            Ternary::Mix => {
+                self.give_with(a, |s| {
+                    let share = s.one_minus(c);
+                    s.graph.mul(adjoint, share)
+                });
+                self.give_with(b, |s| s.graph.mul(adjoint, c));
+                self.give_with(c, |s| {
+                    let difference = s.graph.sub(b, a);
+                    s.graph.mul(adjoint, difference)
+                });
+            }
+            Ternary::Clamp => {
+                // min(max(x, lo), hi)
+                let raised = self.graph.max(a, b);
+                let kept = self.where_le(adjoint, raised, c);
+                self.give_with(a, |s| s.where_le(kept, b, a));
+                self.give_with(b, |s| s.unless_le(kept, b, a));
+                self.give_with(c, |s| s.unless_le(adjoint, raised, c));
+            }
+            Ternary::Smoothstep => self.smoothstep([a, b, c], adjoint),
+            Ternary::Select => {
+                self.give_with(b, |s| {
+                    let nothing = s.zero_of(adjoint);
+                    s.graph.select(a, adjoint, nothing)
+                });
+                self.give_with(c, |s| {
+                    let nothing = s.zero_of(adjoint);
+                    s.graph.select(a, nothing, adjoint)
+                });
+            }
+        }
+    }
+
+    /// The adjoint goes to the first argument where `lesser <= greater`, else to the second.
+    fn selection(
+        &mut self,
+        [first, second]: [NodeId; 2],
+        [lesser, greater]: [NodeId; 2],
+        id: NodeId,
+        adjoint: NodeId,
+    ) {
+        // Where the other argument is 0, a factor equal to the selection vanishes wherever this one is not
+        // selected: it needs no mask.
+        let masked = self.has_factor(adjoint, id);
+        let plain = |s: &Self, other: NodeId| masked && s.is_zero(other);
+        if plain(self, second) {
+            self.give(first, adjoint);
+        } else {
+            self.give_with(first, |s| s.where_le(adjoint, lesser, greater));
+        }
+        if plain(self, first) {
+            self.give(second, adjoint);
+        } else {
+            self.give_with(second, |s| s.unless_le(adjoint, lesser, greater));
+        }
+    }
+
+    fn has_factor(&self, product: NodeId, factor: NodeId) -> bool {
+        let mut pending = vec![product];
+        for _ in 0..8 {
+            let Some(id) = pending.pop() else { return false };
+            if id == factor {
+                return true;
+            }
+            if let Node::Binary(Binary::Mul, a, b) = self.graph.node(id) {
+                pending.extend([a, b]);
+            }
+        }
+        false
+    }
+
+    /// `x^y`: `y x^y / x` and `x^y log x`, with x kept off 0.
+    fn power(&mut self, id: NodeId, [x, y]: [NodeId; 2], adjoint: NodeId) {
+        let tiny = self.number_like(x, TINY);
+        self.give_with(x, |s| {
+            let above = s.graph.max(x, tiny);
+            let ratio = s.graph.div(id, above);
+            let slope = s.graph.mul(y, ratio);
+            s.graph.mul(adjoint, slope)
+        });
+        self.give_with(y, |s| {
+            let above = s.graph.max(x, tiny);
+            let log = s.graph.unary(Unary::Log, above);
+            let slope = s.graph.mul(id, log);
+            s.graph.mul(adjoint, slope)
+        });
+    }
+
+    /// Of the angle of `[x, y]`: `(x dy - y dx) / (x² + y²)`.
+    fn angle(&mut self, [y, x]: [NodeId; 2], adjoint: NodeId) {
+        let (xx, yy) = (self.graph.mul(x, x), self.graph.mul(y, y));
+        let sum = self.graph.add(xx, yy);
+        let floor = self.number_like(sum, TINY * TINY);
+        let square = self.graph.max(sum, floor);
+        let scale = self.graph.div(adjoint, square);
+        self.give_with(y, |s| s.graph.mul(x, scale));
+        self.give_with(x, |s| s.product(y, scale, -1.0));
+    }
+
+    /// With t = saturate((x - lo) / (hi - lo)): 6 t (1 - t) / (hi - lo), times t - 1 for lo, -t for hi.
+    fn smoothstep(&mut self, [lo, hi, x]: [NodeId; 3], adjoint: NodeId) {
+        let span = self.graph.sub(hi, lo);
+        let above = self.graph.sub(x, lo);
+        let ratio = self.graph.div(above, span);
+        let t = self.graph.unary(Unary::Saturate, ratio);
+        let rest = self.one_minus(t);
+        let bump = self.product(t, rest, 6.0);
+        let slope = self.graph.div(bump, span);
+        let part = self.graph.mul(adjoint, slope);
+        self.give(x, part);
+        self.give_with(lo, |s| s.product(part, rest, -1.0));
+        self.give_with(hi, |s| s.product(part, t, -1.0));
+    }
+
+    /// Gives a part that is only built if the argument takes it.
+    fn give_with(&mut self, id: NodeId, part: impl FnOnce(&mut Self) -> NodeId) {
+        if self.live.contains(&id) {
+            let part = part(self);
+            self.give(id, part);
+        }
+    }
+
+    /// `adjoint * v / |v|`, 0 at 0; `length` is |v|.
+    fn direction(&mut self, adjoint: NodeId, length: NodeId, v: NodeId) -> NodeId {
+        if self.graph.ty(v).width() == 1 {
+            return self.signed_by(adjoint, v);
+        }
+        let inverse = self.inverse(length);
+        let factor = self.graph.mul(adjoint, inverse);
+        self.graph.mul(v, factor)
+    }
+
+    /// `1 / max(length, TINY)`
+    fn inverse(&mut self, length: NodeId) -> NodeId {
+        let (tiny, one) = (self.graph.number(TINY), self.graph.number(1.0));
+        let above = self.graph.max(length, tiny);
+        self.graph.div(one, above)
+    }
+
+    /// `adjoint / (2 root)`, 0 where the root is.
+    fn half_over_root(&mut self, adjoint: NodeId, root: NodeId) -> NodeId {
+        let tiny = self.number_like(root, TINY);
+        let half = self.scaled(adjoint, 0.5);
+        let above = self.graph.max(root, tiny);
+        let part = self.graph.div(half, above);
+        self.where_le(part, tiny, root)
+    }
+
+    fn over_root_of_one_minus_square(&mut self, adjoint: NodeId, x: NodeId) -> NodeId {
+        let square = self.graph.mul(x, x);
+        let rest = self.one_minus(square);
+        let tiny = self.number_like(x, TINY);
+        let above = self.graph.max(rest, tiny);
+        let root = self.graph.unary(Unary::Sqrt, above);
+        self.graph.div(adjoint, root)
+    }
+
+    /// The adjoint where `x >= 0`, its negative elsewhere.
+    fn signed_by(&mut self, adjoint: NodeId, x: NodeId) -> NodeId {
+        let nought = self.number_like(x, 0.0);
+        if self.graph.ty(x).width() == 1 {
+            let negative = self.graph.neg(adjoint);
+            let condition = self.graph.le(nought, x);
+            return self.graph.select(condition, adjoint, negative);
+        }
+        let mask = self.graph.binary(Binary::Step, nought, x);
+        let twice = self.scaled(mask, 2.0);
+        let sign = self.offset(twice, -1.0);
+        self.graph.mul(adjoint, sign)
+    }
+
+    /// The part where `x <= y`, else 0; componentwise.
+    fn where_le(&mut self, part: NodeId, x: NodeId, y: NodeId) -> NodeId {
+        if self.graph.ty(x).width() == 1 {
+            let nothing = self.zero_of(part);
+            let condition = self.graph.le(x, y);
+            return self.graph.select(condition, part, nothing);
+        }
+        let mask = self.graph.binary(Binary::Step, x, y);
+        self.graph.mul(part, mask)
+    }
+
+    /// 0 where `x <= y`, else the part; componentwise.
+    fn unless_le(&mut self, part: NodeId, x: NodeId, y: NodeId) -> NodeId {
+        if self.graph.ty(x).width() == 1 {
+            let nothing = self.zero_of(part);
+            let condition = self.graph.le(x, y);
+            return self.graph.select(condition, nothing, part);
+        }
+        let mask = self.graph.binary(Binary::Step, x, y);
+        let opposite = self.one_minus(mask);
+        self.graph.mul(part, opposite)
+    }
+
+    fn times_function(&mut self, op: Unary, a: NodeId, adjoint: NodeId, factor: f64) -> NodeId {
+        let slope = self.graph.unary(op, a);
+        self.product(adjoint, slope, factor)
+    }
+
+    fn product(&mut self, x: NodeId, y: NodeId, factor: f64) -> NodeId {
+        let scaled = self.scaled(x, factor);
+        self.graph.mul(scaled, y)
+    }
+
+    fn scaled(&mut self, x: NodeId, factor: f64) -> NodeId {
+        let factor = self.graph.number(factor);
+        self.graph.mul(x, factor)
+    }
+
+    fn offset(&mut self, x: NodeId, by: f64) -> NodeId {
+        let by = self.graph.number(by);
+        self.graph.add(x, by)
+    }
+
+    /// `1 - x`
+    fn one_minus(&mut self, x: NodeId) -> NodeId {
+        let one = self.graph.number(1.0);
+        self.graph.sub(one, x)
+    }
+
+    fn sum_of_lanes(&mut self, v: NodeId) -> NodeId {
+        let ones = self.number_like(v, 1.0);
+        if self.graph.ty(v).width() == 1 { v } else { self.graph.dot(v, ones) }
+    }
+
+    fn number_like(&mut self, id: NodeId, value: f64) -> NodeId {
+        let ty = self.graph.ty(id);
+        self.graph.constant(ty, &[value; 4])
+    }
+
+    fn zero_of(&mut self, id: NodeId) -> NodeId {
+        let ty = self.graph.ty(id);
+        zero(self.graph, ty)
+    }
+}

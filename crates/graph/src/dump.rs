@@ -1,0 +1,163 @@
+//! A readable text of nodes, and counts of them.
+
+use std::fmt::Write;
+
+use rustc_hash::FxHashMap;
+
+use crate::walk::reachable;
+use crate::{Const, Graph, Node, NodeId, Stage, Type};
+
+/// The nodes that the roots are computed from, one a line, numbered from 0 in an order that depends on the
+/// roots alone: `%3 = add %1 %2 : vec3`. Constants stand where they are used. The last lines name the roots.
+/// Nodes that are known once a frame starts are marked `frame`.
+///
+/// ```
+/// use sdfc_graph::{Dim, Graph, dump};
+///
+/// let mut graph = Graph::new();
+/// let p = graph.point(0, Dim::Three);
+/// let (length, radius) = (graph.length(p), graph.number(0.5));
+/// let ball = graph.sub(length, radius);
+/// assert_eq!(
+///     dump(&graph, &[("distance", ball)]),
+///     "%0 = point 0 : vec3\n\
+///      %1 = length %0 : number\n\
+///      %2 = sub %1 0.5 : number\n\
+///      distance = %2\n"
+/// );
+/// ```
+pub fn dump(graph: &Graph, roots: &[(&str, NodeId)]) -> String {
+    let ids: Vec<NodeId> = roots.iter().map(|&(_, id)| id).collect();
+    let mut numbers = FxHashMap::default();
+    let mut text = String::new();
+    for id in first_use_order(graph, &ids) {
+        if matches!(graph.node(id), Node::Const(_)) {
+            continue;
+        }
+        let number = numbers.len();
+        numbers.insert(id, number);
+        let frame = if graph.stage(id) == Stage::Frame { " frame" } else { "" };
+        let ty = type_name(graph.ty(id));
+        let operation = operation(graph, id, |argument| reference(graph, &numbers, argument));
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "%{number} = {operation} : {ty}{frame}");
+    }
+    for (name, id) in roots {
+        let _ = writeln!(text, "{name} = {}", reference(graph, &numbers, *id));
+    }
+    text
+}
+
+/// Arguments before uses, left to right, whatever the ids are.
+fn first_use_order(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
+    let mut done = rustc_hash::FxHashSet::default();
+    let mut order = Vec::new();
+    let mut stack: Vec<(NodeId, bool)> = roots.iter().rev().map(|&id| (id, false)).collect();
+    while let Some((id, arguments_done)) = stack.pop() {
+        if arguments_done {
+            order.push(id);
+        } else if done.insert(id) {
+            stack.push((id, true));
+            let arguments: Vec<NodeId> = graph.node(id).arguments().collect();
+            stack.extend(arguments.into_iter().rev().map(|argument| (argument, false)));
+        }
+    }
+    order
+}
+
+fn reference(graph: &Graph, numbers: &FxHashMap<NodeId, usize>, id: NodeId) -> String {
+    match graph.node(id) {
+        Node::Const(value) => constant(&value),
+        Node::Point(..)
+        | Node::Frame(..)
+        | Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..)
+        | Node::Transform(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => match numbers.get(&id) {
+            Some(number) => format!("%{number}"),
+            None => format!("#{}", id.index()),
+        },
+    }
+}
+
+fn constant(value: &Const) -> String {
+    let lanes = value.lanes();
+    match value.ty() {
+        Type::Bool => (lanes[0] != 0.0).to_string(),
+        Type::Scalar => lanes[0].to_string(),
+        Type::Vec2 | Type::Vec3 | Type::Vec4 => {
+            let lanes: Vec<String> =
+                lanes[..value.ty().width()].iter().map(f64::to_string).collect();
+            format!("[{}]", lanes.join(", "))
+        }
+    }
+}
+
+fn operation(graph: &Graph, id: NodeId, reference: impl Fn(NodeId) -> String) -> String {
+    let node = graph.node(id);
+    let head = match node {
+        Node::Const(value) => constant(&value),
+        Node::Point(level, _) => format!("point {level}"),
+        Node::Frame(input, _) => format!("input {input:?}").to_lowercase(),
+        Node::Unary(op, _) => format!("{op:?}").to_lowercase(),
+        Node::Binary(op, ..) => format!("{op:?}").to_lowercase(),
+        Node::Ternary(op, _) => format!("{op:?}").to_lowercase(),
+        Node::Splat(..) => "splat".to_owned(),
+        Node::Compose(..) => "compose".to_owned(),
+        Node::Swizzle(ty, a, lanes) => {
+            let letters: String = lanes[..ty.width()]
+                .iter()
+                .map(|&lane| ['x', 'y', 'z', 'w'][lane as usize])
+                .collect();
+            return format!("{}.{letters}", reference(a));
+        }
+        Node::Transform(..) => "transform".to_owned(),
+        Node::Sample(shape, _) => {
+            format!("sample {}#{}", graph.shape(shape).definition, shape.index())
+        }
+        Node::MaterialAt(shape, _, field) => {
+            format!("material {}#{} {field:?}", graph.shape(shape).definition, shape.index())
+                .to_lowercase()
+        }
+    };
+    node.arguments().fold(head, |text, argument| text + " " + &reference(argument))
+}
+
+fn type_name(ty: Type) -> &'static str {
+    match ty {
+        Type::Bool => "bool",
+        Type::Scalar => "number",
+        Type::Vec2 => "vec2",
+        Type::Vec3 => "vec3",
+        Type::Vec4 => "vec4",
+    }
+}
+
+/// How many operations a point costs: nodes of stage `Point` that compute something. Points, swizzles, splats
+/// and composed vectors are free; an operation on vectors counts once.
+pub fn operation_count(graph: &Graph, roots: &[NodeId]) -> usize {
+    let counts = |id: &NodeId| graph.stage(*id) == Stage::Point && is_operation(&graph.node(*id));
+    reachable(graph, roots).iter().filter(|id| counts(id)).count()
+}
+
+fn is_operation(node: &Node) -> bool {
+    match node {
+        Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Transform(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => true,
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..) => false,
+    }
+}

@@ -1,0 +1,361 @@
+//! From shape instances to flat math.
+//!
+//! An instance's formula is written in the point of its level and samples other shapes. Expanding it at a
+//! point replaces its point by that one and each sample by the sampled shape's formula, expanded at the
+//! sample's point. A shape of level L sees the points of the formulas around it: sampled at q where
+//! those points are E, its own are E\[0..L\] and q.
+
+mod environment;
+mod material;
+mod names;
+
+use rustc_hash::FxHashMap;
+
+use self::environment::{Env, Environments};
+use self::names::Names;
+use crate::{Graph, MaterialField, Node, NodeId, ShapeId, Stage};
+
+/// At most so many nodes in one arena, and so many (node, points) pairs in one [`Expander`].
+pub const NODE_LIMIT: usize = 1_000_000;
+
+/// Why shapes could not be expanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExpandError {
+    /// The arena, or the work, has grown beyond the limit.
+    TooManyNodes {
+        /// [`NODE_LIMIT`], unless the expander was given another.
+        limit: usize,
+    },
+    /// A formula mentions a point of this level, which nothing around it has.
+    MissingPoint {
+        /// The level.
+        level: u16,
+    },
+}
+
+impl std::fmt::Display for ExpandError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::TooManyNodes { limit } => {
+                write!(f, "the expanded scene passes {limit} nodes")
+            }
+            Self::MissingPoint { level } => {
+                write!(f, "a formula mentions a point of level {level}, which it does not have")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ExpandError {}
+
+/// Expands shapes of one arena. What was expanded once is remembered, so an expander must not be used
+/// with another arena.
+///
+/// ```
+/// use sdfc_graph::{Contract, Dim, Expander, Graph, MaterialRule, Shape, dump};
+///
+/// let mut graph = Graph::new();
+/// let p = graph.point(0, Dim::Three);
+/// let shape = |name: &str, formula, children: &[_]| Shape {
+///     definition: name.to_owned(),
+///     dim: Dim::Three,
+///     level: 0,
+///     args: Vec::new(),
+///     formula,
+///     contract: Contract::default(),
+///     material: MaterialRule::Shares(formula),
+///     children: children.to_vec(),
+///     depth: 1,
+///     name: None,
+/// };
+/// let (length, radius) = (graph.length(p), graph.number(1.0));
+/// let formula = graph.sub(length, radius);
+/// let ball = graph.add_shape(shape("ball", formula, &[]));
+///
+/// let by = graph.constant(p_type(), &[0.0, 2.0, 0.0]);
+/// let moved = graph.sub(p, by);
+/// let sample = graph.sample(ball, moved);
+/// let raised = graph.add_shape(shape("raised", sample, &[ball]));
+///
+/// let distance = Expander::new().field(&mut graph, raised, p)?;
+/// assert_eq!(
+///     dump(&graph, &[("distance", distance)]),
+///     "%0 = point 0 : vec3\n\
+///      %1 = sub %0 [0, 2, 0] : vec3\n\
+///      %2 = length %1 : number\n\
+///      %3 = sub %2 1 : number\n\
+///      distance = %3\n"
+/// );
+/// # fn p_type() -> sdfc_graph::Type { Dim::Three.point_type() }
+/// # Ok::<(), sdfc_graph::ExpandError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Expander {
+    environments: Environments,
+    done: FxHashMap<(NodeId, Env), NodeId>,
+    materials: FxHashMap<ShapeId, [NodeId; 6]>,
+    names: Names,
+    limit: usize,
+}
+
+impl Default for Expander {
+    fn default() -> Self {
+        Self {
+            environments: Environments::default(),
+            done: FxHashMap::default(),
+            materials: FxHashMap::default(),
+            names: Names::default(),
+            limit: NODE_LIMIT,
+        }
+    }
+}
+
+/// What an expansion waits for.
+enum Step {
+    Done(NodeId),
+    Wait,
+}
+
+/// A node under the points around it.
+type Task = (NodeId, Env);
+
+impl Expander {
+    /// One that has expanded nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// With another limit than [`NODE_LIMIT`].
+    pub fn with_limit(limit: usize) -> Self {
+        Self { limit, ..Self::default() }
+    }
+
+    /// The distance of a shape of level 0 at a point.
+    ///
+    /// # Errors
+    /// Where a limit is passed.
+    pub fn field(
+        &mut self,
+        graph: &mut Graph,
+        shape: ShapeId,
+        point: NodeId,
+    ) -> Result<NodeId, ExpandError> {
+        self.field_under(graph, shape, &[], point)
+    }
+
+    /// The distance of a shape at a point, under the points of the formulas around it, outermost first.
+    ///
+    /// # Errors
+    /// Where a limit is passed or a point is missing.
+    pub fn field_under(
+        &mut self,
+        graph: &mut Graph,
+        shape: ShapeId,
+        outer: &[NodeId],
+        point: NodeId,
+    ) -> Result<NodeId, ExpandError> {
+        let sample = graph.sample(shape, point);
+        self.under(graph, shape, outer, point, sample)
+    }
+
+    /// The material of a shape of level 0 at a point, in the order of [`MaterialField::ALL`].
+    ///
+    /// # Errors
+    /// Where a limit is passed.
+    pub fn material(
+        &mut self,
+        graph: &mut Graph,
+        shape: ShapeId,
+        point: NodeId,
+    ) -> Result<[NodeId; 6], ExpandError> {
+        let mut fields = [point; 6];
+        for (place, field) in fields.iter_mut().zip(MaterialField::ALL) {
+            let node = graph.material_at(shape, point, field);
+            *place = self.under(graph, shape, &[], point, node)?;
+        }
+        Ok(fields)
+    }
+
+    /// A node of a formula, where the points of levels 0, 1, … are these.
+    ///
+    /// # Errors
+    /// Where a limit is passed or a point is missing.
+    pub fn node(
+        &mut self,
+        graph: &mut Graph,
+        node: NodeId,
+        points: &[NodeId],
+    ) -> Result<NodeId, ExpandError> {
+        let env = self.environments.of(points);
+        self.expand(graph, (node, env))
+    }
+
+    /// Names for the expanded nodes: of each the scene's name for the first shape whose distance it
+    /// is, else that shape's definition. Constants and points have none.
+    pub fn names(&self) -> FxHashMap<NodeId, String> {
+        self.names.to_map()
+    }
+
+    /// Expands what was asked of a shape at a point that is already expanded.
+    fn under(
+        &mut self,
+        graph: &mut Graph,
+        shape: ShapeId,
+        outer: &[NodeId],
+        point: NodeId,
+        asked: NodeId,
+    ) -> Result<NodeId, ExpandError> {
+        let inner = self.environments.of(outer);
+        let env = self.inside(graph, shape, inner, point)?;
+        let formula = self.formula_of(graph, asked);
+        let result = self.expand(graph, (formula, env))?;
+        if let Node::Sample(..) = graph.node(asked) {
+            self.names.record(graph, result, shape);
+        }
+        Ok(result)
+    }
+
+    /// The points that a shape's formula sees, sampled at `point` where the points are `env`.
+    fn inside(
+        &mut self,
+        graph: &Graph,
+        shape: ShapeId,
+        env: Env,
+        point: NodeId,
+    ) -> Result<Env, ExpandError> {
+        let level = graph.shape(shape).level;
+        let outer = self.environments.prefix(env, level);
+        if self.environments.depth(outer) < level {
+            return Err(ExpandError::MissingPoint { level: level - 1 });
+        }
+        Ok(self.environments.push(outer, point))
+    }
+
+    /// What stands for a sample, in the sampled shape's own point.
+    fn formula_of(&mut self, graph: &mut Graph, asked: NodeId) -> NodeId {
+        match graph.node(asked) {
+            Node::Sample(shape, _) => graph.shape(shape).formula,
+            Node::MaterialAt(shape, _, field) => {
+                let fields = match self.materials.get(&shape) {
+                    Some(&fields) => fields,
+                    None => {
+                        let fields = material::formulas(graph, shape);
+                        self.materials.insert(shape, fields);
+                        fields
+                    }
+                };
+                fields[field.index()]
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..) => asked,
+        }
+    }
+
+    fn expand(&mut self, graph: &mut Graph, task: Task) -> Result<NodeId, ExpandError> {
+        let mut stack = vec![task];
+        while let Some(&(node, env)) = stack.last() {
+            let before = stack.len();
+            match self.step(graph, node, env, &mut stack)? {
+                Step::Done(result) => {
+                    stack.truncate(before - 1);
+                    let key = self.key(graph, node, env);
+                    self.done.insert(key, result);
+                }
+                Step::Wait => {}
+            }
+            if graph.len().max(self.done.len()) > self.limit {
+                return Err(ExpandError::TooManyNodes { limit: self.limit });
+            }
+        }
+        self.lookup(graph, task).ok_or(ExpandError::TooManyNodes { limit: self.limit })
+    }
+
+    /// Expands a node whose arguments are expanded, or puts those that are not on the stack.
+    fn step(
+        &mut self,
+        graph: &mut Graph,
+        node: NodeId,
+        env: Env,
+        stack: &mut Vec<Task>,
+    ) -> Result<Step, ExpandError> {
+        if let Some(result) = self.lookup(graph, (node, env)) {
+            return Ok(Step::Done(result));
+        }
+        if let Node::Point(level, _) = graph.node(node) {
+            let point = self.environments.point(env, level);
+            return point.map(Step::Done).ok_or(ExpandError::MissingPoint { level });
+        }
+        let before = stack.len();
+        for argument in graph.node(node).arguments() {
+            if self.lookup(graph, (argument, env)).is_none() {
+                stack.push((argument, env));
+            }
+        }
+        if stack.len() > before {
+            return Ok(Step::Wait);
+        }
+        match graph.node(node) {
+            Node::Sample(shape, point) | Node::MaterialAt(shape, point, _) => {
+                self.step_into(graph, node, shape, (point, env), stack)
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..) => {
+                let mut arguments = [None; 4];
+                for (place, argument) in arguments.iter_mut().zip(graph.node(node).arguments()) {
+                    *place = self.lookup(graph, (argument, env)).map(|new| (argument, new));
+                }
+                let find = |old| arguments.iter().flatten().find(|pair| pair.0 == old);
+                Ok(Step::Done(graph.rebuild(node, |old| find(old).map_or(old, |pair| pair.1))))
+            }
+        }
+    }
+
+    fn step_into(
+        &mut self,
+        graph: &mut Graph,
+        asked: NodeId,
+        shape: ShapeId,
+        (point, env): Task,
+        stack: &mut Vec<Task>,
+    ) -> Result<Step, ExpandError> {
+        let at = self.lookup(graph, (point, env)).unwrap_or(point);
+        let inner = self.inside(graph, shape, env, at)?;
+        let formula = self.formula_of(graph, asked);
+        let Some(result) = self.lookup(graph, (formula, inner)) else {
+            stack.push((formula, inner));
+            return Ok(Step::Wait);
+        };
+        if let Node::Sample(..) = graph.node(asked) {
+            self.names.record(graph, result, shape);
+        }
+        Ok(Step::Done(result))
+    }
+
+    /// Nodes that see fewer points than there are share one expansion.
+    fn key(&self, graph: &Graph, node: NodeId, env: Env) -> Task {
+        (node, self.environments.prefix(env, graph.levels(node)))
+    }
+
+    fn lookup(&self, graph: &Graph, (node, env): Task) -> Option<NodeId> {
+        if graph.stage(node) < Stage::Point {
+            return Some(node);
+        }
+        self.done.get(&self.key(graph, node, env)).copied()
+    }
+}

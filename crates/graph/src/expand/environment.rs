@@ -1,0 +1,65 @@
+//! Points by level, interned: equal lists have equal handles.
+
+use rustc_hash::FxHashMap;
+
+use crate::NodeId;
+
+/// A list of points, outermost first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Env(u32);
+
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    outer: Env,
+    point: NodeId,
+    depth: u16,
+}
+
+/// All lists in use. Each is the one before it and one more point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Environments {
+    entries: Vec<Entry>,
+    known: FxHashMap<(Env, NodeId), Env>,
+}
+
+/// The empty list; entry i has handle i + 1.
+const EMPTY: Env = Env(0);
+
+impl Environments {
+    fn entry(&self, env: Env) -> Option<Entry> {
+        self.entries.get((env.0 as usize).checked_sub(1)?).copied()
+    }
+
+    pub(super) fn depth(&self, env: Env) -> u16 {
+        self.entry(env).map_or(0, |entry| entry.depth)
+    }
+
+    pub(super) fn of(&mut self, points: &[NodeId]) -> Env {
+        points.iter().fold(EMPTY, |outer, &point| self.push(outer, point))
+    }
+
+    pub(super) fn push(&mut self, outer: Env, point: NodeId) -> Env {
+        if let Some(&env) = self.known.get(&(outer, point)) {
+            return env;
+        }
+        let depth = self.depth(outer).saturating_add(1);
+        self.entries.push(Entry { outer, point, depth });
+        let env = Env(self.entries.len() as u32);
+        self.known.insert((outer, point), env);
+        env
+    }
+
+    /// At most the first `depth` points.
+    pub(super) fn prefix(&self, mut env: Env, depth: u16) -> Env {
+        while let Some(entry) = self.entry(env).filter(|entry| entry.depth > depth) {
+            env = entry.outer;
+        }
+        env
+    }
+
+    /// The point of a level.
+    pub(super) fn point(&self, env: Env, level: u16) -> Option<NodeId> {
+        let entry = self.entry(self.prefix(env, level.saturating_add(1)))?;
+        (entry.depth == level.saturating_add(1)).then_some(entry.point)
+    }
+}

@@ -1,0 +1,245 @@
+//! Materials by shares.
+//!
+//! With samples s₁…sₙ in a shape's rule and shares wᵢ = ∂rule/∂sᵢ, the material is
+//! Σ max(wᵢ, 0) mᵢ / Σ max(wᵢ, 0), where a negative wᵢ counts as |wᵢ| times the coverage of mᵢ; if all
+//! are 0, or there is one sample, it is the first's. The result is written in the shape's own point, with the
+//! children's materials as nodes: expansion treats it as any other formula.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::derive::TINY;
+use crate::walk::reachable_where;
+use crate::{
+    Binary, Graph, MaterialField, MaterialRule, Node, NodeId, ShapeId, Ternary, Unary, adjoints,
+};
+
+/// One node for each of [`MaterialField::ALL`].
+type Fields = [NodeId; 6];
+
+const COVERAGE: usize = 1;
+
+/// A shape's material in terms of its own point.
+pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Fields {
+    let rule = match graph.shape(shape).material {
+        MaterialRule::Stated(fields) => return fields,
+        MaterialRule::Shares(rule) => rule,
+    };
+    let order = reachable_where(graph, &[rule], |id| !is_sample(graph, id));
+    let samples = samples_in_order(graph, shape, &order);
+    match samples[..] {
+        [] => unpainted(graph),
+        [only] => material_of(graph, only),
+        [first, ..] => {
+            let first = material_of(graph, first);
+            Selection::new(graph, &order, first)
+                .run(rule)
+                .unwrap_or_else(|| weighted(graph, rule, &samples))
+        }
+    }
+}
+
+/// The material of what nothing paints.
+fn unpainted(graph: &mut Graph) -> Fields {
+    MaterialField::ALL.map(|field| graph.constant(field.ty(), &field.unpainted()))
+}
+
+fn is_sample(graph: &Graph, id: NodeId) -> bool {
+    matches!(graph.node(id), Node::Sample(..))
+}
+
+/// The rule's samples: by the order in which the formula first uses the shapes, then by age.
+fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<NodeId> {
+    let children = &graph.shape(shape).children;
+    let place: FxHashMap<ShapeId, usize> =
+        children.iter().enumerate().rev().map(|(place, &child)| (child, place)).collect();
+    let mut samples: Vec<(usize, NodeId)> = Vec::new();
+    for &id in order {
+        if let Node::Sample(child, _) = graph.node(id) {
+            samples.push((place.get(&child).copied().unwrap_or(children.len()), id));
+        }
+    }
+    samples.sort_unstable();
+    samples.into_iter().map(|(_, id)| id).collect()
+}
+
+fn material_of(graph: &mut Graph, sample: NodeId) -> Fields {
+    let Node::Sample(shape, point) = graph.node(sample) else { return unpainted(graph) };
+    MaterialField::ALL.map(|field| graph.material_at(shape, point, field))
+}
+
+/// The general rule, as a chain of mixes: a mix of equal materials folds, whatever the shares.
+fn weighted(graph: &mut Graph, rule: NodeId, samples: &[NodeId]) -> Fields {
+    let shares = adjoints(graph, rule, samples);
+    let tiny = graph.number(TINY);
+    let mut mixed: Option<(Fields, NodeId)> = None;
+    for (&sample, share) in samples.iter().zip(shares) {
+        let material = material_of(graph, sample);
+        let weight = weight(graph, share, material[COVERAGE]);
+        mixed = Some(match mixed {
+            None => (material, weight),
+            Some((before, sum)) => {
+                let sum = graph.add(sum, weight);
+                let divisor = graph.max(sum, tiny);
+                let part = graph.div(weight, divisor);
+                (mix(graph, before, material, part), sum)
+            }
+        });
+    }
+    mixed.map_or_else(|| unpainted(graph), |(fields, _)| fields)
+}
+
+fn mix(graph: &mut Graph, mut a: Fields, b: Fields, t: NodeId) -> Fields {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a = graph.ternary(Ternary::Mix, *a, b, t);
+    }
+    a
+}
+
+/// A share as a weight: a negative one counts as far as its material is painted.
+fn weight(graph: &mut Graph, share: NodeId, coverage: NodeId) -> NodeId {
+    let nothing = graph.number(0.0);
+    let size = graph.neg(share);
+    let painted = graph.mul(size, coverage);
+    let negative = graph.lt(share, nothing);
+    graph.select(negative, painted, share)
+}
+
+/// A rule made of comparisons selects one material by the same comparisons.
+struct Selection<'a> {
+    graph: &'a mut Graph,
+    /// Nodes that a sample's distance reaches.
+    live: FxHashSet<NodeId>,
+    /// The first sample's material.
+    first: Fields,
+    /// By node, and whether it counts negatively.
+    done: FxHashMap<(NodeId, bool), Fields>,
+}
+
+/// What a node of a rule selects: `negated` flips the sign of the share.
+enum Choice {
+    Material(Fields),
+    Of { argument: NodeId, negated: bool },
+    Between { condition: NodeId, yes: NodeId, no: NodeId },
+}
+
+impl<'a> Selection<'a> {
+    fn new(graph: &'a mut Graph, order: &[NodeId], first: Fields) -> Self {
+        let mut live = FxHashSet::default();
+        for &id in order {
+            let node = graph.node(id);
+            if is_sample(graph, id) || node.arguments().any(|argument| live.contains(&argument)) {
+                live.insert(id);
+            }
+        }
+        Self { graph, live, first, done: FxHashMap::default() }
+    }
+
+    /// `None` if the rule does anything but select.
+    fn run(mut self, rule: NodeId) -> Option<Fields> {
+        let root = (rule, false);
+        let mut stack = vec![root];
+        while let Some(&(id, negative)) = stack.last() {
+            let before = stack.len();
+            let fields = match self.choice(id, negative)? {
+                Choice::Material(fields) => Some(fields),
+                Choice::Of { argument, negated } => {
+                    self.done_or_wait((argument, negative ^ negated), &mut stack)
+                }
+                Choice::Between { condition, yes, no } => {
+                    let yes = self.done_or_wait((yes, negative), &mut stack);
+                    let no = self.done_or_wait((no, negative), &mut stack);
+                    yes.zip(no).map(|(yes, no)| self.select(condition, yes, no))
+                }
+            };
+            if let Some(fields) = fields {
+                stack.truncate(before - 1);
+                self.done.insert((id, negative), fields);
+            }
+        }
+        self.done.get(&root).copied()
+    }
+
+    fn done_or_wait(&self, key: (NodeId, bool), stack: &mut Vec<(NodeId, bool)>) -> Option<Fields> {
+        let done = self.done.get(&key).copied();
+        if done.is_none() {
+            stack.push(key);
+        }
+        done
+    }
+
+    fn choice(&mut self, id: NodeId, negative: bool) -> Option<Choice> {
+        if !self.live.contains(&id) {
+            return Some(Choice::Material(self.first));
+        }
+        let of = |argument, negated| Some(Choice::Of { argument, negated });
+        match self.graph.node(id) {
+            Node::Sample(..) => Some(Choice::Material(self.sampled(id, negative))),
+            Node::Unary(Unary::Neg, a) => of(a, true),
+            Node::Binary(Binary::Min, a, b) => {
+                let condition = self.graph.le(a, b);
+                Some(Choice::Between { condition, yes: a, no: b })
+            }
+            Node::Binary(Binary::Max, a, b) => {
+                let condition = self.graph.le(b, a);
+                Some(Choice::Between { condition, yes: a, no: b })
+            }
+            Node::Binary(Binary::Add, a, b) => match (self.moves(a), self.moves(b)) {
+                (true, false) => of(a, false),
+                (false, true) => of(b, false),
+                (true, true) | (false, false) => None,
+            },
+            Node::Binary(Binary::Sub, a, b) => match (self.moves(a), self.moves(b)) {
+                (true, false) => of(a, false),
+                (false, true) => of(b, true),
+                (true, true) | (false, false) => None,
+            },
+            Node::Binary(Binary::Mul, a, b) => match (self.moves(a), self.moves(b)) {
+                (true, false) => of(a, self.is_negative(b)?),
+                (false, true) => of(b, self.is_negative(a)?),
+                (true, true) | (false, false) => None,
+            },
+            Node::Ternary(Ternary::Select, [condition, yes, no]) => {
+                Some(Choice::Between { condition, yes, no })
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::MaterialAt(..) => None,
+        }
+    }
+
+    fn moves(&self, id: NodeId) -> bool {
+        self.live.contains(&id)
+    }
+
+    /// The sign of a constant factor.
+    fn is_negative(&self, factor: NodeId) -> Option<bool> {
+        let factor = self.graph.as_number(factor)?;
+        (factor != 0.0).then_some(factor < 0.0)
+    }
+
+    /// With a negative share an unpainted sample shows the first.
+    fn sampled(&mut self, sample: NodeId, negative: bool) -> Fields {
+        let material = material_of(self.graph, sample);
+        if !negative {
+            return material;
+        }
+        let nothing = self.graph.number(0.0);
+        let painted = self.graph.lt(nothing, material[COVERAGE]);
+        self.select(painted, material, self.first)
+    }
+
+    fn select(&mut self, condition: NodeId, mut yes: Fields, no: Fields) -> Fields {
+        for (yes, no) in yes.iter_mut().zip(no) {
+            *yes = self.graph.select(condition, *yes, no);
+        }
+        yes
+    }
+}

@@ -1,0 +1,62 @@
+//! Walking and copying nodes; what every pass is made of.
+
+use rustc_hash::FxHashSet;
+
+use crate::{Graph, Node, NodeId, Ternary};
+
+/// The nodes that the roots are computed from, the roots included, in ascending order: arguments
+/// come before their uses.
+pub fn reachable(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
+    reachable_where(graph, roots, |_| true)
+}
+
+/// As [`reachable`], but the arguments of a node for which `enter` is false are not visited through it.
+pub fn reachable_where(
+    graph: &Graph,
+    roots: &[NodeId],
+    enter: impl Fn(NodeId) -> bool,
+) -> Vec<NodeId> {
+    let mut seen = FxHashSet::default();
+    let mut pending = roots.to_vec();
+    while let Some(id) = pending.pop() {
+        if seen.insert(id) && enter(id) {
+            pending.extend(graph.node(id).arguments());
+        }
+    }
+    let mut order: Vec<NodeId> = seen.into_iter().collect();
+    order.sort_unstable();
+    order
+}
+
+impl Graph {
+    /// The node's operation applied to other arguments, through the typed builders: it may fold or
+    /// simplify to another operation.
+    pub fn rebuild(&mut self, id: NodeId, mut map: impl FnMut(NodeId) -> NodeId) -> NodeId {
+        match self.node(id) {
+            Node::Const(_) | Node::Point(..) | Node::Frame(..) => id,
+            Node::Unary(op, a) => self.unary(op, map(a)),
+            Node::Binary(op, a, b) => {
+                let (a, b) = (map(a), map(b));
+                self.binary(op, a, b)
+            }
+            Node::Ternary(op, arguments) => {
+                let [a, b, c] = arguments.map(map);
+                match op {
+                    Ternary::Select => self.select(a, b, c),
+                    Ternary::Mix | Ternary::Clamp | Ternary::Smoothstep => {
+                        self.ternary(op, a, b, c)
+                    }
+                }
+            }
+            Node::Splat(ty, a) => self.splat(ty, map(a)),
+            Node::Compose(ty, parts) => self.compose(&parts.map(map)[..ty.width()]),
+            Node::Swizzle(ty, a, lanes) => self.swizzle(map(a), &lanes[..ty.width()]),
+            Node::Transform(columns, v) => {
+                let columns = columns.map(&mut map);
+                self.transform(columns, map(v))
+            }
+            Node::Sample(shape, point) => self.sample(shape, map(point)),
+            Node::MaterialAt(shape, point, field) => self.material_at(shape, map(point), field),
+        }
+    }
+}
