@@ -1,7 +1,8 @@
 //! Plain floating point: `f64` is the reference, `f32` the twin of the shader.
 //!
 //! Both follow WGSL, so that `f32` differs from a device only by the accuracy that WGSL allows it:
-//! `round` goes to even, `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN
+//! `round` goes to even, `pow`, `atan2` and equal edges of `smoothstep` know
+//! no negative zero, `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN
 //! or infinite. `min` and `max` pass on a NaN of their first argument only; WGSL leaves this open.
 
 use super::Number;
@@ -151,11 +152,11 @@ macro_rules! float {
             }
             #[inline]
             fn pow(self, y: Self) -> Self {
-                if self < 0.0 { Self::NAN } else { self.powf(y) }
+                if self < 0.0 { Self::NAN } else { (self + 0.0).powf(y) }
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
-                self.atan2(x)
+                (self + 0.0).atan2(x + 0.0) // makes -0 into 0
             }
             #[inline]
             fn step(self, x: Self) -> Self {
@@ -200,7 +201,7 @@ macro_rules! float {
             }
             #[inline]
             fn smoothstep(self, hi: Self, x: Self) -> Self {
-                let t = ((x - self) / (hi - self)).saturate();
+                let t = ((x - self) / (hi - self + 0.0)).saturate();
                 t * t * (3.0 - 2.0 * t)
             }
             #[inline]

@@ -31,6 +31,7 @@
 mod dual;
 mod float;
 mod fold;
+mod interval;
 mod number;
 mod op;
 mod packet;
@@ -40,6 +41,7 @@ mod tape;
 
 pub use dual::Dual;
 pub use fold::fold;
+pub use interval::Interval;
 pub use number::Number;
 pub use packet::Packet;
 pub use tape::{Evaluator, Tape, TapeError};

@@ -1,0 +1,130 @@
+//! Sums, products, quotients and what is made of them.
+
+use super::{Interval, MARGIN, lower, upper};
+use crate::eval::Number;
+
+impl Interval {
+    pub(super) fn sum(self, y: Self) -> Self {
+        Self { lo: sum_below(self.lo, y.lo), hi: -sum_below(-self.hi, -y.hi) }
+    }
+
+    pub(super) fn product(self, y: Self) -> Self {
+        let ends = [
+            product(self.lo, y.lo),
+            product(self.lo, y.hi),
+            product(self.hi, y.lo),
+            product(self.hi, y.hi),
+        ];
+        signed(self, y, around(ends))
+    }
+
+    /// A divisor with 0 at one end leaves one side unbounded, one with 0 inside both.
+    pub(super) fn quotient(self, y: Self) -> Self {
+        if y.hi <= 0.0 {
+            return self.neg().quotient_by_positive(y.neg());
+        }
+        self.quotient_by_positive(y)
+    }
+
+    fn quotient_by_positive(self, y: Self) -> Self {
+        if y.lo > 0.0 {
+            let ends = [
+                quotient(self.lo, y.lo),
+                quotient(self.lo, y.hi),
+                quotient(self.hi, y.lo),
+                quotient(self.hi, y.hi),
+            ];
+            signed(self, y, around(ends))
+        } else if y.lo < 0.0 || y.hi <= 0.0 {
+            Self::ENTIRE
+        } else if self.lo >= 0.0 {
+            Self { lo: lower(quotient(self.lo, y.hi)).max(0.0), hi: f64::INFINITY }
+        } else if self.hi <= 0.0 {
+            Self { lo: f64::NEG_INFINITY, hi: upper(quotient(self.hi, y.hi)).min(0.0) }
+        } else {
+            Self::ENTIRE
+        }
+    }
+
+    /// `x - y * n` while the quotient's floor is one whole number n, else the range between 0 and y.
+    /// As x grows, so does the error by which `x - y * floor(x / y)` misses that range in f64.
+    pub(super) fn remainder(self, y: Self) -> Self {
+        if y.contains(0.0) {
+            return Self::ENTIRE;
+        }
+        let whole = self.quotient(y).floor();
+        if whole.lo == whole.hi {
+            return self.sub(y.product(whole));
+        }
+        let between = Self { lo: y.lo.min(0.0), hi: y.hi.max(0.0) };
+        between.grown(MARGIN * (self.magnitude() + y.magnitude()))
+    }
+
+    /// A component by its vector's length, which is not below the component's magnitude; 0 by 0 is 0.
+    pub(super) fn component(self, length: Self) -> Self {
+        // Where squares fall below the normal numbers, a computed length is off by up to a third.
+        let limit = if length.lo > 1e-150 { 1.0 + MARGIN } else { 1.5 };
+        let ratio = if length.lo > 0.0 { self.quotient(length) } else { Self::ENTIRE };
+        let lo = if self.lo >= 0.0 { 0.0 } else { -limit };
+        let hi = if self.hi <= 0.0 { 0.0 } else { limit };
+        ratio.clipped(lo, hi)
+    }
+
+    /// `x + (y - x) * t`. For t from 0 to 1 it rises with x and y and is linear in t, so its extremes
+    /// are at ends; as each step rounds relative to x and y, so does the margin.
+    pub(super) fn mixture(self, y: Self, t: Self) -> Self {
+        if t.lo < 0.0 || t.hi > 1.0 {
+            return self.sum(y.sub(self).product(t));
+        }
+        let at = |x: f64, y: f64| {
+            let mixed = |t: f64| if x == y { x } else { x * (1.0 - t) + y * t };
+            [mixed(t.lo), mixed(t.hi)]
+        };
+        let (low, high) = (at(self.lo, y.lo), at(self.hi, y.hi));
+        let hull = Self { lo: low[0].min(low[1]), hi: high[0].max(high[1]) };
+        hull.grown(MARGIN * (self.magnitude() + y.magnitude()))
+    }
+}
+
+/// The sum, rounded down unless it is exact (Knuth's two-sum tells).
+fn sum_below(a: f64, b: f64) -> f64 {
+    let sum = a + b;
+    let part = sum - a;
+    let error = (a - (sum - part)) + (b - part);
+    if error >= 0.0 && sum.is_finite() { sum } else { infinite_or_below(sum, a, b) }
+}
+
+/// An end that is infinite because a term is, else the number below.
+fn infinite_or_below(sum: f64, a: f64, b: f64) -> f64 {
+    if sum == f64::INFINITY && (a.is_infinite() || b.is_infinite()) { sum } else { lower(sum) }
+}
+
+/// A product of ends; an infinite end is never reached, so 0 times it is 0.
+fn product(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+/// A quotient of ends; of two infinite ones 0, since other ends then give the other extreme.
+fn quotient(a: f64, b: f64) -> f64 {
+    if a.is_infinite() && b.is_infinite() { 0.0 } else { a / b }
+}
+
+/// The hull of four rounded ends.
+fn around([a, b, c, d]: [f64; 4]) -> Interval {
+    let lo = a.min(b).min(c.min(d));
+    let hi = a.max(b).max(c.max(d));
+    Interval { lo: lower(lo), hi: upper(hi) }
+}
+
+/// A product or quotient, kept on the side of 0 that the signs of its arguments leave it.
+fn signed(x: Interval, y: Interval, result: Interval) -> Interval {
+    let (x_positive, y_positive) = (x.lo >= 0.0, y.lo >= 0.0);
+    let (x_negative, y_negative) = (x.hi <= 0.0, y.hi <= 0.0);
+    if (x_positive && y_positive) || (x_negative && y_negative) {
+        result.clipped(0.0, f64::INFINITY)
+    } else if (x_positive && y_negative) || (x_negative && y_positive) {
+        result.clipped(f64::NEG_INFINITY, 0.0)
+    } else {
+        result
+    }
+}

@@ -1,0 +1,105 @@
+//! Roots, logarithms, powers and angles.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::{Interval, MARGIN, above, below, lower, upper};
+
+/// Beyond this, the phase of an angle is not worth following.
+const LARGEST_ANGLE: f64 = 1e9;
+
+impl Interval {
+    pub(super) fn root(self) -> Self {
+        if self.hi < 0.0 {
+            return Self::ENTIRE;
+        }
+        let lo = if self.lo > 0.0 { lower(self.lo.sqrt()) } else { 0.0 };
+        Self { lo, hi: upper(self.hi.sqrt()) }
+    }
+
+    pub(super) fn inverse_root(self) -> Self {
+        if self.hi < 0.0 {
+            return Self::ENTIRE;
+        }
+        let hi = if self.lo > 0.0 { above(1.0 / self.lo.sqrt()) } else { f64::INFINITY };
+        Self { lo: below(1.0 / self.hi.sqrt()).max(0.0), hi }
+    }
+
+    pub(super) fn logarithm(self, log: impl Fn(f64) -> f64) -> Self {
+        if self.hi < 0.0 {
+            return Self::ENTIRE;
+        }
+        self.clipped(0.0, f64::INFINITY).increasing(log)
+    }
+
+    pub(super) fn sine(self) -> Self {
+        self.wave(f64::sin, FRAC_PI_2, -FRAC_PI_2)
+    }
+
+    pub(super) fn cosine(self) -> Self {
+        self.wave(f64::cos, 0.0, PI)
+    }
+
+    /// A function of period 2π that falls from 1 at `crest` to -1 at `trough`.
+    fn wave(self, f: impl Fn(f64) -> f64, crest: f64, trough: f64) -> Self {
+        let (a, b) = (f(self.lo), f(self.hi));
+        let hi = if self.meets(crest, TAU) { 1.0 } else { above(a.max(b)) };
+        let lo = if self.meets(trough, TAU) { -1.0 } else { below(a.min(b)) };
+        Self { lo, hi }.clipped(-1.0, 1.0)
+    }
+
+    pub(super) fn tangent(self) -> Self {
+        if self.meets(FRAC_PI_2, PI) { Self::ENTIRE } else { self.increasing(f64::tan) }
+    }
+
+    /// Whether some `place + k * period` may lie in it.
+    fn meets(self, place: f64, period: f64) -> bool {
+        let size = self.magnitude();
+        if size > LARGEST_ANGLE || self.hi - self.lo >= period {
+            return true;
+        }
+        let slack = MARGIN * (size + period);
+        let last = ((self.hi + slack - place) / period).floor() * period + place;
+        last >= self.lo - slack
+    }
+
+    pub(super) fn arc_sine(self) -> Self {
+        if self.lo > 1.0 || self.hi < -1.0 {
+            return Self::ENTIRE;
+        }
+        self.clipped(-1.0, 1.0).increasing(f64::asin)
+    }
+
+    pub(super) fn arc_cosine(self) -> Self {
+        if self.lo > 1.0 || self.hi < -1.0 {
+            return Self::ENTIRE;
+        }
+        let Self { lo, hi } = self.clipped(-1.0, 1.0);
+        Self { lo: below(hi.acos()).max(0.0), hi: above(lo.acos()) }
+    }
+
+    /// Monotonic in the base and in the exponent apart, so the extremes are at corners.
+    pub(super) fn power(self, y: Self) -> Self {
+        if self.hi < 0.0 {
+            return Self::ENTIRE;
+        }
+        let base = Self { lo: self.lo.max(0.0) + 0.0, hi: self.hi + 0.0 }; // no negative zero
+        let corners =
+            [base.lo.powf(y.lo), base.lo.powf(y.hi), base.hi.powf(y.lo), base.hi.powf(y.hi)];
+        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
+        let hi = corners.into_iter().fold(0.0, f64::max);
+        Self { lo, hi }.widened().clipped(0.0, f64::INFINITY)
+    }
+
+    /// `atan2(self, x)`: a box that keeps off the origin and the cut along negative x is seen under
+    /// the angles between its corners.
+    pub(super) fn angle(self, x: Self) -> Self {
+        if self.contains(0.0) && x.lo <= 0.0 {
+            return Self { lo: below(-PI), hi: above(PI) };
+        }
+        let corners =
+            [self.lo.atan2(x.lo), self.lo.atan2(x.hi), self.hi.atan2(x.lo), self.hi.atan2(x.hi)];
+        let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
+        let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        Self { lo, hi }.widened()
+    }
+}

@@ -1,0 +1,176 @@
+//! Random graphs, and their evaluation one node at a time.
+
+use proptest::prelude::*;
+use sdfc_graph::eval::fold;
+use sdfc_graph::{Binary, Const, Dim, FrameInput, Graph, Node, NodeId, Ternary, Type, Unary};
+
+pub const UNARY: [Unary; 25] = [
+    Unary::Neg,
+    Unary::Abs,
+    Unary::Sign,
+    Unary::Floor,
+    Unary::Ceil,
+    Unary::Round,
+    Unary::Trunc,
+    Unary::Fract,
+    Unary::Sqrt,
+    Unary::InverseSqrt,
+    Unary::Exp,
+    Unary::Exp2,
+    Unary::Log,
+    Unary::Log2,
+    Unary::Sin,
+    Unary::Cos,
+    Unary::Tan,
+    Unary::Asin,
+    Unary::Acos,
+    Unary::Atan,
+    Unary::Sinh,
+    Unary::Cosh,
+    Unary::Tanh,
+    Unary::Saturate,
+    Unary::Normalize,
+];
+
+pub const BINARY: [Binary; 10] = [
+    Binary::Add,
+    Binary::Sub,
+    Binary::Mul,
+    Binary::Div,
+    Binary::Rem,
+    Binary::Min,
+    Binary::Max,
+    Binary::Pow,
+    Binary::Atan2,
+    Binary::Step,
+];
+
+const COMPARISONS: [Binary; 4] = [Binary::Lt, Binary::Le, Binary::Eq, Binary::Ne];
+
+const CONSTANTS: [f64; 16] = [
+    0.0,
+    1.0,
+    -1.0,
+    0.5,
+    2.0,
+    -2.5,
+    3.7,
+    1.0 / 3.0,
+    1e-3,
+    -1e-12,
+    1e-160,
+    1e3,
+    1e9,
+    -1e18,
+    1.57,
+    0.1,
+];
+
+/// The one param that random graphs read, as position.
+const PARAM: FrameInput = FrameInput::Param(0);
+
+/// What a random graph is made from: small to print, and shrinks step by step.
+pub type Steps = Vec<(u8, u8, [u8; 3])>;
+
+/// Up to `size` steps.
+pub fn steps(size: usize) -> impl Strategy<Value = Steps> {
+    prop::collection::vec((0_u8..12, any::<u8>(), any::<[u8; 3]>()), 1..size)
+}
+
+/// A graph of operations on a point, a param and constants; all its nodes are of interest.
+pub fn graph(steps: &Steps) -> Graph {
+    let mut build = Build::new();
+    for &(kind, op, picks) in steps {
+        build.step(kind, usize::from(op), picks);
+    }
+    build.graph
+}
+
+struct Build {
+    graph: Graph,
+    scalars: Vec<NodeId>,
+    vectors: Vec<NodeId>,
+    truths: Vec<NodeId>,
+}
+
+impl Build {
+    fn new() -> Self {
+        let mut graph = Graph::new();
+        let p = graph.point(0, Dim::Three);
+        let scalars = vec![
+            graph.component(p, 0),
+            graph.component(p, 1),
+            graph.component(p, 2),
+            graph.frame_input(PARAM, Type::Scalar),
+        ];
+        let truth = graph.lt(scalars[0], scalars[1]);
+        Self { graph, scalars, vectors: vec![p], truths: vec![truth] }
+    }
+
+    fn step(&mut self, kind: u8, op: usize, picks: [u8; 3]) {
+        let pick = |list: &[NodeId], i: usize| {
+            // Mostly recent ones, so that expressions grow deep.
+            list[list.len() - 1 - usize::from(picks[i]) % list.len()]
+        };
+        let s = [0, 1, 2].map(|i| pick(&self.scalars, i));
+        let v = [0, 1, 2].map(|i| pick(&self.vectors, i));
+        let t = [0, 1].map(|i| pick(&self.truths, i));
+        let graph = &mut self.graph;
+        match kind {
+            0 | 1 => self.scalars.push(graph.unary(UNARY[op % 24], s[0])),
+            2 | 3 => self.scalars.push(graph.binary(BINARY[op % 10], s[0], s[1])),
+            4 => self.scalars.push(graph.number(CONSTANTS[op % 16])),
+            5 => self.vectors.push(graph.unary(UNARY[op % 25], v[0])),
+            6 => self.vectors.push(match op % 3 {
+                0 => graph.binary(BINARY[op % 10], v[0], s[1]),
+                1 => graph.binary(BINARY[op % 10], v[0], v[1]),
+                _ => graph.binary(Binary::Cross, v[0], v[1]),
+            }),
+            7 => self.scalars.push(match op % 4 {
+                0 => graph.length(v[0]),
+                1 => graph.dot(v[0], v[1]),
+                2 => graph.dot(v[0], v[0]),
+                _ => graph.component(v[0], picks[1] % 3),
+            }),
+            8 => self.vectors.push(match op % 3 {
+                0 => graph.compose(&s),
+                1 => graph.swizzle(v[0], &picks.map(|pick| pick % 3)),
+                _ => graph.transform(v, v[0]),
+            }),
+            9 => {
+                let op = [Ternary::Mix, Ternary::Clamp, Ternary::Smoothstep][op % 3];
+                self.scalars.push(graph.ternary(op, s[0], s[1], s[2]));
+            }
+            10 => self.truths.push(match op % 7 {
+                0 => graph.binary(Binary::And, t[0], t[1]),
+                1 => graph.binary(Binary::Or, t[0], t[1]),
+                2 => graph.unary(Unary::Not, t[0]),
+                _ => graph.binary(COMPARISONS[op % 4], s[0], s[1]),
+            }),
+            _ => match op % 2 {
+                0 => self.scalars.push(graph.select(t[0], s[0], s[1])),
+                _ => self.vectors.push(graph.select(t[0], v[0], v[1])),
+            },
+        }
+    }
+}
+
+/// Each node's value, one node at a time; `None` where it, or what it is made of, is not finite.
+pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const>> {
+    let mut values: Vec<Option<Const>> = Vec::new();
+    for id in graph.ids() {
+        let node = graph.node(id);
+        let input = if matches!(node, Node::Point(..)) {
+            Some(Const::new(Type::Vec3, &point))
+        } else if let Node::Frame(_, ty) = node {
+            Some(Const::new(ty, &[param]))
+        } else {
+            None
+        };
+        let arguments: Option<Vec<Const>> =
+            node.arguments().map(|argument| values[argument.index()]).collect();
+        let value = input.or_else(|| fold(&node, &arguments?));
+        values.push(value);
+    }
+    values
+}

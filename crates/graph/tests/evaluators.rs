@@ -1,0 +1,116 @@
+//! All evaluators against each other, on random graphs.
+
+mod common;
+
+use common::{each_node, graph, steps};
+use proptest::prelude::*;
+use sdfc_graph::eval::{FrameValues, Interval, Number, Packet, Tape};
+use sdfc_graph::{Dim, Graph, NodeId};
+
+/// Coordinates of all sizes, whole and half ones among them.
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -4.0..4.0,
+        2 => (-8_i32..8).prop_map(|i| f64::from(i) / 2.0),
+        1 => (-14.0..14.0).prop_map(|power: f64| 10.0_f64.powf(power)),
+        1 => (-14.0..14.0).prop_map(|power: f64| -10.0_f64.powf(power)),
+    ]
+}
+
+/// From a low end, a width of any size.
+fn range() -> impl Strategy<Value = [f64; 2]> {
+    let width = prop_oneof![
+        1 => Just(0.0),
+        2 => 0.0..8.0,
+        2 => (-12.0..3.0).prop_map(|power: f64| 10.0_f64.powf(power)),
+    ];
+    (coordinate(), width).prop_map(|(lo, width)| [lo, lo + width])
+}
+
+/// A place in a range by a fraction, its ends for the extreme ones.
+fn within([lo, hi]: [f64; 2], fraction: f64) -> f64 {
+    (lo + (hi - lo) * ((fraction - 0.1) / 0.8).clamp(0.0, 1.0)).clamp(lo, hi)
+}
+
+fn frame<N: Number>(param: N) -> FrameValues<N> {
+    let zero = N::constant(0.0);
+    FrameValues { params: vec![[param; 4]], time: zero, frame: zero }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn a_tape_computes_what_its_nodes_do(
+        steps in steps(40),
+        point in prop::array::uniform3(coordinate()),
+        param in coordinate(),
+    ) {
+        let graph = graph(&steps);
+        let expected = each_node(&graph, point, param);
+        let all: Vec<NodeId> = graph.ids().collect();
+        // Few roots make registers change hands; many show where a difference starts.
+        for roots in [&all[..], &all[all.len() - 1..]] {
+            let tape = Tape::new(&graph, roots).unwrap();
+            let mut evaluator = tape.prepare::<f64>(&frame(param));
+            let mut packet = tape.prepare::<Packet<f64, 2>>(&frame(param));
+            let values = evaluator.eval(point).to_vec();
+            let second = packet.eval(point.map(|x| Packet([0.5, x])));
+            for (id, (value, pair)) in roots.iter().zip(values.iter().zip(second)) {
+                prop_assert!(value[0].to_bits() == pair[0].0[1].to_bits() || value[0].is_nan());
+                if let Some(constant) = expected[id.index()] {
+                    let lanes = constant.lanes();
+                    prop_assert_eq!(*value, lanes, "node {} is {:?}", id.index(), graph.node(*id));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn intervals_hold_every_sample(
+        steps in steps(24),
+        ranges in prop::array::uniform3(range()),
+        param_range in range(),
+        fractions in prop::collection::vec(prop::array::uniform4(0.0..1.0), 12),
+    ) {
+        let graph = graph(&steps);
+        let roots: Vec<NodeId> = graph.ids().collect();
+        let tape = Tape::new(&graph, &roots).unwrap();
+        let interval = |[lo, hi]: [f64; 2]| Interval::new(lo, hi);
+        let mut evaluator = tape.prepare_in(&frame(interval(param_range)));
+        let enclosures = evaluator.eval(ranges.map(interval)).to_vec();
+        for fraction in fractions {
+            let point = [0, 1, 2].map(|i| within(ranges[i], fraction[i]));
+            let param = within(param_range, fraction[3]);
+            for (id, value) in graph.ids().zip(each_node(&graph, point, param)) {
+                let Some(value) = value else { continue };
+                let lanes = value.lanes();
+                for (value, enclosure) in
+                    lanes[..value.ty().width()].iter().zip(&enclosures[id.index()])
+                {
+                    prop_assert!(
+                        enclosure.contains(*value),
+                        "node {} = {:?}: {value} at {point:?}, {param} is not in {enclosure:?}",
+                        id.index(), graph.node(id),
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_long_chain_needs_few_registers_and_no_deep_stack() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let [x, y] = [graph.component(p, 0), graph.component(p, 1)];
+    let mut sum = x;
+    for _ in 0..20_000 {
+        let next = graph.mul(sum, y);
+        sum = graph.add(next, x);
+    }
+    let tape = Tape::new(&graph, &[sum]).unwrap();
+    assert_eq!(tape.operations(), 40_000);
+    assert!(tape.registers() <= 5, "{} registers", tape.registers());
+    assert_eq!(tape.prepare::<f64>(&FrameValues::default()).scalar([1.0, 1.0, 0.0]), 20_001.0);
+}
