@@ -1,6 +1,32 @@
 //! Ray methods and shading, one `.wgsl` file each, around stubs that codegen fills.
 //!
-//! The uniform block below is what `view.wgsl` declares; its layout is WGSL's.
+//! A picture's shader is whole files joined: what all pictures share, one ray method, and the
+//! shading that the scene needs ([`source`]). Each file is valid WGSL beside those it names; none
+//! knows a scene. What a scene supplies are functions with a body to be replaced, listed in
+//! [`stubs`].
+//!
+//! ```
+//! use sdfc_march::{Features, method, source};
+//!
+//! let sphere = method("sphere").expect("a method of the table");
+//! let plain = source(sphere, Features::default());
+//! assert!(plain.contains("fn trace(ray: Ray) -> Trace"));
+//! assert!(!plain.contains("shadow_ray"));
+//! ```
+//!
+//! A ray method is `fn trace(ray: Ray) -> Trace` and `fn tolerance(ray: Ray, t: f32) -> f32`
+//! (`ray.wgsl`), in a file of its own and a row of [`METHODS`]. It calls `field` at one place, in a
+//! loop of at most `view.steps` turns; it takes a sign change for a hit, so that a field that leads
+//! through a surface does not walk away from it.
+//!
+//! The blocks below are what `view.wgsl` declares; their layout is WGSL's.
+
+mod files;
+
+pub use files::{Features, METHODS, Method, method, source, stubs};
+
+/// Linear colour of surfaces that nothing paints, `UNPAINTED` of `shade.wgsl`.
+pub const UNPAINTED: [f32; 3] = [0.8; 3];
 
 /// At most so many lights in one scene.
 pub const MAX_LIGHTS: usize = 8;

@@ -1,0 +1,104 @@
+//! A function body under construction: expressions in order, what emits them, and their names.
+
+use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Span, Statement};
+use rustc_hash::FxHashMap;
+
+type Value = Handle<Expression>;
+
+/// Values nest at most so deep in the written text; a deeper one gets a name. Writers recurse over
+/// what they nest, and people read it.
+const MAX_NESTING: u8 = 6;
+
+/// One function while its statements are appended.
+#[derive(Default)]
+pub(crate) struct Body {
+    function: Function,
+    /// Nesting of each expression in the written text, in arena order.
+    nesting: Vec<u8>,
+    literals: FxHashMap<u32, Value>,
+}
+
+impl Body {
+    /// An expression that no statement emits: arguments, global variables, literals.
+    pub(crate) fn declare(&mut self, expression: Expression) -> Value {
+        self.nesting.push(0);
+        self.function.expressions.append(expression, Span::UNDEFINED)
+    }
+
+    /// An expression computed here, in terms of its operands.
+    pub(crate) fn compute(&mut self, expression: Expression, operands: &[Value]) -> Value {
+        let deepest = operands.iter().map(|operand| self.nesting[operand.index()]).max();
+        let nesting = deepest.unwrap_or(0) + 1;
+        let value = self.function.expressions.append(expression, Span::UNDEFINED);
+        self.nesting.push(nesting);
+        self.emit(value);
+        if nesting >= MAX_NESTING {
+            self.name(value, "t");
+        }
+        value
+    }
+
+    /// Lets the statements emit one more expression, in the last `Emit` where it follows that one.
+    fn emit(&mut self, value: Value) {
+        let last = self.function.body.last_mut();
+        if let Some(Statement::Emit(range)) = last
+            && let Some((first, last)) = range.first_and_last()
+            && last.index() + 1 == value.index()
+        {
+            *range = naga::Range::new_from_bounds(first, value);
+            return;
+        }
+        self.push(Statement::Emit(naga::Range::new_from_bounds(value, value)));
+    }
+
+    /// Appends a statement.
+    pub(crate) fn push(&mut self, statement: Statement) {
+        self.function.body.push(statement, Span::UNDEFINED);
+    }
+
+    /// Gives a value a name of its own in the written text; a later name replaces an earlier one.
+    pub(crate) fn name(&mut self, value: Value, name: &str) {
+        self.function.named_expressions.insert(value, name.to_owned());
+        self.nesting[value.index()] = 0;
+    }
+
+    /// A number of 32 bits.
+    pub(crate) fn literal(&mut self, value: f32) -> Value {
+        if let Some(&known) = self.literals.get(&value.to_bits()) {
+            return known;
+        }
+        let literal = self.declare(Expression::Literal(Literal::F32(value)));
+        self.literals.insert(value.to_bits(), literal);
+        literal
+    }
+
+    /// A built-in function of one argument.
+    pub(crate) fn call1(&mut self, fun: MathFunction, arg: Value) -> Value {
+        self.compute(Expression::Math { fun, arg, arg1: None, arg2: None, arg3: None }, &[arg])
+    }
+
+    /// A built-in function of two arguments.
+    pub(crate) fn call2(&mut self, fun: MathFunction, arg: Value, arg1: Value) -> Value {
+        let call = Expression::Math { fun, arg, arg1: Some(arg1), arg2: None, arg3: None };
+        self.compute(call, &[arg, arg1])
+    }
+
+    /// A built-in function of three arguments.
+    pub(crate) fn call3(&mut self, fun: MathFunction, [arg, b, c]: [Value; 3]) -> Value {
+        let call = Expression::Math { fun, arg, arg1: Some(b), arg2: Some(c), arg3: None };
+        self.compute(call, &[arg, b, c])
+    }
+
+    /// An operator.
+    pub(crate) fn binary(&mut self, op: BinaryOperator, left: Value, right: Value) -> Value {
+        self.compute(Expression::Binary { op, left, right }, &[left, right])
+    }
+
+    /// Ends the function by a return.
+    pub(crate) fn finish(mut self, result: Option<Value>) -> Function {
+        if result.is_some() {
+            self.push(Statement::Return { value: result });
+        }
+        self.function
+    }
+}

@@ -1,0 +1,293 @@
+//! From flat math to the body of one naga function.
+//!
+//! Nodes are visited in the order of their ids, arguments first, so nothing recurses over the
+//! graph. A value that is used more than once gets a name in the written text, as do those that
+//! the program names; a value used once is written where it is used, to a bounded depth.
+
+mod body;
+mod operation;
+mod uses;
+
+use naga::{Expression, Function, FunctionArgument, FunctionResult, Handle, SwizzleComponent};
+use naga::{BinaryOperator, Literal, UniqueArena};
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Const, Dim, Node, NodeId, Program, Type};
+
+pub(crate) use body::Body;
+pub(crate) use uses::reachable;
+
+use crate::inputs::{Inputs, input_name};
+use crate::{Error, types};
+use uses::Uses;
+
+/// A value within the function.
+type Value = Handle<Expression>;
+
+/// A function of the point that yields one node's value.
+pub(crate) fn value_function(
+    program: &Program,
+    inputs: &Inputs,
+    types: &mut UniqueArena<naga::Type>,
+    name: &str,
+    root: NodeId,
+) -> Result<Function, Error> {
+    let mut lowering = Lowering::new(program, inputs, types, &[root]);
+    lowering.visit_all()?;
+    let value = lowering.value(root)?;
+    let result = types::value(lowering.types, program.graph.ty(root));
+    Ok(lowering.finish(name, value, result))
+}
+
+/// A function of the point that yields several nodes' values in a structure.
+pub(crate) fn struct_function(
+    program: &Program,
+    inputs: &Inputs,
+    types: &mut UniqueArena<naga::Type>,
+    name: &str,
+    roots: &[NodeId],
+    structure: Handle<naga::Type>,
+) -> Result<Function, Error> {
+    let mut lowering = Lowering::new(program, inputs, types, roots);
+    lowering.visit_all()?;
+    let components: Vec<_> =
+        roots.iter().map(|&root| lowering.value(root)).collect::<Result<_, _>>()?;
+    let compose = Expression::Compose { ty: structure, components: components.clone() };
+    let value = lowering.body.compute(compose, &components);
+    Ok(lowering.finish(name, value, structure))
+}
+
+struct Lowering<'a> {
+    program: &'a Program,
+    inputs: &'a Inputs,
+    types: &'a mut UniqueArena<naga::Type>,
+    uses: Uses,
+    body: Body,
+    point: Value,
+    /// Values of the nodes visited so far, but for constants.
+    values: FxHashMap<NodeId, Value>,
+    matrices: FxHashMap<[NodeId; 3], Value>,
+}
+
+impl<'a> Lowering<'a> {
+    fn new(
+        program: &'a Program,
+        inputs: &'a Inputs,
+        types: &'a mut UniqueArena<naga::Type>,
+        roots: &[NodeId],
+    ) -> Self {
+        let mut body = Body::default();
+        let point = body.declare(Expression::FunctionArgument(0));
+        let uses = Uses::count(&program.graph, roots, inputs);
+        let (values, matrices) = Default::default();
+        Self { program, inputs, types, uses, body, point, values, matrices }
+    }
+
+    /// Computes all nodes that the roots need.
+    fn visit_all(&mut self) -> Result<(), Error> {
+        for id in self.uses.in_order() {
+            let node = self.program.graph.node(id);
+            if matches!(node, Node::Const(_)) {
+                continue;
+            }
+            let value = match self.inputs.read_slot(&mut self.body, id) {
+                Some(value) => value,
+                None => self.node(id, node)?,
+            };
+            self.values.insert(id, value);
+            self.name(id, node, value);
+        }
+        Ok(())
+    }
+
+    /// Names a value as the program does, or where it is used often; not what is as short as a name.
+    fn name(&mut self, id: NodeId, node: Node, value: Value) {
+        if matches!(node, Node::Point(..) | Node::Frame(..)) {
+            return;
+        }
+        if let Some(name) = self.program.names.get(&id) {
+            self.body.name(value, name);
+        } else if self.inputs.is_slot(id) || self.uses.of(id) > 1 && !is_component(&node) {
+            self.body.name(value, hint(self.program.graph.ty(id)));
+        }
+    }
+
+    /// The value of an argument. Constants are written where they are used.
+    fn value(&mut self, id: NodeId) -> Result<Value, Error> {
+        match self.program.graph.node(id) {
+            Node::Const(constant) => self.constant(id, constant),
+            _ => self.values.get(&id).copied().ok_or(Error::NotFlat(id)),
+        }
+    }
+
+    fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {
+        match node {
+            Node::Const(constant) => self.constant(id, constant),
+            Node::Point(0, Dim::Three) => Ok(self.point),
+            Node::Point(..) | Node::Sample(..) | Node::MaterialAt(..) => Err(Error::NotFlat(id)),
+            Node::Frame(input, _) => {
+                let name = input_name(self.program, input);
+                let member = self.inputs.read_member(&mut self.body, input, name);
+                member.ok_or(Error::UnboundInput(id))
+            }
+            Node::Unary(op, a) => {
+                self.refuse_constants(id, &[a])?;
+                self.unary(id, op, a)
+            }
+            Node::Binary(op, a, b) => {
+                self.refuse_constants(id, &[a, b])?;
+                self.binary(id, op, a, b)
+            }
+            Node::Ternary(op, arguments) => {
+                self.refuse_constants(id, &arguments)?;
+                self.ternary(id, op, arguments)
+            }
+            Node::Splat(ty, a) => {
+                let size = types::vector_size(ty).ok_or(Error::IllTyped(id))?;
+                let value = self.value(a)?;
+                Ok(self.body.compute(Expression::Splat { size, value }, &[value]))
+            }
+            Node::Compose(ty, parts) => {
+                let mut components = Vec::with_capacity(ty.width());
+                for &part in &parts[..ty.width()] {
+                    components.push(self.value(part)?);
+                }
+                Ok(self.compose(ty, components))
+            }
+            Node::Swizzle(ty, a, lanes) => self.swizzle(id, ty, a, lanes),
+            Node::Transform(columns, v) => self.transform(id, columns, v),
+        }
+    }
+
+    /// Operations on constants alone are the graph's to fold: validators of WGSL evaluate such and
+    /// refuse those without a finite result.
+    fn refuse_constants(&self, id: NodeId, arguments: &[NodeId]) -> Result<(), Error> {
+        let constant = |&a: &NodeId| matches!(self.program.graph.node(a), Node::Const(_));
+        if arguments.iter().all(constant) { Err(Error::NotFolded(id)) } else { Ok(()) }
+    }
+
+    fn constant(&mut self, id: NodeId, constant: Const) -> Result<Value, Error> {
+        let ty = constant.ty();
+        if ty == Type::Bool {
+            let literal = Literal::Bool(constant.lanes()[0] != 0.0);
+            return Ok(self.body.declare(Expression::Literal(literal)));
+        }
+        let lanes = &constant.lanes()[..ty.width()];
+        let mut literals = Vec::with_capacity(lanes.len());
+        for &lane in lanes {
+            literals.push(self.number(id, lane)?);
+        }
+        let first = literals[0];
+        Ok(match types::vector_size(ty) {
+            None => first,
+            Some(size) if literals.iter().all(|&literal| literal == first) => {
+                self.body.compute(Expression::Splat { size, value: first }, &[])
+            }
+            Some(_) => self.compose(ty, literals),
+        })
+    }
+
+    /// A number, rounded to 32 bits.
+    fn number(&mut self, node: NodeId, value: f64) -> Result<Value, Error> {
+        let rounded = value as f32;
+        if !rounded.is_finite() {
+            return Err(Error::NotFinite { node, value });
+        }
+        Ok(self.body.literal(rounded))
+    }
+
+    fn compose(&mut self, ty: Type, components: Vec<Value>) -> Value {
+        let ty = types::value(self.types, ty);
+        let operands = components.clone();
+        self.body.compute(Expression::Compose { ty, components }, &operands)
+    }
+
+    fn swizzle(&mut self, id: NodeId, ty: Type, a: NodeId, lanes: [u8; 4]) -> Result<Value, Error> {
+        let width = self.program.graph.ty(a).width();
+        if lanes[..ty.width()].iter().any(|&lane| usize::from(lane) >= width) {
+            return Err(Error::BadLane(id));
+        }
+        let vector = self.value(a)?;
+        let Some(size) = types::vector_size(ty) else {
+            if width == 1 {
+                return Ok(vector);
+            }
+            let index = u32::from(lanes[0]);
+            return Ok(self.body.compute(Expression::AccessIndex { base: vector, index }, &[vector]));
+        };
+        if width == 1 {
+            return Ok(self.body.compute(Expression::Splat { size, value: vector }, &[vector]));
+        }
+        let pattern = lanes.map(|lane| SwizzleComponent::XYZW[usize::from(lane) % 4]);
+        Ok(self.body.compute(Expression::Swizzle { size, vector, pattern }, &[vector]))
+    }
+
+    fn transform(&mut self, id: NodeId, columns: [NodeId; 3], v: NodeId) -> Result<Value, Error> {
+        if columns.iter().chain([&v]).any(|&part| self.program.graph.ty(part) != Type::Vec3) {
+            return Err(Error::IllTyped(id));
+        }
+        let matrix = match self.matrices.get(&columns) {
+            Some(&matrix) => matrix,
+            None => {
+                let [a, b, c] = columns;
+                let components = vec![self.value(a)?, self.value(b)?, self.value(c)?];
+                let ty = types::matrix(self.types);
+                let operands = components.clone();
+                let matrix = self.body.compute(Expression::Compose { ty, components }, &operands);
+                self.body.name(matrix, "m");
+                self.matrices.insert(columns, matrix);
+                matrix
+            }
+        };
+        let v = self.value(v)?;
+        Ok(self.body.binary(BinaryOperator::Multiply, matrix, v))
+    }
+
+    /// The scalar that fills this vector, if one does: `v * s` needs no vector of it.
+    fn filling(&self, id: NodeId) -> Option<Filling> {
+        match self.program.graph.node(id) {
+            Node::Splat(_, scalar) => Some(Filling::Node(scalar)),
+            Node::Const(constant) if types::vector_size(constant.ty()).is_some() => {
+                let lanes = &constant.lanes()[..constant.ty().width()];
+                lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
+            }
+            _ => None,
+        }
+    }
+
+    fn filling_value(&mut self, id: NodeId, filling: Filling) -> Result<Value, Error> {
+        match filling {
+            Filling::Node(scalar) => self.value(scalar),
+            Filling::Number(number) => self.number(id, number),
+        }
+    }
+
+    fn finish(self, name: &str, value: Value, result: Handle<naga::Type>) -> Function {
+        let point = types::value(self.types, Type::Vec3);
+        let mut function = self.body.finish(Some(value));
+        function.name = Some(name.to_owned());
+        function.arguments =
+            vec![FunctionArgument { name: Some("p".to_owned()), ty: point, binding: None }];
+        function.result = Some(FunctionResult { ty: result, binding: None });
+        function
+    }
+}
+
+/// What fills a vector.
+enum Filling {
+    Node(NodeId),
+    Number(f64),
+}
+
+/// Whether the node is one component of a vector: `q.x` is as short as a name.
+fn is_component(node: &Node) -> bool {
+    matches!(node, Node::Swizzle(Type::Scalar, ..))
+}
+
+/// Name of a value that the program does not name.
+fn hint(ty: Type) -> &'static str {
+    match ty {
+        Type::Bool => "b",
+        Type::Scalar => "s",
+        Type::Vec2 | Type::Vec3 | Type::Vec4 => "v",
+    }
+}

@@ -1,0 +1,231 @@
+//! One match for each group of operations.
+
+use naga::{BinaryOperator, Expression, MathFunction, UnaryOperator};
+use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
+
+use super::{Lowering, Value};
+use crate::{Error, types};
+
+impl Lowering<'_> {
+    pub(super) fn unary(&mut self, id: NodeId, op: Unary, a: NodeId) -> Result<Value, Error> {
+        let ty = self.program.graph.ty(a);
+        if (op == Unary::Not) != (ty == Type::Bool) {
+            return Err(Error::IllTyped(id));
+        }
+        let is_vector = types::vector_size(ty).is_some();
+        let a = self.value(a)?;
+        let fun = match op {
+            Unary::Neg => return Ok(self.prefix(UnaryOperator::Negate, a)),
+            Unary::Not => return Ok(self.prefix(UnaryOperator::LogicalNot, a)),
+            Unary::Normalize if is_vector => return Ok(self.normalized(a)),
+            Unary::Normalize | Unary::Sign => MathFunction::Sign,
+            Unary::Length if is_vector => MathFunction::Length,
+            Unary::Length | Unary::Abs => MathFunction::Abs,
+            Unary::Floor => MathFunction::Floor,
+            Unary::Ceil => MathFunction::Ceil,
+            Unary::Round => MathFunction::Round,
+            Unary::Trunc => MathFunction::Trunc,
+            Unary::Fract => MathFunction::Fract,
+            Unary::Sqrt => MathFunction::Sqrt,
+            Unary::InverseSqrt => MathFunction::InverseSqrt,
+            Unary::Exp => MathFunction::Exp,
+            Unary::Exp2 => MathFunction::Exp2,
+            Unary::Log => MathFunction::Log,
+            Unary::Log2 => MathFunction::Log2,
+            Unary::Sin => MathFunction::Sin,
+            Unary::Cos => MathFunction::Cos,
+            Unary::Tan => MathFunction::Tan,
+            Unary::Asin => MathFunction::Asin,
+            Unary::Acos => MathFunction::Acos,
+            Unary::Atan => MathFunction::Atan,
+            Unary::Sinh => MathFunction::Sinh,
+            Unary::Cosh => MathFunction::Cosh,
+            Unary::Tanh => MathFunction::Tanh,
+            Unary::Saturate => MathFunction::Saturate,
+        };
+        Ok(self.body.call1(fun, a))
+    }
+
+    fn prefix(&mut self, op: UnaryOperator, expr: Value) -> Value {
+        self.body.compute(Expression::Unary { op, expr }, &[expr])
+    }
+
+    /// `v * inverseSqrt(max(dot(v, v), least))`: WGSL's own `normalize` is undefined at 0.
+    fn normalized(&mut self, v: Value) -> Value {
+        let square = self.body.call2(MathFunction::Dot, v, v);
+        let least = self.body.literal(f32::MIN_POSITIVE);
+        let square = self.body.call2(MathFunction::Max, square, least);
+        let factor = self.body.call1(MathFunction::InverseSqrt, square);
+        self.body.binary(BinaryOperator::Multiply, v, factor)
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        id: NodeId,
+        op: Binary,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<Value, Error> {
+        let ty = self.program.graph.ty(a);
+        if ty != self.program.graph.ty(b) || !takes(op, ty) {
+            return Err(Error::IllTyped(id));
+        }
+        if op == Binary::Mul && ty.width() > 1 {
+            return self.product(a, b);
+        }
+        let (a, b) = (self.value(a)?, self.value(b)?);
+        let operator = match op {
+            Binary::Add => BinaryOperator::Add,
+            Binary::Sub => BinaryOperator::Subtract,
+            Binary::Mul => BinaryOperator::Multiply,
+            Binary::Div => BinaryOperator::Divide,
+            Binary::Lt => BinaryOperator::Less,
+            Binary::Le => BinaryOperator::LessEqual,
+            Binary::Eq => BinaryOperator::Equal,
+            Binary::Ne => BinaryOperator::NotEqual,
+            // Both sides are computed anyway; the short-circuiting forms are control flow.
+            Binary::And => BinaryOperator::And,
+            Binary::Or => BinaryOperator::InclusiveOr,
+            Binary::Rem => return Ok(self.floored_remainder(a, b)),
+            Binary::Min => return Ok(self.body.call2(MathFunction::Min, a, b)),
+            Binary::Max => return Ok(self.body.call2(MathFunction::Max, a, b)),
+            Binary::Pow => return Ok(self.body.call2(MathFunction::Pow, a, b)),
+            Binary::Atan2 => return Ok(self.body.call2(MathFunction::Atan2, a, b)),
+            Binary::Step => return Ok(self.body.call2(MathFunction::Step, a, b)),
+            Binary::Dot => return Ok(self.body.call2(MathFunction::Dot, a, b)),
+            Binary::Cross => return Ok(self.body.call2(MathFunction::Cross, a, b)),
+        };
+        Ok(self.body.binary(operator, a, b))
+    }
+
+    /// A product of vectors; one filled by a scalar multiplies as that scalar.
+    fn product(&mut self, a: NodeId, b: NodeId) -> Result<Value, Error> {
+        let (left, right) = match (self.filling(a), self.filling(b)) {
+            (_, Some(filling)) => (self.value(a)?, self.filling_value(b, filling)?),
+            (Some(filling), None) => (self.filling_value(a, filling)?, self.value(b)?),
+            (None, None) => (self.value(a)?, self.value(b)?),
+        };
+        Ok(self.body.binary(BinaryOperator::Multiply, left, right))
+    }
+
+    /// `x - y * floor(x / y)`: WGSL's `%` truncates.
+    fn floored_remainder(&mut self, x: Value, y: Value) -> Value {
+        let quotient = self.body.binary(BinaryOperator::Divide, x, y);
+        let whole = self.body.call1(MathFunction::Floor, quotient);
+        let part = self.body.binary(BinaryOperator::Multiply, y, whole);
+        self.body.binary(BinaryOperator::Subtract, x, part)
+    }
+
+    pub(super) fn ternary(
+        &mut self,
+        id: NodeId,
+        op: Ternary,
+        arguments: [NodeId; 3],
+    ) -> Result<Value, Error> {
+        let [a, b, c] = arguments;
+        let [first, second, third] = arguments.map(|argument| self.program.graph.ty(argument));
+        let well_typed = match op {
+            Ternary::Select => first == Type::Bool && second == third,
+            Ternary::Mix | Ternary::Clamp | Ternary::Smoothstep => {
+                first != Type::Bool && first == second && second == third
+            }
+        };
+        if !well_typed {
+            return Err(Error::IllTyped(id));
+        }
+        match op {
+            Ternary::Select => {
+                let (condition, accept) = (self.value(a)?, self.value(b)?);
+                let reject = self.value(c)?;
+                let select = Expression::Select { condition, accept, reject };
+                Ok(self.body.compute(select, &[condition, accept, reject]))
+            }
+            Ternary::Mix => self.call3(MathFunction::Mix, arguments),
+            Ternary::Clamp => match self.limits(b, c) {
+                Limits::Ascending => self.call3(MathFunction::Clamp, arguments),
+                Limits::Equal | Limits::Descending | Limits::Mixed => {
+                    let (x, low, high) = (self.value(a)?, self.value(b)?, self.value(c)?);
+                    let raised = self.body.call2(MathFunction::Max, x, low);
+                    Ok(self.body.call2(MathFunction::Min, raised, high))
+                }
+            },
+            Ternary::Smoothstep => match self.limits(a, b) {
+                Limits::Ascending => self.call3(MathFunction::SmoothStep, arguments),
+                Limits::Equal => {
+                    let (edge, x) = (self.value(a)?, self.value(c)?);
+                    Ok(self.body.call2(MathFunction::Step, edge, x))
+                }
+                Limits::Descending => {
+                    let rising = self.call3(MathFunction::SmoothStep, [b, a, c])?;
+                    let one = self.filled(third, 1.0);
+                    Ok(self.body.binary(BinaryOperator::Subtract, one, rising))
+                }
+                Limits::Mixed => Err(Error::MixedLimits(id)),
+            },
+        }
+    }
+
+    fn call3(&mut self, fun: MathFunction, [a, b, c]: [NodeId; 3]) -> Result<Value, Error> {
+        let values = [self.value(a)?, self.value(b)?, self.value(c)?];
+        Ok(self.body.call3(fun, values))
+    }
+
+    /// A number in every lane of a type.
+    fn filled(&mut self, ty: Type, number: f32) -> Value {
+        let value = self.body.literal(number);
+        match types::vector_size(ty) {
+            None => value,
+            Some(size) => self.body.compute(Expression::Splat { size, value }, &[]),
+        }
+    }
+
+    /// The order of two limits, as f32. Those that are not both constant are taken to ascend.
+    fn limits(&self, low: NodeId, high: NodeId) -> Limits {
+        let (Node::Const(low), Node::Const(high)) =
+            (self.program.graph.node(low), self.program.graph.node(high))
+        else {
+            return Limits::Ascending;
+        };
+        let pairs = low.lanes().into_iter().zip(high.lanes()).take(low.ty().width());
+        let pairs: Vec<_> = pairs.map(|(low, high)| (low as f32, high as f32)).collect();
+        if pairs.iter().all(|(low, high)| low < high) {
+            Limits::Ascending
+        } else if pairs.iter().all(|(low, high)| low > high) {
+            Limits::Descending
+        } else if pairs.iter().all(|(low, high)| low == high) {
+            Limits::Equal
+        } else {
+            Limits::Mixed
+        }
+    }
+}
+
+/// How the lanes of a lower limit compare to those of an upper one. WGSL refuses constant limits
+/// of `clamp` and `smoothstep` that are out of order.
+enum Limits {
+    Ascending,
+    Equal,
+    Descending,
+    Mixed,
+}
+
+/// Whether an operation takes arguments of a type.
+fn takes(op: Binary, ty: Type) -> bool {
+    match op {
+        Binary::Add
+        | Binary::Sub
+        | Binary::Mul
+        | Binary::Div
+        | Binary::Rem
+        | Binary::Min
+        | Binary::Max
+        | Binary::Pow
+        | Binary::Atan2
+        | Binary::Step => ty != Type::Bool,
+        Binary::Dot => types::vector_size(ty).is_some(),
+        Binary::Cross => ty == Type::Vec3,
+        Binary::Lt | Binary::Le => ty == Type::Scalar,
+        Binary::Eq | Binary::Ne => matches!(ty, Type::Scalar | Type::Bool),
+        Binary::And | Binary::Or => ty == Type::Bool,
+    }
+}

@@ -1,0 +1,88 @@
+//! Which nodes a function needs, and how often each is written.
+
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
+
+use crate::inputs::Inputs;
+
+/// How often each node that the roots need is written in the text.
+#[derive(Debug)]
+pub(crate) struct Uses {
+    counts: FxHashMap<NodeId, u32>,
+    order: Vec<NodeId>,
+}
+
+impl Uses {
+    /// Counts from the roots down. Nodes computed outside the shader need no arguments.
+    pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
+        let order = reachable(graph, roots, |node| inputs.is_slot(node));
+        let mut counts = FxHashMap::default();
+        for &root in roots {
+            *counts.entry(root).or_insert(0) += 1;
+        }
+        // Users have greater ids, so a node's count is complete when it is met.
+        for &id in order.iter().rev().filter(|&&id| !inputs.is_slot(id)) {
+            let node = graph.node(id);
+            // A component is written out at each of its uses, and its vector with it.
+            let times = match node {
+                Node::Swizzle(Type::Scalar, ..) => counts.get(&id).copied().unwrap_or(1),
+                _ => repeats(&node),
+            };
+            for argument in node.arguments() {
+                *counts.entry(argument).or_insert(0) += times;
+            }
+        }
+        Self { counts, order }
+    }
+
+    /// How often the node is written.
+    pub(crate) fn of(&self, id: NodeId) -> u32 {
+        self.counts.get(&id).copied().unwrap_or(0)
+    }
+
+    /// The nodes, arguments first.
+    pub(crate) fn in_order(&self) -> Vec<NodeId> {
+        self.order.clone()
+    }
+}
+
+/// How often the lowering of a node writes its arguments.
+fn repeats(node: &Node) -> u32 {
+    match node {
+        Node::Unary(Unary::Normalize, _) | Node::Binary(Binary::Rem, ..) => 2,
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..)
+        | Node::Transform(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => 1,
+    }
+}
+
+/// The nodes that the roots need, arguments first; those of `is_leaf` without their arguments.
+pub(crate) fn reachable(
+    graph: &Graph,
+    roots: &[NodeId],
+    is_leaf: impl Fn(NodeId) -> bool,
+) -> Vec<NodeId> {
+    let mut seen = vec![false; graph.len()];
+    let mut pending = roots.to_vec();
+    let mut found = Vec::new();
+    while let Some(id) = pending.pop() {
+        if std::mem::replace(&mut seen[id.index()], true) {
+            continue;
+        }
+        found.push(id);
+        if !is_leaf(id) {
+            pending.extend(graph.node(id).arguments());
+        }
+    }
+    found.sort_unstable();
+    found
+}

@@ -1,0 +1,82 @@
+//! The table of ray methods, and which files make a picture's shader.
+
+/// A ray method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    /// What scenes and the command line call it.
+    pub name: &'static str,
+    /// One sentence.
+    pub summary: &'static str,
+    /// Text of its file.
+    pub source: &'static str,
+}
+
+/// All ray methods, the default first.
+pub const METHODS: [Method; 3] = [
+    Method {
+        name: "auto",
+        summary: "Sphere tracing to a quarter of a pixel, with a bracket and a last secant.",
+        source: include_str!("wgsl/auto.wgsl"),
+    },
+    Method {
+        name: "sphere",
+        summary: "Sphere tracing to an absolute distance.",
+        source: include_str!("wgsl/sphere.wgsl"),
+    },
+    Method {
+        name: "fixed",
+        summary: "Constant steps, halved once the sign changes.",
+        source: include_str!("wgsl/fixed.wgsl"),
+    },
+];
+
+/// The method of that name.
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.name == name)
+}
+
+/// What a scene needs beyond the least.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Features {
+    /// Some light casts a hard shadow.
+    pub shadows: bool,
+    /// Something is painted.
+    pub materials: bool,
+}
+
+/// Text of a picture's shader: whole files, joined.
+pub fn source(method: &Method, features: Features) -> String {
+    let shade = if features.materials {
+        include_str!("wgsl/shade_painted.wgsl")
+    } else {
+        include_str!("wgsl/shade_plain.wgsl")
+    };
+    let picture = if features.shadows {
+        include_str!("wgsl/picture_shadowed.wgsl")
+    } else {
+        include_str!("wgsl/picture_plain.wgsl")
+    };
+    [
+        include_str!("wgsl/view.wgsl"),
+        include_str!("wgsl/field.wgsl"),
+        include_str!("wgsl/ray.wgsl"),
+        method.source,
+        include_str!("wgsl/shade.wgsl"),
+        shade,
+        picture,
+        include_str!("wgsl/main.wgsl"),
+    ]
+    .join("\n")
+}
+
+/// Names of the functions that a scene supplies, and of what they speak of.
+pub mod stubs {
+    /// `fn field(p: vec3f) -> f32`, signed distance.
+    pub const FIELD: &str = "field";
+    /// `fn field_gradient(p: vec3f) -> vec3f`, its spatial derivative.
+    pub const GRADIENT: &str = "field_gradient";
+    /// `fn material(p: vec3f) -> Material`, where [`super::Features::materials`] is set.
+    pub const MATERIAL: &str = "material";
+    /// `fn load_frame()`; calls to it are dropped where nothing is known per frame.
+    pub const LOAD_FRAME: &str = "load_frame";
+}

@@ -1,0 +1,30 @@
+// Constant steps until the sign changes, then halving towards the crossing. Parts thinner than a
+// step may be stepped over.
+
+fn tolerance(ray: Ray, t: f32) -> f32 {
+    return view.epsilon;
+}
+
+fn trace(ray: Ray) -> Trace {
+    let near = tolerance(ray, 0.0);
+    var t = 0.0;
+    var stride = view.fixed_step;
+    var crossed = false;
+    for (var step = 0u; step < view.steps; step++) {
+        let distance = field(ray_point(ray, t));
+        let inside = distance < 0.0;
+        // A ray that starts inside is at its hit; so is one whose bracket has closed on a jump.
+        if abs(distance) < near || stride < near || (inside && step == 0u) {
+            return Trace(t, HIT, step + 1u);
+        }
+        crossed = crossed || inside;
+        if crossed {
+            stride *= 0.5;
+        }
+        t += select(stride, -stride, inside);
+        if !(t <= ray.t_max) {
+            return Trace(t, MISS, step + 1u);
+        }
+    }
+    return Trace(t, CAPPED, view.steps);
+}

@@ -1,0 +1,22 @@
+// Sphere tracing: the distance is free space in all directions, so also along the ray.
+// J. C. Hart, Sphere tracing (The Visual Computer 12, 1996).
+
+fn tolerance(ray: Ray, t: f32) -> f32 {
+    return view.epsilon;
+}
+
+fn trace(ray: Ray) -> Trace {
+    var t = 0.0;
+    for (var step = 0u; step < view.steps; step++) {
+        let distance = field(ray_point(ray, t));
+        // Below zero too: a field that overestimates leads through the surface, not to it.
+        if distance < tolerance(ray, t) {
+            return Trace(t, HIT, step + 1u);
+        }
+        t += distance;
+        if !(t <= ray.t_max) {
+            return Trace(t, MISS, step + 1u);
+        }
+    }
+    return Trace(t, CAPPED, view.steps);
+}
