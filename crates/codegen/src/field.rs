@@ -94,9 +94,9 @@ fn used_inputs(program: &Program, roots: &[sdfc_graph::NodeId]) -> Vec<(FrameInp
     let nodes = reachable(&program.graph, roots, |_| false);
     let mut inputs: Vec<_> = nodes
         .into_iter()
-        .filter_map(|id| match program.graph.node(id) {
-            Node::Frame(input, ty) => Some((input, ty)),
-            _ => None,
+        .filter_map(|id| {
+            let Node::Frame(input, ty) = program.graph.node(id) else { return None };
+            Some((input, ty))
         })
         .collect();
     inputs.sort_unstable();

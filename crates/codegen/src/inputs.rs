@@ -4,7 +4,8 @@ use std::num::NonZeroU32;
 
 use naga::{
     AddressSpace, ArraySize, BinaryOperator, Expression, GlobalVariable, Handle, Literal, Module,
-    ResourceBinding, Scalar, Span, Statement, StructMember, SwizzleComponent, TypeInner, VectorSize,
+    ResourceBinding, Scalar, Span, Statement, StructMember, SwizzleComponent, TypeInner,
+    VectorSize,
 };
 use rustc_hash::FxHashMap;
 use sdfc_graph::{FrameInput, NodeId, Program, Type};
@@ -166,7 +167,7 @@ pub(crate) fn declare_slots(
         let ty = program.graph.ty(node);
         let ty_handle = types::value(&mut module.types, ty);
         let variable = GlobalVariable {
-            name: Some(format!("frame_{}", slot_name(program, node))),
+            name: Some(format!("frame_{}", frame_name(program, node))),
             space: AddressSpace::Private,
             binding: None,
             ty: ty_handle,
@@ -180,7 +181,8 @@ pub(crate) fn declare_slots(
     (Inputs::Slots { buffer, variables }, Some(body.finish(None)))
 }
 
-fn slot_name(program: &Program, node: NodeId) -> &str {
+/// What a scene calls a value that is known per frame.
+pub(crate) fn frame_name(program: &Program, node: NodeId) -> &str {
     match (program.names.get(&node), program.graph.node(node)) {
         (Some(name), _) => name,
         (None, sdfc_graph::Node::Frame(input, _)) => input_name(program, input),
@@ -206,7 +208,10 @@ fn copy_slot(
     };
     let cut = |body: &mut Body, size: VectorSize| {
         let vector = body.compute(Expression::Load { pointer: element }, &[element]);
-        body.compute(Expression::Swizzle { size, vector, pattern: SwizzleComponent::XYZW }, &[vector])
+        body.compute(
+            Expression::Swizzle { size, vector, pattern: SwizzleComponent::XYZW },
+            &[vector],
+        )
     };
     let value = match ty {
         Type::Bool => {

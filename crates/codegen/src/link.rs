@@ -58,12 +58,16 @@ fn drop_calls(block: &mut Block, dropped: &FxHashSet<Handle<Function>>) {
 }
 
 fn inner_blocks(statement: &mut Statement) -> Vec<&mut Block> {
-    match statement {
-        Statement::Block(block) => vec![block],
-        Statement::If { accept, reject, .. } => vec![accept, reject],
-        Statement::Switch { cases, .. } => cases.iter_mut().map(|case| &mut case.body).collect(),
-        Statement::Loop { body, continuing, .. } => vec![body, continuing],
-        _ => Vec::new(),
+    if let Statement::Block(block) = statement {
+        vec![block]
+    } else if let Statement::If { accept, reject, .. } = statement {
+        vec![accept, reject]
+    } else if let Statement::Switch { cases, .. } = statement {
+        cases.iter_mut().map(|case| &mut case.body).collect()
+    } else if let Statement::Loop { body, continuing, .. } = statement {
+        vec![body, continuing]
+    } else {
+        Vec::new()
     }
 }
 
@@ -75,9 +79,9 @@ fn drop_unused_constants(module: &mut Module) {
     arenas.push(&module.global_expressions);
     let expressions = arenas.iter().flat_map(|arena| arena.iter());
     let used: FxHashSet<_> = expressions
-        .filter_map(|(_, expression)| match expression {
-            Expression::Constant(constant) => Some(*constant),
-            _ => None,
+        .filter_map(|(_, expression)| {
+            let Expression::Constant(constant) = expression else { return None };
+            Some(*constant)
         })
         .collect();
     for (handle, constant) in module.constants.iter_mut() {

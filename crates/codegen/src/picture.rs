@@ -26,8 +26,7 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program
 /// has no distance or no gradient; others where its nodes cannot be lowered.
 pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
-    let method =
-        method(method_name).ok_or_else(|| Error::UnknownMethod(method_name.to_owned()))?;
+    let method = method(method_name).ok_or_else(|| Error::UnknownMethod(method_name.to_owned()))?;
     link_picture(program, method)
 }
 

@@ -4,9 +4,9 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, back};
 use sdfc_march::Features;
 
+use crate::Error;
 use crate::instructions::{FunctionCost, count};
 use crate::reflect::{Parts, Reflection, reflect};
-use crate::Error;
 
 /// A validated module.
 #[derive(Debug)]

@@ -33,14 +33,3 @@ pub(crate) fn vector_size(ty: Type) -> Option<VectorSize> {
         Type::Vec4 => Some(VectorSize::Quad),
     }
 }
-
-/// How WGSL spells the type.
-pub(crate) fn spelling(ty: Type) -> &'static str {
-    match ty {
-        Type::Bool => "bool",
-        Type::Scalar => "f32",
-        Type::Vec2 => "vec2<f32>",
-        Type::Vec3 => "vec3<f32>",
-        Type::Vec4 => "vec4<f32>",
-    }
-}

@@ -8,17 +8,17 @@ mod body;
 mod operation;
 mod uses;
 
-use naga::{Expression, Function, FunctionArgument, FunctionResult, Handle, SwizzleComponent};
 use naga::{BinaryOperator, Literal, UniqueArena};
+use naga::{Expression, Function, FunctionArgument, FunctionResult, Handle, SwizzleComponent};
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Const, Dim, Node, NodeId, Program, Type};
 
 pub(crate) use body::Body;
 pub(crate) use uses::reachable;
 
-use crate::inputs::{Inputs, input_name};
+use crate::inputs::{Inputs, frame_name, input_name};
 use crate::{Error, types};
-use uses::Uses;
+use uses::{Uses, is_component};
 
 /// A value within the function.
 type Value = Handle<Expression>;
@@ -101,22 +101,25 @@ impl<'a> Lowering<'a> {
 
     /// Names a value as the program does, or where it is used often; not what is as short as a name.
     fn name(&mut self, id: NodeId, node: Node, value: Value) {
+        if self.inputs.is_slot(id) {
+            return self.body.name(value, frame_name(self.program, id));
+        }
         if matches!(node, Node::Point(..) | Node::Frame(..)) {
             return;
         }
         if let Some(name) = self.program.names.get(&id) {
             self.body.name(value, name);
-        } else if self.inputs.is_slot(id) || self.uses.of(id) > 1 && !is_component(&node) {
+        } else if self.uses.of(id) > 1 && !is_component(&node) {
             self.body.name(value, hint(self.program.graph.ty(id)));
         }
     }
 
     /// The value of an argument. Constants are written where they are used.
     fn value(&mut self, id: NodeId) -> Result<Value, Error> {
-        match self.program.graph.node(id) {
-            Node::Const(constant) => self.constant(id, constant),
-            _ => self.values.get(&id).copied().ok_or(Error::NotFlat(id)),
+        if let Node::Const(constant) = self.program.graph.node(id) {
+            return self.constant(id, constant);
         }
+        self.values.get(&id).copied().ok_or(Error::NotFlat(id))
     }
 
     fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {
@@ -212,7 +215,9 @@ impl<'a> Lowering<'a> {
                 return Ok(vector);
             }
             let index = u32::from(lanes[0]);
-            return Ok(self.body.compute(Expression::AccessIndex { base: vector, index }, &[vector]));
+            return Ok(self
+                .body
+                .compute(Expression::AccessIndex { base: vector, index }, &[vector]));
         };
         if width == 1 {
             return Ok(self.body.compute(Expression::Splat { size, value: vector }, &[vector]));
@@ -244,14 +249,13 @@ impl<'a> Lowering<'a> {
 
     /// The scalar that fills this vector, if one does: `v * s` needs no vector of it.
     fn filling(&self, id: NodeId) -> Option<Filling> {
-        match self.program.graph.node(id) {
-            Node::Splat(_, scalar) => Some(Filling::Node(scalar)),
-            Node::Const(constant) if types::vector_size(constant.ty()).is_some() => {
-                let lanes = &constant.lanes()[..constant.ty().width()];
-                lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
-            }
-            _ => None,
+        let node = self.program.graph.node(id);
+        if let Node::Splat(_, scalar) = node {
+            return Some(Filling::Node(scalar));
         }
+        let Node::Const(constant) = node else { return None };
+        let lanes = &constant.lanes()[..constant.ty().width()];
+        lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
     }
 
     fn filling_value(&mut self, id: NodeId, filling: Filling) -> Result<Value, Error> {
@@ -276,11 +280,6 @@ impl<'a> Lowering<'a> {
 enum Filling {
     Node(NodeId),
     Number(f64),
-}
-
-/// Whether the node is one component of a vector: `q.x` is as short as a name.
-fn is_component(node: &Node) -> bool {
-    matches!(node, Node::Swizzle(Type::Scalar, ..))
 }
 
 /// Name of a value that the program does not name.

@@ -6,6 +6,9 @@ use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
 use super::{Lowering, Value};
 use crate::{Error, types};
 
+/// Vectors shorter than its square root are not brought to full length by `Normalize`.
+const LEAST_SQUARE: f32 = 1e-30;
+
 impl Lowering<'_> {
     pub(super) fn unary(&mut self, id: NodeId, op: Unary, a: NodeId) -> Result<Value, Error> {
         let ty = self.program.graph.ty(a);
@@ -53,7 +56,7 @@ impl Lowering<'_> {
     /// `v * inverseSqrt(max(dot(v, v), least))`: WGSL's own `normalize` is undefined at 0.
     fn normalized(&mut self, v: Value) -> Value {
         let square = self.body.call2(MathFunction::Dot, v, v);
-        let least = self.body.literal(f32::MIN_POSITIVE);
+        let least = self.body.literal(LEAST_SQUARE);
         let square = self.body.call2(MathFunction::Max, square, least);
         let factor = self.body.call1(MathFunction::InverseSqrt, square);
         self.body.binary(BinaryOperator::Multiply, v, factor)

@@ -24,9 +24,10 @@ impl Uses {
         for &id in order.iter().rev().filter(|&&id| !inputs.is_slot(id)) {
             let node = graph.node(id);
             // A component is written out at each of its uses, and its vector with it.
-            let times = match node {
-                Node::Swizzle(Type::Scalar, ..) => counts.get(&id).copied().unwrap_or(1),
-                _ => repeats(&node),
+            let times = if is_component(&node) {
+                counts.get(&id).copied().unwrap_or(1)
+            } else {
+                repeats(&node)
             };
             for argument in node.arguments() {
                 *counts.entry(argument).or_insert(0) += times;
@@ -44,6 +45,11 @@ impl Uses {
     pub(crate) fn in_order(&self) -> Vec<NodeId> {
         self.order.clone()
     }
+}
+
+/// Whether the node is one component of a vector: `q.x` is as short as a name.
+pub(crate) fn is_component(node: &Node) -> bool {
+    matches!(node, Node::Swizzle(Type::Scalar, ..))
 }
 
 /// How often the lowering of a node writes its arguments.

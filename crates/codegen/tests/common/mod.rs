@@ -1,0 +1,185 @@
+//! Programs built by hand.
+
+#![allow(dead_code)]
+
+use sdfc_graph::{
+    Dim, FrameInput, Graph, Light, MaterialField, NodeId, Param, ParamKind, Program, Shadow,
+    Ternary, Type, Unary,
+};
+
+pub fn point(graph: &mut Graph) -> NodeId {
+    graph.point(0, Dim::Three)
+}
+
+/// `length(p - centre) - radius`
+pub fn ball(graph: &mut Graph, centre: [f64; 3], radius: f64) -> NodeId {
+    let p = point(graph);
+    let centre = graph.constant(Type::Vec3, &centre);
+    let offset = graph.sub(p, centre);
+    let length = graph.length(offset);
+    let radius = graph.number(radius);
+    graph.sub(length, radius)
+}
+
+/// The exact box of these half extents about the origin.
+pub fn block(graph: &mut Graph, half: [f64; 3]) -> NodeId {
+    let p = point(graph);
+    let (half, zero) = (graph.constant(Type::Vec3, &half), graph.number(0.0));
+    let folded = graph.abs(p);
+    let q = graph.sub(folded, half);
+    let positive = graph.max(q, zero);
+    let outside = graph.length(positive);
+    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(q, lane));
+    let yz = graph.max(y, z);
+    let largest = graph.max(x, yz);
+    let inside = graph.min(largest, zero);
+    graph.add(outside, inside)
+}
+
+/// `p.y - height`
+pub fn floor(graph: &mut Graph, height: f64) -> NodeId {
+    let p = point(graph);
+    let (y, height) = (graph.component(p, 1), graph.number(height));
+    graph.sub(y, height)
+}
+
+/// The quadratic smooth minimum `min(a, b) - max(k - |a - b|, 0)^2 / (4 k)`.
+pub fn smooth(graph: &mut Graph, a: NodeId, b: NodeId, k: NodeId) -> NodeId {
+    let (zero, four) = (graph.number(0.0), graph.number(4.0));
+    let difference = graph.sub(a, b);
+    let apart = graph.abs(difference);
+    let overlap = graph.sub(k, apart);
+    let overlap = graph.max(overlap, zero);
+    let square = graph.mul(overlap, overlap);
+    let scale = graph.mul(k, four);
+    let dent = graph.div(square, scale);
+    let least = graph.min(a, b);
+    graph.sub(least, dent)
+}
+
+/// A program of a distance, with a stand-in gradient: the direction from the origin.
+pub fn program(graph: Graph, distance: NodeId) -> Program {
+    let mut program = Program { graph, distance: Some(distance), ..Program::default() };
+    let p = point(&mut program.graph);
+    program.gradient = Some(program.graph.unary(Unary::Normalize, p));
+    program
+}
+
+pub fn sphere() -> Program {
+    let mut graph = Graph::new();
+    let distance = ball(&mut graph, [0.0, 1.0, 0.0], 0.75);
+    program(graph, distance)
+}
+
+/// A sphere and a box smoothly joined, over a plane. The smoothness is the param `k`, its quarter a
+/// value known per frame.
+pub fn blend() -> Program {
+    let mut graph = Graph::new();
+    let k = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let ball = ball(&mut graph, [0.4, 0.7, 0.4], 0.8);
+    let block = block(&mut graph, [0.8, 0.5, 0.8]);
+    let floor = floor(&mut graph, -0.5);
+    let joined = smooth(&mut graph, ball, block, k);
+    let distance = graph.min(joined, floor);
+    let four = graph.number(4.0);
+    let scale = graph.mul(k, four);
+    let mut program = program(graph, distance);
+    program.params.push(number_param("k", 0.4));
+    program.names.insert(ball, "ball".to_owned());
+    program.names.insert(block, "block".to_owned());
+    program.names.insert(scale, "scale".to_owned());
+    program.uniforms = vec![k, scale];
+    program
+}
+
+pub fn number_param(name: &str, default: f64) -> Param {
+    Param {
+        name: name.to_owned(),
+        kind: ParamKind::Number,
+        ty: Type::Scalar,
+        default: [default, 0.0, 0.0, 0.0],
+        range: None,
+        choices: Vec::new(),
+        summary: String::new(),
+    }
+}
+
+/// A sphere, red above and white below.
+pub fn painted() -> Program {
+    let mut program = sphere();
+    let graph = &mut program.graph;
+    let p = point(graph);
+    let (y, zero) = (graph.component(p, 1), graph.number(0.0));
+    let below = graph.lt(y, zero);
+    let red = graph.constant(Type::Vec3, &[0.8, 0.1, 0.1]);
+    let white = graph.constant(Type::Vec3, &[0.9, 0.9, 0.9]);
+    let color = graph.select(below, white, red);
+    program.material = Some(MaterialField::ALL.map(|field| match field {
+        MaterialField::Color => color,
+        MaterialField::Emission => graph.constant(Type::Vec3, &[0.0; 3]),
+        MaterialField::Roughness => graph.number(0.5),
+        MaterialField::Metallic => zero,
+        MaterialField::Coverage | MaterialField::Occlusion => graph.number(1.0),
+    }));
+    program
+}
+
+/// A box twisted about y by an angle of `rate` for each unit of height, divided by a constant.
+pub fn twisted() -> Program {
+    let mut graph = Graph::new();
+    let p = point(&mut graph);
+    let rate = graph.number(2.0);
+    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(p, lane));
+    let angle = graph.mul(y, rate);
+    let (sin, cos) = (graph.unary(Unary::Sin, angle), graph.unary(Unary::Cos, angle));
+    let (zero, one) = (graph.number(0.0), graph.number(1.0));
+    let minus = graph.neg(sin);
+    let columns =
+        [[cos, zero, minus], [zero, one, zero], [sin, zero, cos]].map(|c| graph.compose(&c));
+    let _ = (x, z);
+    let turned = graph.transform(columns, p);
+    let half = graph.constant(Type::Vec3, &[0.5, 1.0, 0.2]);
+    let folded = graph.abs(turned);
+    let q = graph.sub(folded, half);
+    let outside = graph.max(q, zero);
+    let distance = graph.length(outside);
+    let slower = graph.number(0.4);
+    let distance = graph.mul(distance, slower);
+    program(graph, distance)
+}
+
+/// A left-deep chain of spheres, smoothly joined.
+pub fn chain(leaves: usize) -> Program {
+    let mut graph = Graph::new();
+    let k = graph.number(0.1);
+    let mut distance = ball(&mut graph, [0.0; 3], 0.5);
+    for i in 1..leaves {
+        let t = i as f64;
+        let leaf = ball(&mut graph, [(t * 0.7).sin() * 3.0, t * 0.01, t.cos() * 3.0], 0.25);
+        distance = smooth_folded(&mut graph, distance, leaf, k);
+    }
+    program(graph, distance)
+}
+
+/// `mix(b, a, h) - k h (1 - h)` with `h = saturate(0.5 + (b - a) / (2 k))`, for a constant k.
+fn smooth_folded(graph: &mut Graph, a: NodeId, b: NodeId, k: NodeId) -> NodeId {
+    let (half, one) = (graph.number(0.5), graph.number(1.0));
+    let slope = graph.number(0.5 / graph.as_number(k).expect("a constant"));
+    let difference = graph.sub(b, a);
+    let scaled = graph.mul(difference, slope);
+    let raised = graph.add(scaled, half);
+    let h = graph.unary(Unary::Saturate, raised);
+    let mixed = graph.ternary(Ternary::Mix, b, a, h);
+    let rest = graph.sub(one, h);
+    let product = graph.mul(h, rest);
+    let dent = graph.mul(product, k);
+    graph.sub(mixed, dent)
+}
+
+pub fn lit(mut program: Program, shadow: Shadow) -> Program {
+    let graph = &mut program.graph;
+    let direction = graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]);
+    let color = graph.constant(Type::Vec3, &[1.0; 3]);
+    program.settings.lights.push(Light { direction, color, shadow });
+    program
+}

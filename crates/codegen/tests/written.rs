@@ -1,0 +1,66 @@
+//! What is written, for small programs.
+
+#![allow(clippy::expect_used)]
+
+mod common;
+
+use common::{blend, lit, painted, sphere, twisted};
+use sdfc_codegen::{FieldOptions, Shader, field_module, render_module};
+use sdfc_graph::{Program, Shadow};
+
+fn field(program: &Program) -> String {
+    let options = FieldOptions::default();
+    field_module(program, &options).expect("lowers").wgsl().expect("is written")
+}
+
+/// Declarations alone: what is linked, not how it is written.
+fn outline(shader: &Shader) -> String {
+    let text = shader.wgsl().expect("is written");
+    let heads = ["fn ", "struct ", "const ", "var", "@group"];
+    let lines = text.lines().filter(|line| heads.iter().any(|head| line.starts_with(head)));
+    lines.map(|line| line.trim_end_matches(" {")).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_sphere() {
+    insta::assert_snapshot!(field(&sphere()));
+}
+
+#[test]
+fn a_blend_with_a_param() {
+    insta::assert_snapshot!(field(&blend()));
+}
+
+#[test]
+fn a_painted_sphere() {
+    insta::assert_snapshot!(field(&painted()));
+}
+
+#[test]
+fn a_twisted_box() {
+    insta::assert_snapshot!(field(&twisted()));
+}
+
+#[test]
+fn a_picture_with_slots() {
+    let shader = render_module(&blend(), "sphere").expect("links");
+    insta::assert_snapshot!(shader.wgsl().expect("is written"));
+}
+
+#[test]
+fn the_least_picture_links_no_shadow_no_material_no_slots() {
+    let shader = render_module(&lit(sphere(), Shadow::Off), "auto").expect("links");
+    insta::assert_snapshot!(outline(&shader));
+}
+
+#[test]
+fn a_shadow_links_the_shadow_ray_alone() {
+    let shader = render_module(&lit(sphere(), Shadow::Hard), "auto").expect("links");
+    insta::assert_snapshot!(outline(&shader));
+}
+
+#[test]
+fn a_material_links_its_shading() {
+    let shader = render_module(&painted(), "fixed").expect("links");
+    insta::assert_snapshot!(outline(&shader));
+}
