@@ -1,0 +1,151 @@
+//! How far two pictures of the same view differ, apart from their edges.
+//!
+//! At a silhouette or a crease one pixel's ray meets one surface in one picture and another in the
+//! other, by rounding alone; such pixels are counted, and left out of the differences.
+
+use sdfc_march::PixelBlock;
+
+use crate::{Image, image::HIT, image::linear_to_srgb8};
+
+/// A depth that bends by more than so many pixel widths over three neighbouring pixels is an edge.
+const EDGE_PIXEL_WIDTHS: f32 = 4.0;
+
+/// How far two pictures differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Pixels compared, edges left out.
+    pub compared: usize,
+    /// Pixels that are an edge in either picture.
+    pub edges: usize,
+    /// Pixels, edges left out, that are a hit in one picture only.
+    pub status: usize,
+    /// Largest difference of depth, in scene units, where both are hits; infinite where one is NaN.
+    pub depth: f32,
+    /// Largest difference of a colour channel in sRGB steps of 1/255.
+    pub color: u8,
+    /// Mean difference of the colour channels in sRGB steps of 1/255.
+    pub mean_color: f32,
+}
+
+/// For each pixel whether it is an edge: within its 3x3 neighbours hits and misses meet, or the
+/// depth of hits along a line through it bends by more than four pixel widths.
+pub fn edges(image: &Image) -> Vec<bool> {
+    let [width, height] = image.size();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    pixels.map(|(x, y)| is_edge(image, x, y)).collect()
+}
+
+fn is_edge(image: &Image, x: u32, y: u32) -> bool {
+    let neighbour = |dx: i32, dy: i32| {
+        image.pixel(x.checked_add_signed(dx)?, y.checked_add_signed(dy)?)
+    };
+    let Some(center) = neighbour(0, 0) else { return false };
+    // Opposite neighbours, so that a slanted plane, whose depth changes evenly, is no edge.
+    [(1, 0), (0, 1), (1, 1), (1, -1)].into_iter().any(|(dx, dy)| {
+        let pair = [neighbour(dx, dy), neighbour(-dx, -dy)];
+        pair.iter().flatten().any(|other| (other.status == HIT) != (center.status == HIT))
+            || matches!(pair, [Some(before), Some(after)] if bends(image, before, center, after))
+    })
+}
+
+fn bends(image: &Image, before: &PixelBlock, center: &PixelBlock, after: &PixelBlock) -> bool {
+    let bend = before.depth - 2.0 * center.depth + after.depth;
+    let pixel_width = 2.0 * image.pixel_radius() * center.depth;
+    center.status == HIT && bend.abs() > EDGE_PIXEL_WIDTHS * pixel_width
+}
+
+/// How far two pictures of equal size differ; `None` if their sizes differ.
+pub fn compare(a: &Image, b: &Image) -> Option<Difference> {
+    if a.size() != b.size() {
+        return None;
+    }
+    let (edges_a, edges_b) = (edges(a), edges(b));
+    let mut difference = Difference::default();
+    let mut color_sum = 0u64;
+    for (index, (one, other)) in a.pixels().iter().zip(b.pixels()).enumerate() {
+        if edges_a[index] || edges_b[index] {
+            difference.edges += 1;
+            continue;
+        }
+        difference.compared += 1;
+        if (one.status == HIT) != (other.status == HIT) {
+            difference.status += 1;
+        } else if one.status == HIT {
+            difference.depth = difference.depth.max(depth_difference(one, other));
+        }
+        for channel in 0..3 {
+            let step = linear_to_srgb8(one.color[channel])
+                .abs_diff(linear_to_srgb8(other.color[channel]));
+            difference.color = difference.color.max(step);
+            color_sum += u64::from(step);
+        }
+    }
+    difference.mean_color = color_sum as f32 / (3 * difference.compared.max(1)) as f32;
+    Some(difference)
+}
+
+fn depth_difference(one: &PixelBlock, other: &PixelBlock) -> f32 {
+    let difference = (one.depth - other.depth).abs();
+    if difference.is_nan() { f32::INFINITY } else { difference }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 5x5 hits whose depth is given by column and row.
+    fn hits(depth: impl Fn(usize, usize) -> f32) -> Image {
+        let mut image = Image::new([5, 5], 0.01).unwrap();
+        for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
+            pixel.status = HIT;
+            pixel.depth = depth(index % 5, index / 5);
+        }
+        image
+    }
+
+    #[test]
+    fn a_slanted_plane_has_no_edges_and_a_step_has_two_columns_of_them() {
+        let slanted = hits(|x, y| 5.0 + x as f32 + 0.5 * y as f32);
+        assert!(edges(&slanted).iter().all(|edge| !edge));
+        let step = hits(|x, _| if x < 2 { 5.0 } else { 7.0 });
+        let row: Vec<bool> = edges(&step)[10..15].to_vec();
+        assert_eq!(row, [false, true, true, false, false]);
+    }
+
+    #[test]
+    fn a_pixel_beside_a_miss_is_an_edge_corners_included() {
+        let mut image = hits(|_, _| 5.0);
+        image.pixels_mut()[0].status = 0;
+        let found = edges(&image);
+        assert_eq!(&found[..7], [true, true, false, false, false, true, true]);
+    }
+
+    #[test]
+    fn differences_are_taken_outside_edges_only() {
+        let a = hits(|_, _| 5.0);
+        let mut b = a.clone();
+        b.pixels_mut()[12].depth = 5.01;
+        b.pixels_mut()[12].color[0] = 1.0;
+        let difference = compare(&a, &b).unwrap();
+        assert_eq!(difference.edges, 0);
+        assert!((difference.depth - 0.01).abs() < 1e-6);
+        assert_eq!(difference.color, 255);
+        b.pixels_mut()[12].status = 0;
+        let difference = compare(&a, &b).unwrap();
+        assert_eq!((difference.edges, difference.compared), (9, 16));
+        assert_eq!((difference.depth, difference.color), (0.0, 0));
+    }
+
+    #[test]
+    fn a_depth_that_is_not_a_number_is_an_infinite_difference() {
+        let a = hits(|_, _| 5.0);
+        let b = hits(|_, _| f32::NAN);
+        assert_eq!(compare(&a, &b).unwrap().depth, f32::INFINITY);
+    }
+
+    #[test]
+    fn pictures_of_different_sizes_do_not_compare() {
+        let a = hits(|_, _| 5.0);
+        assert!(compare(&a, &Image::new([5, 4], 0.01).unwrap()).is_none());
+    }
+}

@@ -1,0 +1,204 @@
+//! A finished picture in linear light, with what the rays met.
+
+use std::io::Cursor;
+
+use image::ImageEncoder as _;
+use sdfc_march::PixelBlock;
+
+use crate::RenderError;
+
+/// Longest side of a picture in pixels.
+pub const MAX_SIDE: u32 = 16_384;
+/// Most pixels of a picture: 2 GiB of [`PixelBlock`]s.
+pub const MAX_PIXELS: u64 = 1 << 26;
+
+/// [`PixelBlock::status`] of a ray that met nothing.
+pub const MISS: u32 = 0;
+/// [`PixelBlock::status`] of a ray that met a surface.
+pub const HIT: u32 = 1;
+/// [`PixelBlock::status`] of a ray that ran out of steps.
+pub const CAPPED: u32 = 2;
+
+/// A picture: linear colours, depths, and how each ray ended, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    size: [u32; 2],
+    pixel_radius: f32,
+    pixels: Vec<PixelBlock>,
+}
+
+/// How the rays of a picture ended. The four add up to its pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct PixelCounts {
+    /// Met a surface.
+    pub hit: u64,
+    /// Met nothing.
+    pub miss: u64,
+    /// Ran out of steps.
+    pub capped: u64,
+    /// Depth or colour is not a finite number, however the ray ended.
+    pub nan: u64,
+}
+
+impl Image {
+    /// An empty picture, every pixel zero. `pixel_radius` is half a pixel's width at distance 1.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::Size`] outside the limits, [`RenderError::OutOfMemory`].
+    pub fn new(size: [u32; 2], pixel_radius: f32) -> Result<Self, RenderError> {
+        check_size(size)?;
+        let count = size[0] as usize * size[1] as usize;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| {
+            RenderError::OutOfMemory(format!("a picture of {}x{} pixels", size[0], size[1]))
+        })?;
+        pixels.resize(count, PixelBlock::default());
+        Ok(Self { size, pixel_radius, pixels })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Half the width of a pixel at distance 1.
+    pub fn pixel_radius(&self) -> f32 {
+        self.pixel_radius
+    }
+
+    /// The pixels, row by row from the top.
+    pub fn pixels(&self) -> &[PixelBlock] {
+        &self.pixels
+    }
+
+    /// The pixels, row by row from the top.
+    pub fn pixels_mut(&mut self) -> &mut [PixelBlock] {
+        &mut self.pixels
+    }
+
+    /// The pixel in a column and a row, if there is one.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<&PixelBlock> {
+        let [width, height] = self.size;
+        let index = y as usize * width as usize + x as usize;
+        (x < width && y < height).then(|| self.pixels.get(index)).flatten()
+    }
+
+    /// How the rays ended.
+    pub fn counts(&self) -> PixelCounts {
+        let mut counts = PixelCounts::default();
+        for pixel in &self.pixels {
+            let count = if !is_finite(pixel) {
+                &mut counts.nan
+            } else {
+                match pixel.status {
+                    HIT => &mut counts.hit,
+                    MISS => &mut counts.miss,
+                    _ => &mut counts.capped,
+                }
+            };
+            *count += 1;
+        }
+        counts
+    }
+
+    /// Red, green, blue of every pixel in sRGB, 8 bits each.
+    pub fn to_srgb8(&self) -> Vec<u8> {
+        let channels = |pixel: &PixelBlock| {
+            let [red, green, blue, _] = pixel.color;
+            [red, green, blue].map(linear_to_srgb8)
+        };
+        self.pixels.iter().flat_map(channels).collect()
+    }
+
+    /// The picture as a PNG file, sRGB, without alpha.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::OutOfMemory`] where the encoder fails, which it does for no other reason.
+    pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
+        let [width, height] = self.size;
+        let mut file = Cursor::new(Vec::new());
+        image::codecs::png::PngEncoder::new(&mut file)
+            .write_image(&self.to_srgb8(), width, height, image::ExtendedColorType::Rgb8)
+            .map_err(|error| RenderError::OutOfMemory(format!("the PNG file: {error}")))?;
+        Ok(file.into_inner())
+    }
+}
+
+/// Refuses sizes outside the limits.
+pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
+    let sides = size.iter().all(|side| (1..=MAX_SIDE).contains(side));
+    let area = u64::from(size[0]) * u64::from(size[1]) <= MAX_PIXELS;
+    if sides && area { Ok(()) } else { Err(RenderError::Size(size)) }
+}
+
+fn is_finite(pixel: &PixelBlock) -> bool {
+    pixel.depth.is_finite() && pixel.color.iter().all(|channel| channel.is_finite())
+}
+
+/// The transfer function of sRGB (IEC 61966-2-1), 0 to 1 on both sides.
+pub fn linear_to_srgb(linear: f32) -> f32 {
+    let linear = linear.clamp(0.0, 1.0);
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// A linear channel as 8 bits of sRGB; below 0 and NaN are 0, above 1 is 255.
+pub fn linear_to_srgb8(linear: f32) -> u8 {
+    // `as` saturates, and makes 0 of NaN.
+    (linear_to_srgb(linear) * 255.0).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_has_its_known_values() {
+        // 0.5 in linear light is 188 (187.5 rounded), 0.2140411 is the middle grey 127.5.
+        let cases = [(0.0, 0), (1.0, 255), (0.5, 188), (0.002, 7), (-1.0, 0), (3.0, 255)];
+        for (linear, expected) in cases {
+            assert_eq!(linear_to_srgb8(linear), expected, "{linear}");
+        }
+        assert_eq!(linear_to_srgb8(f32::NAN), 0);
+    }
+
+    #[test]
+    fn sizes_outside_the_limits_are_refused() {
+        for size in [[0, 4], [4, 0], [MAX_SIDE + 1, 1], [MAX_SIDE, MAX_SIDE]] {
+            assert_eq!(Image::new(size, 0.1), Err(RenderError::Size(size)));
+        }
+        assert!(check_size([MAX_SIDE, 4096]).is_ok());
+    }
+
+    #[test]
+    fn counts_add_up_and_nan_comes_first() {
+        let mut image = Image::new([5, 1], 0.1).unwrap();
+        let statuses = [HIT, MISS, CAPPED, HIT, MISS];
+        for (pixel, status) in image.pixels_mut().iter_mut().zip(statuses) {
+            pixel.status = status;
+        }
+        image.pixels_mut()[3].depth = f32::NAN;
+        image.pixels_mut()[4].color[1] = f32::INFINITY;
+        assert_eq!(image.counts(), PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2 });
+    }
+
+    #[test]
+    fn a_png_reads_back() {
+        let mut image = Image::new([3, 2], 0.1).unwrap();
+        image.pixels_mut()[4].color = [1.0, 0.5, 0.0, 1.0];
+        let png = image.to_png().unwrap();
+        let back = image::load_from_memory(&png).unwrap().to_rgb8();
+        assert_eq!(back.dimensions(), (3, 2));
+        assert_eq!(back.get_pixel(1, 1).0, [255, 188, 0]);
+        assert_eq!(back.get_pixel(0, 0).0, [0, 0, 0]);
+    }
+
+    #[test]
+    fn pixels_outside_are_none() {
+        let image = Image::new([3, 2], 0.1).unwrap();
+        assert!(image.pixel(2, 1).is_some());
+        assert!(image.pixel(3, 0).is_none());
+        assert!(image.pixel(0, 2).is_none());
+    }
+}

@@ -1,0 +1,163 @@
+//! Cutting a picture into tiles whose size follows the time that they take.
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Its first column and row.
+    pub origin: [u32; 2],
+    /// Its columns and rows.
+    pub size: [u32; 2],
+}
+
+impl Tile {
+    /// How many pixels it has.
+    pub fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
+/// How large tiles are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TileSize {
+    /// Growing or shrinking towards so many milliseconds a tile, from small tiles on.
+    Adaptive {
+        /// What one tile should take.
+        milliseconds: f64,
+    },
+    /// So many columns and rows, less at the right and lower border.
+    Fixed([u32; 2]),
+}
+
+impl Default for TileSize {
+    /// Far from the time after which drivers give a device up for lost (about 2 s), and long enough
+    /// that starting a tile costs little.
+    fn default() -> Self {
+        Self::Adaptive { milliseconds: 60.0 }
+    }
+}
+
+/// Pixels of the first adaptive tile: at 100 µs a pixel, a slow scene on a software adapter, 0.4 s.
+const FIRST_PIXELS: u32 = 64 * 64;
+/// Columns and rows are multiples of this, a workgroup's side, except at the border.
+const STEP: u32 = 8;
+/// A tile has at most so many times the pixels of the one before.
+const GROWTH: f64 = 4.0;
+/// A tile has at least the pixels of the one before divided by this.
+const SHRINKAGE: f64 = 16.0;
+
+/// Hands out the tiles of a picture: bands from the top, tiles in a band from the left.
+#[derive(Clone, Debug)]
+pub(crate) struct Tiler {
+    picture: [u32; 2],
+    tile_size: TileSize,
+    /// Pixels that an adaptive tile should have, and may have.
+    wanted: u32,
+    most: u32,
+    next: [u32; 2],
+    band: u32,
+}
+
+impl Tiler {
+    /// Of a picture, with at most so many pixels and so many columns or rows a tile.
+    pub(crate) fn new(picture: [u32; 2], tile_size: TileSize, most: u32) -> Self {
+        let most = most.max(STEP * STEP);
+        Self { picture, tile_size, wanted: FIRST_PIXELS.min(most), most, next: [0, 0], band: 0 }
+    }
+
+    /// The next tile.
+    pub(crate) fn next(&mut self) -> Option<Tile> {
+        let [width, height] = self.picture;
+        let [x, y] = self.next;
+        if y >= height || width == 0 {
+            return None;
+        }
+        if x == 0 {
+            self.band = self.rows().clamp(1, height - y);
+        }
+        let columns = self.columns().clamp(1, width - x);
+        let tile = Tile { origin: [x, y], size: [columns, self.band] };
+        self.next = if x + columns < width { [x + columns, y] } else { [0, y + self.band] };
+        Some(tile)
+    }
+
+    fn rows(&self) -> u32 {
+        match self.tile_size {
+            TileSize::Adaptive { .. } => {
+                // As square as the picture allows.
+                let width = (self.wanted.isqrt()).min(self.picture[0]).max(1);
+                multiple(self.wanted / width)
+            }
+            TileSize::Fixed([width, height]) => height.min(self.most / width.clamp(1, self.most)),
+        }
+    }
+
+    fn columns(&self) -> u32 {
+        match self.tile_size {
+            TileSize::Adaptive { .. } => multiple(self.wanted / self.band.max(1)),
+            TileSize::Fixed([width, _]) => width.min(self.most),
+        }
+    }
+
+    /// Tells how long the last tile took.
+    pub(crate) fn took(&mut self, tile: Tile, elapsed: f64) {
+        if let TileSize::Adaptive { milliseconds } = self.tile_size {
+            let pixels = tile.pixels() as f64;
+            let fitting = pixels * milliseconds / elapsed.max(1e-6);
+            // Neighbouring tiles may differ much in cost: sky beside a grazing surface.
+            let fitting = fitting.clamp(pixels / SHRINKAGE, pixels * GROWTH);
+            self.wanted = (fitting as u32).clamp(STEP * STEP, self.most);
+        }
+    }
+}
+
+/// The next lower multiple of a workgroup's side, but not 0.
+fn multiple(length: u32) -> u32 {
+    (length / STEP * STEP).max(STEP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every tile of a picture, each said to take a time; checks that they cover it once.
+    fn cover(picture: [u32; 2], size: TileSize, most: u32, time: impl Fn(usize) -> f64) -> Vec<Tile> {
+        let mut tiler = Tiler::new(picture, size, most);
+        let mut seen = vec![0u8; picture[0] as usize * picture[1] as usize];
+        let mut tiles = Vec::new();
+        while let Some(tile) = tiler.next() {
+            assert!(tile.pixels() <= most as usize, "{tile:?}");
+            for y in tile.origin[1]..tile.origin[1] + tile.size[1] {
+                for x in tile.origin[0]..tile.origin[0] + tile.size[0] {
+                    seen[(y * picture[0] + x) as usize] += 1;
+                }
+            }
+            tiler.took(tile, time(tile.pixels()));
+            tiles.push(tile);
+        }
+        assert!(seen.iter().all(|count| *count == 1), "{picture:?} {size:?}");
+        tiles
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        for picture in [[1, 1], [4097, 3], [3, 4097], [640, 360], [65, 67]] {
+            for size in [TileSize::default(), TileSize::Fixed([7, 5]), TileSize::Fixed([5000, 1])] {
+                cover(picture, size, 1 << 16, |pixels| pixels as f64 * 0.01);
+            }
+        }
+    }
+
+    #[test]
+    fn tiles_grow_on_a_fast_adapter_and_shrink_on_a_slow_one() {
+        let fast = cover([1920, 1080], TileSize::default(), 1 << 20, |pixels| pixels as f64 * 1e-6);
+        assert!(fast.len() < 20, "{} tiles", fast.len());
+        let slow = cover([256, 256], TileSize::default(), 1 << 20, |pixels| pixels as f64 * 0.5);
+        assert!(slow.last().is_some_and(|tile| tile.pixels() <= 128), "{:?}", slow.last());
+    }
+
+    #[test]
+    fn no_tile_passes_the_limit() {
+        cover([100, 100], TileSize::Fixed([100, 100]), 300, |_| 1.0);
+        cover([1000, 1000], TileSize::default(), 300, |_| 1e-9);
+    }
+}
