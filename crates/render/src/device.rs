@@ -1,0 +1,189 @@
+//! Finding an adapter, opening its device, and turning what wgpu reports into errors.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::Duration,
+};
+
+use crate::RenderError;
+
+/// A tile that takes longer is given up.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// An open device without a window.
+///
+/// All errors of its calls come back as [`RenderError`]: those of the calling thread through error
+/// scopes, those that arrive otherwise (a lost device) through handlers that note them until the
+/// next call asks. A clone is the same device.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
+    info: AdapterInfo,
+    timestamps: bool,
+    faults: Arc<Faults>,
+}
+
+/// What an adapter says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterInfo {
+    /// Its name.
+    pub name: String,
+    /// Its driver, with the version.
+    pub driver: String,
+    /// `vulkan`, `metal` or `dx12`.
+    pub backend: String,
+    /// Whether a CPU does its work.
+    pub software: bool,
+}
+
+/// Errors that came when nobody waited for them: the first of each kind.
+#[derive(Debug, Default)]
+struct Faults {
+    lost: Mutex<Option<String>>,
+    uncaptured: Mutex<Option<RenderError>>,
+}
+
+impl Gpu {
+    /// Opens the adapter that the system prefers for heavy work; one that a CPU plays is accepted.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::NoAdapter`] or [`RenderError::NoDevice`].
+    pub fn new() -> Result<Self, RenderError> {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        descriptor.backends =
+            wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        let instance = wgpu::Instance::new(descriptor);
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..wgpu::RequestAdapterOptions::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|error| RenderError::NoAdapter(error.to_string()))?;
+        Self::open(&adapter)
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, RenderError> {
+        // Timestamps at the borders of a pass need no further feature.
+        let wanted = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("sdfc"),
+            required_features: wanted,
+            // Whole, because the defaults stop at smaller buffers than adapters have.
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|error| RenderError::NoDevice(error.to_string()))?;
+        let faults = Arc::new(Faults::default());
+        faults.listen(&device);
+        Ok(Self {
+            device,
+            queue,
+            info: AdapterInfo::of(&adapter.get_info()),
+            timestamps: !wanted.is_empty(),
+            faults,
+        })
+    }
+
+    /// What the adapter says of itself.
+    pub fn info(&self) -> &AdapterInfo {
+        &self.info
+    }
+
+    /// Whether the adapter can tell times of its own.
+    pub fn has_timestamps(&self) -> bool {
+        self.timestamps
+    }
+
+    /// Runs calls to the device; the first error of any of them becomes the result.
+    pub(crate) fn scoped<T>(
+        &self,
+        what: &str,
+        calls: impl FnOnce() -> T,
+    ) -> Result<T, RenderError> {
+        let push = |filter| self.device.push_error_scope(filter);
+        let internal = push(wgpu::ErrorFilter::Internal);
+        let memory = push(wgpu::ErrorFilter::OutOfMemory);
+        let validation = push(wgpu::ErrorFilter::Validation);
+        let value = calls();
+        // Scopes close in reverse order; natively their answers are ready at once.
+        let errors = [
+            pollster::block_on(validation.pop()),
+            pollster::block_on(memory.pop()),
+            pollster::block_on(internal.pop()),
+        ];
+        self.faults.check()?;
+        match errors.into_iter().flatten().next() {
+            Some(error) => Err(render_error(&error, what)),
+            None => Ok(value),
+        }
+    }
+
+    /// Waits until the device has done all that was submitted.
+    pub(crate) fn wait(&self) -> Result<(), RenderError> {
+        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        // wgpu panics where the device is lost while it is waited for; nothing of this crate is
+        // left half-changed by that, since results are read only after the wait.
+        let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(poll)));
+        self.faults.check()?;
+        match polled {
+            Ok(Ok(_)) => Ok(()),
+            Ok(Err(wgpu::PollError::Timeout)) => Err(RenderError::Stalled(PATIENCE.as_secs())),
+            Ok(Err(error)) => Err(RenderError::DeviceLost(error.to_string())),
+            Err(_) => Err(RenderError::DeviceLost("while waiting for it".to_owned())),
+        }
+    }
+}
+
+impl Faults {
+    fn listen(self: &Arc<Self>, device: &wgpu::Device) {
+        let faults = Arc::clone(self);
+        device.set_device_lost_callback(move |reason, message| {
+            lock(&faults.lost).get_or_insert_with(|| format!("{reason:?}: {message}"));
+        });
+        let faults = Arc::clone(self);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            lock(&faults.uncaptured).get_or_insert_with(|| render_error(&error, "the device"));
+        }));
+    }
+
+    fn check(&self) -> Result<(), RenderError> {
+        // A lost device stays lost; another error is told once.
+        if let Some(message) = lock(&self.lost).as_ref() {
+            return Err(RenderError::DeviceLost(message.clone()));
+        }
+        lock(&self.uncaptured).take().map_or(Ok(()), Err)
+    }
+}
+
+/// The value behind a lock, also after a panic elsewhere: it is replaced whole or not at all.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn render_error(error: &wgpu::Error, what: &str) -> RenderError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => RenderError::OutOfMemory(what.to_owned()),
+        wgpu::Error::Validation { description, .. } => {
+            RenderError::Validation(description.trim_end().to_owned())
+        }
+        wgpu::Error::Internal { description, .. } => {
+            RenderError::DeviceLost(description.trim_end().to_owned())
+        }
+    }
+}
+
+impl AdapterInfo {
+    fn of(info: &wgpu::AdapterInfo) -> Self {
+        let driver = format!("{} {}", info.driver, info.driver_info);
+        Self {
+            name: info.name.clone(),
+            driver: driver.trim().to_owned(),
+            backend: info.backend.to_str().to_owned(),
+            software: info.device_type == wgpu::DeviceType::Cpu,
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! What the renderers have in common: options in, progress out, a frame as the result.
+
+use std::ops::ControlFlow;
+
+use crate::{Clock, Image, TileSize};
+
+/// How a frame is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RenderOptions {
+    /// How large tiles are.
+    pub tile_size: TileSize,
+}
+
+/// How far a frame is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Pixels finished.
+    pub done: u64,
+    /// Pixels in all.
+    pub total: u64,
+}
+
+/// Called after each tile; `ControlFlow::Break` cancels the frame.
+pub type OnProgress<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// An [`OnProgress`] that never cancels.
+pub fn unwatched(_: Progress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A finished frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The picture.
+    pub image: Image,
+    /// How long the tiles took, in milliseconds, added up.
+    pub milliseconds: f64,
+    /// What measured that.
+    pub clock: Clock,
+    /// How many tiles it was drawn in.
+    pub tiles: u32,
+}

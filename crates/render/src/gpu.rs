@@ -1,0 +1,378 @@
+//! Drawing a frame on the GPU: one compute dispatch a tile, read back tile by tile.
+
+use std::{borrow::Cow, num::NonZero, sync::mpsc, time::Instant};
+
+use sdfc_march::PixelBlock;
+
+use crate::{
+    Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
+    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
+    image::check_size,
+    tiles::Tiler,
+};
+
+/// Columns and rows of a workgroup of the entry point `main`.
+const WORKGROUP: u32 = 8;
+/// Most pixels of a tile: 32 MiB to read back.
+const MAX_TILE_PIXELS: u32 = 1 << 20;
+/// Bytes of the two timestamps about a pass.
+const TIMESTAMP_BYTES: u64 = 16;
+
+/// A shader made ready for a device.
+#[derive(Debug)]
+pub struct Pipeline {
+    gpu: Gpu,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    uniform_count: usize,
+    milliseconds: f64,
+}
+
+impl Pipeline {
+    /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform
+    /// `ViewBlock`, at 1 a uniform array of `uniform_count` `vec4f` (absent if that is 0), at 2 the
+    /// storage for the tile's `PixelBlock`s. The entry point is `main`, in workgroups of 8x8.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::Validation`] if the device refuses it, [`RenderError::Uniforms`].
+    pub fn from_wgsl(gpu: &Gpu, text: &str, uniform_count: usize) -> Result<Self, RenderError> {
+        Self::new(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count)
+    }
+
+    fn new(
+        gpu: &Gpu,
+        source: wgpu::ShaderSource<'_>,
+        uniform_count: usize,
+    ) -> Result<Self, RenderError> {
+        let limit = gpu.device.limits().max_uniform_buffer_binding_size as usize / UNIFORM_BYTES;
+        if uniform_count > limit {
+            return Err(RenderError::Uniforms { count: uniform_count, limit });
+        }
+        let start = Instant::now();
+        let (pipeline, layout) = gpu.scoped("the shader", || {
+            let layout = bind_group_layout(&gpu.device, uniform_count);
+            (compute_pipeline(&gpu.device, source, &layout), layout)
+        })?;
+        let mut ready =
+            Self { gpu: gpu.clone(), pipeline, layout, uniform_count, milliseconds: 0.0 };
+        ready.dispatch_once()?;
+        ready.milliseconds = milliseconds_since(start);
+        Ok(ready)
+    }
+
+    /// Time to create the pipeline and to run a first workgroup of it, in milliseconds.
+    pub fn milliseconds(&self) -> f64 {
+        self.milliseconds
+    }
+
+    /// The device that it was made for.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Draws a frame. `uniforms` are the values of the program's per-frame nodes, in order.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError`]; nothing is left half-drawn on the device.
+    pub fn render(
+        &self,
+        view: &View,
+        uniforms: &[[f32; 4]],
+        options: &RenderOptions,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
+        check_size(view.size)?;
+        if uniforms.len() != self.uniform_count {
+            let (given, expected) = (uniforms.len(), self.uniform_count);
+            return Err(RenderError::UniformCount { given, expected });
+        }
+        let mut image = Image::new(view.size, view.pixel_radius() as f32)?;
+        let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
+        let clock = if self.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
+        let mut run = Run::new(self, uniforms)?;
+        let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
+        let total = image.pixels().len() as u64;
+        while let Some(tile) = tiler.next() {
+            let start = Instant::now();
+            let gpu_time = run.draw(view, tile, &mut image)?;
+            let elapsed = milliseconds_since(start);
+            tiler.took(tile, elapsed);
+            milliseconds += gpu_time.unwrap_or(elapsed);
+            tiles += 1;
+            done += tile.pixels() as u64;
+            if progress(Progress { done, total }).is_break() {
+                return Err(RenderError::Cancelled);
+            }
+        }
+        Ok(Frame { image, milliseconds, clock, tiles })
+    }
+
+    /// What fits the limits of the adapter: a buffer, a binding, the workgroups of a row of tiles.
+    fn max_tile_pixels(&self) -> u32 {
+        let limits = self.gpu.device.limits();
+        let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        let fitting = bytes.saturating_sub(TIMESTAMP_BYTES) / PIXEL_BYTES as u64;
+        fitting.min(u64::from(MAX_TILE_PIXELS)) as u32
+    }
+
+    /// Runs one workgroup over an empty tile, because software drivers compile when they run.
+    fn dispatch_once(&self) -> Result<(), RenderError> {
+        let uniforms = vec![[0.0; 4]; self.uniform_count];
+        let mut run = Run::new(self, &uniforms)?;
+        run.make_room(WORKGROUP * WORKGROUP)?;
+        let empty = vec![0; VIEW_BYTES];
+        run.submit(&empty, [1, 1], 0)
+    }
+}
+
+/// The buffers of one frame.
+struct Run<'a> {
+    pipeline: &'a Pipeline,
+    view: wgpu::Buffer,
+    uniforms: Option<wgpu::Buffer>,
+    timestamps: Option<Timestamps>,
+    /// Grows with the tiles.
+    pixels: Option<PixelBuffers>,
+}
+
+struct PixelBuffers {
+    capacity: u32,
+    storage: wgpu::Buffer,
+    /// The pixels, then two timestamps.
+    staging: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+struct Timestamps {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    period_ns: f64,
+}
+
+impl<'a> Run<'a> {
+    fn new(pipeline: &'a Pipeline, uniforms: &[[f32; 4]]) -> Result<Self, RenderError> {
+        use wgpu::BufferUsages as Usage;
+        let gpu = &pipeline.gpu;
+        gpu.scoped("the frame's buffers", || {
+            let view = buffer(gpu, "view", VIEW_BYTES as u64, Usage::UNIFORM | Usage::COPY_DST);
+            let uniforms = (!uniforms.is_empty()).then(|| {
+                let bytes = uniform_bytes(uniforms);
+                let usage = Usage::UNIFORM | Usage::COPY_DST;
+                let uniforms = buffer(gpu, "uniforms", bytes.len() as u64, usage);
+                gpu.queue.write_buffer(&uniforms, 0, &bytes);
+                uniforms
+            });
+            let timestamps = gpu.has_timestamps().then(|| Timestamps::new(gpu));
+            Self { pipeline, view, uniforms, timestamps, pixels: None }
+        })
+    }
+
+    /// Makes the pixel buffers large enough.
+    fn make_room(&mut self, pixels: u32) -> Result<(), RenderError> {
+        use wgpu::BufferUsages as Usage;
+        if self.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
+            return Ok(());
+        }
+        self.pixels = None;
+        let gpu = &self.pipeline.gpu;
+        let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
+        let buffers = gpu.scoped("a tile's pixels", || {
+            let storage = buffer(gpu, "pixels", bytes, Usage::STORAGE | Usage::COPY_SRC);
+            let usage = Usage::MAP_READ | Usage::COPY_DST;
+            let staging = buffer(gpu, "staging", bytes + TIMESTAMP_BYTES, usage);
+            let bind_group = self.bind_group(&storage);
+            PixelBuffers { capacity: pixels, storage, staging, bind_group }
+        })?;
+        self.pixels = Some(buffers);
+        Ok(())
+    }
+
+    fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
+        let buffers = [(0, Some(&self.view)), (1, self.uniforms.as_ref()), (2, Some(storage))];
+        let entries: Vec<_> = buffers
+            .into_iter()
+            .filter_map(|(binding, buffer)| {
+                Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
+            })
+            .collect();
+        self.pipeline.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tile"),
+            layout: &self.pipeline.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Draws a tile into the image; its time in milliseconds where the adapter tells one.
+    fn draw(
+        &mut self,
+        view: &View,
+        tile: Tile,
+        image: &mut Image,
+    ) -> Result<Option<f64>, RenderError> {
+        let count = tile.pixels() as u32;
+        self.make_room(count.max(WORKGROUP * WORKGROUP))?;
+        let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
+        self.submit(&view_bytes(&view.block(tile)), groups, count)?;
+        self.read(tile, image)
+    }
+
+    /// Runs workgroups and copies the pixels that they made.
+    fn submit(&self, view: &[u8], groups: [u32; 2], pixels: u32) -> Result<(), RenderError> {
+        let Some(buffers) = &self.pixels else { return Ok(()) };
+        let gpu = &self.pipeline.gpu;
+        gpu.scoped("a tile", || {
+            gpu.queue.write_buffer(&self.view, 0, view);
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("tile"),
+                    timestamp_writes: self.timestamps.as_ref().map(Timestamps::about_a_pass),
+                });
+                pass.set_pipeline(&self.pipeline.pipeline);
+                pass.set_bind_group(0, &buffers.bind_group, &[]);
+                pass.dispatch_workgroups(groups[0], groups[1], 1);
+            }
+            let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
+            encoder.copy_buffer_to_buffer(&buffers.storage, 0, &buffers.staging, 0, bytes);
+            if let Some(timestamps) = &self.timestamps {
+                timestamps.resolve(&mut encoder, &buffers.staging, bytes);
+            }
+            gpu.queue.submit([encoder.finish()]);
+        })?;
+        gpu.wait()
+    }
+
+    /// Reads the pixels of a tile, and its time.
+    fn read(&self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
+        let Some(buffers) = &self.pixels else { return Ok(None) };
+        let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
+        let slice = buffers.staging.slice(..bytes + TIMESTAMP_BYTES);
+        let (sender, receiver) = mpsc::channel();
+        self.pipeline.gpu.scoped("reading a tile", || {
+            slice.map_async(wgpu::MapMode::Read, move |result| {
+                // The receiver waits below; it is gone only where the wait itself failed.
+                let _ = sender.send(result);
+            });
+        })?;
+        self.pipeline.gpu.wait()?;
+        let refused = |detail: String| RenderError::DeviceLost(format!("reading a tile: {detail}"));
+        match receiver.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(refused(error.to_string())),
+            Err(error) => return Err(refused(error.to_string())),
+        }
+        let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
+        let (pixels, times) = mapped.split_at(bytes as usize);
+        copy_tile(pixels, tile, image);
+        let time = self.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
+        drop(mapped);
+        buffers.staging.unmap();
+        Ok(time)
+    }
+}
+
+impl Timestamps {
+    fn new(gpu: &Gpu) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("tile times"),
+            ty: wgpu::QueryType::Timestamp,
+            count: 2,
+        });
+        let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC;
+        let resolved = buffer(gpu, "tile times", TIMESTAMP_BYTES, usage);
+        Self { queries, resolved, period_ns: f64::from(gpu.queue.get_timestamp_period()) }
+    }
+
+    fn about_a_pass(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        }
+    }
+
+    fn resolve(&self, encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer, offset: u64) {
+        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, TIMESTAMP_BYTES);
+    }
+
+    fn milliseconds(&self, bytes: &[u8]) -> f64 {
+        let tick = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_ne_bytes);
+        let (begin, end) = bytes.split_at(bytes.len() / 2);
+        tick(end).saturating_sub(tick(begin)) as f64 * self.period_ns * 1e-6
+    }
+}
+
+/// Copies the pixels of a tile, row by row, to their places.
+fn copy_tile(bytes: &[u8], tile: Tile, image: &mut Image) {
+    let width = image.size()[0] as usize;
+    let [x, y] = tile.origin.map(|first| first as usize);
+    let columns = tile.size[0] as usize;
+    let places: &mut [PixelBlock] = image.pixels_mut();
+    let rows = places.chunks_exact_mut(width).skip(y);
+    for (row, bytes) in rows.zip(bytes.chunks_exact(columns * PIXEL_BYTES)) {
+        let pixels = bytes.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes);
+        row.iter_mut().skip(x).zip(pixels).for_each(|(place, pixel)| *place = pixel);
+    }
+}
+
+fn bind_group_layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout {
+    let entry = |binding, kind, bytes: usize| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: kind,
+            has_dynamic_offset: false,
+            min_binding_size: NonZero::new(bytes as u64),
+        },
+        count: None,
+    };
+    let uniform = wgpu::BufferBindingType::Uniform;
+    let mut entries = vec![entry(0, uniform, VIEW_BYTES)];
+    if uniform_count > 0 {
+        entries.push(entry(1, uniform, uniform_count * UNIFORM_BYTES));
+    }
+    entries.push(entry(2, wgpu::BufferBindingType::Storage { read_only: false }, PIXEL_BYTES));
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("tile"),
+        entries: &entries,
+    })
+}
+
+fn compute_pipeline(
+    device: &wgpu::Device,
+    source: wgpu::ShaderSource<'_>,
+    layout: &wgpu::BindGroupLayout,
+) -> wgpu::ComputePipeline {
+    let module =
+        device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("scene"), source });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("scene"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("scene"),
+        layout: Some(&layout),
+        module: &module,
+        entry_point: Some("main"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+fn milliseconds_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}

@@ -1,0 +1,208 @@
+//! The figures of one rendering, in the form of `render --stats`.
+//!
+//! The keys are a promise to other tools: add some, rename none. A figure that cannot be had is null,
+//! and `why` of the object that holds it says the reason under the figure's key.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::{Image, PixelCounts};
+
+/// Reasons by the key of the missing figure.
+pub type Why = BTreeMap<&'static str, String>;
+
+/// What measured a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Clock {
+    /// Timestamps that the GPU wrote.
+    Gpu,
+    /// The clock of the machine, waiting included.
+    Wall,
+}
+
+/// The figures of one rendering.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stats {
+    /// Name of the adapter; null on the CPU.
+    pub adapter: Option<String>,
+    /// Name and version of its driver; null on the CPU.
+    pub driver: Option<String>,
+    /// `vulkan`, `metal`, `dx12` or `cpu`.
+    pub backend: String,
+    /// Ray method.
+    pub method: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Time of one frame without compilation.
+    pub frame_ms: FrameTimes,
+    /// Time of each stage of compilation.
+    pub compile_ms: CompileTimes,
+    /// From reading the scene to the first finished picture, in milliseconds.
+    pub first_picture_ms: Option<f64>,
+    /// Evaluations of the field, shadows included.
+    pub evals_per_pixel: EvaluationCounts,
+    /// Evaluations of leaves.
+    pub leaf_evals_per_pixel: LeafEvaluations,
+    /// How the rays ended.
+    pub pixels: PixelCounts,
+    /// Why figures of this object are null.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub why: Why,
+}
+
+/// Times of repeated frames, in milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FrameTimes {
+    /// The middle one; the mean of the middle two for an even number.
+    pub median: f64,
+    /// The shortest.
+    pub min: f64,
+    /// The longest.
+    pub max: f64,
+    /// How many frames.
+    pub n: usize,
+    /// What measured them.
+    pub clock: Clock,
+}
+
+impl FrameTimes {
+    /// Of one time or more; `None` of none.
+    pub fn of(times: &[f64], clock: Clock) -> Option<Self> {
+        let mut sorted = times.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let (min, max) = (*sorted.first()?, *sorted.last()?);
+        let n = sorted.len();
+        let median = (sorted.get((n - 1) / 2)? + sorted.get(n / 2)?) / 2.0;
+        Some(Self { median, min, max, n, clock })
+    }
+}
+
+/// Times of the stages of compilation, in milliseconds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CompileTimes {
+    /// Reading, parsing, elaborating.
+    pub front: Option<f64>,
+    /// Analyses and passes.
+    pub analyze: Option<f64>,
+    /// Lowering to the shader module and linking.
+    pub lower: Option<f64>,
+    /// Validating the module.
+    pub validate: Option<f64>,
+    /// Creating the pipeline, and a first dispatch of one workgroup: software drivers compile there.
+    pub pipeline: Option<f64>,
+    /// Why figures of this object are null.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub why: Why,
+}
+
+/// Evaluations of the field over the pixels of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct EvaluationCounts {
+    /// Mean.
+    pub mean: f64,
+    /// 99 of 100 pixels have at most so many.
+    pub p99: u32,
+    /// Most.
+    pub max: u32,
+}
+
+impl EvaluationCounts {
+    /// Of a picture.
+    pub fn of(image: &Image) -> Self {
+        let mut counts: Vec<u32> = image.pixels().iter().map(|pixel| pixel.evaluations).collect();
+        let sum: u64 = counts.iter().map(|count| u64::from(*count)).sum();
+        let max = counts.iter().copied().max().unwrap_or(0);
+        let rank = (counts.len() * 99).div_ceil(100).saturating_sub(1);
+        let p99 = match counts.get(rank) {
+            Some(_) => *counts.select_nth_unstable(rank).1,
+            None => 0,
+        };
+        Self { mean: sum as f64 / counts.len().max(1) as f64, p99, max }
+    }
+}
+
+/// Evaluations of leaves over the pixels of a picture.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct LeafEvaluations {
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Why `mean` is null.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub why: Why,
+}
+
+impl LeafEvaluations {
+    /// Where every evaluation of the field evaluates each of so many leaves.
+    pub fn of_all_leaves(evaluations: EvaluationCounts, leaves: usize) -> Self {
+        Self { mean: Some(evaluations.mean * leaves as f64), why: Why::new() }
+    }
+
+    /// Where they were not counted.
+    pub fn unknown(why: &str) -> Self {
+        Self { mean: None, why: Why::from([("mean", why.to_owned())]) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn median_of_odd_and_even_numbers_of_frames() {
+        let times = FrameTimes::of(&[3.0, 1.0, 8.0], Clock::Wall).unwrap();
+        assert_eq!((times.median, times.min, times.max, times.n), (3.0, 1.0, 8.0, 3));
+        let times = FrameTimes::of(&[4.0, 1.0, 2.0, 8.0], Clock::Gpu).unwrap();
+        assert_eq!(times.median, 3.0);
+        assert!(FrameTimes::of(&[], Clock::Gpu).is_none());
+    }
+
+    #[test]
+    fn evaluations_of_a_hundred_pixels() {
+        let mut image = Image::new([10, 10], 0.1).unwrap();
+        for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
+            pixel.evaluations = 100 - index as u32;
+        }
+        let counts = EvaluationCounts::of(&image);
+        assert_eq!(counts, EvaluationCounts { mean: 50.5, p99: 99, max: 100 });
+        let one = EvaluationCounts::of(&Image::new([1, 1], 0.1).unwrap());
+        assert_eq!(one, EvaluationCounts { mean: 0.0, p99: 0, max: 0 });
+    }
+
+    #[test]
+    fn keys_are_those_that_tools_read() {
+        let stats = Stats {
+            adapter: None,
+            driver: None,
+            backend: "cpu".to_owned(),
+            method: "sphere".to_owned(),
+            size: [2, 1],
+            frame_ms: FrameTimes::of(&[2.0], Clock::Wall).unwrap(),
+            compile_ms: CompileTimes {
+                front: Some(1.0),
+                why: Why::from([("pipeline", "drawn on the CPU".to_owned())]),
+                ..CompileTimes::default()
+            },
+            first_picture_ms: Some(3.5),
+            evals_per_pixel: EvaluationCounts { mean: 7.5, p99: 9, max: 9 },
+            leaf_evals_per_pixel: LeafEvaluations::unknown("not counted"),
+            pixels: PixelCounts { hit: 1, miss: 1, capped: 0, nan: 0 },
+            why: Why::from([("adapter", "drawn on the CPU".to_owned())]),
+        };
+        let expected = serde_json::json!({
+            "adapter": null, "driver": null, "backend": "cpu", "method": "sphere", "size": [2, 1],
+            "frame_ms": {"median": 2.0, "min": 2.0, "max": 2.0, "n": 1, "clock": "wall"},
+            "compile_ms": {
+                "front": 1.0, "analyze": null, "lower": null, "validate": null, "pipeline": null,
+                "why": {"pipeline": "drawn on the CPU"},
+            },
+            "first_picture_ms": 3.5,
+            "evals_per_pixel": {"mean": 7.5, "p99": 9, "max": 9},
+            "leaf_evals_per_pixel": {"mean": null, "why": {"mean": "not counted"}},
+            "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0},
+            "why": {"adapter": "drawn on the CPU"},
+        });
+        assert_eq!(serde_json::to_value(&stats).unwrap(), expected);
+    }
+}
