@@ -36,9 +36,8 @@ pub fn edges(image: &Image) -> Vec<bool> {
 }
 
 fn is_edge(image: &Image, x: u32, y: u32) -> bool {
-    let neighbour = |dx: i32, dy: i32| {
-        image.pixel(x.checked_add_signed(dx)?, y.checked_add_signed(dy)?)
-    };
+    let neighbour =
+        |dx: i32, dy: i32| image.pixel(x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
     let Some(center) = neighbour(0, 0) else { return false };
     // Opposite neighbours, so that a slanted plane, whose depth changes evenly, is no edge.
     [(1, 0), (0, 1), (1, 1), (1, -1)].into_iter().any(|(dx, dy)| {
@@ -74,8 +73,8 @@ pub fn compare(a: &Image, b: &Image) -> Option<Difference> {
             difference.depth = difference.depth.max(depth_difference(one, other));
         }
         for channel in 0..3 {
-            let step = linear_to_srgb8(one.color[channel])
-                .abs_diff(linear_to_srgb8(other.color[channel]));
+            let step =
+                linear_to_srgb8(one.color[channel]).abs_diff(linear_to_srgb8(other.color[channel]));
             difference.color = difference.color.max(step);
             color_sum += u64::from(step);
         }

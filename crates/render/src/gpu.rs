@@ -2,8 +2,6 @@
 
 use std::{borrow::Cow, num::NonZero, sync::mpsc, time::Instant};
 
-use sdfc_march::PixelBlock;
-
 use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
@@ -265,7 +263,7 @@ impl<'a> Run<'a> {
         }
         let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
         let (pixels, times) = mapped.split_at(bytes as usize);
-        copy_tile(pixels, tile, image);
+        image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
         let time = self.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
         drop(mapped);
         buffers.staging.unmap();
@@ -303,19 +301,6 @@ impl Timestamps {
         let tick = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_ne_bytes);
         let (begin, end) = bytes.split_at(bytes.len() / 2);
         tick(end).saturating_sub(tick(begin)) as f64 * self.period_ns * 1e-6
-    }
-}
-
-/// Copies the pixels of a tile, row by row, to their places.
-fn copy_tile(bytes: &[u8], tile: Tile, image: &mut Image) {
-    let width = image.size()[0] as usize;
-    let [x, y] = tile.origin.map(|first| first as usize);
-    let columns = tile.size[0] as usize;
-    let places: &mut [PixelBlock] = image.pixels_mut();
-    let rows = places.chunks_exact_mut(width).skip(y);
-    for (row, bytes) in rows.zip(bytes.chunks_exact(columns * PIXEL_BYTES)) {
-        let pixels = bytes.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes);
-        row.iter_mut().skip(x).zip(pixels).for_each(|(place, pixel)| *place = pixel);
     }
 }
 

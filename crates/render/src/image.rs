@@ -5,7 +5,7 @@ use std::io::Cursor;
 use image::ImageEncoder as _;
 use sdfc_march::PixelBlock;
 
-use crate::RenderError;
+use crate::{RenderError, Tile};
 
 /// Longest side of a picture in pixels.
 pub const MAX_SIDE: u32 = 16_384;
@@ -82,6 +82,17 @@ impl Image {
         let [width, height] = self.size;
         let index = y as usize * width as usize + x as usize;
         (x < width && y < height).then(|| self.pixels.get(index)).flatten()
+    }
+
+    /// Puts the pixels of a tile, row by row, in their places.
+    pub(crate) fn put(&mut self, tile: Tile, mut pixels: impl Iterator<Item = PixelBlock>) {
+        let [x, y] = tile.origin.map(|first| first as usize);
+        let [columns, rows] = tile.size.map(|side| side as usize);
+        for row in self.pixels.chunks_exact_mut(self.size[0] as usize).skip(y).take(rows) {
+            let places = row.iter_mut().skip(x).take(columns);
+            // The row decides how many pixels are taken.
+            places.for_each(|place| *place = pixels.next().unwrap_or_default());
+        }
     }
 
     /// How the rays ended.

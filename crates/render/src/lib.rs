@@ -1,17 +1,54 @@
 //! Headless rendering of sdfc shaders on wgpu, and on the CPU where there is no adapter.
+//!
+//! A [`View`] is one frame's camera, lights and limits as numbers. A [`Pipeline`] draws it with a
+//! program's shader on a [`Gpu`], a [`CpuScene`] with the program itself; both cut the picture into
+//! tiles, report progress after each, and give a [`Frame`]: an [`Image`] of linear colours, depths
+//! and counts, and the time that it took. [`compare`] tells how far two images differ, [`Stats`] is
+//! what `render --stats` prints. Nothing here opens files, prints, or panics on what it is given.
+//!
+//! ```
+//! use sdfc_graph::{Dim, Program, Unary, eval::FrameValues};
+//! use sdfc_render::{CpuScene, HIT, RenderOptions, View, unwatched};
+//!
+//! // A unit sphere: |p| - 1, with the gradient p / |p|.
+//! let mut program = Program::default();
+//! let graph = &mut program.graph;
+//! let p = graph.point(0, Dim::Three);
+//! let (length, radius) = (graph.length(p), graph.number(1.0));
+//! program.distance = Some(graph.sub(length, radius));
+//! program.gradient = Some(graph.unary(Unary::Normalize, p));
+//!
+//! let frame = FrameValues::defaults(&program.params);
+//! let view = View::new(&program, &frame, Some([[-1.0; 3], [1.0; 3]]), [32, 24])?;
+//! let scene = CpuScene::new(&program)?;
+//! let drawn = scene.render(&view, &frame, "auto", &RenderOptions::default(), &mut unwatched)?;
+//! assert_eq!(drawn.image.pixel(16, 12).map(|pixel| pixel.status), Some(HIT));
+//! let png: Vec<u8> = drawn.image.to_png()?;
+//! # assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Limits
+//!
+//! Pictures have up to 16,384 pixels a side and 2^26 in all, scenes up to 8 lights. The CPU renderer
+//! has the methods `sphere` and `auto`. A device that is lost while it is waited for makes wgpu
+//! panic; that is caught and becomes [`RenderError::DeviceLost`], but the panic hook is run.
 
 mod blocks;
 mod compare;
+mod cpu;
 mod device;
 mod error;
 mod frame;
 mod gpu;
 mod image;
 mod stats;
+pub mod testing;
 mod tiles;
 mod view;
 
 pub use compare::{Difference, compare, edges};
+pub use cpu::{CpuScene, Real};
 pub use device::{AdapterInfo, Gpu};
 pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, unwatched};
@@ -19,8 +56,6 @@ pub use gpu::Pipeline;
 pub use image::{
     CAPPED, HIT, Image, MAX_PIXELS, MAX_SIDE, MISS, PixelCounts, linear_to_srgb, linear_to_srgb8,
 };
-pub use stats::{
-    Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,
-};
+pub use stats::{Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};
 pub use view::{Bounds, View, ViewError, ViewLight};

@@ -14,6 +14,13 @@ impl Tile {
     pub fn pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
+
+    /// Column and row in the picture of its pixel at an index, row by row.
+    pub(crate) fn place(&self, index: usize) -> [u32; 2] {
+        let columns = self.size[0].max(1) as usize;
+        let [x, y] = [index % columns, index / columns].map(|offset| offset as u32);
+        [self.origin[0] + x, self.origin[1] + y]
+    }
 }
 
 /// How large tiles are.
@@ -120,7 +127,12 @@ mod tests {
     use super::*;
 
     /// Every tile of a picture, each said to take a time; checks that they cover it once.
-    fn cover(picture: [u32; 2], size: TileSize, most: u32, time: impl Fn(usize) -> f64) -> Vec<Tile> {
+    fn cover(
+        picture: [u32; 2],
+        size: TileSize,
+        most: u32,
+        time: impl Fn(usize) -> f64,
+    ) -> Vec<Tile> {
         let mut tiler = Tiler::new(picture, size, most);
         let mut seen = vec![0u8; picture[0] as usize * picture[1] as usize];
         let mut tiles = Vec::new();

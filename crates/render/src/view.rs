@@ -6,7 +6,10 @@
 use std::fmt;
 
 use glam::DVec3;
-use sdfc_graph::{Camera, Light, March, NodeId, Settings, Shadow};
+use sdfc_graph::{
+    Camera, Light, March, NodeId, Program, Settings, Shadow,
+    eval::{FrameValues, evaluate_frame},
+};
 use sdfc_march::{LightBlock, MAX_LIGHTS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
 
 use crate::tiles::Tile;
@@ -114,15 +117,31 @@ impl fmt::Display for ViewError {
 impl std::error::Error for ViewError {}
 
 impl View {
-    /// The view of one frame. `value` gives the lanes of a node of stage `Const` or `Frame` in this
-    /// frame. `bounds` of what is drawn limit the rays, and place the camera where the scene has
-    /// none: it sees the box from the right, above and in front, an unlimited side taken as long as
-    /// the longest limited one.
+    /// The view of one frame of a program. `bounds` of what is drawn limit the rays, and place the
+    /// camera where the scene has none: it sees the box from the right, above and in front, an
+    /// unlimited side taken as long as the longest limited one.
     ///
     /// # Errors
     ///
     /// [`ViewError`] where a setting's values make no picture.
     pub fn new(
+        program: &Program,
+        frame: &FrameValues,
+        bounds: Option<Bounds>,
+        size: [u32; 2],
+    ) -> Result<Self, ViewError> {
+        let settings = &program.settings;
+        let nodes = setting_nodes(settings);
+        let values = evaluate_frame(&program.graph, &nodes, frame);
+        let value = |id: NodeId| {
+            let found = nodes.iter().position(|node| *node == id);
+            found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])
+        };
+        Self::of_settings(settings, &value, bounds, size)
+    }
+
+    /// `value` gives the lanes of the settings' nodes.
+    fn of_settings(
         settings: &Settings,
         value: &dyn Fn(NodeId) -> [f64; 4],
         bounds: Option<Bounds>,
@@ -199,6 +218,18 @@ impl View {
             lights,
         }
     }
+}
+
+/// The nodes whose values a view needs.
+fn setting_nodes(settings: &Settings) -> Vec<NodeId> {
+    // Taken apart so that a new setting does not compile until it is thought of here.
+    let Settings { camera, lights, ambient, background, march: _ } = settings;
+    let camera = camera.iter().flat_map(|camera| {
+        let Camera { eye, target, up, fov } = *camera;
+        [eye, target, up, fov]
+    });
+    let lights = lights.iter().flat_map(|light| [light.direction, light.color]);
+    camera.chain(lights).chain(*ambient).chain(*background).collect()
 }
 
 /// Where the camera stands and how it looks.
@@ -297,11 +328,13 @@ impl Limits {
     }
 }
 
-/// To the farthest corner of the bounds, if they are finite and not empty.
+/// As far as the bounds' farthest corner, and from end to end of them for rays to a lamp, if they
+/// are finite and not empty.
 fn derived_distance(eye: DVec3, reach: f64, bounds: Option<Bounds>) -> f64 {
     let farthest = bounds.map(|[lo, hi]| {
         let (lo, hi) = (DVec3::from(lo), DVec3::from(hi));
-        if lo.cmple(hi).all() { (lo - eye).abs().max((hi - eye).abs()).length() } else { f64::NAN }
+        let farthest = (lo - eye).abs().max((hi - eye).abs()).length();
+        if lo.cmple(hi).all() { farthest.max((hi - lo).length()) } else { f64::NAN }
     });
     match farthest {
         Some(distance) if distance.is_finite() && distance > 0.0 => distance * DISTANCE_MARGIN,
@@ -353,21 +386,18 @@ fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sdfc_graph::Graph;
 
-    /// Settings whose nodes are constants, and their values.
-    struct Fixture {
-        graph: Graph,
-        settings: Settings,
-    }
+    /// A program that has only settings.
+    #[derive(Default)]
+    struct Fixture(Program);
 
     impl Fixture {
         fn new() -> Self {
-            Self { graph: Graph::new(), settings: Settings::default() }
+            Self::default()
         }
 
         fn vec3(&mut self, v: [f64; 3]) -> NodeId {
-            self.graph.constant(sdfc_graph::Type::Vec3, &v)
+            self.0.graph.constant(sdfc_graph::Type::Vec3, &v)
         }
 
         fn with_camera(eye: [f64; 3], target: [f64; 3], up: [f64; 3], degrees: f64) -> Self {
@@ -376,9 +406,9 @@ mod tests {
                 eye: fixture.vec3(eye),
                 target: fixture.vec3(target),
                 up: fixture.vec3(up),
-                fov: fixture.graph.number(degrees.to_radians()),
+                fov: fixture.0.graph.number(degrees.to_radians()),
             };
-            fixture.settings.camera = Some(camera);
+            fixture.0.settings.camera = Some(camera);
             fixture
         }
 
@@ -388,15 +418,11 @@ mod tests {
                 color: self.vec3([1.0, 0.5, 0.25]),
                 shadow,
             };
-            self.settings.lights.push(light);
+            self.0.settings.lights.push(light);
         }
 
         fn view(&self, bounds: Option<Bounds>, size: [u32; 2]) -> Result<View, ViewError> {
-            let value = |id| match self.graph.node(id) {
-                sdfc_graph::Node::Const(value) => value.lanes(),
-                other => panic!("not a constant: {other:?}"),
-            };
-            View::new(&self.settings, &value, bounds, size)
+            View::new(&self.0, &FrameValues::default(), bounds, size)
         }
     }
 
@@ -480,7 +506,7 @@ mod tests {
         assert_eq!(camera().view(None, [10, 10]).unwrap().t_max, 1000.0);
 
         let mut stated = camera();
-        stated.settings.march =
+        stated.0.settings.march =
             March { steps: Some(50), epsilon: Some(0.01), distance: Some(20.0), method: None };
         let stated = stated.view(Some(UNIT), [10, 10]).unwrap();
         assert_eq!((stated.steps, stated.epsilon, stated.t_max), (50, 0.01, 20.0));
@@ -505,9 +531,9 @@ mod tests {
         assert_eq!(error(&fixture), ViewError::TooManyLights(MAX_LIGHTS + 1));
 
         let mut fixture = Fixture::new();
-        fixture.settings.march.distance = Some(-3.0);
+        fixture.0.settings.march.distance = Some(-3.0);
         assert_eq!(error(&fixture), ViewError::NotPositive("march's distance", -3.0));
-        fixture.settings.march = March { steps: Some(0), ..March::default() };
+        fixture.0.settings.march = March { steps: Some(0), ..March::default() };
         assert_eq!(error(&fixture), ViewError::NotPositive("march's steps", 0.0));
     }
 

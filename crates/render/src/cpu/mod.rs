@@ -1,0 +1,269 @@
+//! The CPU renderer: for machines without an adapter, and the check of the shader.
+//!
+//! A second implementation of `sphere` and `auto` and of the shading, on purpose: it shares the
+//! scene's formula with the shader and nothing else. It works in waves: all rays of a group of
+//! pixels from the eye, then normals and materials of all hits, then all rays to a lamp.
+
+mod shade;
+mod trace;
+
+pub use trace::Real;
+
+use std::time::Instant;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use sdfc_graph::{
+    Program,
+    eval::{FrameValues, Packet, Tape, TapeError},
+};
+use sdfc_march::PixelBlock;
+
+use crate::{
+    Clock, Frame, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View, ViewLight,
+    frame::unwatched,
+    image::{HIT, check_size},
+    tiles::Tiler,
+};
+use shade::{Paint, Surface};
+use trace::{Batch, Limits, Method, Ray, Trace, trace, values_at};
+
+/// Pixels that one thread takes at a time.
+const GROUP: usize = 512;
+/// Most pixels of a tile; threads wait for each other at its end.
+const MAX_TILE_PIXELS: u32 = 1 << 20;
+
+/// A program made ready for the CPU.
+#[derive(Clone, Debug)]
+pub struct CpuScene {
+    field: Tape,
+    gradient: Option<Tape>,
+    material: Option<Tape>,
+}
+
+impl CpuScene {
+    /// Of a program.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::NothingDrawn`], [`RenderError::Evaluator`] if the program is not flat.
+    pub fn new(program: &Program) -> Result<Self, RenderError> {
+        let distance = program.distance.ok_or(RenderError::NothingDrawn)?;
+        let refused = |error: TapeError| RenderError::Evaluator(error.to_string());
+        let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
+        Ok(Self {
+            field: tape(&[distance])?,
+            gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
+            material: program.material.map(|fields| tape(&fields)).transpose()?,
+        })
+    }
+
+    /// Draws a frame in f32. The methods are `sphere` and `auto`.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::MethodNotOnCpu`], [`RenderError::Size`], [`RenderError::OutOfMemory`],
+    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient.
+    pub fn render(
+        &self,
+        view: &View,
+        frame: &FrameValues,
+        method: &str,
+        options: &RenderOptions,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
+        if self.gradient.is_none() {
+            return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
+        }
+        let method = Method::of_name(method)?;
+        self.draw(view, options, progress, &self.wave::<f32>(view, frame, method, true))
+    }
+
+    /// Depth, status and evaluations of the rays from the eye, without colours, marched in `T`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::render`], but a gradient is not needed.
+    pub fn depth_map<T: Real>(
+        &self,
+        view: &View,
+        frame: &FrameValues,
+        method: &str,
+    ) -> Result<Image, RenderError> {
+        let wave = self.wave::<T>(view, frame, Method::of_name(method)?, false);
+        Ok(self.draw(view, &RenderOptions::default(), &mut unwatched, &wave)?.image)
+    }
+
+    fn wave<'a, T: Real>(
+        &'a self,
+        view: &'a View,
+        frame: &FrameValues,
+        method: Method,
+        shaded: bool,
+    ) -> Wave<'a, T> {
+        let prepare = |tape: &'a Tape| tape.prepare::<Packet<T, { trace::LANES }>>(frame);
+        Wave {
+            view,
+            limits: Limits { method, epsilon: T::constant(view.epsilon), steps: view.steps },
+            field: prepare(&self.field),
+            gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
+            material: self.material.as_ref().filter(|_| shaded).map(prepare),
+        }
+    }
+
+    fn draw<T: Real>(
+        &self,
+        view: &View,
+        options: &RenderOptions,
+        progress: &mut OnProgress<'_>,
+        wave: &Wave<'_, T>,
+    ) -> Result<Frame, RenderError> {
+        check_size(view.size)?;
+        let mut image = Image::new(view.size, view.pixel_radius() as f32)?;
+        let mut tiler = Tiler::new(view.size, options.tile_size, MAX_TILE_PIXELS);
+        let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
+        let total = image.pixels().len() as u64;
+        while let Some(tile) = tiler.next() {
+            let start = Instant::now();
+            image.put(tile, draw_tile(wave, tile).into_iter());
+            let elapsed = start.elapsed().as_secs_f64() * 1e3;
+            tiler.took(tile, elapsed);
+            milliseconds += elapsed;
+            tiles += 1;
+            done += tile.pixels() as u64;
+            if progress(Progress { done, total }).is_break() {
+                return Err(RenderError::Cancelled);
+            }
+        }
+        Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles })
+    }
+}
+
+/// The pixels of a tile, drawn by all threads.
+fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<PixelBlock> {
+    let mut pixels = vec![PixelBlock::default(); tile.pixels()];
+    pixels.par_chunks_mut(GROUP).enumerate().for_each_init(
+        || wave.clone(),
+        |wave, (group, pixels)| {
+            let places: Vec<[u32; 2]> =
+                (0..pixels.len()).map(|index| tile.place(group * GROUP + index)).collect();
+            pixels.copy_from_slice(&wave.pixels(&places));
+        },
+    );
+    pixels
+}
+
+/// What one thread needs to draw groups of pixels.
+#[derive(Clone)]
+struct Wave<'a, T> {
+    view: &'a View,
+    limits: Limits<T>,
+    field: Batch<'a, T>,
+    /// `None`: depths only.
+    gradient: Option<Batch<'a, T>>,
+    material: Option<Batch<'a, T>>,
+}
+
+/// A ray from the eye that met something.
+struct Meeting<T> {
+    /// Position in the group.
+    pixel: usize,
+    ray: Ray<T>,
+    t: T,
+    surface: Surface,
+}
+
+impl<T: Real> Wave<'_, T> {
+    fn pixels(&mut self, places: &[[u32; 2]]) -> Vec<PixelBlock> {
+        let rays: Vec<Ray<T>> = places.iter().map(|place| self.camera_ray(*place)).collect();
+        let traces = trace(&mut self.field, &rays, &self.limits);
+        let mut evaluations: Vec<u32> = traces.iter().map(|trace| trace.evaluations).collect();
+        let mut colors = vec![self.view.background; places.len()];
+        for meeting in self.meetings(&rays, &traces) {
+            colors[meeting.pixel] = meeting.surface.ambient(self.view.ambient);
+            self.light(&meeting, &mut colors[meeting.pixel], &mut evaluations[meeting.pixel]);
+        }
+        let blocks = traces.iter().zip(colors).zip(evaluations);
+        blocks.map(|((trace, color), count)| self.block(trace, color, count)).collect()
+    }
+
+    fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
+        let view = self.view;
+        let number = |value: DVec3| value.to_array().map(T::constant);
+        Ray {
+            origin: number(view.eye),
+            direction: number(view.ray_direction(x, y)),
+            t_max: T::constant(view.t_max),
+            radius: T::constant(0.0),
+            spread: T::constant(view.pixel_radius()),
+        }
+    }
+
+    /// Normals and materials where rays met something.
+    fn meetings(&mut self, rays: &[Ray<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
+        let Some(gradient) = &mut self.gradient else { return Vec::new() };
+        let hits: Vec<usize> = (0..traces.len()).filter(|i| traces[*i].status == HIT).collect();
+        let points: Vec<[T; 3]> = hits.iter().map(|i| rays[*i].at(traces[*i].t)).collect();
+        let gradients = values_at(gradient, &points);
+        let materials = self.material.as_mut().map(|material| values_at(material, &points));
+        let meeting = |(index, pixel): (usize, usize)| {
+            let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
+            let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
+            let ray = rays[pixel];
+            let toward_eye = -vector(ray.direction);
+            let surface = Surface::new(DVec3::new(x, y, z), toward_eye, paint);
+            Meeting { pixel, ray, t: traces[pixel].t, surface }
+        };
+        hits.into_iter().enumerate().map(meeting).collect()
+    }
+
+    /// Adds the lamps that reach a surface, and the evaluations that it took to know.
+    fn light(&mut self, meeting: &Meeting<T>, color: &mut DVec3, evaluations: &mut u32) {
+        let lights: Vec<(ViewLight, DVec3)> =
+            self.view.lights.iter().map(|light| (*light, meeting.surface.lit(light))).collect();
+        let dark = |lit: &DVec3| lit.cmple(DVec3::ZERO).all();
+        let asked = |(light, lit): &&(ViewLight, DVec3)| light.shadow && !dark(lit);
+        let rays: Vec<Ray<T>> =
+            lights.iter().filter(asked).map(|(light, _)| self.lamp_ray(meeting, light)).collect();
+        let mut shadows = trace(&mut self.field, &rays, &self.limits).into_iter();
+        for light in &lights {
+            let trace = if asked(&light) { shadows.next() } else { None };
+            *evaluations += trace.map_or(0, |trace| trace.evaluations);
+            if trace.is_none_or(|trace| trace.status != HIT) {
+                *color += light.1;
+            }
+        }
+    }
+
+    /// From a surface towards a lamp, lifted off the surface by more than its hit's tolerance.
+    fn lamp_ray(&self, meeting: &Meeting<T>, light: &ViewLight) -> Ray<T> {
+        let Meeting { ray, t, surface, .. } = meeting;
+        let near = self.limits.tolerance(ray, *t).max(ray.rounding(*t));
+        let lift = (T::constant(3.0) * near).max(ray.footprint(*t));
+        let point = ray.at(*t);
+        let normal = surface.normal.to_array().map(T::constant);
+        Ray {
+            origin: std::array::from_fn(|axis| point[axis] + lift * normal[axis]),
+            direction: light.direction.to_array().map(T::constant),
+            t_max: T::constant(self.view.t_max),
+            radius: T::constant(0.5) * lift,
+            spread: T::constant(0.0),
+        }
+    }
+
+    fn block(&self, trace: &Trace<T>, color: DVec3, evaluations: u32) -> PixelBlock {
+        let t: f64 = trace.t.into();
+        let depth = if t > self.view.t_max { self.view.t_max } else { t };
+        PixelBlock {
+            color: color.as_vec3().extend(1.0).to_array(),
+            depth: depth as f32,
+            status: trace.status,
+            evaluations,
+            primary_evaluations: trace.evaluations,
+        }
+    }
+}
+
+fn vector<T: Real>(lanes: [T; 3]) -> DVec3 {
+    DVec3::from(lanes.map(Into::into))
+}

@@ -1,0 +1,249 @@
+//! Marching rays on the CPU, several at a time.
+
+use std::ops::{Add, Mul, Sub};
+
+use sdfc_graph::eval::{Evaluator, Number, Packet};
+
+use crate::{
+    RenderError,
+    image::{CAPPED, HIT, MISS},
+};
+
+/// Points evaluated together: enough that decoding an instruction costs little beside running it.
+pub(super) const LANES: usize = 8;
+
+/// An evaluator of [`LANES`] points at a time.
+pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;
+
+/// What rays are marched in: f32, as the shader does, or f64.
+pub trait Real:
+    Number
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Into<f64>
+    + Send
+    + Sync
+{
+}
+
+impl Real for f32 {}
+impl Real for f64 {}
+
+/// The ray methods that the CPU has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Method {
+    /// Steps as long as the distance, up to an absolute tolerance.
+    Sphere,
+    /// Steps as long as the distance up to a quarter of a pixel, then closing in on a sign change.
+    Auto,
+}
+
+impl Method {
+    pub(super) fn of_name(name: &str) -> Result<Self, RenderError> {
+        match name {
+            "sphere" => Ok(Self::Sphere),
+            "auto" => Ok(Self::Auto),
+            _ => Err(RenderError::MethodNotOnCpu(name.to_owned())),
+        }
+    }
+}
+
+/// A ray with the cone that its pixel sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray<T> {
+    pub(super) origin: [T; 3],
+    /// Of unit length.
+    pub(super) direction: [T; 3],
+    pub(super) t_max: T,
+    /// Radius of the cone at the origin, and its growth per length.
+    pub(super) radius: T,
+    pub(super) spread: T,
+}
+
+/// Rounding of a point relative to its distance from the scene's origin: eight units in the last
+/// place of f32, also in f64, where the same tolerances are wanted.
+const ROUNDING: f64 = 1e-6;
+
+impl<T: Real> Ray<T> {
+    pub(super) fn at(&self, t: T) -> [T; 3] {
+        std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
+    }
+
+    /// Radius of the cone.
+    pub(super) fn footprint(&self, t: T) -> T {
+        self.radius + self.spread * t
+    }
+
+    /// How far rounding may move a point of the ray.
+    pub(super) fn rounding(&self, t: T) -> T {
+        let [x, y, z] = self.origin;
+        T::constant(ROUNDING) * ((x * x + y * y + z * z).sqrt() + t)
+    }
+}
+
+/// What limits all rays of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits<T> {
+    pub(super) method: Method,
+    pub(super) epsilon: T,
+    pub(super) steps: u32,
+}
+
+impl<T: Real> Limits<T> {
+    /// How near to the surface a hit is.
+    pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
+        match self.method {
+            Method::Sphere => self.epsilon,
+            Method::Auto => {
+                let quarter = T::constant(0.5) * ray.footprint(t);
+                quarter.max(ray.rounding(t))
+            }
+        }
+    }
+}
+
+/// How a ray ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Trace<T> {
+    pub(super) t: T,
+    /// One of `MISS`, `HIT`, `CAPPED`.
+    pub(super) status: u32,
+    pub(super) evaluations: u32,
+}
+
+/// A ray on its way.
+#[derive(Clone, Copy)]
+struct Walk<T> {
+    ray: Ray<T>,
+    t: T,
+    evaluations: u32,
+    /// Last place outside and first place inside, with the distances there (`auto`).
+    outside: Option<(T, T)>,
+    inside: Option<(T, T)>,
+}
+
+/// What a sample of the field decides.
+enum Turn<T> {
+    Onward(T),
+    Hit(T),
+}
+
+impl<T: Real> Walk<T> {
+    fn new(ray: Ray<T>) -> Self {
+        Self { ray, t: T::constant(0.0), evaluations: 0, outside: None, inside: None }
+    }
+
+    fn ends(&self, t: T, status: u32) -> Option<Trace<T>> {
+        Some(Trace { t, status, evaluations: self.evaluations })
+    }
+
+    /// Takes the distance at the current place: either the ray has ended, or it has moved.
+    fn see(&mut self, distance: T, limits: &Limits<T>) -> Option<Trace<T>> {
+        self.evaluations += 1;
+        let turn = match limits.method {
+            Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
+            Method::Sphere => Turn::Onward(self.t + distance),
+            Method::Auto => self.auto(distance, limits.tolerance(&self.ray, self.t)),
+        };
+        match turn {
+            Turn::Hit(t) => return self.ends(t, HIT),
+            Turn::Onward(t) => self.t = t,
+        }
+        // A place that is no number ends the ray too.
+        let within = self.inside.is_some() || self.t <= self.ray.t_max;
+        if !within {
+            self.ends(self.t, MISS)
+        } else if self.evaluations >= limits.steps {
+            self.ends(self.t, CAPPED)
+        } else {
+            None
+        }
+    }
+
+    fn auto(&mut self, distance: T, near: T) -> Turn<T> {
+        let zero = T::constant(0.0);
+        match self.outside {
+            None if self.inside.is_none() && distance < near => return Turn::Hit(self.t),
+            Some(before) if distance.abs() < near => {
+                return Turn::Hit(self.secant(before, distance));
+            }
+            Some(_) | None => {}
+        }
+        if distance < zero {
+            self.inside = Some((self.t, distance));
+        } else {
+            self.outside = Some((self.t, distance));
+        }
+        let (Some((last, above)), Some((first, below))) = (self.outside, self.inside) else {
+            return Turn::Onward(self.t + distance);
+        };
+        if first - last < near {
+            return Turn::Hit(first);
+        }
+        // Where a line through both samples is zero, but within the middle 8 tenths.
+        let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
+        Turn::Onward(last + part * (first - last))
+    }
+
+    /// Where a line through the last two samples is zero; at most four times the distance away.
+    fn secant(&self, (t, distance): (T, T), here: T) -> T {
+        let slope = (distance - here).div(self.t - t);
+        if slope > T::constant(0.0) {
+            self.t + here.div(slope.max(T::constant(0.25)))
+        } else {
+            self.t
+        }
+    }
+}
+
+/// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
+pub(super) fn trace<T: Real>(
+    field: &mut Batch<'_, T>,
+    rays: &[Ray<T>],
+    limits: &Limits<T>,
+) -> Vec<Trace<T>> {
+    let lost = Trace { t: T::constant(f64::NAN), status: MISS, evaluations: 0 };
+    let mut traces = vec![lost; rays.len()];
+    let mut waiting = rays.iter().copied().map(Walk::new).enumerate();
+    let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());
+    let mut points = [[T::constant(0.0); 3]; LANES];
+    while lanes.iter().any(Option::is_some) {
+        for (point, lane) in points.iter_mut().zip(&lanes) {
+            if let Some((_, walk)) = lane {
+                *point = walk.ray.at(walk.t);
+            }
+        }
+        let Packet(distances) = field.scalar(packed(&points));
+        for (lane, distance) in lanes.iter_mut().zip(distances) {
+            let Some((index, walk)) = lane else { continue };
+            if let Some(ended) = walk.see(distance, limits) {
+                traces[*index] = ended;
+                *lane = waiting.next();
+            }
+        }
+    }
+    traces
+}
+
+/// Values of a tape at points, in their order: for each point one array of lanes per root.
+pub(super) fn values_at<T: Real>(
+    evaluator: &mut Batch<'_, T>,
+    points: &[[T; 3]],
+) -> Vec<Vec<[f64; 4]>> {
+    let mut values = Vec::with_capacity(points.len());
+    for group in points.chunks(LANES) {
+        let mut filled = [[T::constant(0.0); 3]; LANES];
+        filled[..group.len()].copy_from_slice(group);
+        let roots = evaluator.eval(packed(&filled));
+        values.extend((0..group.len()).map(|lane| {
+            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
+        }));
+    }
+    values
+}
+
+fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
+    std::array::from_fn(|axis| Packet(points.map(|point| point[axis])))
+}

@@ -1,0 +1,119 @@
+//! Small programs built by hand, and the views that the tests look at them through.
+#![allow(dead_code, reason = "each test target uses some of them")]
+
+use sdfc_graph::{
+    Camera, Dim, Graph, Light, NodeId, Program, Shadow, Type, Unary, eval::FrameValues,
+};
+use sdfc_render::{Bounds, View};
+
+/// Distance and gradient in a growing graph.
+struct Field {
+    distance: NodeId,
+    gradient: NodeId,
+}
+
+fn point(graph: &mut Graph) -> NodeId {
+    graph.point(0, Dim::Three)
+}
+
+fn sphere_field(graph: &mut Graph, center: [f64; 3], radius: f64) -> Field {
+    let (p, center) = (point(graph), graph.constant(Type::Vec3, &center));
+    let offset = graph.sub(p, center);
+    let (length, radius) = (graph.length(offset), graph.number(radius));
+    let distance = graph.sub(length, radius);
+    Field { distance, gradient: graph.unary(Unary::Normalize, offset) }
+}
+
+fn floor_field(graph: &mut Graph, height: f64) -> Field {
+    let (p, height) = (point(graph), graph.number(height));
+    let y = graph.component(p, 1);
+    let distance = graph.sub(y, height);
+    Field { distance, gradient: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]) }
+}
+
+fn program(build: impl FnOnce(&mut Graph) -> Field) -> Program {
+    let mut program = Program::default();
+    let field = build(&mut program.graph);
+    program.distance = Some(field.distance);
+    program.gradient = Some(field.gradient);
+    program
+}
+
+/// A unit sphere about the origin, seen from [0, 0, 5] with 40 degrees.
+pub fn sphere() -> Program {
+    let mut program = program(|graph| sphere_field(graph, [0.0; 3], 1.0));
+    look_from(&mut program, [0.0, 0.0, 5.0]);
+    program
+}
+
+/// A unit sphere above a floor at -1, a lamp overhead that casts shadows, some ambient light.
+pub fn sphere_above_floor() -> Program {
+    let mut program = program(|graph| {
+        let (sphere, floor) = (sphere_field(graph, [0.0, 0.5, 0.0], 1.0), floor_field(graph, -1.0));
+        let nearer = graph.le(sphere.distance, floor.distance);
+        Field {
+            distance: graph.min(sphere.distance, floor.distance),
+            gradient: graph.select(nearer, sphere.gradient, floor.gradient),
+        }
+    });
+    look_from(&mut program, [1.0, 1.0, 5.0]);
+    let graph = &mut program.graph;
+    let light = Light {
+        direction: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]),
+        color: graph.constant(Type::Vec3, &[1.0, 0.5, 0.25]),
+        shadow: Shadow::Hard,
+    };
+    program.settings.ambient = Some(graph.constant(Type::Vec3, &[0.1; 3]));
+    program.settings.background = Some(graph.constant(Type::Vec3, &[0.0, 0.0, 1.0]));
+    program.settings.lights.push(light);
+    program
+}
+
+/// The unit sphere, painted red, half mirroring.
+pub fn painted_sphere() -> Program {
+    let mut program = sphere();
+    let graph = &mut program.graph;
+    let red = graph.constant(Type::Vec3, &[0.8, 0.1, 0.1]);
+    let black = graph.constant(Type::Vec3, &[0.0; 3]);
+    let [one, half, third] = [1.0, 0.5, 0.3].map(|value| graph.number(value));
+    program.material = Some([red, one, third, half, black, one]);
+    program
+}
+
+/// The unit sphere, not a number where x is negative.
+pub fn half_undefined() -> Program {
+    let mut program = sphere();
+    let graph = &mut program.graph;
+    let p = point(graph);
+    let x = graph.component(p, 0);
+    let (root, little) = (graph.unary(Unary::Sqrt, x), graph.number(1e-9));
+    let nothing = graph.mul(root, little);
+    program.distance = program.distance.map(|distance| graph.add(distance, nothing));
+    program
+}
+
+fn look_from(program: &mut Program, eye: [f64; 3]) {
+    let graph = &mut program.graph;
+    program.settings.camera = Some(Camera {
+        eye: graph.constant(Type::Vec3, &eye),
+        target: graph.constant(Type::Vec3, &[0.0; 3]),
+        up: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]),
+        fov: graph.number(40f64.to_radians()),
+    });
+}
+
+/// Bounds of the unit sphere.
+pub const UNIT: Bounds = [[-1.0; 3], [1.0; 3]];
+
+/// The view of a program's first frame.
+pub fn view(program: &Program, size: [u32; 2]) -> View {
+    View::new(program, &FrameValues::default(), None, size).unwrap()
+}
+
+/// Distance from [0, 0, 5] to the unit sphere along a ray; `None` if it passes by.
+pub fn depth_of_sphere(view: &View, x: u32, y: u32) -> Option<f64> {
+    let direction = view.ray_direction(x, y);
+    let along = -view.eye.dot(direction);
+    let square = along * along - (view.eye.length_squared() - 1.0);
+    (square >= 0.0).then(|| along - square.sqrt())
+}

@@ -1,0 +1,179 @@
+//! The CPU renderer against closed forms, and f32 against f64.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use sdfc_graph::{Program, eval::FrameValues};
+use sdfc_render::{
+    CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
+    TileSize, compare, edges, unwatched,
+};
+
+fn draw(program: &Program, size: [u32; 2], method: &str, tile_size: TileSize) -> Frame {
+    let view = common::view(program, size);
+    let options = RenderOptions { tile_size };
+    CpuScene::new(program)
+        .unwrap()
+        .render(&view, &FrameValues::default(), method, &options, &mut unwatched)
+        .unwrap()
+}
+
+fn depths<T: Real>(program: &Program, size: [u32; 2], method: &str) -> Image {
+    let view = common::view(program, size);
+    let scene = CpuScene::new(program).unwrap();
+    scene.depth_map::<T>(&view, &FrameValues::default(), method).unwrap()
+}
+
+#[test]
+fn a_sphere_lies_where_the_quadratic_formula_says() {
+    let program = common::sphere();
+    let view = common::view(&program, [64, 64]);
+    for method in ["sphere", "auto"] {
+        for image in
+            [depths::<f32>(&program, [64, 64], method), depths::<f64>(&program, [64, 64], method)]
+        {
+            let edge = edges(&image);
+            assert!(edge.iter().filter(|edge| **edge).count() < 64 * 64 / 8);
+            for (index, pixel) in image.pixels().iter().enumerate().filter(|(i, _)| !edge[*i]) {
+                let expected = common::depth_of_sphere(&view, index as u32 % 64, index as u32 / 64);
+                assert_eq!(pixel.status, if expected.is_some() { HIT } else { MISS });
+                let Some(depth) = expected else { continue };
+                // `auto` promises a quarter of a pixel, `sphere` the tolerance of the view.
+                let quarter = 0.5 * view.pixel_radius() * depth;
+                let limit = if method == "auto" { quarter } else { 1e-3 };
+                let error = (f64::from(pixel.depth) - depth).abs();
+                assert!(error < limit, "{method}: off by {error}");
+            }
+        }
+    }
+}
+
+#[test]
+fn f32_and_f64_agree_outside_edges() {
+    for program in [common::sphere(), common::sphere_above_floor()] {
+        for method in ["sphere", "auto"] {
+            let single = depths::<f32>(&program, [64, 64], method);
+            let double = depths::<f64>(&program, [64, 64], method);
+            let difference = compare(&single, &double).unwrap();
+            assert!(difference.depth < 1e-3 && difference.status == 0, "{difference:?}");
+            assert!(difference.compared > 3000, "{difference:?}");
+        }
+    }
+}
+
+#[test]
+fn tiles_of_any_size_give_the_same_picture() {
+    let program = common::sphere_above_floor();
+    let whole = draw(&program, [61, 47], "auto", TileSize::Fixed([61, 47]));
+    assert_eq!(whole.tiles, 1);
+    for tile in [[7, 5], [61, 1], [1, 47], [64, 3]] {
+        let tiled = draw(&program, [61, 47], "auto", TileSize::Fixed(tile));
+        assert!(tiled.tiles > 1);
+        assert_eq!(tiled.image, whole.image, "{tile:?}");
+    }
+}
+
+#[test]
+fn a_lamp_overhead_throws_the_spheres_shadow_on_the_floor() {
+    let frame = draw(&common::sphere_above_floor(), [96, 64], "auto", TileSize::default());
+    let view = common::view(&common::sphere_above_floor(), [96, 64]);
+    let (mut lit, mut shadowed) = (0, 0);
+    for (index, pixel) in frame.image.pixels().iter().enumerate() {
+        let [x, y] = [index as u32 % 96, index as u32 / 96];
+        let point = view.eye + view.ray_direction(x, y) * f64::from(pixel.depth);
+        if pixel.status != HIT || (point.y + 1.0).abs() > 1e-3 {
+            continue;
+        }
+        let away = point.x.hypot(point.z);
+        let expected = match away {
+            _ if away < 0.95 => 0.8 * 0.1,
+            _ if away > 1.05 => 0.8 * 1.1,
+            _ => continue,
+        };
+        if away < 1.0 {
+            shadowed += 1
+        } else {
+            lit += 1
+        }
+        assert!((f64::from(pixel.color[0]) - expected).abs() < 1e-3, "{point}: {:?}", pixel.color);
+        assert!(pixel.evaluations > pixel.primary_evaluations);
+    }
+    assert!(lit > 500 && shadowed > 100, "{lit} lit, {shadowed} in shadow");
+}
+
+#[test]
+fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
+    let frame = draw(&common::sphere_above_floor(), [16, 16], "sphere", TileSize::default());
+    let sky = frame.image.pixel(0, 0).unwrap();
+    assert_eq!((sky.status, sky.color), (MISS, [0.0, 0.0, 1.0, 1.0]));
+
+    // Facing the head light: half of the red is matt, the lobe's peak is (s + 8) / 8 at s = 2 / 0.3^4 - 2.
+    let frame = draw(&common::painted_sphere(), [33, 33], "sphere", TileSize::default());
+    let middle = frame.image.pixel(16, 16).unwrap();
+    let peak = (2.0 / 0.3f64.powi(4) - 2.0 + 8.0) / 8.0;
+    let expected = [0.8, 0.1].map(|c| c * 0.5 + (0.04 + c) / 2.0 * peak);
+    for (channel, expected) in middle.color.iter().zip(expected) {
+        assert!((f64::from(*channel) - expected).abs() < 1e-3 * peak, "{:?}", middle.color);
+    }
+}
+
+#[test]
+fn a_field_that_is_not_a_number_is_counted() {
+    for method in ["sphere", "auto"] {
+        let counts = draw(&common::half_undefined(), [40, 40], method, TileSize::default());
+        let counts = counts.image.counts();
+        assert_eq!(counts.nan, 800, "{method}: {counts:?}");
+        assert!(counts.hit > 100 && counts.capped == 0, "{method}: {counts:?}");
+    }
+}
+
+#[test]
+fn rays_out_of_steps_are_capped() {
+    let mut program = common::sphere_above_floor();
+    program.settings.march.steps = Some(3);
+    let frame = draw(&program, [32, 32], "sphere", TileSize::default());
+    let counts = frame.image.counts();
+    assert!(counts.capped > 100, "{counts:?}");
+    let longest = frame.image.pixels().iter().map(|pixel| pixel.primary_evaluations).max();
+    assert_eq!(longest, Some(3));
+    let capped = frame.image.pixels().iter().find(|pixel| pixel.status == CAPPED);
+    assert!(capped.is_some_and(|pixel| pixel.color == [0.0, 0.0, 1.0, 1.0]));
+}
+
+#[test]
+fn odd_sizes_are_drawn_and_impossible_ones_refused() {
+    for size in [[1, 1], [4097, 3]] {
+        let frame = draw(&common::sphere(), size, "sphere", TileSize::default());
+        assert_eq!(frame.image.size(), size);
+        let pixel = frame.image.pixel(size[0] / 2, size[1] / 2).unwrap();
+        assert_eq!(pixel.status, HIT);
+    }
+    let program = common::sphere();
+    let scene = CpuScene::new(&program).unwrap();
+    let view = common::view(&program, [0, 4]);
+    let error = scene.depth_map::<f32>(&view, &FrameValues::default(), "sphere").unwrap_err();
+    assert_eq!(error, RenderError::Size([0, 4]));
+}
+
+#[test]
+fn faults_of_the_call_are_errors() {
+    let program = common::sphere();
+    let (view, frame) = (common::view(&program, [64, 64]), FrameValues::default());
+    let scene = CpuScene::new(&program).unwrap();
+    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
+    let error = scene.render(&view, &frame, "fixed", &options, &mut unwatched).unwrap_err();
+    assert_eq!(error, RenderError::MethodNotOnCpu("fixed".to_owned()));
+
+    let mut calls = 0;
+    let mut stop = |progress: Progress| {
+        calls += 1;
+        assert_eq!(progress.total, 64 * 64);
+        if progress.done >= 512 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let error = scene.render(&view, &frame, "sphere", &options, &mut stop).unwrap_err();
+    assert_eq!((error, calls), (RenderError::Cancelled, 2));
+
+    let nothing = CpuScene::new(&Program::default()).unwrap_err();
+    assert_eq!(nothing, RenderError::NothingDrawn);
+}
