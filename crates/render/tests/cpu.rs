@@ -1,4 +1,5 @@
 //! The CPU renderer against closed forms, and f32 against f64.
+#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
 

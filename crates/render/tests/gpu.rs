@@ -19,18 +19,15 @@ const VALUES: [[f32; 4]; 2] = [[0.0; 4], [0.0, 0.0, 0.0, 0.75]];
 fn main() {
     let arguments = Arguments::from_args();
     let ignored = testing::without_gpu();
-    let tests: [(&str, fn() -> Outcome); 6] = [
-        ("every_pixel_comes_back_from_its_place", every_pixel_comes_back_from_its_place),
-        ("an_adaptive_frame_grows_its_tiles", an_adaptive_frame_grows_its_tiles),
-        ("impossible_sizes_and_wrong_values_are_refused", impossible_calls_are_refused),
-        ("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
-        ("the_device_survives_an_error", the_device_survives_an_error),
-        ("progress_is_told_and_stops_the_frame", progress_is_told_and_stops_the_frame),
+    let trials = vec![
+        Trial::test("every_pixel_comes_back_from_its_place", every_pixel_comes_back_from_its_place),
+        Trial::test("an_adaptive_frame_grows_its_tiles", an_adaptive_frame_grows_its_tiles),
+        Trial::test("impossible_calls_are_refused", impossible_calls_are_refused),
+        Trial::test("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
+        Trial::test("the_device_survives_an_error", the_device_survives_an_error),
+        Trial::test("progress_is_told_and_stops_the_frame", progress_is_told_and_stops_the_frame),
     ];
-    let trials = tests
-        .into_iter()
-        .map(|(name, test)| Trial::test(name, test).with_ignored_flag(ignored))
-        .collect();
+    let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
     libtest_mimic::run(&arguments, trials).exit();
 }
 

@@ -1,5 +1,6 @@
 //! Small programs built by hand, and the views that the tests look at them through.
 #![allow(dead_code, reason = "each test target uses some of them")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use sdfc_graph::{
     Camera, Dim, Graph, Light, NodeId, Program, Shadow, Type, Unary, eval::FrameValues,
