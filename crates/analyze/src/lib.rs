@@ -1,1 +1,31 @@
-//! To be written.
+//! Distance quality, Lipschitz constants, cost, and the passes from a scene to a flat program.
+//!
+//! # What
+//!
+//! [`Qualities`] tells of every shape what its field promises outside and inside, and how fast it can
+//! change. [`prepare`] uses that to divide what must be divided, expands the scene to flat math over one
+//! point, folds its transforms, derives gradient and materials, and lists the uniform slots.
+//!
+//! # How
+//!
+//! Everything is a free function over [`sdfc_graph::Graph`]; nothing is stored in the nodes.
+//!
+//! # Limits
+//!
+//! Constants are derived by rules that hold everywhere. A product of two values that both depend on
+//! the point has no such constant; its shape is uncertified unless it states one.
+
+mod affine;
+mod cost;
+mod leaves;
+mod lipschitz;
+mod polynomial;
+mod prepare;
+mod quality;
+mod sound;
+
+pub use cost::{Cost, cost};
+pub use lipschitz::{Constant, Reason};
+pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare};
+pub use quality::{Promise, Qualities, Quality, Sides};
+pub use sound::Uncertified;

@@ -196,6 +196,11 @@ impl Expander {
         self.names.to_map()
     }
 
+    /// Names the flat value of a shape that a caller expanded in parts.
+    pub fn name(&mut self, graph: &Graph, value: NodeId, shape: ShapeId) {
+        self.names.record(graph, value, shape);
+    }
+
     /// Expands what was asked of a shape at a point that is already expanded.
     fn under(
         &mut self,

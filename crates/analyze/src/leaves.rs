@@ -1,0 +1,51 @@
+//! How many leaf shapes one evaluation of a scene's field looks at.
+
+use rustc_hash::FxHashSet;
+use sdfc_graph::{ExpandError, Expander, Graph, Node, NodeId, ShapeId, reachable};
+
+/// Childless shapes at distinct points: a leaf that two samples see at one point counts once, as in the
+/// shader.
+pub(crate) fn count_leaves(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    root: ShapeId,
+    point: NodeId,
+) -> Result<usize, ExpandError> {
+    let mut leaves = 0;
+    let mut seen: FxHashSet<(ShapeId, Vec<NodeId>)> = FxHashSet::default();
+    let mut pending = vec![(root, vec![point])];
+    while let Some((shape, points)) = pending.pop() {
+        if !seen.insert((shape, points.clone())) {
+            continue;
+        }
+        let formula = graph.shape(shape).formula;
+        let samples: Vec<(ShapeId, NodeId)> = reachable(graph, &[formula])
+            .into_iter()
+            .filter_map(|node| match graph.node(node) {
+                Node::Sample(child, q) => Some((child, q)),
+                Node::Const(_)
+                | Node::Point(..)
+                | Node::Frame(..)
+                | Node::Unary(..)
+                | Node::Binary(..)
+                | Node::Ternary(..)
+                | Node::Splat(..)
+                | Node::Compose(..)
+                | Node::Swizzle(..)
+                | Node::Transform(..)
+                | Node::MaterialAt(..) => None,
+            })
+            .collect();
+        if samples.is_empty() {
+            leaves += 1;
+        }
+        for (child, q) in samples {
+            let q = expander.node(graph, q, &points)?;
+            let level = usize::from(graph.shape(child).level).min(points.len());
+            let mut inner = points[..level].to_vec();
+            inner.push(q);
+            pending.push((child, inner));
+        }
+    }
+    Ok(leaves)
+}

@@ -1,0 +1,335 @@
+//! How fast a formula can change: a Lipschitz constant per node, in the Euclidean norm.
+//!
+//! The constant of a node is itself a node, known before the point is, so that a constant that
+//! depends on a param follows the param. Rules after language reference, section "Promises".
+
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Unary, reachable};
+
+use crate::affine::{self, Linear};
+
+/// Why no constant could be derived.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// The value jumps: `floor`, `round`, `%`, `sign`, `step`, or a choice made at the point.
+    Jump(&'static str),
+    /// An operation whose slope depends on where it is taken.
+    Unbounded(&'static str),
+    /// A shape that is built anew at each point.
+    Varying(String),
+    /// A child without a constant.
+    Child(String),
+    /// A constant that holds only within the child's bounds, used where the point may lie outside.
+    Within(String),
+}
+
+impl std::fmt::Display for Reason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Jump(what) => write!(f, "`{what}` of a value that depends on the point jumps"),
+            Self::Unbounded(what) => {
+                write!(f, "the slope of `{what}` depends on the point; state it with `lipschitz`")
+            }
+            Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),
+            Self::Child(name) => write!(f, "`{name}` has no constant"),
+            Self::Within(name) => {
+                write!(
+                    f,
+                    "the constant of `{name}` holds within its bounds, and a blend reaches past them"
+                )
+            }
+        }
+    }
+}
+
+/// A constant, or why there is none.
+pub type Constant = Result<NodeId, Reason>;
+
+/// Constants of the nodes of one formula.
+pub(crate) struct Slopes {
+    constants: FxHashMap<NodeId, Constant>,
+    linear: FxHashMap<NodeId, Linear>,
+}
+
+impl Slopes {
+    /// The constants of everything that `roots` reach, in the point of `level`; `shapes` gives those
+    /// of the shapes that are sampled.
+    pub(crate) fn of(
+        graph: &mut Graph,
+        roots: &[NodeId],
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) -> Self {
+        let mut slopes = Self { constants: FxHashMap::default(), linear: FxHashMap::default() };
+        for node in reachable(graph, roots) {
+            let lookup = |id: NodeId| slopes.linear.get(&id).copied();
+            let linear = affine::linear_part(graph, node, level, &lookup);
+            let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
+            if let Some(linear) = linear {
+                slopes.linear.insert(node, linear);
+            }
+            let constant = match stretch {
+                Some(constant) => Ok(constant),
+                None => slopes.by_rule(graph, node, level, shapes),
+            };
+            slopes.constants.insert(node, constant);
+        }
+        slopes
+    }
+
+    /// The constant of a node that the roots reach.
+    pub(crate) fn constant(&self, node: NodeId) -> Constant {
+        self.constants.get(&node).cloned().unwrap_or(Err(Reason::Unbounded("this")))
+    }
+
+    /// Whether the node maps the point to a point of the same distances.
+    pub(crate) fn is_isometry(&self, graph: &mut Graph, q: NodeId) -> bool {
+        let one = graph.number(1.0);
+        self.is_similarity(graph, q, one)
+    }
+
+    /// Whether the node shrinks all distances of the point by `factor`: one that then stretches a
+    /// sampled distance by it gives a distance again.
+    pub(crate) fn is_similarity(&self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {
+        let Some(linear) = self.linear.get(&q) else { return false };
+        let Some(stretch) = affine::similarity(graph, linear) else { return false };
+        let product = graph.mul(stretch, factor);
+        graph.as_number(product).is_some_and(|value| (value.abs() - 1.0).abs() < 1e-12)
+    }
+
+    fn by_rule(
+        &self,
+        graph: &mut Graph,
+        node: NodeId,
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) -> Constant {
+        if graph.stage(node) < Stage::Point {
+            return Ok(graph.number(0.0));
+        }
+        match graph.node(node) {
+            Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),
+            Node::Point(..) => Ok(graph.number(1.0)),
+            Node::Unary(op, a) => self.unary(op, a),
+            Node::Binary(op, a, b) => self.binary(graph, op, a, b),
+            Node::Ternary(op, arguments) => self.ternary(graph, op, arguments),
+            Node::Splat(ty, a) => {
+                let inner = self.constant(a)?;
+                let factor = graph.number((ty.width() as f64).sqrt());
+                Ok(graph.mul(factor, inner))
+            }
+            Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()], level),
+            Node::Swizzle(_, a, _) => self.constant(a),
+            Node::Transform(columns, v) => self.transform(graph, columns, v),
+            Node::Sample(shape, q) => {
+                if graph.shape(shape).level > level {
+                    return Err(Reason::Varying(graph.shape(shape).definition.clone()));
+                }
+                let (outer, inner) = (shapes(shape)?, self.constant(q)?);
+                Ok(graph.mul(outer, inner))
+            }
+            Node::MaterialAt(..) => Err(Reason::Unbounded("material_at")),
+        }
+    }
+
+    fn unary(&self, op: Unary, a: NodeId) -> Constant {
+        match op {
+            // Maps that never stretch: |u(x) - u(y)| <= |x - y|, lane by lane.
+            Unary::Neg
+            | Unary::Abs
+            | Unary::Sin
+            | Unary::Cos
+            | Unary::Atan
+            | Unary::Tanh
+            | Unary::Saturate
+            | Unary::Length => self.constant(a),
+            Unary::Sign => Err(Reason::Jump("sign")),
+            Unary::Floor => Err(Reason::Jump("floor")),
+            Unary::Ceil => Err(Reason::Jump("ceil")),
+            Unary::Round => Err(Reason::Jump("round")),
+            Unary::Trunc => Err(Reason::Jump("trunc")),
+            Unary::Fract => Err(Reason::Jump("fract")),
+            Unary::Not => Err(Reason::Jump("!")),
+            Unary::Sqrt => Err(Reason::Unbounded("sqrt")),
+            Unary::InverseSqrt => Err(Reason::Unbounded("inverseSqrt")),
+            Unary::Exp => Err(Reason::Unbounded("exp")),
+            Unary::Exp2 => Err(Reason::Unbounded("exp2")),
+            Unary::Log => Err(Reason::Unbounded("log")),
+            Unary::Log2 => Err(Reason::Unbounded("log2")),
+            Unary::Tan => Err(Reason::Unbounded("tan")),
+            Unary::Asin => Err(Reason::Unbounded("asin")),
+            Unary::Acos => Err(Reason::Unbounded("acos")),
+            Unary::Sinh => Err(Reason::Unbounded("sinh")),
+            Unary::Cosh => Err(Reason::Unbounded("cosh")),
+            Unary::Normalize => Err(Reason::Unbounded("normalize")),
+        }
+    }
+
+    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId) -> Constant {
+        let fixed = |node| graph.stage(node) < Stage::Point;
+        let (a_fixed, b_fixed) = (fixed(a), fixed(b));
+        match op {
+            Binary::Add | Binary::Sub => {
+                let (x, y) = (self.constant(a)?, self.constant(b)?);
+                Ok(graph.add(x, y))
+            }
+            Binary::Mul if a_fixed || b_fixed => {
+                let (fixed, varying) = if a_fixed { (a, b) } else { (b, a) };
+                let factor = largest_lane(graph, fixed);
+                let inner = self.constant(varying)?;
+                Ok(graph.mul(factor, inner))
+            }
+            Binary::Dot | Binary::Cross if a_fixed || b_fixed => {
+                let (fixed, varying) = if a_fixed { (a, b) } else { (b, a) };
+                let factor = graph.length(fixed);
+                let inner = self.constant(varying)?;
+                Ok(graph.mul(factor, inner))
+            }
+            Binary::Div if b_fixed => {
+                let one = graph.number(1.0);
+                let inverse = graph.div(one, b);
+                let factor = largest_lane(graph, inverse);
+                let inner = self.constant(a)?;
+                Ok(graph.mul(factor, inner))
+            }
+            Binary::Min | Binary::Max => {
+                let (x, y) = (self.constant(a)?, self.constant(b)?);
+                if graph.ty(a).width() == 1 || is_zero(graph, x) || is_zero(graph, y) {
+                    return Ok(graph.max(x, y));
+                }
+                Ok(hypotenuse(graph, &[x, y]))
+            }
+            Binary::Mul => Err(Reason::Unbounded("*")),
+            Binary::Div => Err(Reason::Unbounded("/")),
+            Binary::Dot => Err(Reason::Unbounded("dot")),
+            Binary::Cross => Err(Reason::Unbounded("cross")),
+            Binary::Pow => Err(Reason::Unbounded("pow")),
+            Binary::Atan2 => Err(Reason::Unbounded("atan2")),
+            Binary::Rem => Err(Reason::Jump("%")),
+            Binary::Step => Err(Reason::Jump("step")),
+            Binary::Lt | Binary::Le => Err(Reason::Jump("<")),
+            Binary::Eq | Binary::Ne => Err(Reason::Jump("==")),
+            Binary::And | Binary::Or => Err(Reason::Jump("&&")),
+        }
+    }
+
+    fn ternary(&self, graph: &mut Graph, op: Ternary, [a, b, c]: [NodeId; 3]) -> Constant {
+        match op {
+            // |(1 - t)| La + |t| Lb for a t that does not vary.
+            Ternary::Mix => {
+                if graph.stage(c) == Stage::Point {
+                    return Err(Reason::Unbounded("mix"));
+                }
+                let one = graph.number(1.0);
+                let rest = graph.sub(one, c);
+                let (left, right) = (largest_lane(graph, rest), largest_lane(graph, c));
+                let (x, y) = (self.constant(a)?, self.constant(b)?);
+                let (x, y) = (graph.mul(left, x), graph.mul(right, y));
+                Ok(graph.add(x, y))
+            }
+            Ternary::Clamp => {
+                if graph.stage(b) == Stage::Point || graph.stage(c) == Stage::Point {
+                    return Err(Reason::Unbounded("clamp"));
+                }
+                self.constant(a)
+            }
+            Ternary::Smoothstep => Err(Reason::Unbounded("smoothstep")),
+            Ternary::Select => {
+                if graph.stage(a) == Stage::Point {
+                    return Err(Reason::Jump("if"));
+                }
+                let (x, y) = (self.constant(b)?, self.constant(c)?);
+                Ok(graph.max(x, y))
+            }
+        }
+    }
+
+    /// The lanes' constants joined: the largest where the lanes look at different components of the point
+    /// (the squares of the changes then add up to no more than the point's), else their hypotenuse.
+    fn compose(&self, graph: &mut Graph, parts: &[NodeId], level: u16) -> Constant {
+        let constants: Vec<NodeId> =
+            parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
+        let seen: Vec<u8> = parts.iter().map(|&part| components_seen(graph, part, level)).collect();
+        let apart = seen.iter().map(|mask| mask.count_ones()).sum::<u32>()
+            == seen.iter().fold(0, |all, mask| all | mask).count_ones();
+        if apart {
+            return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
+        }
+        Ok(hypotenuse(graph, &constants))
+    }
+
+    fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {
+        if columns.iter().any(|&column| graph.stage(column) == Stage::Point) {
+            return Err(Reason::Unbounded("*"));
+        }
+        // The Frobenius norm bounds the largest singular value.
+        let lengths = columns.map(|column| graph.length(column));
+        let factor = hypotenuse(graph, &lengths);
+        let inner = self.constant(v)?;
+        Ok(graph.mul(factor, inner))
+    }
+}
+
+fn is_zero(graph: &Graph, node: NodeId) -> bool {
+    graph.as_number(node) == Some(0.0)
+}
+
+/// The largest of the lanes' magnitudes.
+fn largest_lane(graph: &mut Graph, node: NodeId) -> NodeId {
+    let width = graph.ty(node).width() as u8;
+    let magnitude = graph.abs(node);
+    let mut largest = graph.component(magnitude, 0);
+    for lane in 1..width {
+        let other = graph.component(magnitude, lane);
+        largest = graph.max(largest, other);
+    }
+    largest
+}
+
+fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
+    let varying: Vec<NodeId> = parts.iter().copied().filter(|&x| !is_zero(graph, x)).collect();
+    match varying[..] {
+        [] => graph.number(0.0),
+        [one] => one,
+        _ => {
+            let mut sum = graph.number(0.0);
+            for x in varying {
+                let square = graph.mul(x, x);
+                sum = graph.add(sum, square);
+            }
+            graph.unary(Unary::Sqrt, sum)
+        }
+    }
+}
+
+/// Which components of the point a node looks at, as a bit mask.
+fn components_seen(graph: &Graph, node: NodeId, level: u16) -> u8 {
+    let mut seen = 0;
+    let mut visited = rustc_hash::FxHashSet::default();
+    let mut pending = vec![node];
+    while let Some(id) = pending.pop() {
+        if graph.stage(id) < Stage::Point || !visited.insert(id) {
+            continue;
+        }
+        match graph.node(id) {
+            Node::Swizzle(ty, a, lanes) if matches!(graph.node(a), Node::Point(at, _) if at == level) => {
+                for lane in &lanes[..ty.width()] {
+                    seen |= 1 << lane;
+                }
+            }
+            Node::Point(..) => seen |= 7,
+            Node::Const(_)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => pending.extend(graph.node(id).arguments()),
+        }
+    }
+    seen
+}

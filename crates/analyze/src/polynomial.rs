@@ -1,0 +1,167 @@
+//! Polynomials in sines, cosines and other per-frame atoms, reduced by sin² = 1 - cos²: enough to see
+//! that a matrix made of turns by params is a rotation at every value of the params.
+
+use std::collections::BTreeMap;
+
+use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Unary};
+
+/// More terms than any product of three turns needs; beyond it the question is given up.
+const MAX_TERMS: usize = 256;
+/// Deeper coefficients than three turns in a row make are taken as atoms.
+const MAX_DEPTH: u32 = 32;
+
+/// What a polynomial is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Atom {
+    Cos(NodeId),
+    Sin(NodeId),
+    Other(NodeId),
+}
+
+/// Atoms with their powers, in order.
+type Monomial = BTreeMap<Atom, u32>;
+
+/// A sum of monomials with coefficients; in lowest terms, so equal polynomials compare equal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Polynomial {
+    terms: BTreeMap<Monomial, f64>,
+}
+
+impl PartialEq for Polynomial {
+    /// Equal up to rounding of the coefficients.
+    fn eq(&self, other: &Self) -> bool {
+        self.plus(&other.times_number(-1.0)).terms.values().all(|c| c.abs() < 1e-12)
+    }
+}
+
+impl Polynomial {
+    pub(crate) fn zero() -> Self {
+        Self::default()
+    }
+
+    fn number(value: f64) -> Self {
+        Self { terms: BTreeMap::from([(Monomial::new(), value)]) }
+    }
+
+    fn atom(atom: Atom) -> Self {
+        Self { terms: BTreeMap::from([(Monomial::from([(atom, 1)]), 1.0)]) }
+    }
+
+    /// The polynomial of a scalar node known before the point is; `None` if it grows too large.
+    pub(crate) fn of(graph: &Graph, node: NodeId) -> Option<Self> {
+        Self::of_within(graph, node, MAX_DEPTH)
+    }
+
+    fn of_within(graph: &Graph, node: NodeId, depth: u32) -> Option<Self> {
+        if graph.stage(node) == Stage::Point {
+            return None;
+        }
+        if depth == 0 {
+            return Some(Self::atom(Atom::Other(node)));
+        }
+        let of = |id| Self::of_within(graph, id, depth - 1);
+        match graph.node(node) {
+            Node::Const(value) => Some(Self::number(value.scalar()?)),
+            Node::Unary(Unary::Neg, a) => Some(of(a)?.times_number(-1.0)),
+            Node::Unary(Unary::Cos, a) => Some(Self::atom(Atom::Cos(a))),
+            Node::Unary(Unary::Sin, a) => Some(Self::atom(Atom::Sin(a))),
+            Node::Binary(Binary::Add, a, b) => Some(of(a)?.plus(&of(b)?)),
+            Node::Binary(Binary::Sub, a, b) => Some(of(a)?.plus(&of(b)?.times_number(-1.0))),
+            Node::Binary(Binary::Mul, a, b) => of(a)?.times(&of(b)?),
+            Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => Some(Self::atom(Atom::Other(node))),
+        }
+    }
+
+    /// The number, if there is no atom left.
+    pub(crate) fn constant(&self) -> Option<f64> {
+        let mut value = 0.0;
+        for (monomial, coefficient) in &self.terms {
+            if monomial.is_empty() {
+                value = *coefficient;
+            } else if coefficient.abs() >= 1e-12 {
+                return None;
+            }
+        }
+        Some(value)
+    }
+
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let mut sum = self.clone();
+        for (monomial, coefficient) in &other.terms {
+            *sum.terms.entry(monomial.clone()).or_insert(0.0) += coefficient;
+        }
+        sum.terms.retain(|_, coefficient| *coefficient != 0.0);
+        sum
+    }
+
+    fn times_number(&self, factor: f64) -> Self {
+        let terms = self.terms.iter().map(|(m, c)| (m.clone(), c * factor)).collect();
+        Self { terms }
+    }
+
+    /// The product, or `None` beyond [`MAX_TERMS`].
+    pub(crate) fn times(&self, other: &Self) -> Option<Self> {
+        let mut product = Self::zero();
+        for (a, x) in &self.terms {
+            for (b, y) in &other.terms {
+                let mut monomial = a.clone();
+                for (atom, power) in b {
+                    *monomial.entry(*atom).or_insert(0) += power;
+                }
+                product = product.plus(&reduced(monomial, x * y)?);
+                if product.terms.len() > MAX_TERMS {
+                    return None;
+                }
+            }
+        }
+        Some(product)
+    }
+}
+
+/// The monomial with every sin² replaced by 1 - cos².
+fn reduced(monomial: Monomial, coefficient: f64) -> Option<Polynomial> {
+    let square = monomial.iter().find_map(|(atom, power)| match atom {
+        Atom::Sin(angle) if *power >= 2 => Some(*angle),
+        Atom::Sin(_) | Atom::Cos(_) | Atom::Other(_) => None,
+    });
+    let Some(angle) = square else {
+        return Some(Polynomial { terms: BTreeMap::from([(monomial, coefficient)]) });
+    };
+    let mut rest = monomial;
+    let sin = Atom::Sin(angle);
+    let power = rest.remove(&sin).unwrap_or(0);
+    if power > 2 {
+        rest.insert(sin, power - 2);
+    }
+    let mut with_cos = rest.clone();
+    *with_cos.entry(Atom::Cos(angle)).or_insert(0) += 2;
+    Some(reduced(rest, coefficient)?.plus(&reduced(with_cos, -coefficient)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sdfc_graph::{FrameInput, Type};
+
+    #[test]
+    fn a_turn_by_a_param_has_rows_of_length_one() {
+        let mut graph = Graph::new();
+        let angle = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+        let (c, s) = (graph.unary(Unary::Cos, angle), graph.unary(Unary::Sin, angle));
+        let (c, s) = (Polynomial::of(&graph, c).unwrap(), Polynomial::of(&graph, s).unwrap());
+        let norm = c.times(&c).unwrap().plus(&s.times(&s).unwrap());
+        assert_eq!(norm.constant(), Some(1.0));
+        let wrong = c.times(&c).unwrap().plus(&s);
+        assert_eq!(wrong.constant(), None);
+    }
+}

@@ -1,0 +1,296 @@
+//! What each shape's field promises: outside and inside apart, and its Lipschitz constant.
+//!
+//! Two independent facts: `|f| <= distance` lets a ray step by `f`; "L-Lipschitz" bounds how fast `f`
+//! changes. `exact` implies both, a constant of at most 1 implies `bound` on both sides.
+
+use rustc_hash::FxHashMap;
+use sdfc_graph::{
+    Binary, Contract, Graph, Node, NodeId, ShapeId, SidePromise, Stage, Ternary, Unary,
+};
+
+use crate::lipschitz::{Constant, Reason, Slopes};
+
+/// What |f| is on one side of the surface, from weak to strong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Promise {
+    /// Nothing is known.
+    None,
+    /// Never more than the distance.
+    Bound,
+    /// The distance.
+    Exact,
+}
+
+impl std::fmt::Display for Promise {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::None => "none",
+            Self::Bound => "bound",
+            Self::Exact => "exact",
+        })
+    }
+}
+
+/// The promises on both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// Where the field is positive.
+    pub outside: Promise,
+    /// Where it is negative.
+    pub inside: Promise,
+}
+
+impl Sides {
+    const EXACT: Self = Self { outside: Promise::Exact, inside: Promise::Exact };
+    const NONE: Self = Self { outside: Promise::None, inside: Promise::None };
+
+    fn both(promise: Promise) -> Self {
+        Self { outside: promise, inside: promise }
+    }
+
+    fn swapped(self) -> Self {
+        Self { outside: self.inside, inside: self.outside }
+    }
+
+    fn weaker(self, other: Self) -> Self {
+        Self { outside: self.outside.min(other.outside), inside: self.inside.min(other.inside) }
+    }
+
+    fn stronger(self, other: Self) -> Self {
+        Self { outside: self.outside.max(other.outside), inside: self.inside.max(other.inside) }
+    }
+
+    fn is_exact(self) -> bool {
+        self == Self::EXACT
+    }
+}
+
+/// What is known of one shape.
+#[derive(Clone, Debug)]
+pub struct Quality {
+    /// Its promises.
+    pub sides: Sides,
+    /// Its Lipschitz constant: a node known before the point is.
+    pub lipschitz: Constant,
+    /// Whether the constant holds at every point, or only within the shape's bounds.
+    pub everywhere: bool,
+}
+
+/// Qualities of all shapes that were asked for and their children.
+#[derive(Clone, Debug, Default)]
+pub struct Qualities {
+    of: FxHashMap<ShapeId, Quality>,
+}
+
+impl Qualities {
+    /// The qualities of `root` and of every shape below it.
+    pub fn of_scene(graph: &mut Graph, root: ShapeId) -> Self {
+        let mut qualities = Self::default();
+        for shape in shapes_below(graph, root) {
+            let quality = qualities.derive(graph, shape);
+            qualities.of.insert(shape, quality);
+        }
+        qualities
+    }
+
+    /// The quality of a shape of the scene.
+    pub fn get(&self, shape: ShapeId) -> Option<&Quality> {
+        self.of.get(&shape)
+    }
+
+    /// Its constant; a shape that was not asked for has none.
+    pub(crate) fn constant(&self, graph: &Graph, shape: ShapeId) -> Constant {
+        let missing = || Err(Reason::Child(graph.shape(shape).definition.clone()));
+        self.get(shape).map_or_else(missing, |quality| quality.lipschitz.clone())
+    }
+
+    /// The constants of everything in a shape's formula.
+    pub(crate) fn slopes(&self, graph: &mut Graph, shape: ShapeId) -> Slopes {
+        let (formula, level) = (graph.shape(shape).formula, graph.shape(shape).level);
+        let known: FxHashMap<ShapeId, Constant> = graph
+            .shape(shape)
+            .children
+            .iter()
+            .map(|&child| (child, self.child_constant(graph, child)))
+            .collect();
+        let lookup = |child: ShapeId| {
+            known.get(&child).cloned().unwrap_or(Err(Reason::Child(String::new())))
+        };
+        Slopes::of(graph, &[formula], level, &lookup)
+    }
+
+    /// A child's constant, its failure told by the child's name.
+    fn child_constant(&self, graph: &Graph, child: ShapeId) -> Constant {
+        self.constant(graph, child)
+            .map_err(|_| Reason::Child(graph.shape(child).definition.clone()))
+    }
+
+    fn derive(&self, graph: &mut Graph, shape: ShapeId) -> Quality {
+        let contract = graph.shape(shape).contract;
+        let children = graph.shape(shape).children.clone();
+        let all_at_least = |promise: Promise| {
+            children.iter().all(|child| {
+                self.get(*child)
+                    .is_some_and(|q| q.sides.weaker(Sides::both(promise)) == Sides::both(promise))
+            })
+        };
+        let (exact, bound) = (all_at_least(Promise::Exact), all_at_least(Promise::Bound));
+        let stated = stated_sides(graph, &contract, exact, bound);
+        if stated.is_exact() {
+            return Quality { sides: stated, lipschitz: Ok(graph.number(1.0)), everywhere: true };
+        }
+        let formula = graph.shape(shape).formula;
+        let slopes = self.slopes(graph, shape);
+        let derived = slopes.constant(formula);
+        let children_everywhere =
+            children.iter().all(|child| self.get(*child).is_some_and(|q| q.everywhere));
+        let (lipschitz, everywhere) = match contract.lipschitz {
+            Some(constant) => {
+                let stated = self.times_children(graph, constant, &children);
+                let confirmed = children_everywhere && at_most(graph, &derived, &stated);
+                (stated, confirmed || contract.bounds.is_none())
+            }
+            None => (derived, children_everywhere),
+        };
+        let mut sides = stated.stronger(self.structural(graph, &slopes, formula));
+        if lipschitz.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l <= 1.0)) {
+            sides = sides.stronger(Sides::both(Promise::Bound));
+        }
+        Quality { sides, lipschitz, everywhere }
+    }
+
+    /// A stated constant holds for 1-Lipschitz children: times max(1, the largest child's).
+    fn times_children(
+        &self,
+        graph: &mut Graph,
+        constant: NodeId,
+        children: &[ShapeId],
+    ) -> Constant {
+        let mut largest = graph.number(1.0);
+        for &child in children {
+            let inner = self.child_constant(graph, child)?;
+            largest = graph.max(largest, inner);
+        }
+        Ok(graph.mul(constant, largest))
+    }
+
+    /// Promises that follow from the form of a formula alone.
+    fn structural(&self, graph: &mut Graph, slopes: &Slopes, formula: NodeId) -> Sides {
+        let mut sides: FxHashMap<NodeId, Sides> = FxHashMap::default();
+        for node in sdfc_graph::reachable(graph, &[formula]) {
+            let value = self.structural_node(graph, node, slopes, &sides);
+            sides.insert(node, value);
+        }
+        sides.get(&formula).copied().unwrap_or(Sides::NONE)
+    }
+
+    fn structural_node(
+        &self,
+        graph: &mut Graph,
+        node: NodeId,
+        slopes: &Slopes,
+        sides: &FxHashMap<NodeId, Sides>,
+    ) -> Sides {
+        let of = |id: NodeId| sides.get(&id).copied().unwrap_or(Sides::NONE);
+        match graph.node(node) {
+            // Sampled through an isometry, a field keeps its promises.
+            Node::Sample(child, q) if slopes.is_isometry(graph, q) => {
+                self.get(child).map_or(Sides::NONE, |quality| quality.sides)
+            }
+            Node::Binary(Binary::Min, a, b) if graph.ty(node).width() == 1 => {
+                let both = of(a).weaker(of(b));
+                Sides { outside: both.outside, inside: both.inside.min(Promise::Bound) }
+            }
+            Node::Binary(Binary::Max, a, b) if graph.ty(node).width() == 1 => {
+                let both = of(a).weaker(of(b));
+                Sides { outside: both.outside.min(Promise::Bound), inside: both.inside }
+            }
+            Node::Unary(Unary::Neg, a) => of(a).swapped(),
+            // A parallel surface outwards: exact outside if both sides are.
+            Node::Binary(Binary::Sub, a, r) if graph.as_number(r).is_some_and(|r| r >= 0.0) => {
+                let outside = if of(a).is_exact() { Promise::Exact } else { Promise::None };
+                Sides { outside, inside: Promise::None }
+            }
+            // A scaled copy: s * a(p / s).
+            Node::Binary(Binary::Mul, a, b) => scaled_sample(graph, a, b)
+                .filter(|(factor, _, q)| slopes.is_similarity(graph, *q, *factor))
+                .and_then(|(_, child, _)| self.get(child))
+                .map_or(Sides::NONE, |quality| quality.sides),
+            Node::Ternary(Ternary::Select, [condition, a, b])
+                if graph.stage(condition) < Stage::Point =>
+            {
+                of(a).weaker(of(b))
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => Sides::NONE,
+        }
+    }
+}
+
+/// Whether the derived constant bears the stated one out, up to rounding.
+fn at_most(graph: &Graph, derived: &Constant, stated: &Constant) -> bool {
+    let (Ok(derived), Ok(stated)) = (derived, stated) else { return false };
+    if derived == stated {
+        return true;
+    }
+    let (derived, stated) = (graph.as_number(*derived), graph.as_number(*stated));
+    derived.zip(stated).is_some_and(|(d, s)| d <= s * (1.0 + 1e-12))
+}
+
+/// `factor * sample` in either order.
+pub(crate) fn scaled_sample(
+    graph: &Graph,
+    a: NodeId,
+    b: NodeId,
+) -> Option<(NodeId, ShapeId, NodeId)> {
+    if let Node::Sample(child, q) = graph.node(b) {
+        return Some((a, child, q));
+    }
+    if let Node::Sample(child, q) = graph.node(a) {
+        return Some((b, child, q));
+    }
+    None
+}
+
+/// What the clauses say, their conditions decided; an undecided condition counts as false.
+fn stated_sides(graph: &Graph, contract: &Contract, exact: bool, bound: bool) -> Sides {
+    let holds = |condition: Option<NodeId>| {
+        condition.is_some_and(
+            |node| matches!(graph.node(node), Node::Const(value) if value.lanes()[0] != 0.0),
+        )
+    };
+    let side = |promise: SidePromise| {
+        if exact && holds(promise.exact) {
+            Promise::Exact
+        } else if bound && (holds(promise.bound) || holds(promise.exact)) {
+            Promise::Bound
+        } else {
+            Promise::None
+        }
+    };
+    Sides { outside: side(contract.outside), inside: side(contract.inside) }
+}
+
+/// `root` and everything that its formulas and materials sample, children before parents.
+pub(crate) fn shapes_below(graph: &Graph, root: ShapeId) -> Vec<ShapeId> {
+    let mut seen = rustc_hash::FxHashSet::default();
+    let mut pending = vec![root];
+    while let Some(shape) = pending.pop() {
+        if seen.insert(shape) {
+            pending.extend(graph.shape(shape).children.iter().copied());
+        }
+    }
+    let mut order: Vec<ShapeId> = seen.into_iter().collect();
+    order.sort_unstable();
+    order
+}

@@ -1,0 +1,339 @@
+//! The field that rays march: a scene's distance, divided where it must be.
+//!
+//! From the root down through hard `min` and `max`, sign changes and rigid samples, each operand is
+//! divided by its own Lipschitz constant; what stands under anything else (a blend, an offset) is
+//! expanded undivided, its constant travels up. So no division moves a surface.
+//!
+//! A constant that holds only within bounds B is used there: with `c` the point of B nearest to p,
+//! `u = f(c) / L` and `v = |p - c|`, the field is `u` inside B and `sqrt(u² + v²)` outside. For a surface
+//! point s in B the angle at c is not acute, so `|p - s|² >= |p - c|² + |c - s|² >= v² + u²`; and as
+//! projection onto a convex set is firmly nonexpansive, `p -> (u, v)` is 1-Lipschitz, and so is its length.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_graph::{
+    Binary, ExpandError, Expander, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary,
+};
+
+use crate::lipschitz::{Constant, Reason, Slopes};
+use crate::quality::{Qualities, scaled_sample};
+
+/// A part of the scene that no constant covers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Uncertified {
+    /// The shape whose formula it stands in.
+    pub shape: ShapeId,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// The sound field of a scene.
+#[derive(Clone, Debug)]
+pub(crate) struct SoundField {
+    /// The distance to march by.
+    pub distance: NodeId,
+    /// What no constant covers; empty for a certified scene.
+    pub uncertified: Vec<Uncertified>,
+    /// Shapes that were divided by a constant above 1.
+    pub divided: Vec<ShapeId>,
+}
+
+/// The sound field of `root` at `point`.
+pub(crate) fn sound_field(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    qualities: &Qualities,
+    root: ShapeId,
+    point: NodeId,
+) -> Result<SoundField, ExpandError> {
+    let (uncertified, divided) = (Vec::new(), Vec::new());
+    let mut pass = Pass { graph, expander, qualities, uncertified, divided };
+    let distance = pass.shape(root, &[], point)?;
+    Ok(SoundField { distance, uncertified: pass.uncertified, divided: pass.divided })
+}
+
+struct Pass<'a> {
+    graph: &'a mut Graph,
+    expander: &'a mut Expander,
+    qualities: &'a Qualities,
+    uncertified: Vec<Uncertified>,
+    divided: Vec<ShapeId>,
+}
+
+impl Pass<'_> {
+    fn shape(
+        &mut self,
+        shape: ShapeId,
+        outer: &[NodeId],
+        point: NodeId,
+    ) -> Result<NodeId, ExpandError> {
+        // Depth is the scene's nesting of shapes, which elaboration limits.
+        stacker::maybe_grow(64 * 1024, 1024 * 1024, || self.shape_here(shape, outer, point))
+    }
+
+    fn shape_here(
+        &mut self,
+        shape: ShapeId,
+        outer: &[NodeId],
+        point: NodeId,
+    ) -> Result<NodeId, ExpandError> {
+        let Some(quality) = self.qualities.get(shape) else {
+            return self.expander.field_under(self.graph, shape, outer, point);
+        };
+        let (everywhere, constant) = (quality.everywhere, quality.lipschitz.clone());
+        if everywhere && self.is_at_most_one(&constant) {
+            return self.expander.field_under(self.graph, shape, outer, point);
+        }
+        let level = usize::from(self.graph.shape(shape).level).min(outer.len());
+        let mut points = outer[..level].to_vec();
+        points.push(point);
+        let contract = self.graph.shape(shape).contract;
+        let value = match (constant, contract.lipschitz, contract.bounds) {
+            (Ok(constant), Some(_), Some(bounds)) if !everywhere => {
+                self.drawn_into(shape, constant, bounds, &points)?
+            }
+            (constant, Some(_), _) => self.by_constant(shape, constant, &points)?,
+            (_, None, _) => {
+                let formula = self.graph.shape(shape).formula;
+                let slopes = self.qualities.slopes(self.graph, shape);
+                self.descend(shape, formula, &slopes, &points)?
+            }
+        };
+        self.expander.name(self.graph, value, shape);
+        Ok(value)
+    }
+
+    /// The whole formula of a shape by its stated constant.
+    fn by_constant(
+        &mut self,
+        shape: ShapeId,
+        constant: Constant,
+        points: &[NodeId],
+    ) -> Result<NodeId, ExpandError> {
+        let formula = self.graph.shape(shape).formula;
+        let value = self.expander.node(self.graph, formula, points)?;
+        match constant {
+            Ok(constant) => {
+                let constant = self.expander.node(self.graph, constant, points)?;
+                Ok(self.quotient(shape, value, constant))
+            }
+            Err(reason) => {
+                self.uncertified.push(Uncertified { shape, reason });
+                Ok(value)
+            }
+        }
+    }
+
+    fn is_at_most_one(&self, constant: &Constant) -> bool {
+        constant.as_ref().is_ok_and(|&l| self.graph.as_number(l).is_some_and(|l| l <= 1.0))
+    }
+
+    /// The formula with its operands of hard minima and maxima made sound one by one.
+    fn descend(
+        &mut self,
+        shape: ShapeId,
+        formula: NodeId,
+        slopes: &Slopes,
+        points: &[NodeId],
+    ) -> Result<NodeId, ExpandError> {
+        let mut sound: FxHashMap<NodeId, NodeId> = FxHashMap::default();
+        for node in self.chain_below(formula, slopes) {
+            let of = |id: NodeId| sound.get(&id).copied().unwrap_or(id);
+            let value = match self.form(node, slopes) {
+                Form::Whole => self.divided(shape, node, slopes, points)?,
+                Form::Least(a, b) => self.graph.min(of(a), of(b)),
+                Form::Greatest(a, b) => self.graph.max(of(a), of(b)),
+                Form::Negative(a) => self.graph.neg(of(a)),
+                Form::Chosen(condition, a, b) => {
+                    let condition = self.expander.node(self.graph, condition, points)?;
+                    self.graph.select(condition, of(a), of(b))
+                }
+                Form::Sampled(child, q) => {
+                    let q = self.expander.node(self.graph, q, points)?;
+                    self.shape(child, points, q)?
+                }
+                Form::Scaled(factor, child, q) => {
+                    let factor = self.expander.node(self.graph, factor, points)?;
+                    let q = self.expander.node(self.graph, q, points)?;
+                    let inner = self.shape(child, points, q)?;
+                    self.graph.mul(factor, inner)
+                }
+            };
+            sound.insert(node, value);
+        }
+        match sound.get(&formula) {
+            Some(&value) => Ok(value),
+            None => self.expander.node(self.graph, formula, points),
+        }
+    }
+
+    /// The nodes that the descent visits, arguments before uses.
+    fn chain_below(&mut self, formula: NodeId, slopes: &Slopes) -> Vec<NodeId> {
+        let mut seen = FxHashSet::default();
+        let mut pending = vec![formula];
+        while let Some(node) = pending.pop() {
+            if !seen.insert(node) {
+                continue;
+            }
+            match self.form(node, slopes) {
+                Form::Least(a, b) | Form::Greatest(a, b) | Form::Chosen(_, a, b) => {
+                    pending.extend([a, b]);
+                }
+                Form::Negative(a) => pending.push(a),
+                Form::Whole | Form::Sampled(..) | Form::Scaled(..) => {}
+            }
+        }
+        let mut order: Vec<NodeId> = seen.into_iter().collect();
+        order.sort_unstable();
+        order
+    }
+
+    /// How the descent goes on at a node of a formula.
+    fn form(&mut self, node: NodeId, slopes: &Slopes) -> Form {
+        let scalar = self.graph.ty(node) == Type::Scalar;
+        match self.graph.node(node) {
+            Node::Binary(Binary::Min, a, b) if scalar => Form::Least(a, b),
+            Node::Binary(Binary::Max, a, b) if scalar => Form::Greatest(a, b),
+            Node::Unary(Unary::Neg, a) if scalar => Form::Negative(a),
+            Node::Ternary(Ternary::Select, [condition, a, b])
+                if scalar && self.graph.stage(condition) < Stage::Point =>
+            {
+                Form::Chosen(condition, a, b)
+            }
+            Node::Sample(child, q) if slopes.is_isometry(self.graph, q) => Form::Sampled(child, q),
+            Node::Binary(Binary::Mul, a, b) => match scaled_sample(self.graph, a, b) {
+                Some((factor, child, q)) if slopes.is_similarity(self.graph, q, factor) => {
+                    Form::Scaled(factor, child, q)
+                }
+                Some(_) | None => Form::Whole,
+            },
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => Form::Whole,
+        }
+    }
+
+    /// An operand as a whole, by its own constant.
+    fn divided(
+        &mut self,
+        shape: ShapeId,
+        node: NodeId,
+        slopes: &Slopes,
+        points: &[NodeId],
+    ) -> Result<NodeId, ExpandError> {
+        let value = self.expander.node(self.graph, node, points)?;
+        if self.graph.stage(node) < Stage::Point {
+            return Ok(value);
+        }
+        if let Some(child) = self.child_within_bounds(node) {
+            let name = self.graph.shape(child).definition.clone();
+            self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
+        }
+        match slopes.constant(node) {
+            Ok(constant) => {
+                let constant = self.expander.node(self.graph, constant, points)?;
+                Ok(self.quotient(shape, value, constant))
+            }
+            Err(reason) => {
+                self.uncertified.push(Uncertified { shape, reason });
+                Ok(value)
+            }
+        }
+    }
+
+    /// `value / max(constant, 1)`
+    fn quotient(&mut self, shape: ShapeId, value: NodeId, constant: NodeId) -> NodeId {
+        let one = self.graph.number(1.0);
+        let constant = self.graph.max(constant, one);
+        if constant != one {
+            self.divided.push(shape);
+        }
+        self.graph.div(value, constant)
+    }
+
+    /// A sampled child whose constant holds only within its bounds.
+    fn child_within_bounds(&self, node: NodeId) -> Option<ShapeId> {
+        sdfc_graph::reachable(self.graph, &[node]).into_iter().find_map(|id| {
+            let Node::Sample(child, _) = self.graph.node(id) else { return None };
+            let quality = self.qualities.get(child)?;
+            (!quality.everywhere && quality.lipschitz.is_ok()).then_some(child)
+        })
+    }
+
+    /// The field of a constant that holds within bounds, as the module's text derives it.
+    fn drawn_into(
+        &mut self,
+        shape: ShapeId,
+        constant: NodeId,
+        bounds: [NodeId; 2],
+        points: &[NodeId],
+    ) -> Result<NodeId, ExpandError> {
+        let formula = self.graph.shape(shape).formula;
+        let Some((&point, outer)) = points.split_last() else {
+            return self.expander.node(self.graph, formula, points);
+        };
+        let constant = self.expander.node(self.graph, constant, points)?;
+        let [lo, hi] = bounds;
+        let lo = self.expander.node(self.graph, lo, points)?;
+        let hi = self.expander.node(self.graph, hi, points)?;
+        let nearest = self.clamped(point, lo, hi);
+        let mut inner_points = outer.to_vec();
+        inner_points.push(nearest);
+        let value = self.expander.node(self.graph, formula, &inner_points)?;
+        let inside = self.quotient(shape, value, constant);
+        if nearest == point {
+            return Ok(inside);
+        }
+        let offset = self.graph.sub(point, nearest);
+        let away = self.graph.length(offset);
+        let both = self.graph.compose(&[inside, away]);
+        let outside = self.graph.length(both);
+        let zero = self.graph.number(0.0);
+        let is_outside = self.graph.lt(zero, away);
+        Ok(self.graph.select(is_outside, outside, inside))
+    }
+
+    /// The point of `lo..hi` nearest to `point`; an end that is not finite does not bind.
+    fn clamped(&mut self, point: NodeId, lo: NodeId, hi: NodeId) -> NodeId {
+        let width = self.graph.ty(point).width() as u8;
+        let all_finite = |graph: &mut Graph, end: NodeId| {
+            (0..width).all(|lane| {
+                let lane = graph.component(end, lane);
+                graph.as_number(lane).is_none_or(f64::is_finite)
+            })
+        };
+        if all_finite(self.graph, lo) && all_finite(self.graph, hi) {
+            return self.graph.ternary(Ternary::Clamp, point, lo, hi);
+        }
+        let mut lanes = Vec::with_capacity(usize::from(width));
+        for lane in 0..width {
+            let [mut value, lo, hi] = [point, lo, hi].map(|v| self.graph.component(v, lane));
+            for (end, join) in [(lo, Graph::max as fn(&mut Graph, _, _) -> _), (hi, Graph::min)] {
+                if self.graph.as_number(end).is_none_or(f64::is_finite) {
+                    value = join(self.graph, value, end);
+                }
+            }
+            lanes.push(value);
+        }
+        self.graph.compose(&lanes)
+    }
+}
+
+/// How a node of a formula passes its value on.
+enum Form {
+    Least(NodeId, NodeId),
+    Greatest(NodeId, NodeId),
+    Negative(NodeId),
+    Chosen(NodeId, NodeId, NodeId),
+    Sampled(ShapeId, NodeId),
+    Scaled(NodeId, ShapeId, NodeId),
+    Whole,
+}
