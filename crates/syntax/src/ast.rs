@@ -194,13 +194,37 @@ pub enum TypeExprKind {
     Fn(Vec<TypeExpr>, Box<TypeExpr>),
 }
 
-/// An expression.
-#[derive(Clone, Debug, PartialEq)]
+/// An expression. At most [`MAX_HEIGHT`](crate::MAX_HEIGHT) nodes high where the parser made it;
+/// cloning, comparing and printing extend the stack, dropping needs about 200 bytes a node.
 pub struct Expr {
     /// What it is.
     pub kind: ExprKind,
     /// Where.
     pub span: Span,
+}
+
+impl Clone for Expr {
+    fn clone(&self) -> Self {
+        deeper(|| Expr { kind: self.kind.clone(), span: self.span })
+    }
+}
+
+impl PartialEq for Expr {
+    fn eq(&self, other: &Self) -> bool {
+        self.span == other.span && deeper(|| self.kind == other.kind)
+    }
+}
+
+impl std::fmt::Debug for Expr {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut out = f.debug_struct("Expr");
+        deeper(|| out.field("kind", &self.kind).field("span", &self.span).finish())
+    }
+}
+
+/// Runs one step of a recursion over expressions, on a new piece of stack where little is left.
+pub(crate) fn deeper<T>(step: impl FnOnce() -> T) -> T {
+    stacker::maybe_grow(64 << 10, 1 << 20, step)
 }
 
 /// The unit joined to a number.

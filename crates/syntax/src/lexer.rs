@@ -65,12 +65,23 @@ pub(crate) fn lex(text: &str, file: FileId) -> Lexed {
             continue;
         }
         if token.kind == TokenKind::Unknown {
-            token.kind = lexed.unknown(text, token, file);
+            let letters = lexer.slice().chars().chain(lexer.remainder().chars());
+            let word: usize = letters.take_while(|&c| is_letter(c)).map(char::len_utf8).sum();
+            if word > 0 {
+                lexer.bump(word - lexer.slice().len());
+                previous_end = lexer.span().end;
+                token.end = previous_end as u32;
+                token = lexed.foreign_word(text, token, file);
+            } else if let Some(kind) = lexed.unknown(text, token, file) {
+                token.kind = kind;
+            } else {
+                continue;
+            }
         }
+        first = false;
         if let Some(token) = lexed.joined(token) {
             lexed.tokens.push(token);
         }
-        first = false;
     }
     let end = text.len() as u32;
     lexed.tokens.push(Token { kind: TokenKind::Eof, first: true, start: end, end });
@@ -93,14 +104,31 @@ impl Lexed {
         }
     }
 
-    /// Reports a character that starts no token; the kind that was likely meant, or `Unknown`.
-    fn unknown(&mut self, text: &str, token: Token, file: FileId) -> TokenKind {
+    /// Reports a word with letters outside ASCII; it counts as a name, joined to one before it.
+    fn foreign_word(&mut self, text: &str, mut token: Token, file: FileId) -> Token {
+        if let Some(last) = self.tokens.last()
+            && last.kind == TokenKind::Name
+            && last.end == token.start
+        {
+            token = Token { end: token.end, ..*last };
+            self.tokens.pop();
+        }
+        let word = &text[token.start as usize..token.end as usize];
+        let message = format!("`{word}` has letters that names cannot have");
+        self.diagnostics.push(
+            Diagnostic::error(Code::UNKNOWN_CHARACTER, token.span(file), message)
+                .help("names are written with the letters a to z, digits and `_`"),
+        );
+        Token { kind: TokenKind::Name, ..token }
+    }
+
+    /// Reports a character that starts no token. Gives the kind that was likely meant or
+    /// `Unknown`; nothing for one that the parser need not see.
+    fn unknown(&mut self, text: &str, token: Token, file: FileId) -> Option<TokenKind> {
         let span = token.span(file);
-        let Some(c) = text[token.start as usize..].chars().next() else {
-            return TokenKind::Unknown;
-        };
+        let c = text[token.start as usize..].chars().next()?;
         let (meant, help) = meaning(c);
-        if meant == TokenKind::Unknown && self.extends_last(span) {
+        if meant == Some(TokenKind::Unknown) && self.extends_last(span) {
             return meant;
         }
         let shown = if c.is_control() || c.is_whitespace() {
@@ -130,28 +158,29 @@ impl Lexed {
     }
 }
 
+/// Whether a word of another language, or the rest of one, may contain it.
+fn is_letter(c: char) -> bool {
+    let meant = matches!(meaning(c).0, Some(kind) if kind != TokenKind::Unknown);
+    c == '_' || (c.is_alphanumeric() && !meant)
+}
+
 /// What a character that starts no token was likely meant to be, and what to write instead.
-fn meaning(c: char) -> (TokenKind, &'static str) {
+fn meaning(c: char) -> (Option<TokenKind>, &'static str) {
     match c {
-        '\u{2018}' | '\u{2019}' | '\'' => (TokenKind::Unknown, "strings stand between `\"`"),
-        '\u{2010}'..='\u{2015}' | '\u{2212}' => (TokenKind::Minus, "write the minus sign as `-`"),
-        '\u{d7}' | '\u{b7}' | '\u{22c5}' => (TokenKind::Star, "write `*`"),
-        '\u{f7}' => (TokenKind::Slash, "write `/`"),
-        '\u{2026}' => (TokenKind::DotDot, "a range is written with two dots: `0..1`"),
-        '\u{2264}' => (TokenKind::LessEq, "write `<=`"),
-        '\u{2265}' => (TokenKind::GreaterEq, "write `>=`"),
-        '\u{2260}' => (TokenKind::NotEq, "write `!=`"),
-        '\u{b0}' => (TokenKind::Unknown, "angles are written `90deg`"),
-        '\u{3c0}' => (TokenKind::Name, "write `pi`"),
-        '\u{221e}' => (TokenKind::Name, "write `inf`"),
-        '^' => (TokenKind::Unknown, "powers are written `pow(x, 2)`"),
-        '?' => (TokenKind::Unknown, "choices are written `if c { a } else { b }`"),
-        '@' | '$' | '~' | '`' | '\\' => (TokenKind::Unknown, ""),
-        c if c.is_whitespace() => (TokenKind::Unknown, "replace it by a plain space"),
-        c if c.is_alphabetic() => {
-            (TokenKind::Unknown, "names are written with the letters a to z, digits and `_`")
-        }
-        _ => (TokenKind::Unknown, ""),
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => (Some(TokenKind::Minus), "write `-`"),
+        '\u{d7}' | '\u{b7}' | '\u{22c5}' => (Some(TokenKind::Star), "write `*`"),
+        '\u{f7}' => (Some(TokenKind::Slash), "write `/`"),
+        '\u{2026}' => (Some(TokenKind::DotDot), "a range is written with two dots: `0..1`"),
+        '\u{2264}' => (Some(TokenKind::LessEq), "write `<=`"),
+        '\u{2265}' => (Some(TokenKind::GreaterEq), "write `>=`"),
+        '\u{2260}' => (Some(TokenKind::NotEq), "write `!=`"),
+        '\u{3c0}' => (Some(TokenKind::Name), "write `pi`"),
+        '\u{221e}' => (Some(TokenKind::Name), "write `inf`"),
+        '\u{b0}' => (None, "angles are written `90deg`"),
+        '^' => (Some(TokenKind::Unknown), "powers are written `pow(x, 2)`"),
+        '?' => (Some(TokenKind::Unknown), "choices are written `if c { a } else { b }`"),
+        c if c.is_whitespace() => (None, "replace it by a plain space"),
+        _ => (Some(TokenKind::Unknown), ""),
     }
 }
 

@@ -3,6 +3,7 @@
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
 use crate::ast::{ExprKind, Unit};
+use crate::token::is_quote;
 
 /// A value, and what is wrong with how it was written. The value is a stand-in if anything is.
 pub(crate) type Checked<T> = (T, Option<Diagnostic>);
@@ -102,11 +103,11 @@ pub(crate) fn color(text: &str, span: Span) -> Checked<[u8; 4]> {
 /// A string without its quotes and escapes.
 pub(crate) fn text(written: &str, span: Span) -> Checked<String> {
     if !written.starts_with('"') {
-        let inner = written.trim_matches(['\u{201c}', '\u{201d}', '\u{201e}', '"']);
+        let inner = written.trim_matches(is_quote);
         let problem = Diagnostic::error(
             Code::UNKNOWN_CHARACTER,
             span,
-            "strings stand between plain quotes, these are typographic ones",
+            "strings stand between plain double quotes",
         )
         .help(format!("write \"{inner}\""));
         return (inner.to_owned(), Some(problem));

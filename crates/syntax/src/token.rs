@@ -22,9 +22,8 @@ pub(crate) enum TokenKind {
     Color,
     /// From its quote to the closing one or the end of the line; `literal::text` checks it.
     #[token("\"", scan_string)]
-    #[token("\u{201c}", scan_string)]
-    #[token("\u{201d}", scan_string)]
-    #[token("\u{201e}", scan_string)]
+    #[token("'", scan_string)]
+    #[regex("[\u{2018}-\u{201f}]", scan_string)]
     Text,
 
     #[token("let")]
@@ -123,7 +122,7 @@ pub(crate) enum TokenKind {
 
 /// Extends a string over its line: to an unescaped closing quote, or to the line's end.
 fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
-    let typographic = !lexer.slice().starts_with('"');
+    let plain = lexer.slice() == "\"";
     let mut escaped = false;
     let mut length = 0;
     for c in lexer.remainder().chars() {
@@ -131,7 +130,7 @@ fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
             break;
         }
         length += c.len_utf8();
-        let closes = c == '"' || (typographic && matches!(c, '\u{201c}' | '\u{201d}'));
+        let closes = if plain { c == '"' } else { is_quote(c) };
         if closes && !escaped {
             break;
         }
@@ -140,6 +139,11 @@ fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
     let rest = &lexer.remainder()[..length];
     // A carriage return before the line feed belongs to the line's end, not to the string.
     lexer.bump(rest.strip_suffix('\r').unwrap_or(rest).len());
+}
+
+/// Whether a string in another language, or pasted from a text, might begin or end with it.
+pub(crate) fn is_quote(c: char) -> bool {
+    matches!(c, '"' | '\'' | '\u{2018}'..='\u{201f}')
 }
 
 /// One token.

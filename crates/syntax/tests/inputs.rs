@@ -1,5 +1,7 @@
 //! Every scene and library draft under `tests/inputs` parses, and cutting it short never panics.
 
+#![allow(clippy::unwrap_used, reason = "these are tests")]
+
 use std::fs;
 use std::path::PathBuf;
 

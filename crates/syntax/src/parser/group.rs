@@ -39,7 +39,7 @@ impl Parser<'_> {
         if self.abandoned {
             return Err(Failed);
         }
-        if self.kind() == TokenKind::Eof || self.at_new_item() {
+        if self.kind() == TokenKind::Eof || self.at_new_item() || self.at_new_body() {
             self.unclosed(opener);
             return Ok(());
         }
@@ -48,25 +48,26 @@ impl Parser<'_> {
             return Ok(());
         }
         let shown = name_of(closer);
-        self.report_expected(&format!("{what} or `{shown}`"));
+        let mut found = self.expectation(&format!("{what} or `{shown}`"));
+        found.help.extend(self.operator_hint().map(str::to_owned));
+        self.report(found);
         let start = self.span();
         self.skip_to(start, &[])?;
         if !self.eat(closer) {
-            self.missing.push(closer);
+            self.missing[slot(closer)] += 1;
         }
         Ok(())
     }
 
-    fn report_expected(&mut self, what: &str) {
-        let diagnostic = self.expectation(what);
-        self.report(diagnostic);
-    }
-
-    /// Reports an opener without its closer.
+    /// Reports an opener without its closer; those that end at one place are one report.
     pub(super) fn unclosed(&mut self, opener: Opener) {
         let Some(closer) = opener.token.kind.closer() else {
             return;
         };
+        self.missing[slot(closer)] += 1;
+        if self.missing_at.replace(self.at) == Some(self.at) {
+            return self.amend(opener.span, "nor is this");
+        }
         let shown = self.slice(opener.span);
         let missing = name_of(closer);
         let behind = self.previous().map_or(opener.span, |token| token.span(self.file));
@@ -79,7 +80,6 @@ impl Parser<'_> {
             found = found.note_at(behind.after(), format!("a `{missing}` is missing up to here"));
         }
         self.report(found);
-        self.missing.push(closer);
     }
 
     /// A closer of another kind: either it closes a bracket further out, or it is a slip.
@@ -112,6 +112,7 @@ impl Parser<'_> {
         let depth = self.open.len();
         let elements = self.nested(opener.span, |parser| {
             let mut elements = Vec::new();
+            let mut comma_missing = false;
             while !parser.kind().is_closer() && !parser.ends_early() {
                 let (start, at) = (parser.span(), parser.at);
                 match parse(parser) {
@@ -125,9 +126,13 @@ impl Parser<'_> {
                 if parser.eat(TokenKind::Comma) {
                     continue;
                 }
-                if !parser.continues_without_comma(one) || parser.at == at {
+                if !parser.at_next_element() || parser.at == at {
                     break;
                 }
+                if !comma_missing {
+                    parser.report_missing_comma(one);
+                }
+                comma_missing = true;
             }
             Ok(elements)
         });
@@ -142,24 +147,37 @@ impl Parser<'_> {
         self.kind() == TokenKind::Eof || self.at_new_declaration()
     }
 
-    /// Behind an element without a comma: whether another element follows. That is reported.
-    fn continues_without_comma(&mut self, one: &str) -> bool {
+    /// Behind an element without a comma: whether another element follows.
+    fn at_next_element(&self) -> bool {
         let element = self.kind().starts_primary() || self.kind() == TokenKind::For;
-        if !element || self.at_new_item() {
-            return false;
-        }
+        element && !self.at_new_item() && self.operator_hint().is_none()
+    }
+
+    fn report_missing_comma(&mut self, one: &str) {
         let closer = self.open.last().and_then(|open| open.closer()).map_or("", name_of);
         let diagnostic = self
             .expectation(&format!("`,` or `{closer}`"))
             .help(format!("separate one {one} from the next with a comma"));
         self.report(diagnostic);
-        true
     }
 
     /// Whether a late closer makes up for one that was reported missing.
     pub(super) fn was_missing(&mut self, closer: TokenKind) -> bool {
-        let at = self.missing.iter().rposition(|&missing| missing == closer);
-        at.map(|at| self.missing.remove(at)).is_some()
+        let missing = &mut self.missing[slot(closer)];
+        let late = *missing > 0;
+        *missing = missing.saturating_sub(1);
+        late
+    }
+}
+
+/// Where a closing bracket is counted.
+fn slot(closer: TokenKind) -> usize {
+    if closer == TokenKind::CloseParen {
+        0
+    } else if closer == TokenKind::CloseBracket {
+        1
+    } else {
+        2
     }
 }
 

@@ -33,18 +33,31 @@ impl Parser<'_> {
     /// One item and its end. Nothing for one that was left out after an error.
     fn item(&mut self) -> Parsed<Option<Item>> {
         let item = match self.kind() {
+            TokenKind::Let => self.binding()?.map(Item::Let),
+            TokenKind::Fn if self.peek(1).kind == TokenKind::OpenParen => self.drawn()?,
+            kind if kind.declares() => self.declaration()?,
+            kind if kind.is_closer() => return Ok(self.stray_closer()),
+            _ => self.drawn()?,
+        };
+        self.end_of_item();
+        Ok(item)
+    }
+
+    /// A solid to draw, or a setting.
+    fn drawn(&mut self) -> Parsed<Option<Item>> {
+        Ok(Some(Item::Expr(self.expr()?)))
+    }
+
+    /// An item that starts with a reserved word other than `let`.
+    pub(super) fn declaration(&mut self) -> Parsed<Option<Item>> {
+        match self.kind() {
             TokenKind::Import => self.import().map(Item::Import).map(Some),
             TokenKind::Param => self.param().map(Item::Param).map(Some),
-            TokenKind::Let => Ok(self.binding()?.map(Item::Let)),
             TokenKind::Solid => self.decl(DeclKind::Solid),
             TokenKind::Region => self.decl(DeclKind::Region),
             TokenKind::Shape => self.decl(DeclKind::Shape),
-            TokenKind::Fn if self.peek(1).kind != TokenKind::OpenParen => self.decl(DeclKind::Fn),
-            kind if kind.is_closer() => return self.stray_closer(),
-            _ => self.expr().map(Item::Expr).map(Some),
-        }?;
-        self.end_of_item();
-        Ok(item)
+            _ => self.decl(DeclKind::Fn),
+        }
     }
 
     /// Skips to the line that begins the next item.
@@ -72,35 +85,8 @@ impl Parser<'_> {
         self.skip_item(self.at);
     }
 
-    /// Reports something behind a complete expression.
-    pub(super) fn report_no_end(&mut self) {
-        let text = self.slice(self.span());
-        let diagnostic = Diagnostic::error(
-            Code::EXPECTED,
-            self.span(),
-            "expected an operator or the end of the line",
-        );
-        let help = match (self.kind(), text) {
-            (TokenKind::Unknown, _) => return,
-            (TokenKind::PointNumber, _) => {
-                let found = literal::bare_point(text, self.span());
-                return self.report(found);
-            }
-            (TokenKind::Name, "and") => "write `&&`",
-            (TokenKind::Name, "or") => "write `||`",
-            (TokenKind::Name, "not") => "write `!`",
-            (TokenKind::Eq, _) => "`let` names a value: let a = 1; equality is written `==`",
-            (TokenKind::Else, _) => "`else` follows the `}` of an `if`",
-            (TokenKind::Comma, _) => "commas separate arguments and elements of lists",
-            (kind, _) if kind.declares() => "start a new line, or separate the two with `;`",
-            (kind, _) if kind.starts_primary() => "join solids with `|`, or start a new line",
-            _ => "",
-        };
-        self.report(if help.is_empty() { diagnostic } else { diagnostic.help(help) });
-    }
-
     /// A closer that nothing opened.
-    fn stray_closer(&mut self) -> Parsed<Option<Item>> {
+    fn stray_closer(&mut self) -> Option<Item> {
         let closer = self.kind();
         if !self.was_missing(closer) {
             let message = format!("this `{}` closes nothing", self.slice(self.span()));
@@ -110,7 +96,7 @@ impl Parser<'_> {
         }
         self.bump();
         self.end_after_stray();
-        Ok(None)
+        None
     }
 
     /// What follows a stray closer on its line belonged inside.
@@ -169,7 +155,10 @@ impl Parser<'_> {
         let start = self.span();
         self.bump();
         let name = self.declared_name("a name after `param`")?;
-        let ty = if self.eat(TokenKind::Colon) { Some(self.type_expr()?) } else { None };
+        let ty = match self.eat(TokenKind::Colon) {
+            true => self.type_or_skip(&[TokenKind::Eq])?,
+            false => None,
+        };
         let default = match self.eat(TokenKind::Eq) {
             true => self.expr_or_skip(&[TokenKind::In, TokenKind::Semicolon])?,
             false => {
@@ -195,24 +184,17 @@ impl Parser<'_> {
         self.bump();
         let name = self.declared_name(&format!("a name after `{word}`"))?;
         self.in_shape = kind != DeclKind::Fn;
-        let signature_start = self.span();
-        let signature = match self.signature(kind) {
-            Ok(signature) => signature,
+        let start_of_rest = self.span();
+        let (signature, body) = match self.signature(kind) {
+            Ok(signature) => (signature, self.body(&name)?),
             Err(Failed) => {
-                let body = self.skip_to(signature_start, &[])?;
-                let signature = Signature {
-                    parms: Vec::new(),
-                    result: None,
-                    clauses: Vec::new(),
-                    span: signature_start,
-                };
-                let span = self.since(start);
-                return Ok(Some(boxed(Decl { docs, kind, name, signature, body, span })));
+                let (parms, result, clauses) = (Vec::new(), None, Vec::new());
+                let signature = Signature { parms, result, clauses, span: start_of_rest };
+                (signature, self.late_body(start_of_rest)?)
             }
         };
-        let body = self.body(&name)?;
         let span = self.since(start);
-        Ok(Some(boxed(Decl { docs, kind, name, signature, body, span })))
+        Ok(Some(Item::Decl(Box::new(Decl { docs, kind, name, signature, body, span }))))
     }
 
     fn body(&mut self, name: &Name) -> Parsed<Expr> {
@@ -224,8 +206,18 @@ impl Parser<'_> {
                 Ok(Expr { kind: ExprKind::Error, span: self.since(start) })
             }
             Ok(()) => self.expr_or_skip(&[TokenKind::Semicolon]),
-            Err(Failed) => self.skip_to(start, &[TokenKind::Semicolon]),
+            Err(Failed) => self.late_body(start),
         }
+    }
+
+    /// After an error between name and body: the body, if it begins a line with `=`.
+    fn late_body(&mut self, start: Span) -> Parsed<Expr> {
+        let skipped = self.skip_to(start, &[TokenKind::Semicolon])?;
+        if !self.at_new_body() {
+            return Ok(skipped);
+        }
+        self.bump();
+        self.expr_or_skip(&[TokenKind::Semicolon])
     }
 
     /// The `///` lines right above the next token, plain comments among them left out.
@@ -280,10 +272,6 @@ impl Parser<'_> {
         }
         Ok(name)
     }
-}
-
-fn boxed(decl: Decl) -> Item {
-    Item::Decl(Box::new(decl))
 }
 
 fn reserved(word: &str, span: Span) -> Diagnostic {

@@ -70,8 +70,10 @@ struct Parser<'a> {
     in_shape: bool,
     /// The brackets that are open, outermost first.
     open: Vec<TokenKind>,
-    /// Closers that are missing, so that a late one is not reported as well.
-    missing: Vec<TokenKind>,
+    /// Index of the token where a closer was found missing last.
+    missing_at: Option<usize>,
+    /// How many `)`, `]` and `}` are missing, so that a late one is not reported as well.
+    missing: [u32; 3],
     /// A limit was passed: the rest of the item is skipped in silence.
     abandoned: bool,
     reports: report::Reports,
@@ -89,7 +91,8 @@ impl<'a> Parser<'a> {
             height: 0,
             in_shape: false,
             open: Vec::new(),
-            missing: Vec::new(),
+            missing_at: None,
+            missing: [0; 3],
             abandoned: false,
             reports: report::Reports::default(),
         }
@@ -178,6 +181,11 @@ impl<'a> Parser<'a> {
     /// Whether the next token begins an item by the look of the line.
     fn at_new_item(&self) -> bool {
         self.at_new_declaration() || (self.in_first_column() && self.kind().starts_primary())
+    }
+
+    /// Whether the next token begins a line with the `=` before a body.
+    fn at_new_body(&self) -> bool {
+        self.next().first && self.kind() == TokenKind::Eq
     }
 
     /// Parses a construct that may contain itself, one level deeper. Its height is one more than

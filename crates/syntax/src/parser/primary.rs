@@ -10,6 +10,13 @@ use crate::token::TokenKind;
 impl Parser<'_> {
     /// An operand without its postfixes.
     pub(super) fn primary(&mut self) -> Parsed<Expr> {
+        let begin = self.span();
+        if self.kind() == TokenKind::Unknown {
+            while self.eat(TokenKind::Unknown) {}
+            if self.next().first || !self.kind().starts_primary() {
+                return Ok(Expr { kind: ExprKind::Error, span: self.since(begin) });
+            }
+        }
         let start = self.span();
         let kind = match self.kind() {
             TokenKind::Number => self.literal(literal::number, |kind| kind),
@@ -24,7 +31,6 @@ impl Parser<'_> {
             TokenKind::True => self.word(ExprKind::Bool(true)),
             TokenKind::False => self.word(ExprKind::Bool(false)),
             TokenKind::Name => self.word(ExprKind::Name(self.slice(start).to_owned())),
-            TokenKind::Unknown => self.word(ExprKind::Error),
             TokenKind::OpenParen => self.parenthesized()?,
             TokenKind::OpenBracket => self.list()?,
             TokenKind::OpenBrace => return self.block(),
@@ -65,7 +71,9 @@ impl Parser<'_> {
         let place = if before.is_empty() { String::new() } else { format!(" after `{before}`") };
         let help: &[&str] = match self.kind() {
             TokenKind::For => &["`for` stands in a list or among arguments: [for i in 0..3: i]"],
-            TokenKind::Let => &["`let` stands at top level, or in a block: { let a = 1; a + 1 }"],
+            TokenKind::Let if !self.next().first => {
+                &["`let` stands at top level, or in a block: { let a = 1; a + 1 }"]
+            }
             TokenKind::Solid
             | TokenKind::Region
             | TokenKind::Shape
@@ -146,11 +154,14 @@ impl Parser<'_> {
     fn block_contents(&mut self) -> Parsed<(Vec<Let>, Expr)> {
         let mut lets = Vec::new();
         let mut result: Option<Expr> = None;
+        let reported = self.reported();
+        let mut indented = false;
         loop {
             let at = self.at;
-            if self.block_ends() {
+            if self.block_ends(indented) {
                 break;
             }
+            indented |= self.next().first && !self.in_first_column();
             if let Some(earlier) = &result
                 && !matches!(earlier.kind, ExprKind::Error)
             {
@@ -160,6 +171,8 @@ impl Parser<'_> {
             if self.kind() == TokenKind::Let {
                 lets.extend(self.binding()?);
                 result = result.filter(|value| matches!(value.kind, ExprKind::Error));
+            } else if self.at_new_declaration() {
+                self.misplaced_declaration()?;
             } else {
                 result = Some(self.expr_or_skip(&[TokenKind::Semicolon])?);
             }
@@ -172,7 +185,7 @@ impl Parser<'_> {
             Some(result) => Ok((lets, result)),
             None => {
                 let span = self.span();
-                if self.kind() == TokenKind::CloseBrace {
+                if self.kind() == TokenKind::CloseBrace && self.reported() == reported {
                     self.report_no_value();
                 }
                 Ok((lets, Expr { kind: ExprKind::Error, span }))
@@ -180,11 +193,34 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the block's closer comes next, or something that cannot stand in a block.
-    fn block_ends(&self) -> bool {
+    /// Whether the block's closer comes next, or a declaration at top level: in the first column
+    /// one that cannot stand in a block, or a `let` after lines that were `indented`.
+    fn block_ends(&self, indented: bool) -> bool {
+        let at_top = self.at_new_declaration() && self.in_first_column();
         self.kind().is_closer()
             || self.kind() == TokenKind::Eof
-            || (self.at_new_declaration() && self.kind() != TokenKind::Let)
+            || (at_top && (indented || self.kind() != TokenKind::Let))
+    }
+
+    /// Reports a declaration in a block and reads it, to go on behind it.
+    fn misplaced_declaration(&mut self) -> Parsed<()> {
+        let word = self.slice(self.span());
+        let found = Diagnostic::error(
+            Code::EXPECTED,
+            self.span(),
+            format!("a `{word}` is declared at top level, not in a block"),
+        );
+        self.report(match self.kind() {
+            TokenKind::Fn => found.help("in a block, write: let name = fn(...) = ..."),
+            _ => found.help("move it out of the block; what it needs it can take as parameters"),
+        });
+        let (start, in_shape) = (self.span(), self.in_shape);
+        let read = self.declaration();
+        self.in_shape = in_shape;
+        if read.is_err() {
+            self.skip_to(start, &[TokenKind::Semicolon])?;
+        }
+        Ok(())
     }
 
     fn end_of_line_in_block(&mut self) -> Parsed<()> {
@@ -284,6 +320,9 @@ impl Parser<'_> {
         if self.kind() == TokenKind::OpenBrace {
             return self.block();
         }
+        if let Some(hint) = self.operator_hint() {
+            return self.expected_with("an operator or `{`", &[hint]);
+        }
         self.expected_with("`{`", &["branches stand in braces: if c { a } else { b }"])
     }
 
@@ -293,22 +332,31 @@ impl Parser<'_> {
         self.nested(start, |parser| {
             parser.bump();
             if parser.kind() == TokenKind::Name {
-                let name = parser.slice(parser.span());
-                let found = Diagnostic::error(
-                    Code::EXPECTED,
-                    parser.span(),
-                    format!(
-                        "expected `(`: a `fn` with a name stands at top level, not `fn {name}`"
-                    ),
-                )
-                .help(format!("in a block, write: let {name} = fn(...) = ..."));
-                parser.report(found);
+                parser.report_named_lambda();
                 parser.bump();
+                if parser.kind() != TokenKind::OpenParen {
+                    return Err(Failed);
+                }
             }
             let signature = parser.signature(DeclKind::Fn)?;
             parser.body_follows()?;
             let body = parser.expr()?;
             Ok(ExprKind::Lambda(Box::new(signature), Box::new(body)))
         })
+    }
+
+    /// Reports a name behind a `fn` that stands in an expression.
+    fn report_named_lambda(&mut self) {
+        let name = self.slice(self.span());
+        let found = if self.peek(1).kind == TokenKind::OpenParen {
+            let message = "a `fn` in an expression has no name";
+            Diagnostic::error(Code::EXPECTED, self.span(), message)
+                .help(format!("write: let {name} = fn(...) = ..."))
+        } else {
+            let message = "the parameters of a `fn` stand in brackets";
+            Diagnostic::error(Code::EXPECTED, self.span(), message)
+                .help(format!("write: fn({name}) = ..."))
+        };
+        self.report(found);
     }
 }

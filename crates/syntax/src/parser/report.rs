@@ -1,10 +1,11 @@
 //! What is reported, and how the parser finds its way after an error.
 
-use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 
 use super::{Failed, Parsed, Parser};
 use crate::MAX_ERRORS;
 use crate::ast::{Expr, ExprKind};
+use crate::literal;
 use crate::token::{Token, TokenKind};
 
 /// The findings so far.
@@ -58,6 +59,16 @@ impl Parser<'_> {
         Err(Failed)
     }
 
+    /// Adds a place to the latest report, unless it shows many already.
+    pub(super) fn amend(&mut self, span: Span, note: &str) {
+        if self.reports.dropped == 0
+            && let Some(last) = self.reports.found.last_mut()
+            && last.notes.len() < 4
+        {
+            last.notes.push(Note { span: Some(span), message: note.to_owned() });
+        }
+    }
+
     /// Fails because something else was expected: `what` completes "expected ...".
     pub(super) fn expected<T>(&mut self, what: &str) -> Parsed<T> {
         self.expected_with(what, &[])
@@ -68,6 +79,45 @@ impl Parser<'_> {
         let diagnostic = self.expectation(what);
         let diagnostic = help.iter().fold(diagnostic, |found, help| found.help(*help));
         self.fail(diagnostic)
+    }
+
+    /// How many findings there are, those past the limit included.
+    pub(super) fn reported(&self) -> usize {
+        self.reports.found.len() + self.reports.dropped
+    }
+
+    /// Reports something behind a complete expression.
+    pub(super) fn report_no_end(&mut self) {
+        if self.kind() == TokenKind::PointNumber {
+            let found = literal::bare_point(self.slice(self.span()), self.span());
+            return self.report(found);
+        }
+        let message = "expected an operator or the end of the line";
+        let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
+        let help = match self.kind() {
+            TokenKind::Comma => Some("commas separate arguments and elements of lists"),
+            kind if kind.declares() => Some("start a new line, or separate the two with `;`"),
+            kind => self.operator_hint().or_else(|| {
+                kind.starts_primary().then_some("join solids with `|`, or start a new line")
+            }),
+        };
+        self.report(match help {
+            Some(help) => found.help(help),
+            None => found,
+        });
+    }
+
+    /// What to write for something that other languages have as an operator.
+    pub(super) fn operator_hint(&self) -> Option<&'static str> {
+        match (self.kind(), self.slice(self.span())) {
+            (TokenKind::Name, "and") => Some("write `&&`"),
+            (TokenKind::Name, "or") => Some("write `||`"),
+            (TokenKind::Name, "not") => Some("write `!`"),
+            (TokenKind::Ellipsis, _) => Some("a range is written with two dots: `0..1`"),
+            (TokenKind::Eq, _) => Some("equality is written `==`; `let a = 1` names a value"),
+            (TokenKind::Else, _) => Some("`else` follows the `}` of an `if`"),
+            _ => None,
+        }
     }
 
     /// "expected ...": at the next token, or behind the one before where that one ends its line.
@@ -124,8 +174,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips to one of `stops`, to the closer of the innermost bracket or to the next item; what
-    /// was skipped is an `Error`.
+    /// Skips to one of `stops`, to the closer of the innermost bracket, to the next item, to
+    /// a line with the `=` of a body or, in a block, to the next line. What was skipped is `Error`.
     pub(super) fn skip_to(&mut self, start: Span, stops: &[TokenKind]) -> Parsed<Expr> {
         if self.abandoned {
             return Err(Failed);
@@ -133,7 +183,11 @@ impl Parser<'_> {
         let mut inner = 0_usize;
         loop {
             let kind = self.kind();
-            if kind == TokenKind::Eof || self.at_new_item() {
+            if kind == TokenKind::Eof || self.at_new_item() || self.at_new_body() {
+                break;
+            }
+            let in_block = inner == 0 && self.open.last() == Some(&TokenKind::OpenBrace);
+            if in_block && self.next().first && kind.starts_primary() && self.span() != start {
                 break;
             }
             if inner == 0 && (kind.is_closer() || stops.contains(&kind)) {

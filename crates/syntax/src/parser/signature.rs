@@ -2,7 +2,7 @@
 
 use sdfc_diagnostics::{Code, Diagnostic};
 
-use super::{Parsed, Parser};
+use super::{Failed, Parsed, Parser};
 use crate::ast::{
     Clause, ClauseKind, DeclKind, Expr, Parm, Side, Signature, TypeExpr, TypeExprKind,
 };
@@ -25,10 +25,17 @@ impl Parser<'_> {
             return self.expected_with("`(` and the parameters", help);
         }
         let parms = self.bracketed("parameter", Self::parm, |_| None)?;
-        let result = if self.eat(TokenKind::Arrow) { Some(self.type_expr()?) } else { None };
+        let result = match self.eat(TokenKind::Arrow) {
+            true => self.type_or_skip(&[TokenKind::Eq])?,
+            false => None,
+        };
         let mut clauses = Vec::new();
         while let Some(word) = self.clause_word() {
-            clauses.push(self.clause(word, kind)?);
+            let start = self.span();
+            match self.clause(word, kind) {
+                Ok(clause) => clauses.push(clause),
+                Err(Failed) => drop(self.skip_to(start, &[TokenKind::Eq])?),
+            }
         }
         Ok(Signature { parms, result, clauses, span: self.since(start) })
     }
@@ -47,20 +54,28 @@ impl Parser<'_> {
             return self
                 .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
         }
-        self.expected_with(
-            "`=` or a clause",
-            &["the clauses are exact, bound, lipschitz, bounds, material and require"],
-        )
+        let help = "the clauses are exact, bound, lipschitz, bounds, material and require";
+        if self.kind() == TokenKind::Name && !self.at_new_item() {
+            let word = self.slice(self.span());
+            let message = format!("expected `=` or a clause, found `{word}`");
+            return self.fail(Diagnostic::error(Code::EXPECTED, self.span(), message).help(help));
+        }
+        self.expected_with("`=` or a clause", &[help])
     }
 
     /// `NAME [: type [...]] [= default] [in range]`
     fn parm(&mut self) -> Parsed<Parm> {
         let start = self.span();
         let name = self.declared_name("a parameter's name")?;
-        let ty = if self.eat(TokenKind::Colon) { Some(self.type_expr()?) } else { None };
+        let ty = match self.eat(TokenKind::Colon) {
+            true => self.type_or_skip(&[TokenKind::Comma, TokenKind::Eq, TokenKind::In])?,
+            false => None,
+        };
         let variadic = ty.is_some() && self.eat(TokenKind::Ellipsis);
         if self.kind() == TokenKind::Ellipsis {
-            return self.expected_with("a type before `...`", &["write parts: shape..."]);
+            let message = "a parameter that takes any number of values needs a type";
+            let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
+            return self.fail(found.help(format!("write {}: shape...", name.text)));
         }
         let default = if self.eat(TokenKind::Eq) {
             Some(self.expr_or_skip(&[TokenKind::Comma, TokenKind::In])?)
@@ -139,6 +154,15 @@ impl Parser<'_> {
             );
         }
         Ok(ClauseKind::Require(condition, self.string("a message in quotes")?))
+    }
+
+    /// A type, or nothing for one that cannot be read, which is skipped up to one of `stops`.
+    pub(super) fn type_or_skip(&mut self, stops: &[TokenKind]) -> Parsed<Option<TypeExpr>> {
+        let start = self.span();
+        match self.type_expr() {
+            Ok(ty) => Ok(Some(ty)),
+            Err(Failed) => self.skip_to(start, stops).map(|_| None),
+        }
     }
 
     /// A type.
