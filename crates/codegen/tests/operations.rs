@@ -181,7 +181,8 @@ fn operations_on_three_arguments() {
 #[test]
 fn vectors_are_built_cut_and_turned() {
     let mut out = String::new();
-    let cases: [(&str, fn(&mut Graph) -> NodeId); 8] = [
+    type Build = fn(&mut Graph) -> NodeId;
+    let cases: [(&str, Build); 8] = [
         ("splat", |graph| {
             let x = value(graph, Type::Scalar, 0);
             graph.splat(Type::Vec3, x)
