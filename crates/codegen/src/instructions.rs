@@ -14,14 +14,13 @@ const OP_FUNCTION: u32 = 54;
 const OP_FUNCTION_PARAMETER: u32 = 55;
 const OP_FUNCTION_END: u32 = 56;
 const OP_LABEL: u32 = 248;
-const OP_BRANCH: u32 = 249;
 
 /// What one function costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FunctionCost {
     /// What the function computes.
     pub role: Role,
-    /// Its instructions, without those that only frame it (function, parameters, labels, branches, end).
+    /// Its instructions, without those that only frame it (function, parameters, labels, end).
     pub instructions: u32,
     /// Those that compute: arithmetic, comparison, logic, selection, and GLSL.std.450. Composing and
     /// taking apart vectors, loads and stores are not among them.
@@ -43,7 +42,7 @@ pub(crate) fn count(
             }
             (OP_FUNCTION, [_, id, ..]) => current = Some(*id),
             (OP_FUNCTION_END, _) => current = None,
-            (OP_FUNCTION_PARAMETER | OP_LABEL | OP_BRANCH, _) => {}
+            (OP_FUNCTION_PARAMETER | OP_LABEL, _) => {}
             _ => {
                 if let Some(id) = current {
                     let (all, arithmetic) = costs.entry(id).or_default();
@@ -61,9 +60,8 @@ pub(crate) fn count(
     functions.map(cost).collect()
 }
 
-/// `OpExtInst`; `OpSNegate` to `OpSMulExtended` (arithmetic, products of matrices and vectors);
-/// `OpAny` to `OpFUnordGreaterThanEqual` (logic, selection, comparison); `OpShiftRightLogical` to
-/// `OpBitCount`.
+/// Opcodes of OpSNegate..=OpDot and the wide integer operations, OpAny..=OpFUnordGreaterThanEqual
+/// (logic, selection, comparison), OpShiftRightLogical..=OpBitCount, and extended instructions.
 fn computes(opcode: u32) -> bool {
     matches!(opcode, OP_EXT_INST | 126..=152 | 154..=191 | 194..=205)
 }

@@ -1,0 +1,480 @@
+//! Calls: arguments find their parameters, values that are called are applied or sampled.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Dim;
+use sdfc_syntax::ast::{self, ExprKind as Ast, Name};
+
+use super::coerce::Role;
+use super::decl::Slot;
+use super::names::{self, Found};
+use super::types::{self, describe, show};
+use super::{Checker, poison};
+use crate::hir::{Element, Expr, ExprKind, Type};
+
+/// An argument on its way to a parameter.
+#[derive(Clone, Debug)]
+pub(super) struct Given<'a> {
+    pub name: Option<&'a Name>,
+    pub value: Value<'a>,
+    pub span: Span,
+}
+
+/// How far an argument has come.
+#[derive(Clone, Debug)]
+pub(super) enum Value<'a> {
+    /// As written.
+    Expr(&'a ast::Expr),
+    /// `for ...`, as written.
+    Element(&'a ast::Element),
+    /// Checked without knowing what is wanted.
+    Done(Element, Type),
+}
+
+impl<'a> Given<'a> {
+    /// An expression without a name.
+    pub(super) fn plain(e: &'a ast::Expr) -> Self {
+        Self { name: None, value: Value::Expr(e), span: e.span }
+    }
+
+    /// A value that is checked already.
+    pub(super) fn done(value: Expr) -> Self {
+        let (ty, span) = (value.ty.clone(), value.span);
+        Self { name: None, value: Value::Done(Element::One(value), ty), span }
+    }
+
+    pub(super) fn of(arg: &'a ast::Arg) -> Self {
+        let (value, span) = match &arg.value {
+            ast::Element::Expr(e) => (Value::Expr(e), e.span),
+            ast::Element::For(each) => (Value::Element(&arg.value), each.span),
+        };
+        Self { name: arg.name.as_ref(), value, span }
+    }
+}
+
+/// The name that is called and where it stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Callee<'s> {
+    pub name: &'s str,
+    /// The name.
+    pub at: Span,
+    /// The whole call.
+    pub span: Span,
+}
+
+impl<'a> Checker<'a> {
+    /// `callee(args)`; `x.f(args)` is `f(x, args)`.
+    pub(super) fn infer_call(
+        &mut self,
+        callee: &'a ast::Expr,
+        args: &'a [ast::Arg],
+        span: Span,
+    ) -> Expr {
+        let given = args.iter().map(Given::of);
+        match &callee.kind {
+            Ast::Name(name) => {
+                self.call_name(Callee { name, at: callee.span, span }, given.collect())
+            }
+            Ast::Field(base, name) => {
+                let callee = Callee { name: &name.text, at: name.span, span };
+                let given = std::iter::once(Given::plain(base)).chain(given);
+                self.call_name(callee, given.collect())
+            }
+            _ => {
+                let function = self.infer(callee);
+                self.apply(function, None, given.collect(), span)
+            }
+        }
+    }
+
+    fn call_name(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
+        let Some(found) = self.look_up(callee.name) else {
+            self.unknown_name(callee.name, callee.at);
+            return self.give_up(given, callee.span);
+        };
+        match found {
+            Found::Local(_) | Found::Let(_) | Found::Param(_) => {
+                let value = self.value_of(&found, callee.name, callee.at);
+                self.apply(value, Some((callee, &found)), given, callee.span)
+            }
+            Found::Decls(decls) => self.call_decls(&decls, callee, given),
+            Found::Builtin(builtin) => self.call_builtin(builtin, callee, given),
+            Found::Setting(_) => {
+                self.misplaced_setting(callee.name, callee.at);
+                self.give_up(given, callee.span)
+            }
+            Found::Poisoned => self.give_up(given, callee.span),
+        }
+    }
+
+    /// Looks at arguments of a call that came to nothing, for what is wrong inside them.
+    /// Lambdas are left out: nobody knows what they are given.
+    pub(super) fn give_up(&mut self, given: Vec<Given<'a>>, span: Span) -> Expr {
+        for given in given {
+            match given.value {
+                Value::Expr(e) if !is_lambda(e) => {
+                    self.infer(e);
+                }
+                Value::Element(element) => {
+                    self.element(element, None);
+                }
+                Value::Expr(_) | Value::Done(..) => {}
+            }
+        }
+        poison(span)
+    }
+
+    pub(super) fn misplaced_setting(&mut self, name: &str, at: Span) {
+        let message = format!("`{name}` is a setting and gives no value");
+        self.report(
+            Diagnostic::error(Code::MISPLACED_SETTING, at, message)
+                .help("settings are lines of their own, at top level of the scene"),
+        );
+    }
+
+    /// A value that is called: a function takes its arguments, a shape a point.
+    pub(super) fn apply(
+        &mut self,
+        function: Expr,
+        called: Option<(Callee, &Found)>,
+        given: Vec<Given<'a>>,
+        span: Span,
+    ) -> Expr {
+        match function.ty.clone() {
+            _ if types::poisoned(&function.ty) => self.give_up(given, span),
+            Type::Fn(parameters, result) => {
+                self.apply_function(function, &parameters, *result, given, span)
+            }
+            Type::Shape(dim) => self.sample(function, dim, called, given, span),
+            other => {
+                let what = called.map_or("this".into(), |(callee, _)| format!("`{}`", callee.name));
+                let message = format!("{what} is {} and takes no arguments", describe(&other));
+                let at = called.map_or(function.span, |(callee, _)| callee.at);
+                let found = Diagnostic::error(Code::WRONG_CALL, at, message);
+                let found = self.note_hidden(found, called);
+                self.report(found);
+                self.give_up(given, span)
+            }
+        }
+    }
+
+    fn apply_function(
+        &mut self,
+        function: Expr,
+        parameters: &[Type],
+        result: Type,
+        given: Vec<Given<'a>>,
+        span: Span,
+    ) -> Expr {
+        if given.len() != parameters.len() {
+            let message = format!(
+                "this function takes {}; {} given",
+                count(parameters.len(), "argument"),
+                match given.len() {
+                    1 => "1 is".into(),
+                    n => format!("{n} are"),
+                }
+            );
+            let note = format!("it is {}", describe(&function.ty));
+            self.report(Diagnostic::error(Code::ARGUMENTS, span, message).note(note));
+            return self.give_up(given, span);
+        }
+        let mut arguments = Vec::with_capacity(given.len());
+        for (at, (given, want)) in given.into_iter().zip(parameters).enumerate() {
+            if let Some(name) = given.name {
+                let message = "the parameters of a function value have no names";
+                self.report(Diagnostic::error(Code::ARGUMENTS, name.span, message));
+            }
+            let argument = self.one_argument(given, want, Role::Positional(at + 1));
+            arguments.push(argument);
+        }
+        Expr { kind: ExprKind::Apply(Box::new(function), arguments), ty: result, span }
+    }
+
+    /// A shape called with a point gives its distance there.
+    fn sample(
+        &mut self,
+        shape: Expr,
+        dim: Dim,
+        called: Option<(Callee, &Found)>,
+        mut given: Vec<Given<'a>>,
+        span: Span,
+    ) -> Expr {
+        let want = types::point(dim);
+        let single = given.len() == 1 && given[0].name.is_none();
+        let value = match given.pop() {
+            Some(Given { value: Value::Expr(e), .. }) if single => self.infer(e),
+            Some(Given { value: Value::Done(Element::One(value), _), .. }) if single => value,
+            last => {
+                given.extend(last);
+                self.report_sample(dim, called, shape.span, None);
+                return self.give_up(given, span);
+            }
+        };
+        if types::poisoned(&value.ty) {
+            return poison(span);
+        }
+        if value.ty != want {
+            self.report_sample(dim, called, shape.span, Some(&value.ty));
+            return poison(span);
+        }
+        let kind = ExprKind::Sample(Box::new(shape), Box::new(value));
+        Expr { kind, ty: Type::Number, span }
+    }
+
+    fn report_sample(
+        &mut self,
+        dim: Dim,
+        called: Option<(Callee, &Found)>,
+        span: Span,
+        given: Option<&Type>,
+    ) {
+        let what = called.map_or("this".into(), |(callee, _)| format!("`{}`", callee.name));
+        let at = called.map_or(span, |(callee, _)| callee.at);
+        let (word, point) = (types::shape_word(dim), show(&types::point(dim)));
+        let message = match given {
+            Some(Type::Vec(_)) | None => {
+                format!("{what} is a {word} here and takes one point, a {point}")
+            }
+            Some(_) => format!("{what} is a {word} here and takes a point"),
+        };
+        let found = Diagnostic::error(Code::WRONG_CALL, at, message);
+        let found = self.note_hidden(found, called);
+        self.report(found);
+    }
+
+    /// A note where a name of the scene hides what was probably meant.
+    fn note_hidden(&mut self, found: Diagnostic, called: Option<(Callee, &Found)>) -> Diagnostic {
+        let Some((callee, hiding)) = called else { return found };
+        let (span, word) = match hiding {
+            Found::Local(index) => match self.body.variable(*index) {
+                Some(variable) => (variable.span, ""),
+                None => return found,
+            },
+            Found::Let(index) => (self.lets[index.0].ast.name.span, "let "),
+            Found::Param(index) => (self.params[index.0].ast.name.span, "param "),
+            Found::Decls(_) | Found::Builtin(_) | Found::Setting(_) | Found::Poisoned => {
+                return found;
+            }
+        };
+        let name = callee.name;
+        let owner = match self.look_up_library(name) {
+            Some(Found::Decls(_)) => "library",
+            Some(Found::Builtin(_) | Found::Setting(_)) => "kernel",
+            _ => return found,
+        };
+        found.note_at(span, format!("`{word}{name}` hides the {owner}'s `{name}`; rename it"))
+    }
+
+    /// The arguments in the order of the parameters; `None` where the default is taken.
+    /// Everything that does not fit is reported.
+    pub(super) fn arguments(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        given: Vec<Given<'a>>,
+    ) -> Vec<Option<Expr>> {
+        let bound = self.bind(callee, slots, given);
+        slots
+            .iter()
+            .zip(bound)
+            .map(|(slot, mut given)| {
+                let role = Role::Argument(callee.name, slot.name);
+                if slot.variadic && given.first().is_none_or(|given| given.name.is_none()) {
+                    return Some(self.variadic(slot, given, role, callee.span));
+                }
+                let given = given.pop()?;
+                Some(self.one_argument(given, &slot.ty, role))
+            })
+            .collect()
+    }
+
+    /// Which arguments go to which parameter.
+    fn bind(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        given: Vec<Given<'a>>,
+    ) -> Vec<Vec<Given<'a>>> {
+        let mut bound: Vec<Vec<Given>> = vec![Vec::new(); slots.len()];
+        let (mut next, mut named, mut excess) = (0, false, Vec::new());
+        for given in given {
+            let place = match given.name {
+                None if named => {
+                    let message = "positional arguments come before named ones";
+                    self.report(Diagnostic::error(Code::ARGUMENTS, given.span, message));
+                    None
+                }
+                None => {
+                    let place = (next < slots.len()).then_some(next);
+                    next += usize::from(slots.get(next).is_some_and(|slot| !slot.variadic));
+                    place
+                }
+                Some(name) => {
+                    named = true;
+                    self.named_place(callee, slots, name, &bound)
+                }
+            };
+            match place {
+                Some(place) => bound[place].push(given),
+                None => excess.push(given),
+            }
+        }
+        if let Some(first) = excess.first()
+            && first.name.is_none()
+            && !named
+        {
+            let found = too_many(callee, slots, first.span);
+            self.report(found);
+        }
+        self.give_up(excess, callee.span);
+        self.report_missing(callee, slots, &bound);
+        bound
+    }
+
+    fn named_place(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        name: &Name,
+        bound: &[Vec<Given<'a>>],
+    ) -> Option<usize> {
+        let Some(place) = slots.iter().position(|slot| slot.name == name.text) else {
+            let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
+            let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
+            let near = names::nearest(&name.text, slots.iter().map(|slot| slot.name));
+            let found = match near {
+                Some(near) => found.help(format!("did you mean `{near}`?")),
+                None => found.help(signature(callee.name, slots)),
+            };
+            self.report(found);
+            return None;
+        };
+        if let Some(first) = bound[place].first() {
+            let message = format!("`{}` is given twice", name.text);
+            let found = Diagnostic::error(Code::ARGUMENTS, name.span, message)
+                .note_at(first.span, "the first one");
+            self.report(found);
+            return None;
+        }
+        Some(place)
+    }
+
+    fn report_missing(&mut self, callee: Callee, slots: &[Slot<'a>], bound: &[Vec<Given<'a>>]) {
+        let missing: Vec<String> = slots
+            .iter()
+            .zip(bound)
+            .filter(|(slot, given)| given.is_empty() && !slot.optional && !slot.variadic)
+            .map(|(slot, _)| format!("`{}`", slot.name))
+            .collect();
+        if !missing.is_empty() {
+            let message = format!("`{}` needs {}", callee.name, missing.join(" and "));
+            self.report(
+                Diagnostic::error(Code::ARGUMENTS, callee.at, message)
+                    .help(signature(callee.name, slots)),
+            );
+        }
+    }
+
+    /// All that a variadic parameter takes: values, lists and `for`.
+    fn variadic(&mut self, slot: &Slot<'a>, given: Vec<Given<'a>>, role: Role, span: Span) -> Expr {
+        let Type::List(want) = &slot.ty else { return poison(span) };
+        let mut elements = Vec::with_capacity(given.len());
+        for given in given {
+            let element = match given.value {
+                Value::Expr(e) if is_lambda(e) => Element::One(self.check_expr(e, want, role)),
+                Value::Expr(e) => {
+                    let value = self.infer(e);
+                    self.spread(Element::One(value), want, role)
+                }
+                Value::Element(element) => self.element(element, Some((want, role))).0,
+                Value::Done(element, _) => self.spread(element, want, role),
+            };
+            elements.push(element);
+        }
+        Expr { kind: ExprKind::List(elements), ty: slot.ty.clone(), span }
+    }
+
+    /// A list among the arguments of a variadic parameter gives its elements.
+    fn spread(&mut self, element: Element, want: &Type, role: Role) -> Element {
+        let element = match element {
+            Element::One(value)
+                if matches!(value.ty, Type::List(_)) && !matches!(want, Type::List(_)) =>
+            {
+                Element::Spread(value)
+            }
+            other => other,
+        };
+        self.coerce_element(element, want, role)
+    }
+
+    /// An argument that is one value.
+    pub(super) fn one_argument(&mut self, given: Given<'a>, want: &Type, role: Role) -> Expr {
+        match given.value {
+            Value::Expr(e) => self.check_expr(e, want, role),
+            Value::Done(Element::One(value), _) => self.coerce(value, want, role),
+            Value::Done(..) | Value::Element(_) => self.not_one_value(given.span),
+        }
+    }
+
+    /// An argument that is one value of whatever type.
+    pub(super) fn one_value(&mut self, given: Given<'a>) -> Expr {
+        match given.value {
+            Value::Expr(e) => self.infer(e),
+            Value::Done(Element::One(value), _) => value,
+            Value::Done(..) | Value::Element(_) => self.not_one_value(given.span),
+        }
+    }
+
+    fn not_one_value(&mut self, span: Span) -> Expr {
+        let message = "`for` makes many values; this parameter takes one";
+        self.report(
+            Diagnostic::error(Code::ARGUMENTS, span, message).help("a list: [for x in list: ...]"),
+        );
+        poison(span)
+    }
+}
+
+/// Whether the expression is a lambda, in whatever brackets.
+pub(super) fn is_lambda(e: &ast::Expr) -> bool {
+    let mut e = e;
+    loop {
+        e = match &e.kind {
+            Ast::Lambda(..) => return true,
+            Ast::Paren(inner) | Ast::Block(_, inner) | Ast::If(_, inner, _) => inner,
+            _ => return false,
+        }
+    }
+}
+
+fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
+    let message = match slots.len() {
+        0 => format!("`{}` takes no arguments", callee.name),
+        n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
+    };
+    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
+}
+
+/// `n things`
+pub(super) fn count(n: usize, thing: &str) -> String {
+    match n {
+        0 => format!("no {thing}s"),
+        1 => format!("1 {thing}"),
+        n => format!("{n} {thing}s"),
+    }
+}
+
+/// How to call it: `capsule(a: vec3, b: vec3, r: number = ...)`
+fn signature(name: &str, slots: &[Slot]) -> String {
+    let slots: Vec<String> = slots
+        .iter()
+        .map(|slot| {
+            let ty = match &slot.ty {
+                Type::List(of) if slot.variadic => format!("{}...", show(of)),
+                ty => show(ty),
+            };
+            let default = if slot.optional { " = ..." } else { "" };
+            format!("{}: {ty}{default}", slot.name)
+        })
+        .collect();
+    format!("{name}({})", slots.join(", "))
+}

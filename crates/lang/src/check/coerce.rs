@@ -1,0 +1,286 @@
+//! The coercions, all of them, and what is said where there is none.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Dim;
+
+use super::types::{describe, is_scalar, poisoned, same_value};
+use super::{Checker, poison};
+use crate::hir::{Comprehension, Element, Expr, ExprKind, Kernel, Lambda, LocalId, Type};
+
+/// What a value is wanted for; the subject of the message where it does not fit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Role<'r> {
+    /// A parameter of a declaration, setting or kernel function.
+    Argument(&'r str, &'r str),
+    /// Argument of a function value, counted from 1.
+    Positional(usize),
+    /// What a declaration gives.
+    Result(&'r str),
+    /// What a lambda gives.
+    LambdaResult,
+    /// Something with a name of its own: `the condition`.
+    The(&'r str),
+}
+
+impl Role<'_> {
+    /// The role as a subject: ``rotate's `y` ``.
+    fn subject(self) -> String {
+        match self {
+            Self::Argument(callee, parameter) => format!("{callee}'s `{parameter}`"),
+            Self::Positional(at) => format!("argument {at} of this function"),
+            Self::Result(name) => format!("the result of `{name}`"),
+            Self::LambdaResult => "the result of this function".into(),
+            Self::The(what) => what.into(),
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// The value as one of type `want`, or a report and a poisoned value.
+    pub(super) fn coerce(&mut self, value: Expr, want: &Type, role: Role) -> Expr {
+        match self.try_coerce(value, want) {
+            Ok(value) => value,
+            Err(value) => {
+                self.report(mismatch(&value, want, role));
+                poison(value.span)
+            }
+        }
+    }
+
+    /// The value as one of type `want`, or the value itself if there is no coercion.
+    pub(super) fn try_coerce(&mut self, mut value: Expr, want: &Type) -> Result<Expr, Expr> {
+        if poisoned(&value.ty) || poisoned(want) {
+            return Ok(poison(value.span));
+        }
+        if same_value(&value.ty, want) || (*want == Type::Angle && has_no_need_of_a_unit(&value)) {
+            value.ty = want.clone();
+            return Ok(value);
+        }
+        match (value.ty.clone(), want) {
+            (have, Type::Vec(_)) if is_scalar(&have) => Ok(splat(value, want)),
+            (Type::Range(_), Type::Range(want)) => self.coerce_range(value, want),
+            (Type::List(have), Type::List(want)) => self.coerce_list(value, &have, want),
+            (Type::Fn(parameters, result), Type::Fn(want, want_result)) => {
+                self.coerce_function(value, (&parameters, &result), (want, want_result))
+            }
+            (_, Type::Fn(_, result)) => {
+                let span = value.span;
+                let value = Box::new(self.try_coerce(value, result)?);
+                Ok(Expr { kind: ExprKind::Constant(value), ty: want.clone(), span })
+            }
+            _ => Err(value),
+        }
+    }
+
+    fn coerce_range(&mut self, value: Expr, want: &Type) -> Result<Expr, Expr> {
+        let (ty, span) = (Type::Range(Box::new(want.clone())), value.span);
+        if let ExprKind::Range(lo, hi) = value.kind {
+            let original = value.ty;
+            return match (self.try_coerce(*lo.clone(), want), self.try_coerce(*hi.clone(), want)) {
+                (Ok(lo), Ok(hi)) => {
+                    Ok(Expr { kind: ExprKind::Range(Box::new(lo), Box::new(hi)), ty, span })
+                }
+                _ => Err(Expr { kind: ExprKind::Range(lo, hi), ty: original, span }),
+            };
+        }
+        let Type::Range(of) = value.ty.clone() else { return Err(value) };
+        let (local, mention) = self.name_value(&value);
+        let end = |checker: &mut Self, low| {
+            let kind = ExprKind::RangeEnd(Box::new(mention.clone()), low);
+            checker.try_coerce(Expr { kind, ty: (*of).clone(), span }, want)
+        };
+        match (end(self, true), end(self, false)) {
+            (Ok(lo), Ok(hi)) => {
+                let kind = ExprKind::Range(Box::new(lo), Box::new(hi));
+                let range = Expr { kind, ty: ty.clone(), span };
+                Ok(bind(local, "range", value, range))
+            }
+            _ => Err(value),
+        }
+    }
+
+    fn coerce_list(&mut self, value: Expr, have: &Type, want: &Type) -> Result<Expr, Expr> {
+        let (ty, span) = (Type::List(Box::new(want.clone())), value.span);
+        let local = self.body.fresh();
+        let item = Expr { kind: ExprKind::Local(local), ty: have.clone(), span };
+        let Ok(item) = self.try_coerce(item, want) else { return Err(value) };
+        let body = Element::One(item);
+        let each = Comprehension { local, over: value, condition: None, body, span };
+        Ok(Expr { kind: ExprKind::List(vec![Element::For(Box::new(each))]), ty, span })
+    }
+
+    /// A function around the function: its arguments and its result are coerced.
+    fn coerce_function(
+        &mut self,
+        value: Expr,
+        (have, have_result): (&[Type], &Type),
+        (want, want_result): (&[Type], &Type),
+    ) -> Result<Expr, Expr> {
+        if have.len() != want.len() {
+            return Err(value);
+        }
+        let (local, mention) = self.name_value(&value);
+        let ExprKind::Local(captured) = mention.kind else { return Err(value) };
+        let span = value.span;
+        self.body.frames.push(Default::default());
+        let function = self.body.fresh();
+        let arguments: Result<Vec<Expr>, Expr> = (want.iter().zip(have))
+            .map(|(want, have)| {
+                let kind = ExprKind::Local(self.body.fresh());
+                self.try_coerce(Expr { kind, ty: want.clone(), span }, have)
+            })
+            .collect();
+        let body = arguments.and_then(|arguments| {
+            let kind = ExprKind::Local(function);
+            let function = Box::new(Expr { kind, ty: value.ty.clone(), span });
+            let kind = ExprKind::Apply(function, arguments);
+            self.try_coerce(Expr { kind, ty: have_result.clone(), span }, want_result)
+        });
+        let locals = self.body.frames.pop().map_or(0, |frame| frame.locals);
+        let Ok(body) = body else { return Err(value) };
+        let lambda = Lambda {
+            captures: vec![captured],
+            parameters: want.to_vec(),
+            names: (0..want.len()).map(|at| format!("x{at}")).collect(),
+            locals,
+            lipschitz: None,
+            requires: Vec::new(),
+            body,
+        };
+        let ty = Type::Fn(want.to_vec(), Box::new(want_result.clone()));
+        let lambda = Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span };
+        Ok(bind(local, "f", value, lambda))
+    }
+
+    /// A fresh variable for a value that is mentioned more than once, and a mention of it.
+    pub(super) fn name_value(&mut self, value: &Expr) -> (LocalId, Expr) {
+        let local = self.body.fresh();
+        let mention = Expr { kind: ExprKind::Local(local), ty: value.ty.clone(), span: value.span };
+        (local, mention)
+    }
+}
+
+/// `{ let name = value; result }`
+pub(super) fn bind(local: LocalId, name: &str, value: Expr, result: Expr) -> Expr {
+    let (ty, span) = (result.ty.clone(), value.span);
+    let kind = ExprKind::Block(vec![(local, name.to_owned(), value)], Box::new(result));
+    Expr { kind, ty, span }
+}
+
+/// A number, int or angle as a vector or colour of equal parts.
+pub(super) fn splat(mut value: Expr, ty: &Type) -> Expr {
+    value.ty = Type::Number;
+    let span = value.span;
+    Expr { kind: ExprKind::Splat(Box::new(value)), ty: ty.clone(), span }
+}
+
+/// Zero and infinity are the same in every unit.
+pub(super) fn has_no_need_of_a_unit(value: &Expr) -> bool {
+    match &value.kind {
+        ExprKind::Number(value) => *value == 0.0 || value.is_infinite(),
+        ExprKind::Kernel(Kernel::Neg, arguments) => arguments.iter().all(has_no_need_of_a_unit),
+        _ => false,
+    }
+}
+
+/// What to say of a value that does not fit.
+fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
+    let subject = role.subject();
+    // A value may stand for a constant function: then what that function gives is wanted.
+    let want = match (&value.ty, want) {
+        (Type::Fn(..), _) => want,
+        (_, Type::Fn(_, result)) if !matches!(**result, Type::Fn(..)) => &**result,
+        _ => want,
+    };
+    match (&value.ty, want) {
+        (Type::Number | Type::Int, Type::Angle) => not_an_angle(value, &subject),
+        (Type::Shape(Dim::Two), Type::Shape(Dim::Three)) => {
+            region_for_solid(value.span, &format!("{subject} is a solid"))
+        }
+        (Type::Shape(Dim::Three), Type::Shape(Dim::Two)) => {
+            let message = format!("this is a solid (3D); {subject} is a region");
+            Diagnostic::error(Code::SOLID_FOR_REGION, value.span, message)
+                .help("regions are made by circle, rect and the other 2D entries of the library")
+        }
+        _ => {
+            let message =
+                format!("{subject} is {}; this is {}", describe(want), describe(&value.ty));
+            let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
+            match way_out(&value.ty, want) {
+                Some(help) => found.help(help),
+                None => found,
+            }
+        }
+    }
+}
+
+/// A region where a solid is wanted.
+pub(super) fn region_for_solid(span: Span, wanted: &str) -> Diagnostic {
+    let message = format!("this is a region (2D); {wanted}");
+    Diagnostic::error(Code::REGION_FOR_SOLID, span, message).help(".extrude(0.2) or .revolve()")
+}
+
+fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
+    let literal = literal(value);
+    let what = literal.map_or("this number".to_owned(), |value| format!("`{value}`"));
+    let message = format!("{subject} is an angle; {what} has no unit");
+    let found = Diagnostic::error(Code::NOT_AN_ANGLE, value.span, message);
+    match literal {
+        Some(value) => {
+            let turn = value / 360.0;
+            found.help(format!("{value}deg, {turn}turn, or {value} * 1rad"))
+        }
+        None => found.help("multiply it by a unit: `* 1deg`, `* 1turn`, or `* 1rad`"),
+    }
+}
+
+/// The number that was written, its sign included.
+fn literal(value: &Expr) -> Option<f64> {
+    match &value.kind {
+        ExprKind::Number(value) => Some(*value),
+        ExprKind::Kernel(Kernel::Neg, arguments) => Some(-literal(arguments.first()?)?),
+        _ => None,
+    }
+}
+
+/// How to turn one type into another where the language does not.
+fn way_out(have: &Type, want: &Type) -> Option<String> {
+    match (have, want) {
+        (Type::Number | Type::Angle, Type::Int) => Some("round(x) or floor(x) make it whole".into()),
+        (Type::Shape(_), Type::Number) => {
+            Some("a shape called with a point gives its distance there: a(p)".into())
+        }
+        (Type::Fn(_, result), _) if **result == *want => {
+            Some("call it, with its arguments in brackets".into())
+        }
+        (Type::Fn(have, _), Type::Fn(want, _)) if have.len() != want.len() => {
+            Some(format!("write a function of {} here: fn({}) = ...", count(want.len()), letters(want.len())))
+        }
+        (Type::Vec(_), Type::Number) => Some("take one component, `.x`, or its `length(...)`".into()),
+        (Type::Vec(width), Type::Vec(want)) if width > want => {
+            Some(format!("take some of its components: .{}", &"xyzw"[..usize::from(*want).min(4)]))
+        }
+        (Type::Vec(width), Type::Vec(want)) if width < want => {
+            Some(format!("add what is missing: vec{want}(v, 0)"))
+        }
+        (Type::Vec(3) | Type::Vec(4), Type::Color) => Some("rgb(v.x, v.y, v.z), or a literal: #d94f30".into()),
+        (Type::Number | Type::Int, Type::Color) => Some("a colour is written #d94f30, or made by rgb, hsv, oklch".into()),
+        (Type::Color, Type::Vec(3)) => Some("take its components: .rgb".into()),
+        (Type::Color, Type::Material) => Some("material(color: ...)".into()),
+        (Type::Number | Type::Int, Type::Bool) => Some("compare it: x > 0".into()),
+        (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; `for` makes a list of its components: [for c in v: c]".into()),
+        _ => None,
+    }
+}
+
+fn count(arguments: usize) -> String {
+    match arguments {
+        1 => "one argument".into(),
+        n => format!("{n} arguments"),
+    }
+}
+
+fn letters(arguments: usize) -> String {
+    let letters = ["a", "b", "c", "d", "e", "f"];
+    letters.into_iter().cycle().take(arguments).collect::<Vec<_>>().join(", ")
+}

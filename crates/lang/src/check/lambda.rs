@@ -1,0 +1,225 @@
+//! Lambdas: `fn(a, b) = body` with the variables that it takes along.
+
+use rustc_hash::FxHashSet;
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_syntax::ast::{self, Arg, ClauseKind, ExprKind as Ast};
+
+use super::coerce::Role;
+use super::types;
+use super::{Checker, poison};
+use crate::hir::{Expr, ExprKind, Lambda, LocalId, Require, Type};
+
+/// Parameter types and result of the function that is wanted.
+pub(super) type Expected<'t> = Option<(&'t [Type], &'t Type)>;
+
+/// Nothing is known about what the function is for.
+pub(super) const NOTHING_EXPECTED: Expected<'static> = None;
+
+impl<'a> Checker<'a> {
+    /// A lambda. Parameters without a type take the expected one, else `number`; the result
+    /// is brought to the expected type, or to the one that is written.
+    pub(super) fn lambda(
+        &mut self,
+        signature: &'a ast::Signature,
+        body: &'a ast::Expr,
+        span: Span,
+        expected: Expected,
+    ) -> Expr {
+        let expected = expected.filter(|(types, _)| types.len() == signature.parms.len());
+        let parameters = self.lambda_parameters(signature, expected.map(|(types, _)| types));
+        let result = match &signature.result {
+            Some(ty) => Some(self.resolve_type(ty)),
+            None => expected.map(|(_, result)| result.clone()),
+        };
+        let captures = self.enter_lambda(signature, body);
+        for (parm, ty) in signature.parms.iter().zip(&parameters) {
+            self.body.declare(&parm.name.text, ty.clone(), parm.name.span);
+        }
+        let (lipschitz, requires) = self.lambda_clauses(signature);
+        let body = match &result {
+            Some(want) => self.check_expr(body, want, Role::LambdaResult),
+            None => self.infer(body),
+        };
+        let locals = self.leave_lambda(&captures);
+        if types::poisoned(&body.ty) {
+            return poison(span);
+        }
+        let ty = Type::Fn(parameters.clone(), Box::new(body.ty.clone()));
+        let names = signature.parms.iter().map(|parm| parm.name.text.clone()).collect();
+        let lambda = Lambda { captures, parameters, names, locals, lipschitz, requires, body };
+        Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span }
+    }
+
+    fn lambda_parameters(
+        &mut self,
+        signature: &'a ast::Signature,
+        expected: Option<&[Type]>,
+    ) -> Vec<Type> {
+        let mut types = Vec::with_capacity(signature.parms.len());
+        for (at, parm) in signature.parms.iter().enumerate() {
+            self.forbid_point(&parm.name.text, parm.name.span);
+            if parm.default.is_some() || parm.range.is_some() || parm.variadic {
+                let message = "parameters of a lambda have neither default, nor `in`, nor `...`";
+                self.report(
+                    Diagnostic::error(Code::MISPLACED_CLAUSE, parm.span, message)
+                        .help("declare a `fn` with a name"),
+                );
+            }
+            types.push(match (&parm.ty, expected) {
+                (Some(ty), _) => self.resolve_type(ty),
+                (None, Some(expected)) => expected[at].clone(),
+                (None, None) => Type::Number,
+            });
+        }
+        types
+    }
+
+    /// Opens a frame in which the variables that the lambda mentions come first.
+    fn enter_lambda(&mut self, signature: &'a ast::Signature, body: &'a ast::Expr) -> Vec<LocalId> {
+        let mut names = Names::default();
+        names.signature(signature);
+        names.expr(body);
+        let mut captures = Vec::new();
+        let mut inner = super::body::Frame::default();
+        for name in names.in_order {
+            if let Some(variable) = self.body.find(name).and_then(|at| self.body.variable(at)) {
+                captures.push(variable.id);
+                inner.capture(variable);
+            }
+        }
+        self.body.frames.push(inner);
+        captures
+    }
+
+    /// Closes the frame; what was used inside was used outside. Gives the number of locals.
+    fn leave_lambda(&mut self, captures: &[LocalId]) -> u32 {
+        let Some(inner) = self.body.frames.pop() else { return 0 };
+        if let Some(outer) = self.body.frames.last_mut() {
+            outer.use_captured(captures, &inner);
+        }
+        inner.locals
+    }
+
+    fn lambda_clauses(&mut self, signature: &'a ast::Signature) -> (Option<Expr>, Vec<Require>) {
+        let (mut lipschitz, mut requires) = (None, Vec::new());
+        for clause in &signature.clauses {
+            match &clause.kind {
+                ClauseKind::Lipschitz(e) => {
+                    let role = Role::The("the Lipschitz constant");
+                    lipschitz = Some(self.check_expr(e, &Type::Number, role));
+                }
+                ClauseKind::Require(condition, message) => {
+                    requires.push(self.check_require(condition, message, clause.span));
+                }
+                ClauseKind::Exact(..)
+                | ClauseKind::Bound(..)
+                | ClauseKind::Bounds(_)
+                | ClauseKind::Material(_) => {
+                    let message = "a function states only `lipschitz` and `require`";
+                    self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, clause.span, message));
+                }
+            }
+        }
+        (lipschitz, requires)
+    }
+
+    /// The number of parameters that a function written here takes, if it can be told.
+    pub(super) fn arity(&mut self, e: &'a ast::Expr) -> Option<usize> {
+        match &e.kind {
+            Ast::Lambda(signature, _) => Some(signature.parms.len()),
+            Ast::Paren(inner) | Ast::Block(_, inner) | Ast::If(_, inner, _) => self.arity(inner),
+            Ast::Name(name) => match self.look_up(name)? {
+                super::names::Found::Builtin(super::kernel::Builtin::Math(math)) => {
+                    Some(math.arity.unwrap_or(2))
+                }
+                super::names::Found::Decls(decls) => {
+                    Some(self.decls[decls.first()?.0].ast.signature.parms.len())
+                }
+                found => arity_of(&self.value_of(&found, name, e.span).ty),
+            },
+            _ => {
+                // Only the type counts: the caller reads it again, with a type in mind.
+                self.body.attempts.push(Vec::new());
+                let ty = self.infer(e).ty;
+                self.body.attempts.pop();
+                arity_of(&ty)
+            }
+        }
+    }
+}
+
+fn arity_of(ty: &Type) -> Option<usize> {
+    match ty {
+        Type::Fn(parameters, _) => Some(parameters.len()),
+        _ => None,
+    }
+}
+
+/// All names that stand somewhere in a piece of tree, each once, in order.
+#[derive(Default)]
+struct Names<'a> {
+    in_order: Vec<&'a str>,
+    seen: FxHashSet<&'a str>,
+}
+
+impl<'a> Names<'a> {
+    fn name(&mut self, name: &'a str) {
+        if self.seen.insert(name) {
+            self.in_order.push(name);
+        }
+    }
+
+    fn signature(&mut self, signature: &'a ast::Signature) {
+        for clause in &signature.clauses {
+            match &clause.kind {
+                ClauseKind::Lipschitz(e) | ClauseKind::Require(e, _) => self.expr(e),
+                ClauseKind::Exact(..)
+                | ClauseKind::Bound(..)
+                | ClauseKind::Bounds(_)
+                | ClauseKind::Material(_) => {}
+            }
+        }
+    }
+
+    fn expr(&mut self, e: &'a ast::Expr) {
+        stacker::maybe_grow(64 * 1024, 1024 * 1024, || match &e.kind {
+            Ast::Number { .. } | Ast::Color(_) | Ast::Text(_) | Ast::Bool(_) | Ast::Error => {}
+            Ast::Name(name) => self.name(name),
+            Ast::Paren(inner) | Ast::Unary(_, inner) => self.expr(inner),
+            Ast::Block(lets, result) => {
+                lets.iter().for_each(|item| self.expr(&item.value));
+                self.expr(result);
+            }
+            Ast::If(a, b, c) => [a, b, c].into_iter().for_each(|e| self.expr(e)),
+            Ast::Lambda(signature, body) => {
+                self.signature(signature);
+                self.expr(body);
+            }
+            Ast::List(elements) => elements.iter().for_each(|element| self.element(element)),
+            Ast::Call(callee, args) => {
+                self.expr(callee);
+                args.iter().for_each(|Arg { value, .. }| self.element(value));
+            }
+            // `x.f(...)` looks `f` up like any name.
+            Ast::Field(base, name) => {
+                self.expr(base);
+                self.name(&name.text);
+            }
+            Ast::Index(a, b) | Ast::Binary(_, _, a, b) => {
+                self.expr(a);
+                self.expr(b);
+            }
+        });
+    }
+
+    fn element(&mut self, element: &'a ast::Element) {
+        match element {
+            ast::Element::Expr(e) => self.expr(e),
+            ast::Element::For(each) => {
+                self.expr(&each.over);
+                each.condition.iter().for_each(|e| self.expr(e));
+                self.element(&each.body);
+            }
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! What names mean: files, scopes, and what to suggest for a name that nothing has.
+//!
+//! From the inside out: block, parameters, file, imports, library, kernel.
+
+use rustc_hash::FxHashMap;
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_syntax::ast::{self, DeclKind, Item};
+
+use super::body::LocalIndex;
+use super::kernel::{self, Builtin};
+use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
+use crate::settings::SettingRow;
+
+/// What a name at top level of a file means there.
+#[derive(Clone, Debug)]
+pub(super) enum Entry {
+    /// One declaration, or one for solids and one for regions.
+    Decls(Vec<DeclIndex>),
+    /// A `let`, visible from this offset on.
+    Let(LetIndex),
+    /// A `param`, visible from this offset on.
+    Param(ParamIndex),
+}
+
+/// One file.
+#[derive(Debug)]
+pub(super) struct Module<'a> {
+    /// Its own top-level names.
+    pub names: FxHashMap<&'a str, Entry>,
+    /// Names that it imports.
+    pub imports: FxHashMap<&'a str, Imported>,
+}
+
+/// A name that came by `import`.
+#[derive(Clone, Debug)]
+pub(super) struct Imported {
+    /// What it means in the file that declares it; `None` if that was reported as an error.
+    pub entry: Option<Entry>,
+    /// Where it was imported.
+    pub span: Span,
+    /// Whether something uses it.
+    pub used: bool,
+}
+
+/// What a name means at some place.
+#[derive(Clone, Debug)]
+pub(super) enum Found {
+    /// A variable of the body at hand.
+    Local(LocalIndex),
+    /// A file-level `let`.
+    Let(LetIndex),
+    /// A `param`.
+    Param(ParamIndex),
+    /// A declaration, or the two dimensions of one.
+    Decls(Vec<DeclIndex>),
+    /// Something of the kernel.
+    Builtin(Builtin),
+    /// A setting, by its row.
+    Setting(usize),
+    /// An import that failed and was reported.
+    Poisoned,
+}
+
+/// The names that share a word with a shape may still mean the kernel's function: `round`.
+pub(super) fn kernel_alternative(name: &str) -> Option<Builtin> {
+    kernel::builtin(name).filter(|builtin| matches!(builtin, Builtin::Math(_)))
+}
+
+impl<'a> Checker<'a> {
+    /// Takes in a file: its declarations, lets and params get indices, its names a table.
+    pub(super) fn add_module(&mut self, ast: &'a ast::File, library: bool) -> usize {
+        let module = self.modules.len();
+        let (names, imports) = Default::default();
+        self.modules.push(Module { names, imports });
+        for item in &ast.items {
+            match item {
+                Item::Decl(decl) => self.add_decl(module, decl),
+                Item::Let(item) => {
+                    let index = LetIndex(self.lets.len());
+                    self.lets.push(super::LetInfo::new(item, module));
+                    self.add_name(module, &item.name, Entry::Let(index));
+                }
+                Item::Param(item) => {
+                    let index = ParamIndex(self.params.len());
+                    self.params.push(super::ParamInfo::new(item, module));
+                    self.add_name(module, &item.name, Entry::Param(index));
+                }
+                Item::Import(_) | Item::Expr(_) => {}
+            }
+        }
+        if library {
+            let public = self.modules[module].names.iter().filter(|(name, _)| !is_private(name));
+            self.library.extend(public.map(|(name, entry)| (*name, entry.clone())));
+        }
+        module
+    }
+
+    fn add_decl(&mut self, module: usize, decl: &'a ast::Decl) {
+        let index = DeclIndex(self.decls.len());
+        self.decls.push(super::DeclInfo {
+            ast: decl,
+            module,
+            generic: types::is_generic(decl.kind, &decl.signature),
+            used: false,
+        });
+        let name = decl.name.text.as_str();
+        if let Some(Entry::Decls(others)) = self.modules[module].names.get_mut(name)
+            && let [other] = others[..]
+            && two_dimensions(self.decls[other.0].ast, decl)
+        {
+            others.push(index);
+            return;
+        }
+        self.add_name(module, &decl.name, Entry::Decls(vec![index]));
+    }
+
+    fn add_name(&mut self, module: usize, name: &'a ast::Name, entry: Entry) {
+        let Some(first) = self.modules[module].names.get(name.text.as_str()) else {
+            self.modules[module].names.insert(&name.text, entry);
+            return;
+        };
+        let first = self.entry_span(first);
+        let message = format!("`{}` is declared twice in this file", name.text);
+        self.report(
+            Diagnostic::error(Code::DECLARED_TWICE, name.span, message)
+                .note_at(first, "first declared here")
+                .help("rename one; only a solid and a region whose first parameters are a solid and a region may share a name"),
+        );
+    }
+
+    /// Where the name of an entry was declared.
+    pub(super) fn entry_span(&self, entry: &Entry) -> Span {
+        match entry {
+            Entry::Decls(decls) => self.decls[decls[0].0].ast.name.span,
+            Entry::Let(index) => self.lets[index.0].ast.name.span,
+            Entry::Param(index) => self.params[index.0].ast.name.span,
+        }
+    }
+
+    /// What a name means at the place at hand.
+    pub(super) fn look_up(&mut self, name: &str) -> Option<Found> {
+        if let Some(local) = self.body.find(name) {
+            return Some(Found::Local(local));
+        }
+        self.look_up_outside(name)
+    }
+
+    /// What a name means outside the body at hand.
+    pub(super) fn look_up_outside(&mut self, name: &str) -> Option<Found> {
+        let module = self.body.module;
+        if let Some(entry) = self.modules[module].names.get(name)
+            && self.is_visible(entry)
+        {
+            return Some(self.found(&entry.clone()));
+        }
+        if let Some(imported) = self.modules[module].imports.get_mut(name) {
+            imported.used = true;
+            return Some(match imported.entry.clone() {
+                Some(entry) => self.found(&entry),
+                None => Found::Poisoned,
+            });
+        }
+        self.look_up_library(name)
+    }
+
+    /// What a name means to the library and the kernel.
+    pub(super) fn look_up_library(&mut self, name: &str) -> Option<Found> {
+        if let Some(entry) = self.library.get(name) {
+            return Some(self.found(&entry.clone()));
+        }
+        if let Some(builtin) = kernel::builtin(name) {
+            return Some(Found::Builtin(builtin));
+        }
+        self.settings.iter().position(|row| row.name == name).map(Found::Setting)
+    }
+
+    fn found(&mut self, entry: &Entry) -> Found {
+        match entry {
+            Entry::Decls(decls) => {
+                for decl in decls {
+                    self.decls[decl.0].used |= self.body.decl != Some(*decl);
+                }
+                Found::Decls(decls.clone())
+            }
+            Entry::Let(index) => {
+                self.lets[index.0].used = true;
+                Found::Let(*index)
+            }
+            Entry::Param(index) => {
+                self.params[index.0].used = true;
+                Found::Param(*index)
+            }
+        }
+    }
+
+    /// `let` and `param` are visible from their end on, declarations everywhere.
+    fn is_visible(&self, entry: &Entry) -> bool {
+        match entry {
+            Entry::Decls(_) => true,
+            Entry::Let(index) => self.lets[index.0].ast.span.end <= self.body.position,
+            Entry::Param(index) => self.params[index.0].ast.span.end <= self.body.position,
+        }
+    }
+
+    /// Reports a name that nothing has here.
+    pub(super) fn unknown_name(&mut self, name: &str, span: Span) {
+        if name == "p" {
+            self.report(
+                Diagnostic::error(Code::NO_POINT, span, "`p` exists only in a shape's formula")
+                    .help("pass a function of the point: fn(q) = q.y"),
+            );
+            return;
+        }
+        let found = Diagnostic::error(Code::UNKNOWN_NAME, span, format!("unknown name `{name}`"));
+        let later = self.modules[self.body.module].names.get(name).map(|e| self.entry_span(e));
+        let found = match (later, self.suggestion(name)) {
+            (Some(later), _) => found
+                .note_at(later, "it is known only after this line")
+                .help("move that line above this one"),
+            (None, Some(near)) => found.help(format!("did you mean `{near}`?")),
+            (None, None) => found,
+        };
+        self.report(found);
+    }
+
+    /// The visible name nearest to one that nothing has.
+    fn suggestion(&self, name: &str) -> Option<String> {
+        let module = &self.modules[self.body.module];
+        let file = module.names.iter().filter(|(_, entry)| self.is_visible(entry));
+        let names = self
+            .body
+            .names()
+            .chain(file.map(|(name, _)| *name))
+            .chain(module.imports.keys().copied())
+            .chain(self.library.keys().copied())
+            .chain(kernel::NAMES.iter().copied())
+            .chain(self.settings.iter().map(|row: &SettingRow| row.name));
+        nearest(name, names).map(str::to_owned)
+    }
+}
+
+/// Whether a name is private to its file.
+pub(super) fn is_private(name: &str) -> bool {
+    name.starts_with('_')
+}
+
+/// Whether two declarations are one name's two dimensions: a solid and a region that the
+/// first argument tells apart.
+fn two_dimensions(a: &ast::Decl, b: &ast::Decl) -> bool {
+    let kinds = matches!(
+        (a.kind, b.kind),
+        (DeclKind::Solid, DeclKind::Region) | (DeclKind::Region, DeclKind::Solid)
+    );
+    kinds && first_dimension(a).is_some() && first_dimension(a) != first_dimension(b)
+}
+
+/// What the first parameter takes: `solid`, `region`, or a function that makes one.
+pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
+    fn of(ty: &ast::TypeExpr) -> Option<&str> {
+        match &ty.kind {
+            ast::TypeExprKind::Named(word) => {
+                matches!(word.as_str(), "solid" | "region").then_some(word.as_str())
+            }
+            ast::TypeExprKind::List(ty) => of(ty),
+            ast::TypeExprKind::Fn(_, result) => of(result),
+        }
+    }
+    of(decl.signature.parms.first()?.ty.as_ref()?)
+}
+
+/// The name that is fewest edits away, if that is near enough to be a slip of the pen;
+/// among equals the first in alphabetical order.
+pub(super) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let limit = (name.chars().count() / 3).clamp(1, 3);
+    names
+        .filter(|other| *other != name)
+        .map(|other| (edits(name, other), other))
+        .filter(|(distance, other)| *distance <= limit && *distance < other.chars().count())
+        .min()
+        .map(|(_, other)| other)
+}
+
+/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`
+/// (optimal string alignment). Names longer than 64 characters are never near.
+fn edits(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) =
+        (a.chars().take(65).collect(), b.chars().take(65).collect());
+    if a.len() > 64 || b.len() > 64 || a.len().abs_diff(b.len()) > 3 {
+        return usize::MAX;
+    }
+    let mut rows = [vec![0; b.len() + 1], (0..=b.len()).collect(), vec![0; b.len() + 1]];
+    for i in 1..=a.len() {
+        let [before, last, next] = &mut rows;
+        next[0] = i;
+        for j in 1..=b.len() {
+            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            next[j] = replaced.min(last[j] + 1).min(next[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                next[j] = next[j].min(before[j - 2] + 1);
+            }
+        }
+        rows.rotate_left(1);
+    }
+    rows[1][b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edits_count_swaps_once() {
+        assert_eq!(edits("spere", "sphere"), 1);
+        assert_eq!(edits("shpere", "sphere"), 1);
+        assert_eq!(edits("", "abc"), 3);
+        assert_eq!(edits("kitten", "sitting"), 3);
+    }
+
+    #[test]
+    fn a_suggestion_is_near_or_absent() {
+        let names = ["sphere", "plane", "box"];
+        assert_eq!(nearest("spere", names.into_iter()), Some("sphere"));
+        assert_eq!(nearest("teapot", names.into_iter()), None);
+        assert_eq!(nearest("a", ["b"].into_iter()), None);
+    }
+}

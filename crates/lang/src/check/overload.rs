@@ -1,0 +1,203 @@
+//! Which declaration a call means, and in which dimension.
+
+use sdfc_graph::Dim;
+use sdfc_syntax::ast::{self, DeclKind};
+
+use super::call::{Callee, Given, Value, is_lambda};
+use super::coerce::Role;
+use super::decl::Target;
+use super::kernel::Builtin;
+use super::names;
+use super::order::Node;
+use super::types;
+use super::{Checker, DeclIndex, Shared, poison};
+use crate::hir::{Element, Expr, ExprKind, Type};
+
+/// Lambdas inside lambdas are read in both dimensions down to this depth, since each level
+/// doubles the readings; deeper ones are read in 3D.
+const MAX_ATTEMPTS: usize = 8;
+
+/// What a call turned out to mean.
+enum Picked<'a> {
+    Declared(Shared<'a>),
+    Kernel(Builtin),
+    /// An error was reported.
+    Nothing,
+}
+
+impl<'a> Checker<'a> {
+    /// A call of a declaration, by name.
+    pub(super) fn call_decls(
+        &mut self,
+        decls: &[DeclIndex],
+        callee: Callee,
+        mut given: Vec<Given<'a>>,
+    ) -> Expr {
+        match self.pick(decls, callee, &mut given) {
+            Picked::Declared(signature) => {
+                let arguments = self.arguments(callee, &signature.slots, given);
+                self.make(&signature, arguments, callee)
+            }
+            Picked::Kernel(builtin) => self.call_builtin(builtin, callee, given),
+            Picked::Nothing => self.give_up(given, callee.span),
+        }
+    }
+
+    /// The call itself, its arguments in place.
+    pub(super) fn make(
+        &mut self,
+        signature: &Shared<'a>,
+        arguments: Vec<Option<Expr>>,
+        callee: Callee,
+    ) -> Expr {
+        let ty = signature.result.clone();
+        if types::poisoned(&ty) {
+            return poison(callee.span);
+        }
+        self.needs(Node::of(signature.target), callee.span);
+        let kind = match signature.target {
+            Target::Fn(id) => ExprKind::Call(id, arguments),
+            Target::Shape(id) => ExprKind::Build(id, arguments),
+        };
+        Expr { kind, ty, span: callee.span }
+    }
+
+    /// The first argument's kind picks among the meanings of a name; in an entry that takes
+    /// shapes of either dimension, the first argument for such a parameter decides.
+    fn pick(&mut self, decls: &[DeclIndex], callee: Callee, given: &mut [Given<'a>]) -> Picked<'a> {
+        let first = decls[0];
+        let info = &self.decls[first.0];
+        let kernel = match info.ast.kind {
+            DeclKind::Fn => None,
+            DeclKind::Solid | DeclKind::Region | DeclKind::Shape => {
+                names::kernel_alternative(callee.name)
+            }
+        };
+        if decls.len() == 1 && !info.generic && kernel.is_none() {
+            return self.declared(first, None, callee);
+        }
+        let at = match decls.len() {
+            1 => deciding_parameter(info.ast),
+            _ => 0,
+        };
+        let Some(argument) = argument_of(info.ast, at, given) else {
+            return self.declared(first, Some(Dim::Three), callee);
+        };
+        if let Value::Expr(e) = given[argument].value
+            && is_lambda(e)
+        {
+            return self.pick_by_lambda(decls, callee, at, e, &mut given[argument].value);
+        }
+        let ty = self.look_at(&mut given[argument]);
+        if types::poisoned(&ty) {
+            return Picked::Nothing;
+        }
+        match (types::dimension(&ty), kernel) {
+            (None, Some(builtin)) => Picked::Kernel(builtin),
+            (dim, _) => {
+                let dim = dim.unwrap_or(Dim::Three);
+                self.declared(self.for_dimension(decls, dim), Some(dim), callee)
+            }
+        }
+    }
+
+    /// Checks an argument before it is known what is wanted of it; gives its type.
+    fn look_at(&mut self, given: &mut Given<'a>) -> Type {
+        let (element, ty) = match &given.value {
+            Value::Expr(e) => {
+                let value = self.infer(e);
+                let ty = value.ty.clone();
+                (Element::One(value), ty)
+            }
+            Value::Element(element) => self.element(element, None),
+            Value::Done(_, ty) => return ty.clone(),
+        };
+        given.value = Value::Done(element, ty.clone());
+        ty
+    }
+
+    /// A lambda is read as 3D, and where that has errors as 2D; if both have, 3D counts.
+    fn pick_by_lambda(
+        &mut self,
+        decls: &[DeclIndex],
+        callee: Callee,
+        at: usize,
+        e: &'a ast::Expr,
+        value: &mut Value<'a>,
+    ) -> Picked<'a> {
+        let mut first = None;
+        for dim in [Dim::Three, Dim::Two] {
+            let decl = self.for_dimension(decls, dim);
+            let Picked::Declared(signature) = self.declared(decl, Some(dim), callee) else {
+                return Picked::Nothing;
+            };
+            let Some(slot) = signature.slots.get(at) else { return Picked::Declared(signature) };
+            let want = match &slot.ty {
+                Type::List(of) if slot.variadic => &**of,
+                ty => ty,
+            };
+            self.body.attempts.push(Vec::new());
+            let read = self.check_expr(e, want, Role::Argument(callee.name, slot.name));
+            let found = self.body.attempts.pop().unwrap_or_default();
+            let failed = found.iter().any(sdfc_diagnostics::Diagnostic::is_error);
+            if !failed || self.body.attempts.len() >= MAX_ATTEMPTS {
+                return self.settle(signature, read, found, value);
+            }
+            first = first.or(Some((signature, read, found)));
+        }
+        match first {
+            Some((signature, read, found)) => self.settle(signature, read, found, value),
+            None => Picked::Nothing,
+        }
+    }
+
+    /// Makes a reading the one that counts.
+    fn settle(
+        &mut self,
+        signature: Shared<'a>,
+        read: Expr,
+        found: Vec<sdfc_diagnostics::Diagnostic>,
+        value: &mut Value<'a>,
+    ) -> Picked<'a> {
+        for found in found {
+            self.report(found);
+        }
+        let ty = read.ty.clone();
+        *value = Value::Done(Element::One(read), ty);
+        Picked::Declared(signature)
+    }
+
+    fn declared(&mut self, decl: DeclIndex, dim: Option<Dim>, callee: Callee) -> Picked<'a> {
+        let dim = dim.filter(|_| self.decls[decl.0].generic);
+        match self.instance(decl, dim, callee.at) {
+            Some(signature) => Picked::Declared(signature),
+            None => Picked::Nothing,
+        }
+    }
+
+    /// The declaration whose first parameter is of a dimension; the first where none is.
+    fn for_dimension(&self, decls: &[DeclIndex], dim: Dim) -> DeclIndex {
+        let word = types::shape_word(dim);
+        let takes =
+            |decl: &&DeclIndex| names::first_dimension(self.decls[decl.0].ast) == Some(word);
+        *decls.iter().find(takes).unwrap_or(&decls[0])
+    }
+}
+
+/// The first parameter that takes a shape of either dimension; the first of all where none does.
+fn deciding_parameter(decl: &ast::Decl) -> usize {
+    let with_point = matches!(decl.kind, DeclKind::Fn | DeclKind::Shape);
+    let decides = |parm: &ast::Parm| {
+        parm.ty.as_ref().is_some_and(|ty| types::mentions_either(ty, with_point))
+    };
+    decl.signature.parms.iter().position(decides).unwrap_or(0)
+}
+
+/// The argument that goes to the parameter at a position.
+fn argument_of(decl: &ast::Decl, at: usize, given: &[Given]) -> Option<usize> {
+    let parm = decl.signature.parms.get(at)?;
+    let by_name =
+        given.iter().position(|given| given.name.is_some_and(|name| name.text == parm.name.text));
+    let positional = given.iter().take_while(|given| given.name.is_none()).count();
+    by_name.or((at < positional).then_some(at))
+}

@@ -1,0 +1,185 @@
+//! What stands at top level: imports, params, lets, drawings and settings, in order.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Dim;
+use sdfc_syntax::ast::{self, ExprKind as Ast, Item};
+
+use super::body::Body;
+use super::call::{Callee, Given};
+use super::coerce::region_for_solid;
+use super::decl::{Slot, Target};
+use super::names::{Found, Imported, is_private};
+use super::types::{self, describe};
+use super::{Checker, LetIndex, ParamIndex};
+use crate::hir::{Setting, SettingKind, Type};
+
+impl<'a> Checker<'a> {
+    /// Checks all of the scene's file.
+    pub(super) fn check_scene(&mut self, module: usize, ast: &'a ast::File) {
+        for item in &ast.items {
+            if let Item::Import(import) = item {
+                self.refuse_import(module, import);
+            }
+        }
+        self.find_union();
+        let (mut lets, mut params) = (0, 0);
+        let own_lets: Vec<LetIndex> = (0..self.lets.len())
+            .filter(|at| self.lets[*at].module == module)
+            .map(LetIndex)
+            .collect();
+        let own_params: Vec<ParamIndex> = (0..self.params.len())
+            .filter(|at| self.params[*at].module == module)
+            .map(ParamIndex)
+            .collect();
+        for item in &ast.items {
+            match item {
+                Item::Import(_) | Item::Decl(_) => {}
+                Item::Let(_) => {
+                    self.check_let(own_lets[lets]);
+                    lets += 1;
+                }
+                Item::Param(_) => {
+                    self.check_param(own_params[params]);
+                    params += 1;
+                }
+                Item::Expr(e) => self.check_top_level(module, e),
+            }
+        }
+        self.check_declarations(module);
+        self.program.params = self.params.iter_mut().filter_map(|p| p.checked.take()).collect();
+        self.warn_unused(module);
+    }
+
+    fn refuse_import(&mut self, module: usize, import: &'a ast::Import) {
+        let message = "this version has no imports";
+        self.report(
+            Diagnostic::error(Code::NOT_YET, import.span, message)
+                .help("copy the declarations into this file"),
+        );
+        for (name, renamed) in &import.names {
+            let name = renamed.as_ref().unwrap_or(name);
+            let imported = Imported { entry: None, span: name.span, used: true };
+            self.modules[module].imports.insert(&name.text, imported);
+        }
+    }
+
+    /// The library's union of solids joins what is drawn.
+    fn find_union(&mut self) {
+        let Some(Found::Decls(decls)) = self.look_up_library("union") else { return };
+        let first = decls[0];
+        let span = self.decls[first.0].ast.name.span;
+        let dim = self.decls[first.0].generic.then_some(Dim::Three);
+        if let Some(signature) = self.instance(first, dim, span)
+            && let Target::Shape(id) = signature.target
+        {
+            self.program.union = Some(id);
+        }
+    }
+
+    /// Ends an expression at top level and goes back to what was being checked.
+    pub(super) fn leave_top_level(&mut self, outer: Body<'a>) {
+        let body = std::mem::replace(&mut self.body, outer);
+        let locals = body.frames.first().map_or(0, |frame| frame.locals);
+        self.program.locals = self.program.locals.max(locals);
+    }
+
+    /// A solid that is drawn, or a setting.
+    fn check_top_level(&mut self, module: usize, e: &'a ast::Expr) {
+        let outer = std::mem::replace(&mut self.body, Body::new(module, e.span.start));
+        match self.as_setting(e) {
+            Some((row, callee, args)) => self.setting(row, callee, args),
+            None => self.drawing(e),
+        }
+        self.leave_top_level(outer);
+    }
+
+    /// The setting that a call at top level means.
+    fn as_setting(&mut self, e: &'a ast::Expr) -> Option<(usize, Callee<'a>, &'a [ast::Arg])> {
+        let Ast::Call(callee, args) = &e.kind else { return None };
+        let Ast::Name(name) = &callee.kind else { return None };
+        match self.look_up(name) {
+            Some(Found::Setting(row)) => {
+                Some((row, Callee { name, at: callee.span, span: e.span }, args))
+            }
+            _ => None,
+        }
+    }
+
+    fn drawing(&mut self, e: &'a ast::Expr) {
+        let value = self.infer(e);
+        let found = match &value.ty {
+            Type::Error => return,
+            Type::Shape(Dim::Three) => {
+                self.program.drawn.push(value);
+                return;
+            }
+            Type::Shape(Dim::Two) => region_for_solid(value.span, "what is drawn is a solid"),
+            ty if types::poisoned(ty) => return,
+            Type::List(of) if **of == Type::Shape(Dim::Three) => {
+                unused(value.span, &value.ty).help("unite them: union(...)")
+            }
+            Type::Fn(_, result) if **result == Type::Shape(Dim::Three) => {
+                unused(value.span, &value.ty).help("call it, with its arguments in brackets")
+            }
+            ty => unused(value.span, ty).help("name it: let a = ..."),
+        };
+        self.report(found);
+    }
+
+    fn setting(&mut self, row: usize, callee: Callee<'a>, args: &'a [ast::Arg]) {
+        let row = self.settings[row].clone();
+        let slots: Vec<Slot> = row
+            .parameters
+            .iter()
+            .map(|parameter| Slot {
+                name: parameter.name,
+                ty: parameter.ty.clone(),
+                variadic: false,
+                optional: parameter.optional,
+            })
+            .collect();
+        let given = args.iter().map(Given::of).collect();
+        let args = self.arguments(callee, &slots, given);
+        if let Some(first) = self.program.settings.iter().find(|s| s.kind == row.kind && row.once) {
+            let message = format!("`{}` stands twice", row.name);
+            let found = Diagnostic::error(Code::SETTING_TWICE, callee.at, message)
+                .note_at(first.span, "the first one");
+            self.report(found);
+            return;
+        }
+        let place = |name: &str| slots.iter().position(|slot| slot.name == name);
+        if row.kind == SettingKind::Camera
+            && let (Some(fov), Some(height)) = (place("fov"), place("height"))
+            && let (Some(_), Some(height)) = (&args[fov], &args[height])
+        {
+            let message = "a camera has either `fov` or `height`";
+            let found = Diagnostic::error(Code::ARGUMENTS, height.span, message)
+                .help("`fov` is an angle, for perspective; `height` a length, for a parallel view");
+            self.report(found);
+        }
+        self.program.settings.push(Setting { kind: row.kind, args, span: callee.span });
+    }
+
+    /// Private names and imports that nothing mentions.
+    fn warn_unused(&mut self, module: usize) {
+        let decls =
+            self.decls.iter().filter(|d| d.module == module && !d.used).map(|d| &d.ast.name);
+        let lets = self.lets.iter().filter(|l| l.module == module && !l.used).map(|l| &l.ast.name);
+        let params =
+            self.params.iter().filter(|p| p.module == module && !p.used).map(|p| &p.ast.name);
+        let names = decls.chain(lets).chain(params).filter(|name| is_private(&name.text));
+        let names = names.map(|name| (name.text.as_str(), name.span));
+        let imports = self.modules[module].imports.iter().filter(|(_, import)| !import.used);
+        let unused: Vec<(&str, Span)> =
+            names.chain(imports.map(|(name, import)| (*name, import.span))).collect();
+        for (name, span) in unused {
+            let message = format!("`{name}` is never used");
+            self.report(Diagnostic::warning(Code::UNUSED, span, message).help("remove it"));
+        }
+    }
+}
+
+fn unused(span: Span, ty: &Type) -> Diagnostic {
+    let message = format!("this value is not used: it is {}", describe(ty));
+    Diagnostic::error(Code::UNUSED_VALUE, span, message)
+}

@@ -1,0 +1,290 @@
+//! Types as written, as shown in messages, and how they relate.
+
+use sdfc_diagnostics::{Code, Diagnostic};
+use sdfc_graph::Dim;
+use sdfc_syntax::ast::{DeclKind, Signature, TypeExpr, TypeExprKind};
+
+use super::{Checker, names};
+use crate::hir::Type;
+
+/// The words that name a type.
+const TYPE_WORDS: &[&str] = &[
+    "number", "length", "int", "angle", "bool", "string", "vec2", "vec3", "vec4", "color", "range",
+    "solid", "region", "shape", "point", "material", "blend", "pattern",
+];
+
+/// The type of `blend`: two distances to one.
+pub(super) fn blend() -> Type {
+    Type::Fn(vec![Type::Number, Type::Number], Box::new(Type::Number))
+}
+
+/// The type of `pattern`: a point to a colour.
+pub(super) fn pattern() -> Type {
+    Type::Fn(vec![Type::Vec(3)], Box::new(Type::Color))
+}
+
+/// The type of a point.
+pub(super) fn point(dim: Dim) -> Type {
+    match dim {
+        Dim::Two => Type::Vec(2),
+        Dim::Three => Type::Vec(3),
+    }
+}
+
+/// The word for a shape of a dimension.
+pub(super) fn shape_word(dim: Dim) -> &'static str {
+    match dim {
+        Dim::Two => "region",
+        Dim::Three => "solid",
+    }
+}
+
+/// The type as the language writes it.
+pub(super) fn show(ty: &Type) -> String {
+    match ty {
+        Type::Number => "number".into(),
+        Type::Int => "int".into(),
+        Type::Angle => "angle".into(),
+        Type::Bool => "bool".into(),
+        Type::Text => "string".into(),
+        Type::Vec(width) => format!("vec{width}"),
+        Type::Color => "color".into(),
+        Type::Range(of) => match **of {
+            Type::Number | Type::Int | Type::Error => "range".into(),
+            _ => format!("range of {}s", show(of)),
+        },
+        Type::List(of) => format!("[{}]", show(of)),
+        Type::Fn(parameters, result) => {
+            let parameters: Vec<String> = parameters.iter().map(show).collect();
+            format!("fn({}) -> {}", parameters.join(", "), show(result))
+        }
+        Type::Shape(dim) => shape_word(*dim).into(),
+        Type::Material => "material".into(),
+        Type::Shadow => "shadow".into(),
+        Type::Error => "unknown".into(),
+    }
+}
+
+/// The type with its article: `a number`, `an angle`.
+pub(super) fn describe(ty: &Type) -> String {
+    match ty {
+        Type::Int | Type::Angle => format!("an {}", show(ty)),
+        Type::List(_) => format!("a list, {}", show(ty)),
+        Type::Fn(..) => format!("a function, {}", show(ty)),
+        Type::Shape(Dim::Two) => "a region (2D)".into(),
+        Type::Shape(Dim::Three) => "a solid (3D)".into(),
+        Type::Error => "unknown".into(),
+        Type::Number
+        | Type::Bool
+        | Type::Text
+        | Type::Vec(_)
+        | Type::Color
+        | Type::Range(_)
+        | Type::Material
+        | Type::Shadow => format!("a {}", show(ty)),
+    }
+}
+
+/// Whether an error hides somewhere in the type.
+pub(super) fn poisoned(ty: &Type) -> bool {
+    match ty {
+        Type::Error => true,
+        Type::Range(of) | Type::List(of) => poisoned(of),
+        Type::Fn(parameters, result) => parameters.iter().any(poisoned) || poisoned(result),
+        Type::Number
+        | Type::Int
+        | Type::Angle
+        | Type::Bool
+        | Type::Text
+        | Type::Vec(_)
+        | Type::Color
+        | Type::Shape(_)
+        | Type::Material
+        | Type::Shadow => false,
+    }
+}
+
+/// Whether it is a number of some kind.
+pub(super) fn is_scalar(ty: &Type) -> bool {
+    matches!(ty, Type::Number | Type::Int | Type::Angle)
+}
+
+/// Whether arithmetic takes it.
+pub(super) fn is_numeric(ty: &Type) -> bool {
+    is_scalar(ty) || matches!(ty, Type::Vec(_) | Type::Color)
+}
+
+/// How many numbers a vector or colour holds.
+pub(super) fn lanes(ty: &Type) -> Option<u8> {
+    match ty {
+        Type::Vec(width) => Some(*width),
+        Type::Color => Some(4),
+        Type::Number
+        | Type::Int
+        | Type::Angle
+        | Type::Bool
+        | Type::Text
+        | Type::Range(_)
+        | Type::List(_)
+        | Type::Fn(..)
+        | Type::Shape(_)
+        | Type::Material
+        | Type::Shadow
+        | Type::Error => None,
+    }
+}
+
+/// The dimension that a value decides for an entry that takes either: its own, or that of
+/// the shapes it lists or makes, or that of the point it takes.
+pub(super) fn dimension(ty: &Type) -> Option<Dim> {
+    match ty {
+        Type::Shape(dim) => Some(*dim),
+        Type::List(of) => dimension(of),
+        Type::Fn(parameters, result) => dimension(result).or_else(|| match parameters.first() {
+            Some(Type::Vec(2)) => Some(Dim::Two),
+            Some(Type::Vec(3)) => Some(Dim::Three),
+            _ => None,
+        }),
+        Type::Number
+        | Type::Int
+        | Type::Angle
+        | Type::Bool
+        | Type::Text
+        | Type::Vec(_)
+        | Type::Color
+        | Type::Range(_)
+        | Type::Material
+        | Type::Shadow
+        | Type::Error => None,
+    }
+}
+
+/// Whether a value of type `have` is one of type `want` without any conversion: ints and
+/// angles are numbers, also inside lists, ranges and functions.
+pub(super) fn same_value(have: &Type, want: &Type) -> bool {
+    match (have, want) {
+        (Type::Int | Type::Angle, Type::Number) => true,
+        (Type::List(a), Type::List(b)) | (Type::Range(a), Type::Range(b)) => same_value(a, b),
+        (Type::Fn(a, ra), Type::Fn(b, rb)) => {
+            a.len() == b.len()
+                && a.iter().zip(b).all(|(have, want)| same_value(want, have))
+                && same_value(ra, rb)
+        }
+        _ => have == want,
+    }
+}
+
+/// The one type of two values that stand for the same thing: list elements, branches.
+/// Ints and angles are numbers; nothing else gives way.
+pub(super) fn join(a: &Type, b: &Type) -> Option<Type> {
+    if a == b {
+        return Some(a.clone());
+    }
+    if poisoned(a) || poisoned(b) {
+        return Some(Type::Error);
+    }
+    if is_scalar(a) && is_scalar(b) {
+        return Some(Type::Number);
+    }
+    if same_value(a, b) {
+        return Some(b.clone());
+    }
+    if same_value(b, a) {
+        return Some(a.clone());
+    }
+    match (a, b) {
+        (Type::List(a), Type::List(b)) => Some(Type::List(Box::new(join(a, b)?))),
+        (Type::Range(a), Type::Range(b)) => Some(Type::Range(Box::new(join(a, b)?))),
+        (Type::Fn(a, ra), Type::Fn(b, rb)) if a == b => {
+            Some(Type::Fn(a.clone(), Box::new(join(ra, rb)?)))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the type as written is, or contains, `shape`, or where `with_point` is set `point`.
+pub(super) fn mentions_either(ty: &TypeExpr, with_point: bool) -> bool {
+    match &ty.kind {
+        TypeExprKind::Named(word) => word == "shape" || (with_point && word == "point"),
+        TypeExprKind::List(of) => mentions_either(of, with_point),
+        TypeExprKind::Fn(parameters, result) => {
+            parameters.iter().any(|ty| mentions_either(ty, with_point))
+                || mentions_either(result, with_point)
+        }
+    }
+}
+
+/// Whether a declaration is checked once per dimension: a `shape`, or anything whose
+/// signature takes `shape`s. `point` decides in a `fn` only; elsewhere it is the formula's own.
+pub(super) fn is_generic(kind: DeclKind, signature: &Signature) -> bool {
+    let with_point = match kind {
+        DeclKind::Shape => return true,
+        DeclKind::Fn => true,
+        DeclKind::Solid | DeclKind::Region => false,
+    };
+    let parms = signature.parms.iter().filter_map(|parm| parm.ty.as_ref());
+    parms.chain(&signature.result).any(|ty| mentions_either(ty, with_point))
+}
+
+impl Checker<'_> {
+    /// The type that was written. Unknown words are reported.
+    pub(super) fn resolve_type(&mut self, ty: &TypeExpr) -> Type {
+        match &ty.kind {
+            TypeExprKind::Named(word) => self.resolve_word(word, ty),
+            TypeExprKind::List(of) => Type::List(Box::new(self.resolve_type(of))),
+            TypeExprKind::Fn(parameters, result) => {
+                let parameters = parameters.iter().map(|ty| self.resolve_type(ty)).collect();
+                Type::Fn(parameters, Box::new(self.resolve_type(result)))
+            }
+        }
+    }
+
+    fn resolve_word(&mut self, word: &str, ty: &TypeExpr) -> Type {
+        match word {
+            "number" | "length" => Type::Number,
+            "int" => Type::Int,
+            "angle" => Type::Angle,
+            "bool" => Type::Bool,
+            "string" => Type::Text,
+            "vec2" => Type::Vec(2),
+            "vec3" => Type::Vec(3),
+            "vec4" => Type::Vec(4),
+            "color" => Type::Color,
+            "range" => Type::Range(Box::new(Type::Number)),
+            "solid" => Type::Shape(Dim::Three),
+            "region" => Type::Shape(Dim::Two),
+            "material" => Type::Material,
+            "blend" => blend(),
+            "pattern" => pattern(),
+            "shape" => match self.body.either {
+                Some(dim) => Type::Shape(dim),
+                None => self.no_dimension(ty, "`shape`", "`solid` or `region`"),
+            },
+            "point" => match self.body.point.or(self.body.either) {
+                Some(dim) => point(dim),
+                None => self.no_dimension(ty, "`point`", "`vec2` or `vec3`"),
+            },
+            _ => self.unknown_word(word, ty),
+        }
+    }
+
+    fn no_dimension(&mut self, ty: &TypeExpr, word: &str, instead: &str) -> Type {
+        let message = format!("{word} has one meaning per call of a declaration; here it has none");
+        self.report(
+            Diagnostic::error(Code::TYPE_MISMATCH, ty.span, message)
+                .help(format!("write {instead}")),
+        );
+        Type::Error
+    }
+
+    fn unknown_word(&mut self, word: &str, ty: &TypeExpr) -> Type {
+        let found =
+            Diagnostic::error(Code::UNKNOWN_NAME, ty.span, format!("there is no type `{word}`"));
+        let found = match names::nearest(word, TYPE_WORDS.iter().copied()) {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help("types are number, int, angle, length, bool, string, vec2, vec3, vec4, color, range, [T], fn(A) -> R, solid, region, shape, point, material, blend, pattern"),
+        };
+        self.report(found);
+        Type::Error
+    }
+}

@@ -1,0 +1,53 @@
+//! What the tests of the checker share.
+#![allow(dead_code)]
+
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, render};
+use sdfc_lang::hir::Program;
+use sdfc_lang::{check, check_library, library};
+use sdfc_syntax::{ast, parse};
+
+/// The library, parsed.
+pub struct Library {
+    pub sources: Sources,
+    pub files: Vec<(FileId, ast::File)>,
+}
+
+impl Library {
+    pub fn new() -> Self {
+        Self::of(library::FILES)
+    }
+
+    pub fn of(texts: &[(&str, &str)]) -> Self {
+        let mut sources = Sources::new();
+        let mut files = Vec::new();
+        for (name, text) in texts {
+            let file = sources.add(*name, *text);
+            let (tree, found) = parse(&sources, file);
+            assert!(found.is_empty(), "{}", render(&sources, &found, false));
+            files.push((file, tree));
+        }
+        Self { sources, files }
+    }
+
+    /// Everything of the library, checked.
+    pub fn check_all(&self) -> (Program, Vec<Diagnostic>) {
+        check_library(&self.files)
+    }
+
+    /// The scene checked, and all that was found as text; findings of the parser come first.
+    pub fn check(&self, text: &str) -> (Program, Vec<Diagnostic>, String) {
+        let mut sources = self.sources.clone();
+        let file = sources.add("scene.sdf", text);
+        let (tree, mut found) = parse(&sources, file);
+        let (program, more) = check(&self.files, (file, &tree));
+        found.extend(more);
+        let rendered = render(&sources, &found, false);
+        (program, found, rendered)
+    }
+}
+
+/// What is found in a scene, below its text.
+pub fn findings(text: &str) -> String {
+    let (_, _, rendered) = Library::new().check(text);
+    format!("{}\n----\n{}", text.trim_end(), rendered.trim_end())
+}
