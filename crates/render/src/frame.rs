@@ -2,6 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use sdfc_graph::{
+    Program,
+    eval::{FrameValues, evaluate_frame},
+};
+
 use crate::{Clock, Image, TileSize};
 
 /// How a frame is drawn.
@@ -39,4 +44,10 @@ pub struct Frame {
     pub clock: Clock,
     /// How many tiles it was drawn in.
     pub tiles: u32,
+}
+
+/// The values of a program's per-frame nodes, as its shader reads them.
+pub fn uniform_values(program: &Program, frame: &FrameValues) -> Vec<[f32; 4]> {
+    let values = evaluate_frame(&program.graph, &program.uniforms, frame);
+    values.into_iter().map(|lanes| lanes.map(|lane| lane as f32)).collect()
 }

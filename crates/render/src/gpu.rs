@@ -27,6 +27,20 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
+    /// Of a picture's shader, and the number of `Program::uniforms` that it was made for.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::Validation`] if the device refuses it, [`RenderError::Uniforms`].
+    pub fn new(
+        gpu: &Gpu,
+        shader: sdfc_codegen::Shader,
+        uniform_count: usize,
+    ) -> Result<Self, RenderError> {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
+        Self::of_source(gpu, source, uniform_count)
+    }
+
     /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform
     /// `ViewBlock`, at 1 a uniform array of `uniform_count` `vec4f` (absent if that is 0), at 2 the
     /// storage for the tile's `PixelBlock`s. The entry point is `main`, in workgroups of 8x8.
@@ -35,10 +49,10 @@ impl Pipeline {
     ///
     /// [`RenderError::Validation`] if the device refuses it, [`RenderError::Uniforms`].
     pub fn from_wgsl(gpu: &Gpu, text: &str, uniform_count: usize) -> Result<Self, RenderError> {
-        Self::new(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count)
+        Self::of_source(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count)
     }
 
-    fn new(
+    fn of_source(
         gpu: &Gpu,
         source: wgpu::ShaderSource<'_>,
         uniform_count: usize,
@@ -69,7 +83,7 @@ impl Pipeline {
         &self.gpu
     }
 
-    /// Draws a frame. `uniforms` are the values of the program's per-frame nodes, in order.
+    /// Draws a frame. `uniforms` are what [`uniform_values`](crate::uniform_values) gives.
     ///
     /// # Errors
     ///

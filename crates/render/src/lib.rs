@@ -51,7 +51,7 @@ pub use compare::{Difference, compare, edges};
 pub use cpu::{CpuScene, Real};
 pub use device::{AdapterInfo, Gpu};
 pub use error::RenderError;
-pub use frame::{Frame, OnProgress, Progress, RenderOptions, unwatched};
+pub use frame::{Frame, OnProgress, Progress, RenderOptions, uniform_values, unwatched};
 pub use gpu::Pipeline;
 pub use image::{
     CAPPED, HIT, Image, MAX_PIXELS, MAX_SIDE, MISS, PixelCounts, linear_to_srgb, linear_to_srgb8,

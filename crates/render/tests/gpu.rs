@@ -6,9 +6,10 @@ mod common;
 use std::ops::ControlFlow;
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc_graph::{Program, eval::FrameValues};
 use sdfc_render::{
-    Clock, Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, TileSize, View, testing,
-    unwatched,
+    Clock, CpuScene, Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, TileSize, View,
+    compare, testing, uniform_values, unwatched,
 };
 
 type Outcome = Result<(), Failed>;
@@ -25,6 +26,10 @@ fn main() {
         Trial::test("impossible_calls_are_refused", impossible_calls_are_refused),
         Trial::test("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
         Trial::test("the_device_survives_an_error", the_device_survives_an_error),
+        Trial::test("gpu_and_cpu_agree", gpu_and_cpu_agree),
+        Trial::test("tiles_give_the_picture_of_one_tile", tiles_give_the_picture_of_one_tile),
+        Trial::test("a_param_moves_the_surface", a_param_moves_the_surface),
+        Trial::test("fields_that_are_no_numbers_are_counted", not_a_number_is_counted),
         Trial::test("progress_is_told_and_stops_the_frame", progress_is_told_and_stops_the_frame),
     ];
     let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
@@ -34,6 +39,82 @@ fn main() {
 fn pattern(gpu: &Gpu, view: &View, tile_size: TileSize) -> Result<Frame, RenderError> {
     let options = RenderOptions { tile_size };
     Pipeline::from_wgsl(gpu, PATTERN, 2)?.render(view, &VALUES, &options, &mut unwatched)
+}
+
+/// A frame of a program by its own shader.
+fn draw(
+    gpu: &Gpu,
+    program: &Program,
+    frame: &FrameValues,
+    size: [u32; 2],
+    method: &str,
+    tile_size: TileSize,
+) -> Result<Frame, Failed> {
+    let shader = sdfc_codegen::render_module(program, method)?;
+    let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
+    let view = View::new(program, frame, None, size)?;
+    let uniforms = uniform_values(program, frame);
+    let options = RenderOptions { tile_size };
+    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
+}
+
+fn gpu_and_cpu_agree() -> Outcome {
+    let gpu = Gpu::new()?;
+    let (size, frame) = ([64, 64], FrameValues::default());
+    for program in [common::sphere(), common::sphere_above_floor(), common::painted_sphere()] {
+        let view = common::view(&program, size);
+        let scene = CpuScene::new(&program)?;
+        for method in ["sphere", "auto"] {
+            let tiles = TileSize::default();
+            let on_gpu = draw(&gpu, &program, &frame, size, method, tiles)?.image;
+            let options = RenderOptions::default();
+            let on_cpu = scene.render(&view, &frame, method, &options, &mut unwatched)?.image;
+            let close = compare(&on_gpu, &on_cpu).ok_or("different sizes")?;
+            assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
+            assert!(close.color <= 1 && close.mean_color < 0.1, "{method}: {close:?}");
+            assert!(close.compared > 3000, "{method}: {close:?}");
+
+            let double = scene.depth_map::<f64>(&view, &frame, method)?;
+            let close = compare(&on_gpu, &double).ok_or("different sizes")?;
+            assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
+        }
+    }
+    Ok(())
+}
+
+fn tiles_give_the_picture_of_one_tile() -> Outcome {
+    let (gpu, program) = (Gpu::new()?, common::sphere_above_floor());
+    let frame = FrameValues::default();
+    let picture = |tile| draw(&gpu, &program, &frame, [61, 47], "auto", TileSize::Fixed(tile));
+    let whole = picture([61, 47])?;
+    assert_eq!(whole.tiles, 1);
+    for tile in [[7, 5], [61, 1], [1, 47], [64, 3]] {
+        assert_eq!(picture(tile)?.image, whole.image, "{tile:?}");
+    }
+    Ok(())
+}
+
+fn a_param_moves_the_surface() -> Outcome {
+    let (gpu, program) = (Gpu::new()?, common::sphere_of_param());
+    for radius in [1.0, 0.5] {
+        let params = vec![[radius, 0.0, 0.0, 0.0]];
+        let frame = FrameValues { params, time: 0.0, frame: 0.0 };
+        let drawn = draw(&gpu, &program, &frame, [33, 33], "sphere", TileSize::default())?;
+        let depth = drawn.image.pixel(16, 16).ok_or("no such pixel")?.depth;
+        assert!((f64::from(depth) - (5.0 - radius)).abs() < 1e-3, "{depth}");
+    }
+    Ok(())
+}
+
+fn not_a_number_is_counted() -> Outcome {
+    let (gpu, program) = (Gpu::new()?, common::half_undefined());
+    let frame = FrameValues::default();
+    for method in ["sphere", "auto"] {
+        let drawn = draw(&gpu, &program, &frame, [40, 40], method, TileSize::default())?;
+        let counts = drawn.image.counts();
+        assert_eq!(counts.nan, 800, "{method}: {counts:?}");
+    }
+    Ok(())
 }
 
 fn every_pixel_comes_back_from_its_place() -> Outcome {

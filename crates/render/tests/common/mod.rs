@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use sdfc_graph::{
-    Camera, Dim, Graph, Light, NodeId, Program, Shadow, Type, Unary, eval::FrameValues,
+    Camera, Dim, FrameInput, Graph, Light, NodeId, Param, ParamKind, Program, Shadow, Type, Unary,
+    eval::FrameValues,
 };
 use sdfc_render::{Bounds, View};
 
@@ -78,6 +79,27 @@ pub fn painted_sphere() -> Program {
     let black = graph.constant(Type::Vec3, &[0.0; 3]);
     let [one, half, third] = [1.0, 0.5, 0.3].map(|value| graph.number(value));
     program.material = Some([red, one, third, half, black, one]);
+    program
+}
+
+/// A sphere whose radius is a param: 1, or what the frame says.
+pub fn sphere_of_param() -> Program {
+    let mut program = sphere();
+    let graph = &mut program.graph;
+    let radius = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let p = point(graph);
+    let length = graph.length(p);
+    program.distance = Some(graph.sub(length, radius));
+    program.uniforms = vec![radius];
+    program.params.push(Param {
+        name: "radius".to_owned(),
+        kind: ParamKind::Number,
+        ty: Type::Scalar,
+        default: [1.0, 0.0, 0.0, 0.0],
+        range: None,
+        choices: Vec::new(),
+        summary: String::new(),
+    });
     program
 }
 
