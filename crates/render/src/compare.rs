@@ -21,6 +21,8 @@ pub struct Difference {
     pub status: usize,
     /// Largest difference of depth, in scene units, where both are hits; infinite where one is NaN.
     pub depth: f32,
+    /// Largest difference of depth in parts of the depth.
+    pub relative_depth: f32,
     /// Largest difference of a colour channel in sRGB steps of 1/255.
     pub color: u8,
     /// Mean difference of the colour channels in sRGB steps of 1/255.
@@ -70,7 +72,10 @@ pub fn compare(a: &Image, b: &Image) -> Option<Difference> {
         if (one.status == HIT) != (other.status == HIT) {
             difference.status += 1;
         } else if one.status == HIT {
-            difference.depth = difference.depth.max(depth_difference(one, other));
+            let depth = depth_difference(one, other);
+            difference.depth = difference.depth.max(depth);
+            let relative = depth / one.depth.max(f32::MIN_POSITIVE);
+            difference.relative_depth = difference.relative_depth.max(relative);
         }
         for channel in 0..3 {
             let step =
@@ -128,6 +133,7 @@ mod tests {
         let difference = compare(&a, &b).unwrap();
         assert_eq!(difference.edges, 0);
         assert!((difference.depth - 0.01).abs() < 1e-6);
+        assert!((difference.relative_depth - 0.002).abs() < 1e-6);
         assert_eq!(difference.color, 255);
         b.pixels_mut()[12].status = 0;
         let difference = compare(&a, &b).unwrap();

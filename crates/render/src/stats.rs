@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::{Image, PixelCounts};
+use crate::{AdapterInfo, Frame, Image, PixelCounts};
 
 /// Reasons by the key of the missing figure.
 pub type Why = BTreeMap<&'static str, String>;
@@ -50,6 +50,49 @@ pub struct Stats {
     /// Why figures of this object are null.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub why: Why,
+}
+
+impl Stats {
+    /// Of a frame, drawn in the given times by an adapter, or on the CPU if there is none. What the
+    /// renderer does not know, `first_picture_ms` and leaves, is null until the caller says.
+    pub fn new(
+        frame: &Frame,
+        frame_ms: FrameTimes,
+        adapter: Option<&AdapterInfo>,
+        method: &str,
+        compile_ms: CompileTimes,
+    ) -> Self {
+        let unmeasured = |key| (key, "not measured".to_owned());
+        let mut why = Why::from([unmeasured("first_picture_ms")]);
+        if adapter.is_none() {
+            why.extend(["adapter", "driver"].map(|key| (key, "drawn on the CPU".to_owned())));
+        }
+        Self {
+            adapter: adapter.map(|info| info.name.clone()),
+            driver: adapter.map(|info| info.driver.clone()),
+            backend: adapter.map_or_else(|| "cpu".to_owned(), |info| info.backend.clone()),
+            method: method.to_owned(),
+            size: frame.image.size(),
+            frame_ms,
+            compile_ms,
+            first_picture_ms: None,
+            evals_per_pixel: EvaluationCounts::of(&frame.image),
+            leaf_evals_per_pixel: LeafEvaluations::unknown("not counted"),
+            pixels: frame.image.counts(),
+            why,
+        }
+    }
+
+    /// Sets the time to the first picture, in milliseconds.
+    pub fn set_first_picture(&mut self, milliseconds: f64) {
+        self.first_picture_ms = Some(milliseconds);
+        self.why.remove("first_picture_ms");
+    }
+
+    /// Sets the leaf evaluations of a scene that evaluates all of so many leaves each time.
+    pub fn set_leaves(&mut self, leaves: usize) {
+        self.leaf_evals_per_pixel = LeafEvaluations::of_all_leaves(self.evals_per_pixel, leaves);
+    }
 }
 
 /// Times of repeated frames, in milliseconds.
@@ -172,24 +215,18 @@ mod tests {
 
     #[test]
     fn keys_are_those_that_tools_read() {
-        let stats = Stats {
-            adapter: None,
-            driver: None,
-            backend: "cpu".to_owned(),
-            method: "sphere".to_owned(),
-            size: [2, 1],
-            frame_ms: FrameTimes::of(&[2.0], Clock::Wall).unwrap(),
-            compile_ms: CompileTimes {
-                front: Some(1.0),
-                why: Why::from([("pipeline", "drawn on the CPU".to_owned())]),
-                ..CompileTimes::default()
-            },
-            first_picture_ms: Some(3.5),
-            evals_per_pixel: EvaluationCounts { mean: 7.5, p99: 9, max: 9 },
-            leaf_evals_per_pixel: LeafEvaluations::unknown("not counted"),
-            pixels: PixelCounts { hit: 1, miss: 1, capped: 0, nan: 0 },
-            why: Why::from([("adapter", "drawn on the CPU".to_owned())]),
+        let mut image = Image::new([2, 1], 0.1).unwrap();
+        image.pixels_mut()[0].status = crate::HIT;
+        image.pixels_mut()[0].evaluations = 9;
+        image.pixels_mut()[1].evaluations = 6;
+        let frame = Frame { image, milliseconds: 2.0, clock: Clock::Wall, tiles: 1 };
+        let times = FrameTimes::of(&[frame.milliseconds], frame.clock).unwrap();
+        let compile_ms = CompileTimes {
+            front: Some(1.0),
+            why: Why::from([("pipeline", "drawn on the CPU".to_owned())]),
+            ..CompileTimes::default()
         };
+        let mut stats = Stats::new(&frame, times, None, "sphere", compile_ms);
         let expected = serde_json::json!({
             "adapter": null, "driver": null, "backend": "cpu", "method": "sphere", "size": [2, 1],
             "frame_ms": {"median": 2.0, "min": 2.0, "max": 2.0, "n": 1, "clock": "wall"},
@@ -197,12 +234,22 @@ mod tests {
                 "front": 1.0, "analyze": null, "lower": null, "validate": null, "pipeline": null,
                 "why": {"pipeline": "drawn on the CPU"},
             },
-            "first_picture_ms": 3.5,
+            "first_picture_ms": null,
             "evals_per_pixel": {"mean": 7.5, "p99": 9, "max": 9},
             "leaf_evals_per_pixel": {"mean": null, "why": {"mean": "not counted"}},
             "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0},
-            "why": {"adapter": "drawn on the CPU"},
+            "why": {
+                "adapter": "drawn on the CPU", "driver": "drawn on the CPU",
+                "first_picture_ms": "not measured",
+            },
         });
         assert_eq!(serde_json::to_value(&stats).unwrap(), expected);
+
+        stats.set_first_picture(3.5);
+        stats.set_leaves(2);
+        let value = serde_json::to_value(&stats).unwrap();
+        assert_eq!(value["first_picture_ms"], 3.5);
+        assert_eq!(value["why"].get("first_picture_ms"), None);
+        assert_eq!(value["leaf_evals_per_pixel"], serde_json::json!({"mean": 15.0}));
     }
 }

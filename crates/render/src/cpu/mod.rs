@@ -164,6 +164,12 @@ struct Wave<'a, T> {
     material: Option<Batch<'a, T>>,
 }
 
+/// A pixel in the making.
+struct Shade {
+    color: DVec3,
+    evaluations: u32,
+}
+
 /// A ray from the eye that met something.
 struct Meeting<T> {
     /// Position in the group.
@@ -177,14 +183,21 @@ impl<T: Real> Wave<'_, T> {
     fn pixels(&mut self, places: &[[u32; 2]]) -> Vec<PixelBlock> {
         let rays: Vec<Ray<T>> = places.iter().map(|place| self.camera_ray(*place)).collect();
         let traces = trace(&mut self.field, &rays, &self.limits);
-        let mut evaluations: Vec<u32> = traces.iter().map(|trace| trace.evaluations).collect();
-        let mut colors = vec![self.view.background; places.len()];
-        for meeting in self.meetings(&rays, &traces) {
-            colors[meeting.pixel] = meeting.surface.ambient(self.view.ambient);
-            self.light(&meeting, &mut colors[meeting.pixel], &mut evaluations[meeting.pixel]);
+        let mut shades: Vec<Shade> = traces.iter().map(|trace| self.unlit(trace)).collect();
+        let meetings = self.meetings(&rays, &traces);
+        for meeting in &meetings {
+            shades[meeting.pixel].color = meeting.surface.ambient(self.view.ambient);
         }
-        let blocks = traces.iter().zip(colors).zip(evaluations);
-        blocks.map(|((trace, color), count)| self.block(trace, color, count)).collect()
+        for light in &self.view.lights {
+            self.light(light, &meetings, &mut shades);
+        }
+        let pixels = traces.iter().zip(shades);
+        pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
+    }
+
+    /// What a pixel is before its surface is lit.
+    fn unlit(&self, trace: &Trace<T>) -> Shade {
+        Shade { color: self.view.background, evaluations: trace.evaluations }
     }
 
     fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
@@ -217,20 +230,23 @@ impl<T: Real> Wave<'_, T> {
         hits.into_iter().enumerate().map(meeting).collect()
     }
 
-    /// Adds the lamps that reach a surface, and the evaluations that it took to know.
-    fn light(&mut self, meeting: &Meeting<T>, color: &mut DVec3, evaluations: &mut u32) {
-        let lights: Vec<(ViewLight, DVec3)> =
-            self.view.lights.iter().map(|light| (*light, meeting.surface.lit(light))).collect();
-        let dark = |lit: &DVec3| lit.cmple(DVec3::ZERO).all();
-        let asked = |(light, lit): &&(ViewLight, DVec3)| light.shadow && !dark(lit);
+    /// Adds what a lamp lights, and the evaluations that it takes to know what shades it.
+    fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
+        let lit = meetings.iter().map(|meeting| (meeting, meeting.surface.lit(light)));
+        // A surface that returns nothing needs no ray to the lamp.
+        let (asked, sure): (Vec<_>, Vec<_>) =
+            lit.partition(|(_, lit)| light.shadow && !lit.cmple(DVec3::ZERO).all());
+        for (meeting, lit) in sure {
+            shades[meeting.pixel].color += lit;
+        }
         let rays: Vec<Ray<T>> =
-            lights.iter().filter(asked).map(|(light, _)| self.lamp_ray(meeting, light)).collect();
-        let mut shadows = trace(&mut self.field, &rays, &self.limits).into_iter();
-        for light in &lights {
-            let trace = if asked(&light) { shadows.next() } else { None };
-            *evaluations += trace.map_or(0, |trace| trace.evaluations);
-            if trace.is_none_or(|trace| trace.status != HIT) {
-                *color += light.1;
+            asked.iter().map(|(meeting, _)| self.lamp_ray(meeting, light)).collect();
+        let traces = trace(&mut self.field, &rays, &self.limits);
+        for ((meeting, lit), trace) in asked.into_iter().zip(traces) {
+            let shade = &mut shades[meeting.pixel];
+            shade.evaluations += trace.evaluations;
+            if trace.status != HIT {
+                shade.color += lit;
             }
         }
     }
@@ -251,14 +267,14 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    fn block(&self, trace: &Trace<T>, color: DVec3, evaluations: u32) -> PixelBlock {
+    fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {
         let t: f64 = trace.t.into();
         let depth = if t > self.view.t_max { self.view.t_max } else { t };
         PixelBlock {
-            color: color.as_vec3().extend(1.0).to_array(),
+            color: shade.color.as_vec3().extend(1.0).to_array(),
             depth: depth as f32,
             status: trace.status,
-            evaluations,
+            evaluations: shade.evaluations,
             primary_evaluations: trace.evaluations,
         }
     }
