@@ -82,6 +82,14 @@ pub fn painted_sphere() -> Program {
     program
 }
 
+/// The unit sphere, its distance overestimated, so that rays step through the surface.
+pub fn steep_sphere() -> Program {
+    let mut program = sphere();
+    let factor = program.graph.number(1.2);
+    program.distance = program.distance.map(|distance| program.graph.mul(distance, factor));
+    program
+}
+
 /// A sphere whose radius is a param: 1, or what the frame says.
 pub fn sphere_of_param() -> Program {
     let mut program = sphere();
