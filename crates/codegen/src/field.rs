@@ -1,11 +1,11 @@
 //! A scene's functions by themselves, for those who embed them.
 
 use naga::{Function, Module, ResourceBinding, Span, StructMember, TypeInner};
-use sdfc_graph::{FrameInput, MaterialField, Node, Program, Type};
+use sdfc_graph::{FrameInput, MaterialField, Node, NodeId, Program, Type, reachable};
 use sdfc_march::Features;
 
 use crate::inputs::declare_members;
-use crate::lower::{reachable, struct_function, value_function};
+use crate::lower::{struct_function, value_function};
 use crate::reflect::{Parts, Role};
 use crate::{Error, Shader, types};
 
@@ -90,8 +90,8 @@ fn check_prefix(prefix: &str) -> Result<(), Error> {
 }
 
 /// The per-frame inputs that the roots need: params by position, then `time`, then `frame`.
-fn used_inputs(program: &Program, roots: &[sdfc_graph::NodeId]) -> Vec<(FrameInput, Type)> {
-    let nodes = reachable(&program.graph, roots, |_| false);
+fn used_inputs(program: &Program, roots: &[NodeId]) -> Vec<(FrameInput, Type)> {
+    let nodes = reachable(&program.graph, roots);
     let mut inputs: Vec<_> = nodes
         .into_iter()
         .filter_map(|id| {

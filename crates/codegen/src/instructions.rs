@@ -14,15 +14,16 @@ const OP_FUNCTION: u32 = 54;
 const OP_FUNCTION_PARAMETER: u32 = 55;
 const OP_FUNCTION_END: u32 = 56;
 const OP_LABEL: u32 = 248;
+const OP_BRANCH: u32 = 249;
 
 /// What one function costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FunctionCost {
     /// What the function computes.
     pub role: Role,
-    /// Its instructions, without those that only frame it (function, parameters, labels, end).
+    /// Its instructions, without those that only frame it (function, parameters, labels, branches, end).
     pub instructions: u32,
-    /// Those that compute: arithmetic, comparison, logic, selection, and GLSL.std.450. Composing and
+    /// Those that compute: conversion, arithmetic, comparison, logic, selection, and GLSL.std.450. Composing and
     /// taking apart vectors, loads and stores are not among them.
     pub arithmetic: u32,
 }
@@ -42,7 +43,7 @@ pub(crate) fn count(
             }
             (OP_FUNCTION, [_, id, ..]) => current = Some(*id),
             (OP_FUNCTION_END, _) => current = None,
-            (OP_FUNCTION_PARAMETER | OP_LABEL, _) => {}
+            (OP_FUNCTION_PARAMETER | OP_LABEL | OP_BRANCH, _) => {}
             _ => {
                 if let Some(id) = current {
                     let (all, arithmetic) = costs.entry(id).or_default();
@@ -60,10 +61,11 @@ pub(crate) fn count(
     functions.map(cost).collect()
 }
 
-/// Opcodes of OpSNegate..=OpDot and the wide integer operations, OpAny..=OpFUnordGreaterThanEqual
-/// (logic, selection, comparison), OpShiftRightLogical..=OpBitCount, and extended instructions.
+/// `OpExtInst`; `OpConvertFToU` to `OpFConvert`; `OpSNegate` to `OpSMulExtended` (arithmetic, products of matrices and vectors);
+/// `OpAny` to `OpFUnordGreaterThanEqual` (logic, selection, comparison); `OpShiftRightLogical` to
+/// `OpBitCount`.
 fn computes(opcode: u32) -> bool {
-    matches!(opcode, OP_EXT_INST | 126..=152 | 154..=191 | 194..=205)
+    matches!(opcode, OP_EXT_INST | 109..=115 | 126..=152 | 154..=191 | 194..=205)
 }
 
 /// A string literal: UTF-8, least significant byte first, ended by zero.

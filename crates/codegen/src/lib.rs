@@ -1,4 +1,42 @@
 //! From sdfc graphs to naga modules: lowering, linking, validation, writers, reflection.
+//!
+//! The only crate of sdfc that names naga. It takes a [`Program`](sdfc_graph::Program), flat math
+//! of one point, and makes of it
+//!
+//! - [`field_module`]: the distance, its gradient and the material as functions by themselves, for
+//!   those who embed them; params are members of one uniform structure.
+//! - [`render_module`]: the compute shader of a picture; the same functions fill the stubs of a ray
+//!   method and of shading, which are the `.wgsl` files of `sdfc-march`.
+//!
+//! Both yield a [`Shader`]: a validated module, written as WGSL or SPIR-V, or handed over as it is.
+//!
+//! ```
+//! use sdfc_codegen::{FieldOptions, field_module};
+//! use sdfc_graph::{Dim, Graph, Program};
+//!
+//! let mut graph = Graph::new();
+//! let p = graph.point(0, Dim::Three);
+//! let length = graph.length(p);
+//! let radius = graph.number(0.5);
+//! let distance = graph.sub(length, radius);
+//! let program = Program { graph, distance: Some(distance), ..Program::default() };
+//!
+//! let options = FieldOptions { gradient: false, ..FieldOptions::default() };
+//! let shader = field_module(&program, &options)?;
+//! let text = shader.wgsl()?;
+//! assert!(text.contains("fn sdf_distance(p: vec3<f32>) -> f32"));
+//! assert!(text.contains("return (length(p) - 0.5f);"));
+//! # Ok::<(), sdfc_codegen::Error>(())
+//! ```
+//!
+//! How it works: nodes are lowered in the order of their ids to expressions of naga's arena, one
+//! function for each root, without control flow. No text is assembled: names and statements are
+//! data, and naga writes them. A picture's files are parsed, calls to stubs that the scene has no
+//! need of are dropped with all that only they reached, then the rest is filled and validated.
+//!
+//! Limits: constants and results are 32-bit floats; numbers beyond them are an [`Error`]. Operations
+//! on constants alone are refused, for the graph folds those. A field is inlined whole at each
+//! call, so drivers take long over thousands of leaves.
 
 mod error;
 mod field;

@@ -1,11 +1,12 @@
 //! The shader of a picture: a scene's functions linked into a ray method and shading.
 
 use naga::ResourceBinding;
-use sdfc_graph::{NodeId, Program, Shadow};
+use rustc_hash::FxHashSet;
+use sdfc_graph::{NodeId, Program, Shadow, reachable_where};
 use sdfc_march::{Features, Method, method, source, stubs};
 
 use crate::inputs::declare_slots;
-use crate::lower::{reachable, struct_function, value_function};
+use crate::lower::{struct_function, value_function};
 use crate::reflect::{Parts, Role};
 use crate::{Error, Shader, link};
 
@@ -19,7 +20,8 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// absent where the functions use none of them ([`crate::Reflection::uniform`] is `None`). 2: storage
 /// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row.
 ///
-/// Shadows are linked where a light of the settings casts one, materials where the program has them.
+/// Shadows are linked where a light of the settings casts one, soft ones as hard ones; materials where
+/// the program has them.
 ///
 /// # Errors
 ///
@@ -76,9 +78,10 @@ fn features(program: &Program) -> Features {
 fn used_slots(program: &Program, distance: NodeId, gradient: NodeId) -> Vec<usize> {
     let mut roots = vec![distance, gradient];
     roots.extend(program.material.into_iter().flatten());
-    let slots: rustc_hash::FxHashSet<_> = program.uniforms.iter().copied().collect();
-    let needed = reachable(&program.graph, &roots, |node| slots.contains(&node));
-    let needed: rustc_hash::FxHashSet<_> = needed.into_iter().collect();
+    let slots: FxHashSet<_> = program.uniforms.iter().copied().collect();
+    let needed = reachable_where(&program.graph, &roots, |node| !slots.contains(&node));
+    // In ascending order, so that a search finds them.
+    let is_needed = |node: &NodeId| needed.binary_search(node).is_ok();
     let positions = program.uniforms.iter().enumerate();
-    positions.filter(|(_, node)| needed.contains(node)).map(|(slot, _)| slot).collect()
+    positions.filter(|(_, node)| is_needed(node)).map(|(slot, _)| slot).collect()
 }

@@ -14,7 +14,6 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Const, Dim, Node, NodeId, Program, Type};
 
 pub(crate) use body::Body;
-pub(crate) use uses::reachable;
 
 use crate::inputs::{Inputs, frame_name, input_name};
 use crate::{Error, types};
@@ -84,7 +83,8 @@ impl<'a> Lowering<'a> {
 
     /// Computes all nodes that the roots need.
     fn visit_all(&mut self) -> Result<(), Error> {
-        for id in self.uses.in_order() {
+        for position in 0..self.uses.len() {
+            let id = self.uses.node(position);
             let node = self.program.graph.node(id);
             if matches!(node, Node::Const(_)) {
                 continue;

@@ -7,7 +7,7 @@ use super::{Lowering, Value};
 use crate::{Error, types};
 
 /// Vectors shorter than its square root are not brought to full length by `Normalize`.
-const LEAST_SQUARE: f32 = 1e-30;
+const LEAST_SQUARE: f32 = 1e-36;
 
 impl Lowering<'_> {
     pub(super) fn unary(&mut self, id: NodeId, op: Unary, a: NodeId) -> Result<Value, Error> {

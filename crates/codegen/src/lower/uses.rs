@@ -1,7 +1,7 @@
 //! Which nodes a function needs, and how often each is written.
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary, reachable_where};
 
 use crate::inputs::Inputs;
 
@@ -15,7 +15,7 @@ pub(crate) struct Uses {
 impl Uses {
     /// Counts from the roots down. Nodes computed outside the shader need no arguments.
     pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
-        let order = reachable(graph, roots, |node| inputs.is_slot(node));
+        let order = reachable_where(graph, roots, |node| !inputs.is_slot(node));
         let mut counts = FxHashMap::default();
         for &root in roots {
             *counts.entry(root).or_insert(0) += 1;
@@ -41,9 +41,14 @@ impl Uses {
         self.counts.get(&id).copied().unwrap_or(0)
     }
 
-    /// The nodes, arguments first.
-    pub(crate) fn in_order(&self) -> Vec<NodeId> {
-        self.order.clone()
+    /// How many nodes there are.
+    pub(crate) fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// The node at a position, arguments before their uses.
+    pub(crate) fn node(&self, position: usize) -> NodeId {
+        self.order[position]
     }
 }
 
@@ -69,26 +74,4 @@ fn repeats(node: &Node) -> u32 {
         | Node::Sample(..)
         | Node::MaterialAt(..) => 1,
     }
-}
-
-/// The nodes that the roots need, arguments first; those of `is_leaf` without their arguments.
-pub(crate) fn reachable(
-    graph: &Graph,
-    roots: &[NodeId],
-    is_leaf: impl Fn(NodeId) -> bool,
-) -> Vec<NodeId> {
-    let mut seen = vec![false; graph.len()];
-    let mut pending = roots.to_vec();
-    let mut found = Vec::new();
-    while let Some(id) = pending.pop() {
-        if std::mem::replace(&mut seen[id.index()], true) {
-            continue;
-        }
-        found.push(id);
-        if !is_leaf(id) {
-            pending.extend(graph.node(id).arguments());
-        }
-    }
-    found.sort_unstable();
-    found
 }

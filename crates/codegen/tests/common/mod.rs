@@ -1,6 +1,9 @@
 //! Programs built by hand.
 
-#![allow(dead_code)]
+#![allow(dead_code, clippy::expect_used, clippy::panic)]
+
+use std::io::Write;
+use std::process::{Command, Stdio};
 
 use sdfc_graph::{
     Dim, FrameInput, Graph, Light, MaterialField, NodeId, Param, ParamKind, Program, Shadow,
@@ -57,12 +60,11 @@ pub fn smooth(graph: &mut Graph, a: NodeId, b: NodeId, k: NodeId) -> NodeId {
     graph.sub(least, dent)
 }
 
-/// A program of a distance, with a stand-in gradient: the direction from the origin.
-pub fn program(graph: Graph, distance: NodeId) -> Program {
-    let mut program = Program { graph, distance: Some(distance), ..Program::default() };
-    let p = point(&mut program.graph);
-    program.gradient = Some(program.graph.unary(Unary::Normalize, p));
-    program
+/// A program of a distance and its gradient.
+pub fn program(mut graph: Graph, distance: NodeId) -> Program {
+    let p = point(&mut graph);
+    let gradient = Some(graph.unary(Unary::Normalize, p));
+    Program { graph, distance: Some(distance), gradient, ..Program::default() }
 }
 
 pub fn sphere() -> Program {
@@ -182,4 +184,31 @@ pub fn lit(mut program: Program, shadow: Shadow) -> Program {
     let color = graph.constant(Type::Vec3, &[1.0; 3]);
     program.settings.lights.push(Light { direction, color, shadow });
     program
+}
+
+/// Reads WGSL again and validates it.
+pub fn check(text: &str) {
+    let module = naga::front::wgsl::parse_str(text)
+        .unwrap_or_else(|error| panic!("{}\n{text}", error.emit_to_string(text)));
+    let capabilities = naga::valid::Capabilities::default();
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}\n{text}", error.emit_to_string(text)));
+}
+
+/// Has `spirv-val` of SPIRV-Tools look at the words, where it is installed.
+pub fn check_spirv(words: &[u32], environment: &str) {
+    let child = Command::new("spirv-val")
+        .args(["--target-env", environment, "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let Ok(mut child) = child else { return };
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+    let mut input = child.stdin.take().expect("is piped");
+    input.write_all(&bytes).expect("spirv-val reads its input");
+    drop(input);
+    let output = child.wait_with_output().expect("spirv-val ends");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

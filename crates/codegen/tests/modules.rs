@@ -1,0 +1,225 @@
+//! Whole modules: each links, validates, is accepted by readers; errors are values.
+
+#![allow(clippy::expect_used)]
+
+mod common;
+
+use std::mem::{offset_of, size_of};
+
+use common::{blend, chain, lit, number_param, painted, program, sphere, twisted};
+use sdfc_codegen::{Error, FieldOptions, Role, field_module, render_module};
+use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
+use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
+
+fn scenes() -> Vec<Program> {
+    let mut scenes = Vec::new();
+    for build in [sphere, blend, painted, twisted] {
+        scenes.push(build());
+        scenes.push(lit(build(), Shadow::Hard));
+    }
+    let mut both = lit(painted(), Shadow::Hard);
+    let k = both.graph.frame_input(FrameInput::Time, Type::Scalar);
+    both.distance = both.distance.map(|distance| both.graph.add(distance, k));
+    both.uniforms = vec![k];
+    scenes.push(both);
+    scenes
+}
+
+#[test]
+fn every_method_links_with_every_kind_of_scene() {
+    for method in METHODS {
+        for scene in scenes() {
+            let shader = render_module(&scene, method.name).expect("links");
+            common::check(&shader.wgsl().expect("is written"));
+            common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
+        }
+    }
+}
+
+#[test]
+fn every_scene_has_a_field_module() {
+    for scene in scenes() {
+        for prefix in ["", "sdf_", "scene2", "_x_"] {
+            let options = FieldOptions { prefix: prefix.to_owned(), ..FieldOptions::default() };
+            let shader = field_module(&scene, &options).expect("lowers");
+            let text = shader.wgsl().expect("is written");
+            common::check(&text);
+            common::check_spirv(&shader.spirv().expect("is written"), "spv1.3");
+            for function in shader.reflection().functions {
+                assert!(text.contains(&format!("{} {{", function.signature)), "{text}");
+            }
+        }
+    }
+}
+
+/// Names and offsets of a structure's members in the module, and its size.
+fn layout(module: &naga::Module, name: &str) -> (Vec<u32>, u32) {
+    let mut types = module.types.iter().map(|(_, ty)| ty);
+    let ty = types.find(|ty| ty.name.as_deref() == Some(name)).expect("is declared");
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { return (Vec::new(), 0) };
+    (members.iter().map(|member| member.offset).collect(), *span)
+}
+
+#[test]
+fn blocks_have_the_layout_of_the_shader() {
+    let shader = render_module(&sphere(), "fixed").expect("links");
+    let module = shader.module();
+    let offsets = |list: &[usize]| list.iter().map(|&offset| offset as u32).collect::<Vec<_>>();
+    macro_rules! block {
+        ($block:ident: $($field:ident)*) => {
+            (offsets(&[$(offset_of!($block, $field)),*]), size_of::<$block>() as u32)
+        };
+    }
+    assert_eq!(
+        layout(module, "View"),
+        block!(ViewBlock: eye pixel_radius right t_max up epsilon forward steps size tile_origin
+            tile_size light_count fixed_step ambient pad0 background pad1 lights)
+    );
+    assert_eq!(layout(module, "Light"), block!(LightBlock: direction shadow color pad));
+    assert_eq!(
+        layout(module, "Pixel"),
+        block!(PixelBlock: color depth status evaluations primary_evaluations)
+    );
+}
+
+#[test]
+fn params_are_reflected_with_their_places() {
+    let mut graph = Graph::new();
+    let types = [Type::Scalar, Type::Vec3, Type::Bool, Type::Vec2, Type::Vec4, Type::Scalar];
+    let mut distance = common::floor(&mut graph, 0.5);
+    for (index, ty) in (0..).zip(types) {
+        let input = graph.frame_input(FrameInput::Param(index), ty);
+        let part = match ty {
+            Type::Bool => {
+                let (one, zero) = (graph.number(1.0), graph.number(0.0));
+                graph.select(input, one, zero)
+            }
+            Type::Scalar => input,
+            Type::Vec2 | Type::Vec3 | Type::Vec4 => graph.length(input),
+        };
+        distance = graph.add(distance, part);
+    }
+    let mut scene = program(graph, distance);
+    // The last takes a name that WGSL keeps for itself.
+    for name in ["a", "b", "c", "d", "e", "loop"] {
+        scene.params.push(number_param(name, 0.0));
+    }
+    let options = FieldOptions { group: 2, binding: 3, ..FieldOptions::default() };
+    let shader = field_module(&scene, &options).expect("lowers");
+    let reflection = shader.reflection();
+    let places: Vec<_> =
+        reflection.members.iter().map(|m| (m.name.as_str(), m.offset, m.size)).collect();
+    let expected =
+        [("a", 0, 4), ("b", 16, 12), ("c", 28, 4), ("d", 32, 8), ("e", 48, 16), ("loop_", 64, 4)];
+    assert_eq!(places, expected);
+    let uniform = reflection.uniform.expect("has params");
+    assert_eq!((uniform.group, uniform.binding, uniform.size), (2, 3, 80));
+    assert_eq!(uniform.structure.as_deref(), Some("sdf_Params"));
+    assert_eq!(uniform.variable, "sdf_params");
+    // The reader lays the structure out by WGSL's rules: it must come to the same.
+    let text = shader.wgsl().expect("is written");
+    let read = naga::front::wgsl::parse_str(&text).expect("is WGSL");
+    assert_eq!(layout(&read, "sdf_Params"), (vec![0, 16, 28, 32, 48, 64], 80));
+}
+
+#[test]
+fn names_that_wgsl_does_not_take_are_changed() {
+    for name in ["loop", "distance", "p", "_", "", "2d", "a__b", "é", "x y", "sdf_distance", "q1"]
+    {
+        let mut scene = blend();
+        for node in scene.names.clone().into_keys() {
+            scene.names.insert(node, name.to_owned());
+        }
+        scene.params[0].name = name.to_owned();
+        let shader = field_module(&scene, &FieldOptions::default()).expect("lowers");
+        common::check(&shader.wgsl().expect("is written"));
+        let shader = render_module(&scene, "auto").expect("links");
+        common::check(&shader.wgsl().expect("is written"));
+    }
+}
+
+#[test]
+fn instructions_are_counted() {
+    // length(p - c) - r: subtract, length, subtract, return.
+    let shader = field_module(&sphere(), &FieldOptions::default()).expect("lowers");
+    let costs = shader.instructions().expect("is written");
+    assert_eq!((costs[0].role, costs[0].instructions, costs[0].arithmetic), (Role::Distance, 4, 3));
+    // The stand-in gradient: dot, max, inverseSqrt, multiply, return.
+    assert_eq!((costs[1].role, costs[1].instructions, costs[1].arithmetic), (Role::Gradient, 5, 4));
+    let linked = render_module(&sphere(), "auto").expect("links");
+    assert_eq!(linked.instructions().expect("is written"), costs);
+}
+
+#[test]
+fn a_long_chain_needs_little_stack() {
+    let thread = std::thread::Builder::new().stack_size(2 << 20);
+    let worker = thread.spawn(|| {
+        let shader = field_module(&chain(1000), &FieldOptions::default()).expect("lowers");
+        common::check(&shader.wgsl().expect("is written"));
+        common::check_spirv(&shader.spirv().expect("is written"), "spv1.3");
+        render_module(&chain(1000), "auto").expect("links").instructions().expect("is written")
+    });
+    let costs = worker.expect("starts").join().expect("does not overflow");
+    assert!(costs[0].arithmetic > 8000, "{costs:?}");
+}
+
+#[test]
+fn a_deep_chain_of_values_used_once_is_cut_into_names() {
+    let mut graph = Graph::new();
+    let mut value = common::floor(&mut graph, 0.25);
+    for i in 0..10_000 {
+        let other = common::ball(&mut graph, [f64::from(i % 7), 0.0, 0.0], 0.5);
+        value = if i % 2 == 0 { graph.min(value, other) } else { graph.max(other, value) };
+    }
+    let shader = field_module(&program(graph, value), &FieldOptions::default()).expect("lowers");
+    shader.spirv().expect("is written");
+    let text = shader.wgsl().expect("is written");
+    let deepest = text.lines().map(|line| {
+        line.chars().fold((0i32, 0), |(now, most), c| match c {
+            '(' => (now + 1, most.max(now + 1)),
+            ')' => (now - 1, most),
+            _ => (now, most),
+        })
+    });
+    assert!(deepest.map(|(_, most)| most).max() < Some(20));
+}
+
+#[test]
+fn what_cannot_be_lowered_is_an_error() {
+    let field = |program: &Program| field_module(program, &FieldOptions::default()).err();
+    assert_eq!(field(&Program::default()), Some(Error::NothingDrawn));
+
+    let mut no_gradient = sphere();
+    no_gradient.gradient = None;
+    assert_eq!(field(&no_gradient), Some(Error::MissingRoot("gradient")));
+    assert!(render_module(&no_gradient, "auto").is_err());
+    assert!(matches!(render_module(&sphere(), "fast"), Err(Error::UnknownMethod(_))));
+
+    for prefix in ["2d", "a__b", "a-b", "é"] {
+        let options = FieldOptions { prefix: prefix.to_owned(), ..FieldOptions::default() };
+        assert!(matches!(field_module(&sphere(), &options), Err(Error::BadPrefix(_))));
+    }
+
+    for value in [f64::INFINITY, f64::NAN, 1e39, -1e300] {
+        let mut graph = Graph::new();
+        let distance = common::floor(&mut graph, value);
+        let error = field(&program(graph, distance));
+        assert!(matches!(error, Some(Error::NotFinite { .. })), "{value}: {error:?}");
+    }
+
+    // Without a slot a picture has nowhere to take a per-frame input from.
+    let mut unbound = blend();
+    unbound.uniforms.clear();
+    assert!(matches!(render_module(&unbound, "auto"), Err(Error::UnboundInput(_))));
+
+    let mut graph = Graph::new();
+    let other = graph.point(1, sdfc_graph::Dim::Three);
+    let distance = graph.length(other);
+    assert_eq!(field(&program(graph, distance)), Some(Error::NotFlat(other)));
+
+    let mut graph = Graph::new();
+    let p = common::point(&mut graph);
+    let wrong = graph.unary(Unary::Not, p);
+    let distance = graph.length(wrong);
+    assert_eq!(field(&program(graph, distance)), Some(Error::IllTyped(wrong)));
+}
