@@ -36,25 +36,25 @@ impl Graph {
 
     /// An operation on one argument.
     pub fn unary(&mut self, op: Unary, a: NodeId) -> NodeId {
-        self.intern(Node::Unary(op, a))
+        self.make(Node::Unary(op, a))
     }
 
     /// An operation on two arguments.
     pub fn binary(&mut self, op: Binary, a: NodeId, b: NodeId) -> NodeId {
         let [a, b] = self.widened([a, b]);
-        self.intern(Node::Binary(op, a, b))
+        self.make(Node::Binary(op, a, b))
     }
 
     /// `Mix`, `Clamp` or `Smoothstep`; `Select` has its own builder.
     pub fn ternary(&mut self, op: Ternary, a: NodeId, b: NodeId, c: NodeId) -> NodeId {
         let arguments = self.widened([a, b, c]);
-        self.intern(Node::Ternary(op, arguments))
+        self.make(Node::Ternary(op, arguments))
     }
 
     /// `yes` where the condition holds, else `no`.
     pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
         let [yes, no] = self.widened([yes, no]);
-        self.intern(Node::Ternary(Ternary::Select, [condition, yes, no]))
+        self.make(Node::Ternary(Ternary::Select, [condition, yes, no]))
     }
 
     /// A vector of equal parts.
@@ -62,7 +62,7 @@ impl Graph {
         if self.ty(a) == ty {
             return a;
         }
-        self.intern(Node::Splat(ty, a))
+        self.make(Node::Splat(ty, a))
     }
 
     /// A vector of 2 to 4 scalar parts; of one part, the part.
@@ -72,7 +72,7 @@ impl Graph {
         };
         let mut list = [parts[0]; 4];
         list[..parts.len()].copy_from_slice(parts);
-        self.intern(Node::Compose(ty, list))
+        self.make(Node::Compose(ty, list))
     }
 
     /// Components of a vector by index.
@@ -82,7 +82,7 @@ impl Graph {
         for (place, lane) in list.iter_mut().zip(lanes) {
             *place = *lane;
         }
-        self.intern(Node::Swizzle(ty, a, list))
+        self.make(Node::Swizzle(ty, a, list))
     }
 
     /// One component of a vector; of a scalar, itself.
@@ -92,7 +92,7 @@ impl Graph {
 
     /// `c0 * v.x + c1 * v.y + c2 * v.z`
     pub fn transform(&mut self, columns: [NodeId; 3], v: NodeId) -> NodeId {
-        self.intern(Node::Transform(columns, v))
+        self.make(Node::Transform(columns, v))
     }
 
     /// Distance of a shape at a point.

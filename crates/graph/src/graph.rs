@@ -4,13 +4,15 @@ use std::hash::{Hash, Hasher};
 
 use rustc_hash::{FxHashMap, FxHasher};
 
+use crate::range::{Range, range_of};
 use crate::{Arg, Binary, Const, Node, NodeId, Shape, ShapeId, Stage, Ternary, Type, Unary};
 
 /// What is known of a node beside its operation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Facts {
     ty: Type,
     stage: Stage,
+    range: Range,
     /// One more than the highest level of a point that it depends on; 0 for none.
     levels: u16,
 }
@@ -59,6 +61,16 @@ impl Graph {
     /// The node's stage.
     pub fn stage(&self, id: NodeId) -> Stage {
         self.facts[id.index()].stage
+    }
+
+    /// Between which values every component of the node lies.
+    pub fn range(&self, id: NodeId) -> Range {
+        self.facts[id.index()].range
+    }
+
+    /// States between which values a per-frame input lies. To be called before anything is built on it.
+    pub fn assume_range(&mut self, id: NodeId, range: Range) {
+        self.facts[id.index()].range = range;
     }
 
     /// One more than the highest level of a point that the node depends on; 0 for none.
@@ -134,7 +146,9 @@ impl Graph {
             | Node::Swizzle(..)
             | Node::Transform(..) => {}
         }
-        Facts { ty: result_type(node, |id| self.ty(id)), stage, levels }
+        let ty = result_type(node, |id| self.ty(id));
+        let range = range_of(node, |id| self.range(id), ty.width());
+        Facts { ty, stage, range, levels }
     }
 
     /// The instance equal to this one in definition, dimension, level and arguments, or this one as

@@ -9,8 +9,10 @@ mod graph;
 mod hoist;
 mod node;
 mod program;
+mod range;
 mod scene;
 mod shape;
+mod simplify;
 mod transforms;
 mod walk;
 
@@ -24,6 +26,7 @@ pub use node::{
     Unary,
 };
 pub use program::Program;
+pub use range::Range;
 pub use scene::{Camera, Light, March, Param, ParamKind, Scene, Settings, Shadow};
 pub use shape::{Arg, Contract, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};

@@ -25,8 +25,8 @@ impl Machine for Folding {
 }
 
 /// The value of a node whose arguments, in order, are these constants. `None` for a node that is no
-/// operation, and where a lane of the result is not finite: such an operation stays, to be reported
-/// or to run, rather than become a literal that no shader can hold.
+/// operation, and where finite arguments give a lane that is not finite, or any give one that is no number: such an
+/// operation stays, to be reported or to run, rather than become a literal that no shader can hold.
 pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
     let find = |id: NodeId| {
         let position = node.arguments().position(|argument| argument == id);
@@ -40,6 +40,12 @@ pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
         let (lanes, width) = (argument(id).lanes(), argument(id).ty().width());
         Lanes::new(width, |i| lanes[i])
     })?;
-    let finite = lanes.as_slice().iter().all(|lane| lane.is_finite());
-    finite.then(|| Const::new(result_type(node, |id| argument(id).ty()), lanes.as_slice()))
+    let lane_of = |value: &Const| value.lanes();
+    let from_infinity = arguments.iter().flat_map(lane_of).any(f64::is_infinite);
+    let sound = |lane: &f64| lane.is_finite() || (from_infinity && !lane.is_nan());
+    lanes
+        .as_slice()
+        .iter()
+        .all(sound)
+        .then(|| Const::new(result_type(node, |id| argument(id).ty()), lanes.as_slice()))
 }

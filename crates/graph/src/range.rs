@@ -1,0 +1,170 @@
+//! Conservative ranges of values, in real arithmetic: enough to decide comparisons and selections whose
+//! outcome no point can change.
+
+use crate::{Binary, Const, Node, NodeId, Ternary, Unary};
+
+/// Every component lies in `lo..=hi`; infinite ends are open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Nothing is less.
+    pub lo: f64,
+    /// Nothing is greater.
+    pub hi: f64,
+}
+
+impl Range {
+    /// Nothing is known.
+    pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+    const POSITIVE: Self = Self { lo: 0.0, hi: f64::INFINITY };
+
+    /// Between two ends; where one is not a number, nothing is known.
+    pub fn new(lo: f64, hi: f64) -> Self {
+        if lo <= hi { Self { lo, hi } } else { Self::ALL }
+    }
+
+    fn of_const(value: &Const) -> Self {
+        let lanes = value.lanes();
+        hull(lanes[..value.ty().width()].iter().map(|&lane| Self::new(lane, lane)))
+    }
+
+    fn neg(self) -> Self {
+        Self::new(-self.hi, -self.lo)
+    }
+
+    fn add(self, other: Self) -> Self {
+        Self::new(self.lo + other.lo, self.hi + other.hi)
+    }
+
+    fn mul(self, other: Self) -> Self {
+        // An end is approached, not reached: infinity times 0 is 0 here.
+        let product = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
+        let ends = [
+            product(self.lo, other.lo),
+            product(self.lo, other.hi),
+            product(self.hi, other.lo),
+            product(self.hi, other.hi),
+        ];
+        Self::new(
+            ends.into_iter().fold(f64::INFINITY, f64::min),
+            ends.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        )
+    }
+
+    fn reciprocal(self) -> Self {
+        if self.lo > 0.0 || self.hi < 0.0 {
+            Self::new(1.0 / self.hi, 1.0 / self.lo)
+        } else if self.lo == 0.0 {
+            Self::POSITIVE
+        } else {
+            Self::ALL
+        }
+    }
+
+    fn abs(self) -> Self {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            self.neg()
+        } else {
+            Self::new(0.0, self.hi.max(-self.lo))
+        }
+    }
+
+    fn min(self, other: Self) -> Self {
+        Self::new(self.lo.min(other.lo), self.hi.min(other.hi))
+    }
+
+    fn max(self, other: Self) -> Self {
+        Self::new(self.lo.max(other.lo), self.hi.max(other.hi))
+    }
+
+    fn map(self, monotone: impl Fn(f64) -> f64) -> Self {
+        Self::new(monotone(self.lo), monotone(self.hi))
+    }
+}
+
+fn hull(ranges: impl IntoIterator<Item = Range>) -> Range {
+    let joined = ranges.into_iter().reduce(|a, b| Range::new(a.lo.min(b.lo), a.hi.max(b.hi)));
+    joined.unwrap_or(Range::ALL)
+}
+
+/// The range of a node, given those of its arguments.
+pub(crate) fn range_of(node: &Node, of: impl Fn(NodeId) -> Range, width: usize) -> Range {
+    match *node {
+        Node::Const(value) => Range::of_const(&value),
+        Node::Point(..) | Node::Frame(..) | Node::Sample(..) | Node::MaterialAt(..) => Range::ALL,
+        Node::Unary(op, a) => unary(op, of(a)),
+        Node::Binary(op, a, b) => {
+            if a == b && matches!(op, Binary::Mul | Binary::Dot) {
+                let square = of(a).abs().map(|x| x * x);
+                return if op == Binary::Dot { Range::POSITIVE } else { square };
+            }
+            binary(op, of(a), of(b))
+        }
+        Node::Ternary(op, arguments) => ternary(op, arguments.map(of)),
+        Node::Splat(_, a) | Node::Swizzle(_, a, _) => of(a),
+        Node::Compose(_, parts) => hull(parts[..width].iter().map(|&part| of(part))),
+        Node::Transform(..) => Range::ALL,
+    }
+}
+
+fn unary(op: Unary, a: Range) -> Range {
+    let unit = Range::new(-1.0, 1.0);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    match op {
+        Unary::Neg => a.neg(),
+        Unary::Abs => a.abs(),
+        Unary::Sign => a.map(sign),
+        Unary::Floor => a.map(f64::floor),
+        Unary::Ceil => a.map(f64::ceil),
+        Unary::Round => a.map(f64::round_ties_even),
+        Unary::Trunc => a.map(f64::trunc),
+        Unary::Fract | Unary::Not => Range::new(0.0, 1.0),
+        Unary::Sqrt => a.max(Range::new(0.0, 0.0)).map(f64::sqrt),
+        Unary::InverseSqrt | Unary::Length => Range::POSITIVE,
+        Unary::Exp | Unary::Exp2 => Range::POSITIVE,
+        Unary::Sin | Unary::Cos | Unary::Tanh | Unary::Normalize => unit,
+        Unary::Asin | Unary::Atan => Range::new(-quarter, quarter),
+        Unary::Acos => Range::new(0.0, 2.0 * quarter),
+        Unary::Log | Unary::Log2 | Unary::Tan | Unary::Sinh => Range::ALL,
+        Unary::Cosh => Range::new(1.0, f64::INFINITY),
+        Unary::Saturate => a.max(Range::new(0.0, 0.0)).min(Range::new(1.0, 1.0)),
+    }
+}
+
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
+}
+
+fn binary(op: Binary, a: Range, b: Range) -> Range {
+    let truth = Range::new(0.0, 1.0);
+    match op {
+        Binary::Add => a.add(b),
+        Binary::Sub => a.add(b.neg()),
+        Binary::Mul => a.mul(b),
+        Binary::Div => a.mul(b.reciprocal()),
+        Binary::Min => a.min(b),
+        Binary::Max => a.max(b),
+        Binary::Rem if b.lo >= 0.0 => Range::new(0.0, b.hi),
+        Binary::Pow if a.lo >= 0.0 => Range::POSITIVE,
+        Binary::Atan2 => Range::new(-std::f64::consts::PI, std::f64::consts::PI),
+        Binary::Rem | Binary::Pow | Binary::Dot | Binary::Cross => Range::ALL,
+        Binary::Step
+        | Binary::Lt
+        | Binary::Le
+        | Binary::Eq
+        | Binary::Ne
+        | Binary::And
+        | Binary::Or => truth,
+    }
+}
+
+fn ternary(op: Ternary, [a, b, c]: [Range; 3]) -> Range {
+    match op {
+        Ternary::Mix if c.lo >= 0.0 && c.hi <= 1.0 => hull([a, b]),
+        Ternary::Mix => Range::ALL,
+        Ternary::Clamp => a.max(b).min(c),
+        Ternary::Smoothstep => Range::new(0.0, 1.0),
+        Ternary::Select => hull([b, c]),
+    }
+}
