@@ -88,7 +88,10 @@ impl Graph {
         if let Some(difference) = self.sub_low(a, b) {
             return Some(difference);
         }
-        if let Some(x) = self.as_neg(a) {
+        // A per-frame value stays negated: outside it would cost an operation at each point.
+        if let Some(x) = self.as_neg(a)
+            && self.is_low(a) <= self.is_low(b)
+        {
             let sum = self.add(x, b);
             return Some(self.neg(sum));
         }
@@ -324,7 +327,9 @@ impl Graph {
         if self.is_uniform(a, 0.0) && !self.is_uniform(b, 0.0) {
             return Some(a);
         }
-        if let Some(x) = self.as_neg(a) {
+        if let Some(x) = self.as_neg(a)
+            && self.is_low(a) <= self.is_low(b)
+        {
             let quotient = self.div(x, b);
             return Some(self.neg(quotient));
         }
