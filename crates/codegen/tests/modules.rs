@@ -144,8 +144,8 @@ fn instructions_are_counted() {
     let shader = field_module(&sphere(), &FieldOptions::default()).expect("lowers");
     let costs = shader.instructions().expect("is written");
     assert_eq!((costs[0].role, costs[0].instructions, costs[0].arithmetic), (Role::Distance, 4, 3));
-    // The stand-in gradient: dot, max, inverseSqrt, multiply, return.
-    assert_eq!((costs[1].role, costs[1].instructions, costs[1].arithmetic), (Role::Gradient, 5, 4));
+    // normalize(p - c): subtract, dot, max, inverseSqrt, multiply, return.
+    assert_eq!((costs[1].role, costs[1].instructions, costs[1].arithmetic), (Role::Gradient, 6, 5));
     let linked = render_module(&sphere(), "auto").expect("links");
     assert_eq!(linked.instructions().expect("is written"), costs);
 }

@@ -77,7 +77,12 @@ fn measured(graph: &mut Graph, value: NodeId) -> NodeId {
             graph.select(value, one, zero)
         }
         Type::Scalar => value,
-        Type::Vec2 | Type::Vec3 | Type::Vec4 => graph.length(value),
+        ty @ (Type::Vec2 | Type::Vec3 | Type::Vec4) => {
+            // What the graph does not see through.
+            let least = graph.constant(ty, &[0.1, 0.2, 0.3, 0.4]);
+            let raised = graph.max(value, least);
+            graph.length(raised)
+        }
     }
 }
 

@@ -247,24 +247,6 @@ impl<'a> Lowering<'a> {
         Ok(self.body.binary(BinaryOperator::Multiply, matrix, v))
     }
 
-    /// The scalar that fills this vector, if one does: `v * s` needs no vector of it.
-    fn filling(&self, id: NodeId) -> Option<Filling> {
-        let node = self.program.graph.node(id);
-        if let Node::Splat(_, scalar) = node {
-            return Some(Filling::Node(scalar));
-        }
-        let Node::Const(constant) = node else { return None };
-        let lanes = &constant.lanes()[..constant.ty().width()];
-        lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
-    }
-
-    fn filling_value(&mut self, id: NodeId, filling: Filling) -> Result<Value, Error> {
-        match filling {
-            Filling::Node(scalar) => self.value(scalar),
-            Filling::Number(number) => self.number(id, number),
-        }
-    }
-
     fn finish(self, name: &str, value: Value, result: Handle<naga::Type>) -> Function {
         let point = types::value(self.types, Type::Vec3);
         let mut function = self.body.finish(Some(value));
@@ -274,12 +256,6 @@ impl<'a> Lowering<'a> {
         function.result = Some(FunctionResult { ty: result, binding: None });
         function
     }
-}
-
-/// What fills a vector.
-enum Filling {
-    Node(NodeId),
-    Number(f64),
 }
 
 /// Name of a value that the program does not name.

@@ -3,6 +3,7 @@
 use naga::{BinaryOperator, Expression, MathFunction, UnaryOperator};
 use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
 
+use super::uses::{Filling, Product, product};
 use super::{Lowering, Value};
 use crate::{Error, types};
 
@@ -73,7 +74,7 @@ impl Lowering<'_> {
         if ty != self.program.graph.ty(b) || !takes(op, ty) {
             return Err(Error::IllTyped(id));
         }
-        if op == Binary::Mul && ty.width() > 1 {
+        if op == Binary::Mul {
             return self.product(a, b);
         }
         let (a, b) = (self.value(a)?, self.value(b)?);
@@ -101,14 +102,21 @@ impl Lowering<'_> {
         Ok(self.body.binary(operator, a, b))
     }
 
-    /// A product of vectors; one filled by a scalar multiplies as that scalar.
+    /// A product; a vector filled by a scalar multiplies as that scalar.
     fn product(&mut self, a: NodeId, b: NodeId) -> Result<Value, Error> {
-        let (left, right) = match (self.filling(a), self.filling(b)) {
-            (_, Some(filling)) => (self.value(a)?, self.filling_value(b, filling)?),
-            (Some(filling), None) => (self.filling_value(a, filling)?, self.value(b)?),
-            (None, None) => (self.value(a)?, self.value(b)?),
+        let (left, right) = match product(&self.program.graph, a, b) {
+            Product::Plain => (self.value(a)?, self.value(b)?),
+            Product::LeftFilled(filling) => (self.filling(a, filling)?, self.value(b)?),
+            Product::RightFilled(filling) => (self.value(a)?, self.filling(b, filling)?),
         };
         Ok(self.body.binary(BinaryOperator::Multiply, left, right))
+    }
+
+    fn filling(&mut self, id: NodeId, filling: Filling) -> Result<Value, Error> {
+        match filling {
+            Filling::Node(scalar) => self.value(scalar),
+            Filling::Number(number) => self.number(id, number),
+        }
     }
 
     /// `x - y * floor(x / y)`: WGSL's `%` truncates.

@@ -1,7 +1,7 @@
 //! Which nodes a function needs, and how often each is written.
 
-use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary, reachable_where};
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
 
 use crate::inputs::Inputs;
 
@@ -13,9 +13,9 @@ pub(crate) struct Uses {
 }
 
 impl Uses {
-    /// Counts from the roots down. Nodes computed outside the shader need no arguments.
+    /// Counts from the roots down. Nodes computed outside the shader need no operands.
     pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
-        let order = reachable_where(graph, roots, |node| !inputs.is_slot(node));
+        let order = needed(graph, roots, inputs);
         let mut counts = FxHashMap::default();
         for &root in roots {
             *counts.entry(root).or_insert(0) += 1;
@@ -29,8 +29,8 @@ impl Uses {
             } else {
                 repeats(&node)
             };
-            for argument in node.arguments() {
-                *counts.entry(argument).or_insert(0) += times;
+            for operand in operands(graph, &node) {
+                *counts.entry(operand).or_insert(0) += times;
             }
         }
         Self { counts, order }
@@ -46,9 +46,73 @@ impl Uses {
         self.order.len()
     }
 
-    /// The node at a position, arguments before their uses.
+    /// The node at a position, operands before their uses.
     pub(crate) fn node(&self, position: usize) -> NodeId {
         self.order[position]
+    }
+}
+
+/// What fills all lanes of a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Filling {
+    /// The node.
+    Node(NodeId),
+    /// The number.
+    Number(f64),
+}
+
+/// The two factors of a product. At most one, filled by a scalar, stands for a vector: `v * s`
+/// needs no vector of `s`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Product {
+    /// Both are read as they are.
+    Plain,
+    /// The left one is filled.
+    LeftFilled(Filling),
+    /// The right one is filled.
+    RightFilled(Filling),
+}
+
+/// How the lowering writes the product of two nodes of one type.
+pub(crate) fn product(graph: &Graph, left: NodeId, right: NodeId) -> Product {
+    if graph.ty(left).width() == 1 {
+        return Product::Plain;
+    }
+    match (filling(graph, left), filling(graph, right)) {
+        (_, Some(right)) => Product::RightFilled(right),
+        (Some(left), None) => Product::LeftFilled(left),
+        (None, None) => Product::Plain,
+    }
+}
+
+fn filling(graph: &Graph, id: NodeId) -> Option<Filling> {
+    let node = graph.node(id);
+    if let Node::Splat(_, scalar) = node {
+        return Some(Filling::Node(scalar));
+    }
+    let Node::Const(constant) = node else { return None };
+    let lanes = &constant.lanes()[..constant.ty().width()];
+    lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
+}
+
+/// The nodes that the lowering of a node reads.
+fn operands(graph: &Graph, node: &Node) -> Vec<NodeId> {
+    let Node::Binary(Binary::Mul, left, right) = *node else {
+        return node.arguments().collect();
+    };
+    match product(graph, left, right) {
+        Product::Plain => vec![left, right],
+        Product::LeftFilled(filling) => filling.node().into_iter().chain([right]).collect(),
+        Product::RightFilled(filling) => [left].into_iter().chain(filling.node()).collect(),
+    }
+}
+
+impl Filling {
+    fn node(self) -> Option<NodeId> {
+        match self {
+            Self::Node(node) => Some(node),
+            Self::Number(_) => None,
+        }
     }
 }
 
@@ -57,7 +121,7 @@ pub(crate) fn is_component(node: &Node) -> bool {
     matches!(node, Node::Swizzle(Type::Scalar, ..))
 }
 
-/// How often the lowering of a node writes its arguments.
+/// How often the lowering of a node writes its operands.
 fn repeats(node: &Node) -> u32 {
     match node {
         Node::Unary(Unary::Normalize, _) | Node::Binary(Binary::Rem, ..) => 2,
@@ -74,4 +138,18 @@ fn repeats(node: &Node) -> u32 {
         | Node::Sample(..)
         | Node::MaterialAt(..) => 1,
     }
+}
+
+/// The nodes that the lowering of the roots reads, operands first.
+fn needed(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Vec<NodeId> {
+    let mut seen = FxHashSet::default();
+    let mut pending = roots.to_vec();
+    while let Some(id) = pending.pop() {
+        if seen.insert(id) && !inputs.is_slot(id) {
+            pending.extend(operands(graph, &graph.node(id)));
+        }
+    }
+    let mut order: Vec<NodeId> = seen.into_iter().collect();
+    order.sort_unstable();
+    order
 }

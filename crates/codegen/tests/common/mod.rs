@@ -63,7 +63,7 @@ pub fn smooth(graph: &mut Graph, a: NodeId, b: NodeId, k: NodeId) -> NodeId {
 /// A program of a distance and its gradient.
 pub fn program(mut graph: Graph, distance: NodeId) -> Program {
     let p = point(&mut graph);
-    let gradient = Some(graph.unary(Unary::Normalize, p));
+    let gradient = Some(sdfc_graph::gradient(&mut graph, distance, p));
     Program { graph, distance: Some(distance), gradient, ..Program::default() }
 }
 
