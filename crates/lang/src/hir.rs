@@ -282,7 +282,7 @@ pub enum ExprKind {
     Vector(Vec<Expr>),
     /// Components by index; a number for one, else a vector.
     Swizzle(Box<Expr>, Vec<u8>),
-    /// `.lo`, `.hi` of a range.
+    /// `.lo` (true), `.hi` (false) of a range.
     RangeEnd(Box<Expr>, bool),
     /// An element of a list, or a component of a vector.
     Index(Box<Expr>, Box<Expr>),

@@ -1,7 +1,60 @@
 //! Names, types, stages and elaboration of sdfc scenes; the library in `std`.
+//!
+//! # What
+//!
+//! [`front`] takes a scene from text to graph: parsed, checked against the library, elaborated to
+//! shape instances and the math that they are made of. [`library::entries`] says what the library
+//! has.
+//!
+//! # How
+//!
+//! The checker resolves names and types and writes every coercion out ([`hir`]); the elaborator
+//! ([`elab`]) inlines, unrolls and builds the graph, in which each value's stage (compile time,
+//! per frame, per point) follows from what it depends on. Both collect their findings and go on.
+//!
+//! ```
+//! use sdfc_diagnostics::Sources;
+//!
+//! let mut sources = Sources::new();
+//! let file = sources.add("scene.sdf", "let ball = sphere(0.5)\nball | plane(y: -0.5)\n");
+//! let (elaborated, found) = sdfc_lang::front(&mut sources, file);
+//! assert!(found.is_empty());
+//! let scene = elaborated.expect("the scene is right").scene;
+//! let root = scene.graph.shape(scene.root.expect("it draws something"));
+//! assert_eq!(root.definition, "union");
+//! assert_eq!(scene.graph.shape(root.children[0]).name.as_deref(), Some("ball"));
+//! ```
+//!
+//! # Limits
+//!
+//! Those of the parser ([`sdfc_syntax`]) and of elaboration ([`elab`]). Imports, strings other
+//! than choices, soft shadows and the settings that need more than one light bounce are refused
+//! with `E0411`.
+
 mod check;
+pub mod elab;
 pub mod hir;
 pub mod library;
 pub mod settings;
 
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+
 pub use check::{check, check_library};
+pub use elab::{Elaborated, Site};
+
+/// Parses, checks and elaborates a scene. The library's files are added to `sources`, since
+/// messages show lines of them. Without a scene there is at least one error among the findings;
+/// all findings of the phases that ran are there, in the order of the phases.
+pub fn front(sources: &mut Sources, file: FileId) -> (Option<Elaborated>, Vec<Diagnostic>) {
+    let (scene, mut found) = sdfc_syntax::parse(sources, file);
+    let ((program, of_check), of_library) =
+        library::with_parsed(sources, |library| check(library, (file, &scene)));
+    found.extend(of_library);
+    found.extend(of_check);
+    if has_errors(&found) {
+        return (None, found);
+    }
+    let (elaborated, of_elaboration) = elab::elaborate(&program);
+    found.extend(of_elaboration);
+    (elaborated, found)
+}

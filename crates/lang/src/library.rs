@@ -1,6 +1,12 @@
-//! The library's files: everything that is a shape, a blend or a pattern is written in the language.
+//! The library: files of the language, and what their documentation says.
 //!
-//! A new shape is a new entry of one of them; nothing here or elsewhere in Rust names one.
+//! Everything that is a shape, a blend or a pattern is written there. A new shape is a new entry
+//! of one of the files; nothing here or elsewhere in Rust names one.
+
+use std::sync::OnceLock;
+
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
+use sdfc_syntax::ast::{self, DeclKind, Item};
 
 /// Name, as messages show it, and text of each file.
 pub const FILES: &[(&str, &str)] = &[
@@ -11,3 +17,146 @@ pub const FILES: &[(&str, &str)] = &[
     ("std/regions.sdf", include_str!("../std/regions.sdf")),
     ("std/solids.sdf", include_str!("../std/solids.sdf")),
 ];
+
+/// The library's files as parsed, with the ids that they have in some [`Sources`].
+type Parsed = Vec<(FileId, ast::File)>;
+
+/// Adds the library's files, unless they are there, and runs `use_it` with what they say.
+///
+/// Ids are part of every span, so a parse can be used again only where the files got the same
+/// ids as before: always, where scenes are read into fresh `Sources`.
+pub(crate) fn with_parsed<T>(
+    sources: &mut Sources,
+    use_it: impl FnOnce(&[(FileId, ast::File)]) -> T,
+) -> (T, Vec<Diagnostic>) {
+    static FIRST: OnceLock<Parsed> = OnceLock::new();
+    let ids: Vec<FileId> = FILES.iter().map(|(name, text)| add(sources, name, text)).collect();
+    let first = FIRST.get_or_init(|| parse(sources, &ids).0);
+    if first.iter().map(|(id, _)| *id).eq(ids.iter().copied()) {
+        return (use_it(first), Vec::new());
+    }
+    let (parsed, diagnostics) = parse(sources, &ids);
+    (use_it(&parsed), diagnostics)
+}
+
+fn add(sources: &mut Sources, name: &str, text: &str) -> FileId {
+    let known = (0..sources.len() as u32).map(FileId);
+    let mut known = known.filter(|&id| sources.name(id) == name && sources.text(id) == text);
+    known.next().unwrap_or_else(|| sources.add(name, text))
+}
+
+fn parse(sources: &Sources, ids: &[FileId]) -> (Parsed, Vec<Diagnostic>) {
+    let mut diagnostics = Vec::new();
+    let parse = |&id: &FileId| {
+        let (file, found) = sdfc_syntax::parse(sources, id);
+        diagnostics.extend(found);
+        (id, file)
+    };
+    (ids.iter().map(parse).collect(), diagnostics)
+}
+
+/// What the library says of one of its public declarations.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name; a shape declared for solids and for regions has two entries.
+    pub name: String,
+    /// `fn`, `solid`, `region` or `shape`.
+    pub kind: &'static str,
+    /// Name, parameters and result as written, on one line.
+    pub signature: String,
+    /// The first line.
+    pub summary: String,
+    /// Prose after the first line, on one line; often empty.
+    pub details: String,
+    /// Name and description of each parameter that has one.
+    pub parameters: Vec<(String, String)>,
+    /// The clauses as written, one after the other, separated by `; `.
+    pub contract: String,
+    /// Where the formula is from.
+    pub source: String,
+    /// An expression that uses it.
+    pub example: String,
+    /// Name of the file.
+    pub file: &'static str,
+    /// Line of the declaration, from 1.
+    pub line: u32,
+}
+
+/// All public declarations of the library, in the order of files and lines.
+pub fn entries() -> Vec<Entry> {
+    let mut sources = Sources::new();
+    let mut entries = Vec::new();
+    for (name, text) in FILES {
+        let id = sources.add(*name, *text);
+        let (file, _) = sdfc_syntax::parse(&sources, id);
+        let declarations = file.items.iter().filter_map(|item| match item {
+            Item::Decl(decl) if !decl.name.text.starts_with('_') => Some(decl),
+            Item::Decl(_) | Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
+        });
+        entries.extend(declarations.map(|decl| entry(&sources, name, decl)));
+    }
+    entries
+}
+
+fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
+    let mut entry = Entry {
+        name: decl.name.text.clone(),
+        kind: match decl.kind {
+            DeclKind::Fn => "fn",
+            DeclKind::Solid => "solid",
+            DeclKind::Region => "region",
+            DeclKind::Shape => "shape",
+        },
+        signature: signature(sources, decl),
+        summary: String::new(),
+        details: String::new(),
+        parameters: Vec::new(),
+        contract: contract(sources, decl),
+        source: String::new(),
+        example: String::new(),
+        file,
+        line: sources.line_column(decl.span.file, decl.span.start).line,
+    };
+    let mut lines = decl.docs.lines.iter();
+    entry.summary = lines.next().cloned().unwrap_or_default();
+    for line in lines {
+        describe(&mut entry, decl, line);
+    }
+    entry
+}
+
+/// Sorts one line of documentation by its key: `source:`, `example:`, a parameter's name, or prose.
+fn describe(entry: &mut Entry, decl: &ast::Decl, line: &str) {
+    let keyed = line.split_once(':').map(|(key, text)| (key.trim(), text.trim().to_owned()));
+    match keyed {
+        Some(("source", text)) => entry.source = text,
+        Some(("example", text)) => entry.example = text,
+        Some((key, text)) if decl.signature.parms.iter().any(|parm| parm.name.text == key) => {
+            entry.parameters.push((key.to_owned(), text));
+        }
+        Some(_) | None => {
+            let gap = if entry.details.is_empty() { "" } else { " " };
+            entry.details.push_str(gap);
+            entry.details.push_str(line.trim());
+        }
+    }
+}
+
+fn signature(sources: &Sources, decl: &ast::Decl) -> String {
+    let clauses = decl.signature.clauses.first();
+    let end = clauses.map_or(decl.signature.span.end, |clause| clause.span.start);
+    one_line(sources, Span { end, ..decl.name.span })
+}
+
+fn contract(sources: &Sources, decl: &ast::Decl) -> String {
+    let clauses = decl.signature.clauses.iter();
+    let texts: Vec<String> = clauses.map(|clause| one_line(sources, clause.span)).collect();
+    texts.join("; ")
+}
+
+/// A span's text without comments, each run of white space one blank.
+fn one_line(sources: &Sources, span: Span) -> String {
+    let code = sources.slice(span).lines().map(|line| line.split("//").next().unwrap_or(line));
+    let words: Vec<&str> = code.flat_map(str::split_whitespace).collect();
+    words.join(" ")
+}

@@ -1,0 +1,232 @@
+//! Calls: arguments, defaults, ranges, requirements, recursion.
+
+use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
+use sdfc_graph::{NodeId, Stage};
+
+use super::report::{Frame, show_lanes, show_number};
+use super::value::{Closure, Code, Value};
+use super::{Elaborator, Env, MAX_RECURSION, Outcome};
+use crate::hir::{Expr, FnId, Lambda, Parameter, Require};
+
+/// An argument as the caller wrote it: its value, and its place if it has one.
+pub(super) type Given<'p> = Option<(Value<'p>, Span)>;
+
+impl<'p> Elaborator<'p> {
+    /// `f(a, b)` of a declared function.
+    pub(super) fn call(
+        &mut self,
+        env: &mut Env<'p>,
+        id: FnId,
+        args: &'p [Option<Expr>],
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        let given = self.given(env, args)?;
+        self.call_function(id, given, span)
+    }
+
+    /// The values of the arguments that were written.
+    pub(super) fn given(
+        &mut self,
+        env: &mut Env<'p>,
+        args: &'p [Option<Expr>],
+    ) -> Outcome<Vec<Given<'p>>> {
+        let mut evaluate = |arg: &'p Option<Expr>| {
+            let given = arg.as_ref().map(|expr| Ok((self.eval(env, expr)?, expr.span)));
+            given.transpose()
+        };
+        let values: Vec<Outcome<Given<'p>>> = args.iter().map(&mut evaluate).collect();
+        values.into_iter().collect()
+    }
+
+    fn call_function(&mut self, id: FnId, given: Vec<Given<'p>>, span: Span) -> Outcome<Value<'p>> {
+        let program = self.program;
+        let index = id.0 as usize;
+        let function = program.functions.get(index).ok_or(super::Poison)?;
+        if self.active[index] >= MAX_RECURSION {
+            return Err(self.too_deep(&function.name, &given, span));
+        }
+        self.active[index] += 1;
+        self.frames.push(Frame { name: &function.name, span });
+        let mut env = Env::new(function.locals);
+        let result = self
+            .bind(&mut env, &function.parameters, given, span)
+            .and_then(|()| self.requirements(&mut env, &function.requires))
+            .and_then(|()| self.eval(&mut env, &function.body));
+        self.frames.pop();
+        self.active[index] -= 1;
+        result
+    }
+
+    fn too_deep(&mut self, name: &str, given: &[Given<'p>], span: Span) -> super::Poison {
+        let args: Vec<String> =
+            given.iter().flatten().map(|(value, _)| self.show_value(value)).collect();
+        let message =
+            format!("recursion passes {MAX_RECURSION} levels: {name}({})", args.join(", "));
+        let help = "a recursive function ends by an `if` whose condition is known at compile time";
+        self.stop(Diagnostic::error(ErrorCode::RECURSION, span, message).help(help))
+    }
+
+    fn show_value(&self, value: &Value<'p>) -> String {
+        let lanes = if let Value::Node(node) = value { self.as_lanes(*node) } else { None };
+        lanes.map_or("…".to_owned(), |(lanes, width)| show_lanes(&lanes[..width]))
+    }
+
+    /// A function value called.
+    pub(super) fn apply(
+        &mut self,
+        closure: &Closure<'p>,
+        args: Vec<Value<'p>>,
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        self.tick(span)?;
+        match closure.code {
+            Code::Constant => closure.captures.first().cloned().ok_or(super::Poison),
+            Code::Function(id) => {
+                let given = args.into_iter().map(|value| Some((value, span))).collect();
+                self.call_function(id, given, span)
+            }
+            Code::Lambda(lambda) => self.apply_lambda(lambda, closure, args, span),
+        }
+    }
+
+    fn apply_lambda(
+        &mut self,
+        lambda: &'p Lambda,
+        closure: &Closure<'p>,
+        args: Vec<Value<'p>>,
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        let mut env = Env::new(lambda.locals);
+        for (local, value) in closure.captures.iter().cloned().chain(args).enumerate() {
+            env.set(local, value);
+        }
+        self.frames.push(Frame { name: "this function", span });
+        let result = self
+            .requirements(&mut env, &lambda.requires)
+            .and_then(|()| self.eval(&mut env, &lambda.body));
+        self.frames.pop();
+        result
+    }
+
+    /// Gives each parameter its argument or default and checks its range. All errors are reported.
+    pub(super) fn bind(
+        &mut self,
+        env: &mut Env<'p>,
+        parameters: &'p [Parameter],
+        given: Vec<Given<'p>>,
+        call: Span,
+    ) -> Outcome<()> {
+        let mut outcome = Ok(());
+        let mut given = given.into_iter();
+        for (local, parameter) in parameters.iter().enumerate() {
+            let bound = match (given.next().flatten(), &parameter.default) {
+                (Some((value, span)), _) => Ok((value, span)),
+                (None, Some(default)) => self.eval(env, default).map(|value| (value, call)),
+                // The checker reports a missing argument.
+                (None, None) => Err(super::Poison),
+            };
+            let bound = bound.and_then(|(value, span)| {
+                env.set(local, value.clone());
+                self.check_range(env, parameter, &value, span)
+            });
+            outcome = outcome.and(bound);
+        }
+        outcome
+    }
+
+    fn check_range(
+        &mut self,
+        env: &mut Env<'p>,
+        parameter: &'p Parameter,
+        value: &Value<'p>,
+        span: Span,
+    ) -> Outcome<()> {
+        let (Some(range), Value::Node(value)) = (&parameter.range, value) else {
+            return Ok(());
+        };
+        let Value::Range(lo, hi) = self.eval(env, range)? else {
+            return Ok(());
+        };
+        let (above, below) = (self.not_above(lo, *value), self.not_above(*value, hi));
+        for holds in above.into_iter().chain(below) {
+            if let Some(found) = self.refute(holds) {
+                return Err(self.out_of_range(parameter, *value, [lo, hi], &found, span));
+            }
+        }
+        Ok(())
+    }
+
+    /// `a <= b` for each component of the wider one.
+    fn not_above(&mut self, a: NodeId, b: NodeId) -> Vec<NodeId> {
+        let width = self.graph.ty(a).width().max(self.graph.ty(b).width()) as u8;
+        let compare = |lane| {
+            let (a, b) = (self.graph.component(a, lane), self.graph.component(b, lane));
+            self.graph.le(a, b)
+        };
+        (0..width).map(compare).collect()
+    }
+
+    fn out_of_range(
+        &mut self,
+        parameter: &Parameter,
+        value: NodeId,
+        range: [NodeId; 2],
+        found: &super::probe::Refutation,
+        span: Span,
+    ) -> super::Poison {
+        let show = |node| self.value_at(node, found).map_or("…".to_owned(), |v| show_lanes(&v));
+        // A range of one number for all components was widened to the vector's type.
+        let end = |node| match self.value_at(node, found).as_deref() {
+            Some([first, rest @ ..]) if rest.iter().all(|lane| lane == first) => {
+                show_number(*first)
+            }
+            Some(lanes) => show_lanes(lanes),
+            None => "…".to_owned(),
+        };
+        let (value, lo, hi) = (show(value), end(range[0]), end(range[1]));
+        let name = &parameter.name;
+        let message = if found.inputs.is_empty() {
+            format!("argument `{name}` is {value}, outside {lo}..{hi}")
+        } else {
+            format!("argument `{name}` can be {value}, outside {lo}..{hi}")
+        };
+        let mut error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, span, message);
+        for (input, at) in &found.inputs {
+            error = error.note(format!("so it is where {input} is {}", show_number(*at)));
+        }
+        if !found.inputs.is_empty() {
+            error = error.help("give the param a range whose values all fit, or `clamp` the value");
+        }
+        self.report(error.note_at(parameter.span, "the range is declared here"))
+    }
+
+    /// Checks relations; the first that does not hold is reported.
+    pub(super) fn requirements(
+        &mut self,
+        env: &mut Env<'p>,
+        requires: &'p [Require],
+    ) -> Outcome<()> {
+        for require in requires {
+            let condition = self.number(env, &require.condition)?;
+            let Some(found) = self.refute(condition) else {
+                continue;
+            };
+            let place = self.frames.last().map_or(require.span, |frame| frame.span);
+            let mut error = Diagnostic::error(ErrorCode::REQUIREMENT, place, &require.message);
+            for (input, at) in &found.inputs {
+                error = error.note(format!("so it is where {input} is {}", show_number(*at)));
+            }
+            return Err(self.report(error.note_at(require.span, "required here")));
+        }
+        Ok(())
+    }
+
+    /// A stated relation that is false: always, or somewhere within the params' ranges. Nothing
+    /// is said of what depends on the point.
+    fn refute(&self, holds: NodeId) -> Option<super::probe::Refutation> {
+        match self.graph.stage(holds) {
+            Stage::Const | Stage::Frame => self.probe(holds),
+            Stage::Point => None,
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! `rgb`, `hsv`, `oklch`: numbers to linear colours.
+
+use sdfc_graph::{NodeId, Unary};
+
+use super::kernel::Application;
+use super::value::Value;
+use super::{Elaborator, Env, Outcome};
+
+/// Oklab to the cube roots of the cone responses (Ottosson 2020).
+const OKLAB_TO_CONES: [[f64; 3]; 3] = [
+    [1.0, 0.396_337_777_4, 0.215_803_757_3],
+    [1.0, -0.105_561_345_8, -0.063_854_172_8],
+    [1.0, -0.089_484_177_5, -1.291_485_548_0],
+];
+/// Cone responses to linear sRGB (Ottosson 2020).
+const CONES_TO_LINEAR: [[f64; 3]; 3] = [
+    [4.076_741_662_1, -3.307_711_591_3, 0.230_969_929_2],
+    [-1.268_438_004_6, 2.609_757_401_1, -0.341_319_396_5],
+    [-0.004_196_086_3, -0.703_418_614_7, 1.707_614_701_0],
+];
+
+impl<'p> Elaborator<'p> {
+    /// `rgb(red, green, blue)`, each 0..1 and sRGB as colours are written.
+    pub(super) fn rgb(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let channels = self.numbers(env, at.args)?;
+        self.opaque(at, channels.map(Channel::Srgb))
+    }
+
+    /// `hsv(hue, saturation, value)`, each 0..1: a hue of 1 is a full turn.
+    pub(super) fn hsv(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let [hue, saturation, value] = self.numbers(env, at.args)?;
+        let channels = [1.0, 2.0 / 3.0, 1.0 / 3.0].map(|shift| {
+            // value * (1 - saturation * (1 - saturate(|6 fract(hue + shift) - 3| - 1)))
+            let graph = &mut self.graph;
+            let [shift, one, three, six] = [shift, 1.0, 3.0, 6.0].map(|n| graph.number(n));
+            let turned = graph.add(hue, shift);
+            let sector = graph.unary(Unary::Fract, turned);
+            let sector = graph.mul(sector, six);
+            let ramp = graph.sub(sector, three);
+            let ramp = graph.abs(ramp);
+            let ramp = graph.sub(ramp, one);
+            let ramp = graph.unary(Unary::Saturate, ramp);
+            let lack = graph.sub(one, ramp);
+            let lack = graph.mul(saturation, lack);
+            let share = graph.sub(one, lack);
+            Channel::Srgb(graph.mul(value, share))
+        });
+        self.opaque(at, channels)
+    }
+
+    /// `oklch(lightness, chroma, hue)`: lightness 0..1, hue an angle; clipped to what a screen shows.
+    pub(super) fn oklch(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let [lightness, chroma, hue] = self.numbers(env, at.args)?;
+        let [cosine, sine] = [Unary::Cos, Unary::Sin].map(|op| self.graph.unary(op, hue));
+        let (a, b) = (self.graph.mul(chroma, cosine), self.graph.mul(chroma, sine));
+        let cones = OKLAB_TO_CONES.map(|row| {
+            let root = self.weighted(row, [lightness, a, b]);
+            let square = self.graph.mul(root, root);
+            self.graph.mul(square, root)
+        });
+        let channels = CONES_TO_LINEAR.map(|row| {
+            let channel = self.weighted(row, cones);
+            Channel::Linear(self.graph.unary(Unary::Saturate, channel))
+        });
+        self.opaque(at, channels)
+    }
+
+    fn weighted(&mut self, weights: [f64; 3], values: [NodeId; 3]) -> NodeId {
+        let mut sum = self.graph.number(0.0);
+        for (weight, value) in weights.into_iter().zip(values) {
+            let weight = self.graph.number(weight);
+            let part = self.graph.mul(weight, value);
+            sum = self.graph.add(sum, part);
+        }
+        sum
+    }
+
+    fn opaque(&mut self, at: Application<'p>, channels: [Channel; 3]) -> Outcome<Value<'p>> {
+        let [red, green, blue] = channels.map(|channel| match channel {
+            Channel::Linear(node) => node,
+            Channel::Srgb(node) => self.decode(node),
+        });
+        let one = self.graph.number(1.0);
+        let color = self.graph.compose(&[red, green, blue, one]);
+        self.checked(at, &[], color)
+    }
+
+    /// sRGB's transfer function (IEC 61966-2-1) from encoded to linear, 0 below 0.
+    fn decode(&mut self, encoded: NodeId) -> NodeId {
+        let graph = &mut self.graph;
+        let [zero, knee, slope, offset, scale, gamma] =
+            [0.0, 0.040_45, 1.0 / 12.92, 0.055, 1.0 / 1.055, 2.4].map(|n| graph.number(n));
+        let encoded = graph.max(encoded, zero);
+        let shadows = graph.mul(encoded, slope);
+        let shifted = graph.add(encoded, offset);
+        let shifted = graph.mul(shifted, scale);
+        let lights = graph.binary(sdfc_graph::Binary::Pow, shifted, gamma);
+        let dark = graph.le(encoded, knee);
+        graph.select(dark, shadows, lights)
+    }
+}
+
+/// A colour channel and how it is encoded.
+#[derive(Clone, Copy)]
+enum Channel {
+    Linear(NodeId),
+    Srgb(NodeId),
+}

@@ -1,0 +1,239 @@
+//! Expressions to values.
+
+use std::rc::Rc;
+
+use sdfc_diagnostics::{Code as ErrorCode, Span};
+use sdfc_graph::{FrameInput, Node, NodeId, Type};
+
+use super::kernel::Application;
+use super::value::{Closure, Code, Value, highest};
+use super::{Elaborator, Env, Outcome, Poison};
+use crate::hir::{self, Expr, ExprKind, GlobalId, MaterialField};
+
+/// Stack left before a new segment is taken, and its size: scenes may chain thousands of operators.
+const RED_ZONE: usize = 128 * 1024;
+const STACK_SEGMENT: usize = 2 * 1024 * 1024;
+
+/// The graph's type of a numeric type of the language.
+pub(super) fn node_type(ty: &hir::Type) -> Option<Type> {
+    match ty {
+        hir::Type::Number | hir::Type::Int | hir::Type::Angle => Some(Type::Scalar),
+        hir::Type::Bool => Some(Type::Bool),
+        hir::Type::Vec(width) => Type::of_width(usize::from(*width)),
+        hir::Type::Color => Some(Type::Vec4),
+        hir::Type::Text
+        | hir::Type::Range(_)
+        | hir::Type::List(_)
+        | hir::Type::Fn(..)
+        | hir::Type::Shape(_)
+        | hir::Type::Material
+        | hir::Type::Shadow
+        | hir::Type::Error => None,
+    }
+}
+
+impl<'p> Elaborator<'p> {
+    /// The value of an expression.
+    pub(super) fn eval(&mut self, env: &mut Env<'p>, expr: &'p Expr) -> Outcome<Value<'p>> {
+        self.tick(expr.span)?;
+        stacker::maybe_grow(RED_ZONE, STACK_SEGMENT, || self.eval_kind(env, expr))
+    }
+
+    fn eval_kind(&mut self, env: &mut Env<'p>, expr: &'p Expr) -> Outcome<Value<'p>> {
+        let span = expr.span;
+        match &expr.kind {
+            ExprKind::Number(value) => Ok(Value::Node(self.graph.number(*value))),
+            ExprKind::Color(lanes) => Ok(Value::Node(self.graph.constant(Type::Vec4, lanes))),
+            ExprKind::Text(text) => Ok(Value::Text(text.as_str().into())),
+            ExprKind::Bool(value) => Ok(Value::Node(self.graph.boolean(*value))),
+            ExprKind::Local(local) => env.get(*local),
+            ExprKind::Param(id) => self.param_value(id.0 as usize),
+            ExprKind::Global(id) => self.global(*id),
+            ExprKind::Time => Ok(self.frame_value(FrameInput::Time)),
+            ExprKind::Frame => Ok(self.frame_value(FrameInput::Frame)),
+            ExprKind::List(elements) => Ok(Value::List(self.elements(env, elements)?.into())),
+            ExprKind::Range(lo, hi) => {
+                let (lo, hi) = (self.number(env, lo), self.number(env, hi));
+                Ok(Value::Range(lo?, hi?))
+            }
+            ExprKind::Vector(parts) => self.vector(env, parts),
+            ExprKind::Swizzle(base, lanes) => {
+                let base = self.number(env, base)?;
+                Ok(Value::Node(self.graph.swizzle(base, lanes)))
+            }
+            ExprKind::RangeEnd(range, low) => match self.eval(env, range)? {
+                Value::Range(lo, hi) => Ok(Value::Node(if *low { lo } else { hi })),
+                other => Err(self.unexpected(span, "a range", &other)),
+            },
+            ExprKind::Index(base, index) => self.index(env, base, index),
+            ExprKind::Slice(base, range) => self.slice(env, base, range),
+            ExprKind::Block(lets, result) => {
+                for (local, _, value) in lets {
+                    // A poisoned variable silences its uses; the rest may still show errors.
+                    let value = self.eval(env, value).ok();
+                    env.put(local.0 as usize, value);
+                }
+                self.eval(env, result)
+            }
+            ExprKind::If(condition, yes, no) => self.branch(env, condition, yes, no, span),
+            ExprKind::Lambda(lambda) => {
+                let captures = lambda.captures.iter().map(|&local| env.get(local));
+                let captures = captures.collect::<Outcome<Vec<_>>>()?;
+                Ok(self.closure(Code::Lambda(lambda), captures))
+            }
+            ExprKind::FnValue(id) => Ok(self.closure(Code::Function(*id), Vec::new())),
+            ExprKind::Constant(value) => {
+                let value = self.eval(env, value)?;
+                Ok(self.closure(Code::Constant, vec![value]))
+            }
+            ExprKind::Call(id, args) => self.call(env, *id, args, span),
+            ExprKind::Build(id, args) => self.build(env, *id, args, span),
+            ExprKind::Sample(shape, point) => {
+                let (shape, point) = (self.shape(env, shape), self.number(env, point));
+                Ok(Value::Node(self.graph.sample(shape?, point?)))
+            }
+            ExprKind::Apply(function, args) => {
+                let function = self.eval(env, function);
+                let args = self.all(env, args);
+                match function? {
+                    Value::Closure(closure) => self.apply(&closure, args?, span),
+                    other => Err(self.unexpected(span, "a function", &other)),
+                }
+            }
+            ExprKind::Kernel(op, args) => self.kernel(env, Application { op: *op, args, span }),
+            ExprKind::With(base, fields) => self.with(env, base, fields),
+            ExprKind::Splat(value) => {
+                let value = self.number(env, value)?;
+                let ty = node_type(&expr.ty).ok_or(Poison)?;
+                Ok(Value::Node(self.graph.splat(ty, value)))
+            }
+            ExprKind::Error => Err(Poison),
+        }
+    }
+
+    /// All values; all their errors are reported.
+    pub(super) fn all(&mut self, env: &mut Env<'p>, exprs: &'p [Expr]) -> Outcome<Vec<Value<'p>>> {
+        let values: Vec<_> = exprs.iter().map(|expr| self.eval(env, expr)).collect();
+        values.into_iter().collect()
+    }
+
+    /// The node of a number, vector, colour or truth value.
+    pub(super) fn number(&mut self, env: &mut Env<'p>, expr: &'p Expr) -> Outcome<NodeId> {
+        match self.eval(env, expr)? {
+            Value::Node(node) | Value::Choice(node, _) => Ok(node),
+            other => Err(self.unexpected(expr.span, "a number", &other)),
+        }
+    }
+
+    /// The shape that an expression gives.
+    pub(super) fn shape(
+        &mut self,
+        env: &mut Env<'p>,
+        expr: &'p Expr,
+    ) -> Outcome<sdfc_graph::ShapeId> {
+        match self.eval(env, expr)? {
+            Value::Shape(shape) => Ok(shape),
+            other => Err(self.unexpected(expr.span, "a shape", &other)),
+        }
+    }
+
+    /// The checker promises types, so this is reached only where it fails to keep the promise.
+    pub(super) fn unexpected(&mut self, span: Span, wanted: &str, found: &Value<'p>) -> Poison {
+        let found = match found {
+            Value::Node(_) => "a number",
+            Value::Choice(..) | Value::Text(_) => "a text",
+            Value::Range(..) => "a range",
+            Value::List(_) => "a list",
+            Value::Closure(_) => "a function",
+            Value::Shape(_) => "a shape",
+            Value::Material(_) => "a material",
+            Value::Shadow(_) => "a shadow",
+        };
+        let message = format!("this is {found}, {wanted} is wanted");
+        self.fail(ErrorCode::TYPE_MISMATCH, span, message)
+    }
+
+    /// A function value; equal ones get equal numbers.
+    pub(super) fn closure(&mut self, code: Code<'p>, captures: Vec<Value<'p>>) -> Value<'p> {
+        let key = (code.key(), captures.iter().map(Value::to_arg).collect());
+        let next = self.closures.len() as u32;
+        let id = *self.closures.entry(key).or_insert(next);
+        let levels = highest(captures.iter().map(|value| value.levels(&self.graph)));
+        Value::Closure(Rc::new(Closure { id, code, captures, levels }))
+    }
+
+    fn global(&mut self, id: GlobalId) -> Outcome<Value<'p>> {
+        self.globals.get(id.0 as usize).cloned().flatten().ok_or(Poison)
+    }
+
+    fn frame_value(&mut self, input: FrameInput) -> Value<'p> {
+        Value::Node(self.graph.frame_input(input, Type::Scalar))
+    }
+
+    fn vector(&mut self, env: &mut Env<'p>, parts: &'p [Expr]) -> Outcome<Value<'p>> {
+        let nodes: Vec<_> = parts.iter().map(|part| self.number(env, part)).collect();
+        let mut lanes = Vec::new();
+        for node in nodes {
+            let node = node?;
+            for lane in 0..self.graph.ty(node).width() as u8 {
+                lanes.push(self.graph.component(node, lane));
+            }
+        }
+        Ok(Value::Node(self.graph.compose(&lanes)))
+    }
+
+    /// `m.with(...)`. A colour's alpha is what it covers of the colour beneath.
+    fn with(
+        &mut self,
+        env: &mut Env<'p>,
+        base: &'p Expr,
+        fields: &'p [(MaterialField, Expr)],
+    ) -> Outcome<Value<'p>> {
+        let base_value = self.eval(env, base)?;
+        let Value::Material([mut color, mut coverage, mut rough, mut metal, mut emit, mut open]) =
+            base_value
+        else {
+            return Err(self.unexpected(base.span, "a material", &base_value));
+        };
+        for (field, value) in fields {
+            let value = self.number(env, value)?;
+            match field {
+                MaterialField::Color => {
+                    let alpha = self.graph.component(value, 3);
+                    let over = self.graph.swizzle(value, &[0, 1, 2]);
+                    color = self.mix(color, over, alpha);
+                    let one = self.graph.number(1.0);
+                    coverage = self.mix(coverage, one, alpha);
+                }
+                MaterialField::Roughness => rough = value,
+                MaterialField::Metallic => metal = value,
+                MaterialField::Emission => emit = self.graph.swizzle(value, &[0, 1, 2]),
+                MaterialField::Occlusion => open = value,
+            }
+        }
+        Ok(Value::Material([color, coverage, rough, metal, emit, open]))
+    }
+
+    /// `a + (b - a) * t`; `a` and `b` themselves at a constant 0 and 1.
+    pub(super) fn mix(&mut self, a: NodeId, b: NodeId, t: NodeId) -> NodeId {
+        match self.graph.as_number(t) {
+            Some(0.0) => a,
+            Some(1.0) => b,
+            Some(_) | None => self.graph.ternary(sdfc_graph::Ternary::Mix, a, b, t),
+        }
+    }
+
+    /// The truth value of a constant node.
+    pub(super) fn as_bool(&self, node: NodeId) -> Option<bool> {
+        self.as_lanes(node).map(|(lanes, _)| lanes[0] != 0.0)
+    }
+
+    /// The lanes of a constant node and how many there are.
+    pub(super) fn as_lanes(&self, node: NodeId) -> Option<([f64; 4], usize)> {
+        if let Node::Const(value) = self.graph.node(node) {
+            Some((value.lanes(), value.ty().width()))
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Elaboration: from the typed scene to the graph.
+//!
+//! Functions are inlined at each call, comprehensions and constant conditions disappear, closures
+//! are values. What remains are shape instances and the math that they are made of. Whether a
+//! value is known at compile time, per frame or per point is never decided here: the graph knows
+//! it of every node.
+//!
+//! # Limits
+//!
+//! [`MAX_NODES`], [`MAX_STEPS`], [`MAX_RECURSION`], [`MAX_DEPTH`] and [`MAX_ROUNDS`]. The first
+//! four end elaboration, since what follows would only repeat the message.
+
+// A value of any other type than the one that is wanted is refused alike.
+#![allow(clippy::wildcard_enum_match_arm)]
+
+mod call;
+mod color;
+mod expr;
+mod iterate;
+mod kernel;
+mod probe;
+mod report;
+mod scene;
+mod sequence;
+mod settings;
+mod shape;
+mod special;
+mod value;
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_diagnostics::{Diagnostic, Span};
+use sdfc_graph::{Graph, Scene, ShapeId};
+
+use crate::hir;
+use report::Frame;
+use value::{ClosureKey, Value};
+
+/// Graph nodes of one scene.
+pub const MAX_NODES: usize = 1_000_000;
+/// Expressions that elaboration evaluates, repetitions counted.
+pub const MAX_STEPS: u64 = 10_000_000;
+/// Active calls of one function.
+pub const MAX_RECURSION: u32 = 64;
+/// Longest chain of shapes within shapes.
+pub const MAX_DEPTH: u32 = 1024;
+/// Rounds of one `iterate`.
+pub const MAX_ROUNDS: usize = 4096;
+
+/// A scene's graph with the way back to its text.
+#[derive(Clone, Debug, Default)]
+pub struct Elaborated {
+    /// Shapes, math, params and settings.
+    pub scene: Scene,
+    /// Which calls built which shapes, in order of elaboration. Equal shapes share an instance,
+    /// so one instance may have several sites.
+    pub sites: Vec<Site>,
+}
+
+/// A place in the scene's own files that built a shape.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Site {
+    /// The instance.
+    pub shape: ShapeId,
+    /// The call; for a shape that the library builds, the scene's call of that entry.
+    pub span: Span,
+    /// Name of the definition.
+    pub name: String,
+}
+
+/// Elaborates a checked scene. Without a scene there is at least one error; with one there may
+/// still be warnings.
+pub fn elaborate(program: &hir::Program) -> (Option<Elaborated>, Vec<Diagnostic>) {
+    let mut elaborator = Elaborator::new(program);
+    let scene = elaborator.scene();
+    let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
+    let elaborated = Elaborated { scene, sites: elaborator.sites };
+    ((!failed).then_some(elaborated), elaborator.diagnostics)
+}
+
+/// An error was reported; what depends on the value stays silent.
+#[derive(Clone, Copy, Debug)]
+struct Poison;
+
+type Outcome<T> = Result<T, Poison>;
+
+/// The variables of the body at hand.
+#[derive(Clone, Debug, Default)]
+struct Env<'p> {
+    locals: Vec<Option<Value<'p>>>,
+}
+
+impl<'p> Env<'p> {
+    fn new(locals: u32) -> Self {
+        Self { locals: vec![None; locals as usize] }
+    }
+
+    fn set(&mut self, local: usize, value: Value<'p>) {
+        self.put(local, Some(value));
+    }
+
+    /// Gives a variable its value, or none where that is poisoned.
+    fn put(&mut self, local: usize, value: Option<Value<'p>>) {
+        if local >= self.locals.len() {
+            self.locals.resize(local + 1, None);
+        }
+        self.locals[local] = value;
+    }
+
+    fn get(&self, local: hir::LocalId) -> Outcome<Value<'p>> {
+        self.locals.get(local.0 as usize).cloned().flatten().ok_or(Poison)
+    }
+}
+
+struct Elaborator<'p> {
+    program: &'p hir::Program,
+    graph: Graph,
+    params: Vec<sdfc_graph::Param>,
+    globals: Vec<Option<Value<'p>>>,
+    /// Names of definitions in the graph: unique where files declare the same name.
+    definitions: Vec<String>,
+    closures: FxHashMap<ClosureKey, u32>,
+    sites: Vec<Site>,
+    seen_sites: FxHashSet<(ShapeId, Span)>,
+    /// Calls from the outermost inwards.
+    frames: Vec<Frame<'p>>,
+    /// Active calls of each function.
+    active: Vec<u32>,
+    diagnostics: Vec<Diagnostic>,
+    reported: FxHashSet<Span>,
+    steps: u64,
+    /// A limit was reached.
+    stopped: bool,
+    /// Within a clause, where infinite values mean "not known".
+    in_clause: bool,
+}
+
+impl<'p> Elaborator<'p> {
+    fn new(program: &'p hir::Program) -> Self {
+        Self {
+            program,
+            graph: Graph::new(),
+            params: Vec::new(),
+            globals: vec![None; program.globals.len()],
+            definitions: shape::definition_names(program),
+            closures: FxHashMap::default(),
+            sites: Vec::new(),
+            seen_sites: FxHashSet::default(),
+            frames: Vec::new(),
+            active: vec![0; program.functions.len()],
+            diagnostics: Vec::new(),
+            reported: FxHashSet::default(),
+            steps: 0,
+            stopped: false,
+            in_clause: false,
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Errors of elaboration: where they are shown, and the limits that end it.
+
+use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
+use sdfc_graph::{FrameInput, Node, NodeId, Stage};
+
+use super::{Elaborator, MAX_NODES, MAX_STEPS, Outcome, Poison};
+
+/// How many enclosing calls a message shows.
+const SHOWN_CALLS: usize = 3;
+
+/// A call that is being elaborated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<'p> {
+    /// Name of what is called.
+    pub name: &'p str,
+    /// The call.
+    pub span: Span,
+}
+
+impl<'p> Elaborator<'p> {
+    /// Reports an error; see [`Self::report`].
+    pub(super) fn fail(&mut self, code: Code, span: Span, message: impl Into<String>) -> Poison {
+        self.report(Diagnostic::error(code, span, message))
+    }
+
+    /// Reports a diagnostic. One that lies in the library is shown at the scene's innermost call,
+    /// with the library's line as a note. Each place is reported once.
+    pub(super) fn report(&mut self, mut found: Diagnostic) -> Poison {
+        let origin = found.span;
+        let mut calls = self.frames.iter().rev().filter(|frame| !self.is_library(frame.span));
+        if self.is_library(origin)
+            && let Some(call) = calls.next()
+        {
+            found.span = call.span;
+            let explained = |note: &Note| note.span.is_some_and(|at| at.file == origin.file);
+            if !found.notes.iter().any(explained) {
+                found = found.note_at(origin, "in the library, here");
+            }
+        }
+        let place = found.span;
+        // A call around the place is seen anyway; recursion comes by one call many times.
+        let mut shown = vec![place];
+        let outer: Vec<Note> = calls
+            .filter(|call| {
+                let fresh = !encloses(call.span, place) && !shown.contains(&call.span);
+                shown.push(call.span);
+                fresh
+            })
+            .take(SHOWN_CALLS)
+            .map(|call| Note {
+                span: Some(call.span),
+                message: format!("in this call of `{}`", call.name),
+            })
+            .collect();
+        found.notes.extend(outer);
+        if self.reported.insert(place) {
+            self.diagnostics.push(found);
+        }
+        Poison
+    }
+
+    /// Reports that a limit is reached and ends elaboration.
+    pub(super) fn stop(&mut self, found: Diagnostic) -> Poison {
+        if !self.stopped {
+            self.report(found);
+        }
+        self.stopped = true;
+        Poison
+    }
+
+    /// The scene's innermost place that leads to a span: itself, or the call that entered the library.
+    pub(super) fn user_span(&self, span: Span) -> Span {
+        if !self.is_library(span) {
+            return span;
+        }
+        let mut calls = self.frames.iter().rev().map(|frame| frame.span);
+        calls.find(|&call| !self.is_library(call)).unwrap_or(span)
+    }
+
+    fn is_library(&self, span: Span) -> bool {
+        self.program.library.contains(&span.file)
+    }
+
+    /// Counts one step of work.
+    pub(super) fn tick(&mut self, span: Span) -> Outcome<()> {
+        if self.stopped {
+            return Err(Poison);
+        }
+        self.steps += 1;
+        let (what, limit) = if self.graph.len() > MAX_NODES {
+            ("graph nodes", MAX_NODES as u64)
+        } else if self.steps > MAX_STEPS {
+            ("steps of elaboration", MAX_STEPS)
+        } else {
+            return Ok(());
+        };
+        let message = format!("this scene takes more than {limit} {what}");
+        let help = "everything is inlined: a comprehension or recursion inside another multiplies";
+        Err(self.stop(Diagnostic::error(Code::TOO_MANY_NODES, span, message).help(help)))
+    }
+
+    /// Reports that something must be known at compile time, and why it is not.
+    pub(super) fn not_constant(&mut self, span: Span, what: &str, node: NodeId) -> Poison {
+        let why = self.why_not_constant(node);
+        let message = format!("{what} must be known at compile time; {why}");
+        let help = "write the value here, or make it a `let`";
+        self.report(Diagnostic::error(Code::NOT_COMPILE_TIME, span, message).help(help))
+    }
+
+    fn why_not_constant(&self, root: NodeId) -> String {
+        if self.graph.stage(root) == Stage::Point {
+            return "this depends on the point".to_owned();
+        }
+        let mut stack = vec![root];
+        while let Some(node) = stack.pop() {
+            if let Node::Frame(input, _) = self.graph.node(node) {
+                return match input {
+                    FrameInput::Param(index) => {
+                        let name = self.params.get(index as usize).map_or("", |param| &param.name);
+                        format!("`{name}` is a param, which moves without a recompile")
+                    }
+                    FrameInput::Time => "`time` changes from frame to frame".to_owned(),
+                    FrameInput::Frame => "`frame` changes from frame to frame".to_owned(),
+                };
+            }
+            // A node of stage `Frame` has an argument of that stage, so this follows one path.
+            let arguments = self.graph.node(node).arguments();
+            stack.extend(arguments.filter(|&a| self.graph.stage(a) == Stage::Frame).take(1));
+        }
+        "this is not".to_owned()
+    }
+}
+
+fn encloses(outer: Span, inner: Span) -> bool {
+    outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
+}
+
+/// A number as messages show it: at most six digits after the point.
+pub(super) fn show_number(value: f64) -> String {
+    if value.is_nan() {
+        return "not a number".to_owned();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "inf" } else { "-inf" }.to_owned();
+    }
+    let rounded = (value * 1e6).round() / 1e6;
+    // Adding 0 turns -0 into 0; a value that would round to 0 is shown as it is.
+    if rounded == 0.0 && value != 0.0 { format!("{value:e}") } else { format!("{}", rounded + 0.0) }
+}
+
+/// A number or vector as messages show it.
+pub(super) fn show_lanes(lanes: &[f64]) -> String {
+    if let [one] = lanes {
+        return show_number(*one);
+    }
+    let parts: Vec<String> = lanes.iter().map(|&lane| show_number(lane)).collect();
+    format!("[{}]", parts.join(", "))
+}

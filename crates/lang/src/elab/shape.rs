@@ -1,0 +1,234 @@
+//! Shape instances: arguments, clauses, formula, material.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
+use sdfc_graph::{
+    Binary, Contract, Dim, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
+};
+
+use super::report::Frame;
+use super::value::{Value, highest};
+use super::{Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site};
+use crate::hir::{self, Expr, Promise, ShapeDef, ShapeDefId};
+
+/// A name for each definition: its own, with a number where the program has several of that name
+/// and dimension (a scene's `sphere` beside the library's).
+pub(super) fn definition_names(program: &hir::Program) -> Vec<String> {
+    let mut count: FxHashMap<(&str, Dim), u32> = FxHashMap::default();
+    let taken: FxHashSet<&str> = program.shapes.iter().map(|shape| shape.name.as_str()).collect();
+    let mut names = Vec::with_capacity(program.shapes.len());
+    for shape in &program.shapes {
+        let times = count.entry((&shape.name, shape.dim)).or_insert(0);
+        *times += 1;
+        let mut name = shape.name.clone();
+        while *times > 1 && taken.contains(name.as_str()) {
+            name = format!("{}_{times}", shape.name);
+            *times += 1;
+        }
+        names.push(name);
+    }
+    names
+}
+
+impl<'p> Elaborator<'p> {
+    /// The instance that a call of a shape's definition makes.
+    pub(super) fn build(
+        &mut self,
+        env: &mut Env<'p>,
+        id: ShapeDefId,
+        args: &'p [Option<Expr>],
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        let given = self.given(env, args)?;
+        self.instance(id, given, span)
+    }
+
+    /// As [`Self::build`], from values.
+    pub(super) fn instance(
+        &mut self,
+        id: ShapeDefId,
+        given: Vec<super::call::Given<'p>>,
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        let program = self.program;
+        let definition = program.shapes.get(id.0 as usize).ok_or(Poison)?;
+        self.frames.push(Frame { name: &definition.name, span });
+        let in_clause = std::mem::replace(&mut self.in_clause, false);
+        let result = self.instance_inside(definition, id, given, span);
+        self.in_clause = in_clause;
+        self.frames.pop();
+        result
+    }
+
+    fn instance_inside(
+        &mut self,
+        definition: &'p ShapeDef,
+        id: ShapeDefId,
+        given: Vec<super::call::Given<'p>>,
+        span: Span,
+    ) -> Outcome<Value<'p>> {
+        let mut env = Env::new(definition.locals);
+        self.bind(&mut env, &definition.parameters, given, span)?;
+        let values: Vec<Value<'p>> =
+            env.locals[..definition.parameters.len()].iter().flatten().cloned().collect();
+        let level = highest(values.iter().map(|value| value.levels(&self.graph)));
+        let args: Vec<_> = values.iter().map(Value::to_arg).collect();
+        let name = self.definitions[id.0 as usize].clone();
+        if let Some(known) = self.graph.find_shape(&name, definition.dim, level, &args) {
+            self.add_site(known, span);
+            return Ok(Value::Shape(known));
+        }
+        self.requirements(&mut env, &definition.requires)?;
+        let point = self.graph.point(level, definition.dim);
+        env.set(definition.parameters.len(), Value::Node(point));
+        let contract = self.contract(&mut env, definition)?;
+        let formula = self.number(&mut env, &definition.body)?;
+        let material = self.material(&mut env, definition, formula)?;
+        let shape = Shape {
+            definition: name,
+            dim: definition.dim,
+            level,
+            args,
+            formula,
+            contract,
+            material,
+            children: Vec::new(),
+            depth: 1,
+            name: None,
+        };
+        self.add_shape(shape, span)
+    }
+
+    /// Adds an instance whose children are yet to be found.
+    pub(super) fn add_shape(&mut self, mut shape: Shape, span: Span) -> Outcome<Value<'p>> {
+        shape.children = children(&self.graph, shape.formula);
+        let deepest = shape.children.iter().map(|&child| self.graph.shape(child).depth).max();
+        shape.depth = 1 + deepest.unwrap_or(0);
+        if shape.depth > MAX_DEPTH {
+            let message = format!("shapes stand more than {MAX_DEPTH} deep inside one another");
+            let help = "join many shapes in one `union(...)` instead of one by one";
+            let error = Diagnostic::error(ErrorCode::SHAPE_NESTING, span, message).help(help);
+            return Err(self.stop(error));
+        }
+        let id = self.graph.add_shape(shape);
+        self.add_site(id, span);
+        Ok(Value::Shape(id))
+    }
+
+    fn add_site(&mut self, shape: ShapeId, span: Span) {
+        let span = self.user_span(span);
+        if self.seen_sites.insert((shape, span)) {
+            let name = self.graph.shape(shape).definition.clone();
+            self.sites.push(Site { shape, span, name });
+        }
+    }
+
+    fn material(
+        &mut self,
+        env: &mut Env<'p>,
+        definition: &'p ShapeDef,
+        formula: NodeId,
+    ) -> Outcome<MaterialRule> {
+        let Some(stated) = &definition.material else {
+            return Ok(MaterialRule::Shares(formula));
+        };
+        match self.eval(env, stated)? {
+            Value::Material(fields) => Ok(MaterialRule::Stated(fields)),
+            Value::Node(shares) => Ok(MaterialRule::Shares(shares)),
+            other => Err(self.unexpected(stated.span, "a material or a number", &other)),
+        }
+    }
+
+    /// What the clauses state, in terms of constants and per-frame values. A clause that depends
+    /// on an outer formula's point states nothing.
+    fn contract(&mut self, env: &mut Env<'p>, definition: &'p ShapeDef) -> Outcome<Contract> {
+        self.in_clause = true;
+        let contract = self.clauses(env, definition);
+        self.in_clause = false;
+        contract
+    }
+
+    fn clauses(&mut self, env: &mut Env<'p>, definition: &'p ShapeDef) -> Outcome<Contract> {
+        let mut contract = Contract::default();
+        for promise in &definition.promises {
+            self.promise(env, promise, &mut contract)?;
+        }
+        if let Some(stated) = &definition.lipschitz {
+            let constant = self.number(env, stated)?;
+            let constant = self.known(constant, f64::INFINITY);
+            contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
+        }
+        if let Some(stated) = &definition.bounds {
+            let Value::Range(lo, hi) = self.eval(env, stated)? else {
+                return Err(Poison);
+            };
+            let lo = self.known(lo, f64::NEG_INFINITY);
+            let hi = self.known(hi, f64::INFINITY);
+            contract.bounds = Some([lo, hi]).filter(|ends| ends.iter().all(|&e| self.is_early(e)));
+        }
+        Ok(contract)
+    }
+
+    fn promise(
+        &mut self,
+        env: &mut Env<'p>,
+        promise: &'p Promise,
+        contract: &mut Contract,
+    ) -> Outcome<()> {
+        let condition = match &promise.condition {
+            Some(condition) => self.number(env, condition)?,
+            None => self.graph.boolean(true),
+        };
+        if !self.is_early(condition) || self.as_bool(condition) == Some(false) {
+            return Ok(());
+        }
+        let sides =
+            [(promise.outside, &mut contract.outside), (promise.inside, &mut contract.inside)];
+        for (_, side) in sides.into_iter().filter(|(stated, _)| *stated) {
+            let SidePromise { exact, bound } = side;
+            let place = if promise.exact { exact } else { bound };
+            *place = Some(match *place {
+                Some(other) => self.graph.binary(Binary::Or, other, condition),
+                None => condition,
+            });
+        }
+        Ok(())
+    }
+
+    fn is_early(&self, node: NodeId) -> bool {
+        self.graph.stage(node) != Stage::Point
+    }
+
+    /// A constant with `otherwise` in place of what is not a number: 0 times infinity, for
+    /// example, where a shape without bounds is twisted by 0.
+    fn known(&mut self, node: NodeId, otherwise: f64) -> NodeId {
+        let (node, Some(mut lanes)) = self.settled(node) else { return node };
+        for lane in lanes.iter_mut().filter(|lane| lane.is_nan()) {
+            *lane = otherwise;
+        }
+        self.graph.constant(self.graph.ty(node), &lanes)
+    }
+}
+
+/// The shapes that a formula samples, in order of first use.
+fn children(graph: &Graph, formula: NodeId) -> Vec<ShapeId> {
+    let mut seen: FxHashSet<NodeId> = FxHashSet::default();
+    let mut found_before: FxHashSet<ShapeId> = FxHashSet::default();
+    let mut found = Vec::new();
+    let mut stack = vec![formula];
+    while let Some(id) = stack.pop() {
+        // Only what depends on a point can hold a sample.
+        if graph.stage(id) != Stage::Point || !seen.insert(id) {
+            continue;
+        }
+        let node = graph.node(id);
+        if let Node::Sample(child, _) | Node::MaterialAt(child, ..) = node
+            && found_before.insert(child)
+        {
+            found.push(child);
+        }
+        let arguments: Vec<NodeId> = node.arguments().collect();
+        stack.extend(arguments.into_iter().rev());
+    }
+    found
+}

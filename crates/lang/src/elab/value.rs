@@ -1,0 +1,105 @@
+//! Values of elaboration.
+
+use std::rc::Rc;
+
+use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId};
+
+use crate::hir::{FnId, Lambda};
+
+/// What an expression evaluates to.
+#[derive(Clone, Debug)]
+pub(super) enum Value<'p> {
+    /// A number, vector, colour (linear red, green, blue, alpha) or truth value.
+    Node(NodeId),
+    /// A text param: the node is the index of the choice, the number the param's position.
+    Choice(NodeId, usize),
+    Text(Rc<str>),
+    Range(NodeId, NodeId),
+    List(Rc<[Value<'p>]>),
+    Closure(Rc<Closure<'p>>),
+    Shape(ShapeId),
+    /// Fields in the order of `MaterialField::ALL`.
+    Material([NodeId; 6]),
+    Shadow(Shadow),
+}
+
+/// A function value.
+#[derive(Debug)]
+pub(super) struct Closure<'p> {
+    /// Equal for closures of one text with equal captures.
+    pub id: u32,
+    pub code: Code<'p>,
+    /// Captured values; of a constant function, its value alone.
+    pub captures: Vec<Value<'p>>,
+    /// The highest level among the captures.
+    pub levels: u16,
+}
+
+/// What a call of a closure runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Code<'p> {
+    Lambda(&'p Lambda),
+    Function(FnId),
+    Constant,
+}
+
+/// What makes closures equal: the text (by its address in the program, which outlives
+/// elaboration; constant functions have none) and the captures.
+pub(super) type ClosureKey = (Option<CodeKey>, Vec<Arg>);
+
+/// A closure's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum CodeKey {
+    Lambda(*const Lambda),
+    Function(FnId),
+}
+
+impl Code<'_> {
+    pub(super) fn key(&self) -> Option<CodeKey> {
+        match *self {
+            Self::Lambda(lambda) => Some(CodeKey::Lambda(lambda)),
+            Self::Function(id) => Some(CodeKey::Function(id)),
+            Self::Constant => None,
+        }
+    }
+}
+
+impl Value<'_> {
+    /// One more than the highest level of a point that the value depends on; 0 for none.
+    pub(super) fn levels(&self, graph: &Graph) -> u16 {
+        match self {
+            Self::Node(node) | Self::Choice(node, _) => graph.levels(*node),
+            Self::Text(_) => 0,
+            Self::Range(lo, hi) => graph.levels(*lo).max(graph.levels(*hi)),
+            Self::List(items) => highest(items.iter().map(|item| item.levels(graph))),
+            Self::Closure(closure) => closure.levels,
+            Self::Shape(id) => graph.shape(*id).level,
+            Self::Material(fields) => highest(fields.iter().map(|&field| graph.levels(field))),
+            Self::Shadow(Shadow::Soft(node)) => graph.levels(*node),
+            Self::Shadow(Shadow::Off | Shadow::Hard) => 0,
+        }
+    }
+
+    /// The value as an argument that identifies a shape instance.
+    pub(super) fn to_arg(&self) -> Arg {
+        match self {
+            Self::Node(node) | Self::Choice(node, _) => Arg::Node(*node),
+            Self::Text(text) => Arg::Text(text.to_string()),
+            Self::Range(lo, hi) => Arg::List(vec![Arg::Node(*lo), Arg::Node(*hi)]),
+            Self::List(items) => Arg::List(items.iter().map(Self::to_arg).collect()),
+            Self::Closure(closure) => Arg::Function(closure.id),
+            Self::Shape(id) => Arg::Shape(*id),
+            Self::Material(fields) => {
+                Arg::List(fields.iter().map(|&field| Arg::Node(field)).collect())
+            }
+            Self::Shadow(Shadow::Soft(node)) => Arg::Node(*node),
+            Self::Shadow(Shadow::Off) => Arg::Text("off".to_owned()),
+            Self::Shadow(Shadow::Hard) => Arg::Text("hard".to_owned()),
+        }
+    }
+}
+
+/// The highest of some levels.
+pub(super) fn highest(levels: impl Iterator<Item = u16>) -> u16 {
+    levels.max().unwrap_or(0)
+}

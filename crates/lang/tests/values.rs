@@ -1,0 +1,133 @@
+//! Library formulas at points worked out by hand.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod support;
+
+use support::Field;
+
+fn assert_at(text: &str, points: &[([f64; 3], f64)]) {
+    let field = Field::drawn(text);
+    for &(point, expected) in points {
+        let found = field.at(point);
+        assert!((found - expected).abs() < 1e-12, "{text} at {point:?}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn solids() {
+    assert_at("sphere(0.5)", &[([0.0; 3], -0.5), ([0.0, 3.0, 4.0], 4.5)]);
+    assert_at(
+        "box([2, 4, 6])",
+        &[([0.0; 3], -1.0), ([2.0, 2.0, 4.0], 2f64.sqrt()), ([4.0, 4.0, 4.0], 14f64.sqrt())],
+    );
+    assert_at("plane(y: 1)", &[([7.0, 0.0, -3.0], -1.0), ([0.0, 3.0, 0.0], 2.0)]);
+    assert_at("plane(y: 1, normal: [0, 0, 2])", &[([7.0, 5.0, 3.0], 2.0)]);
+    assert_at(
+        "torus(major: 2, minor: 0.5)",
+        &[([0.0; 3], 1.5), ([2.0, 0.0, 0.0], -0.5), ([0.0, 4.0, 5.0], 4.5)],
+    );
+    assert_at(
+        "capsule([0, -1, 0], [0, 1, 0], r: 0.25)",
+        &[([3.0, 0.5, 0.0], 2.75), ([3.0, 5.0, 0.0], 4.75), ([0.0; 3], -0.25)],
+    );
+    assert_at("capsule([1, 0, 0], [1, 0, 0], r: 0.5)", &[([4.0, 0.0, 4.0], 4.5)]);
+    assert_at(
+        "cylinder(r: 1, h: 2)",
+        &[
+            ([0.0; 3], -1.0),
+            ([0.0, 4.0, 0.0], 3.0),
+            ([4.0, 5.0, 0.0], 5.0),
+            ([0.5, 0.0, 0.0], -0.5),
+        ],
+    );
+    // The unit ball's field, stretched and shrunk by the least radius.
+    assert_at("ellipsoid([1, 0.5, 2])", &[([2.0, 0.0, 0.0], 0.5), ([0.0; 3], -0.5)]);
+    // On an axis the first-order estimate is r (k0 - 1): the distance itself.
+    assert_at("ellipsoid_fast([1, 0.5, 2])", &[([3.0, 0.0, 0.0], 2.0), ([0.0; 3], -0.5)]);
+}
+
+#[test]
+fn profiles() {
+    assert_at("circle(0.5).extrude(2)", &[([3.0, 4.0, 0.0], 4.5), ([0.0, 0.0, 5.0], 4.0)]);
+    assert_at("rect([2, 4]).extrude(6)", &[([4.0, 4.0, 4.0], 14f64.sqrt())]);
+    assert_at("circle(0.5).translate(x: 2).revolve()", &[([0.0, 0.0, 2.0], -0.5), ([0.0; 3], 1.5)]);
+}
+
+#[test]
+fn maps() {
+    assert_at("sphere(1).translate([1, 2, 3], y: 1)", &[([1.0, 3.0, 3.0], -1.0)]);
+    // A quarter turn about z takes x to y; about y takes z to x; about x takes y to z.
+    let ball = "sphere(0.5).translate";
+    assert_at(&format!("{ball}(x: 2).rotate(z: 90deg)"), &[([0.0, 2.0, 0.0], -0.5)]);
+    assert_at(&format!("{ball}(z: 2).rotate(y: 90deg)"), &[([2.0, 0.0, 0.0], -0.5)]);
+    assert_at(&format!("{ball}(y: 2).rotate(x: 90deg)"), &[([0.0, 0.0, 2.0], -0.5)]);
+    // x comes first: y to z, then z to x.
+    assert_at(&format!("{ball}(y: 2).rotate(x: 90deg, y: 90deg)"), &[([2.0, 0.0, 0.0], -0.5)]);
+    assert_at(
+        "circle(0.5).translate(x: 2).rotate(0.25turn).extrude(1)",
+        &[([0.0, 2.0, 0.0], -0.5)],
+    );
+    assert_at("sphere(1).scale(3)", &[([5.0, 0.0, 0.0], 2.0)]);
+    assert_at("box(2).round(0.5)", &[([3.0, 0.0, 0.0], 1.5)]);
+    // One unit up the twist is a quarter turn about y: from z to x.
+    assert_at("sphere(0.5).translate(z: 2, y: 1).twist(90deg)", &[([2.0, 1.0, 0.0], -0.5)]);
+}
+
+#[test]
+fn combinations() {
+    let pair = "sphere(1), sphere(1).translate(x: 3)";
+    assert_at(&format!("union({pair})"), &[([0.0; 3], -1.0), ([3.0, 0.0, 0.0], -1.0)]);
+    assert_at(&format!("intersection({pair})"), &[([0.0; 3], 2.0)]);
+    assert_at(&format!("difference({pair})"), &[([0.0; 3], -1.0), ([3.0, 0.0, 0.0], 2.0)]);
+    // Equal distances swell by k / 4; k = 0 is the hard union.
+    let middle = [1.5, 0.0, 0.0];
+    assert_at(&format!("union({pair}, blend: smooth(0.4))"), &[(middle, 0.5 - 0.1)]);
+    assert_at(
+        &format!("union({pair}, blend: smooth(0))"),
+        &[(middle, 0.5), ([1.0, 0.0, 0.0], 0.0)],
+    );
+    assert_at(&format!("intersection({pair}, blend: smooth(0.4))"), &[(middle, 0.5 + 0.1)]);
+    // Half the sum less the leg: 0.5 (0.5 + 0.5 - 0.4).
+    assert_at(&format!("union({pair}, blend: chamfer(0.4))"), &[(middle, 0.3)]);
+    assert_at("sphere(1) - box(4) | sphere(0.5)", &[([0.0; 3], -0.5)]);
+}
+
+#[test]
+fn several_drawings_are_united_in_order() {
+    assert_at("sphere(1)\nsphere(1).translate(x: 3)", &[([0.0; 3], -1.0), ([3.0, 0.0, 0.0], -1.0)]);
+}
+
+#[test]
+fn the_language_itself() {
+    let value = |expression: &str, expected: f64| {
+        assert_at(&format!("solid it() = {expression}\nit()"), &[([0.25, 0.5, -0.75], expected)]);
+    };
+    value("iterate(4, 1, fn(s) = s * 2)", 16.0);
+    value("iterate(4, 1, fn(s, i) = s + i)", 7.0);
+    value("iterate(2..5, 0, fn(s, i) = s + i)", 9.0);
+    value("iterate([1, 2, 3], 0, fn(s, x) = 10 * s + x)", 123.0);
+    value("iterate(10, 1, fn(s) = s * 2, while: fn(s) = s < 20)", 32.0);
+    value("iterate(10, p.x, fn(s) = s * 2, while: fn(s) = s < 20)", 32.0);
+    value("min(for i in 0..5 if i % 2 == 1: i)", 1.0);
+    value("max([for i in 0..3: i * p.y])", 1.0);
+    value("[for i in 0..4: i * i][2]", 4.0);
+    value("[5, 6, 7, 8, 9][1..3][1]", 7.0);
+    value("len([for x in [1, 2]: for y in [1, 2, 3]: x + y])", 6.0);
+    value("-7 % 3", 2.0);
+    value("p.zyx.x + vec3(p.xy, 2).z", 1.25);
+    value("if p.x > 0 { p.y } else { 3 }", 0.5);
+    value("{ let q = p * 2; let q = q.x + 1; q }", 1.5);
+}
+
+#[test]
+fn loops_that_move_run_to_the_end_of_the_range() {
+    let text = "param n: int = 3 in 0..5\nsolid it() = iterate(n, 1, fn(s) = s * 2)\nit()";
+    assert_at(text, &[([0.0; 3], 8.0)]);
+}
+
+#[test]
+fn recursion_ends_at_compile_time() {
+    let text = "fn tower(n: int) -> solid = if n == 0 { sphere(1) } else { tower(n - 1).translate(y: 2) }\ntower(5)";
+    assert_at(text, &[([0.0, 10.0, 0.0], -1.0)]);
+}
