@@ -1,29 +1,140 @@
 //! Chains of affine maps become one map.
+//!
+//! The pass looks at cones: a node that something other than an affine operation uses, or that several cones use, is
+//! a head; the affine operations that only lead to one head are its cone. What a cone computes is, over the one
+//! vector that it starts from, a matrix and an offset, whose coefficients are known before the points. The
+//! cheapest form of that replaces the cone, where it is cheaper than the cone:
+//!
+//! - components picked and scaled, and an offset: translations, scales, rotations by right angles;
+//! - sums of scaled components, row by row: rotations about one axis;
+//! - a `Transform` and an offset: everything else.
+//!
+//! Cost counts operations on single numbers; a `Transform` counts 9, since its additions fuse with its
+//! multiplications. What is shared is a head, hence computed once and never folded into its uses.
+
+mod affine;
+mod cone;
+mod emit;
 
 use rustc_hash::FxHashMap;
 
-use crate::{Graph, NodeId};
+use self::affine::Affine;
+use self::cone::Cones;
+use crate::walk::reachable;
+use crate::{Graph, Node, NodeId, Stage};
 
 /// Roots after a pass, and what became of the nodes that they were computed from.
 #[derive(Clone, Debug, Default)]
 pub struct Rewritten {
     /// In the order of the roots given.
     pub roots: Vec<NodeId>,
-    /// New by old; nodes that were absorbed are missing.
+    /// New by old.
     pub nodes: FxHashMap<NodeId, NodeId>,
 }
 
 impl Rewritten {
-    /// Names of the old nodes, carried over to the new ones.
-    pub fn names(&self, names: &FxHashMap<NodeId, String>) -> FxHashMap<NodeId, String> {
-        let renamed = |(old, name): (&NodeId, &String)| Some((*self.nodes.get(old)?, name.clone()));
-        names.iter().filter_map(renamed).collect()
+    /// Names of the old nodes, carried over to the new ones. Constants and points have none.
+    pub fn names(
+        &self,
+        graph: &Graph,
+        names: &FxHashMap<NodeId, String>,
+    ) -> FxHashMap<NodeId, String> {
+        let mut old: Vec<(&NodeId, &String)> = names.iter().collect();
+        old.sort_unstable();
+        let mut renamed = FxHashMap::default();
+        for (id, name) in old {
+            let new = self.nodes.get(id).copied();
+            if let Some(new) = new.filter(|&new| !matches!(graph.node(new), Node::Point(..))) {
+                renamed.entry(new).or_insert_with(|| name.clone());
+            }
+        }
+        renamed
     }
 }
 
-/// Every chain of affine maps of one vector becomes at most one `Transform` and one addition, where that is
-/// fewer operations than what stands there.
+/// Replaces every chain of affine maps of one vector by one map, where that takes fewer operations. Best
+/// before the gradient is derived, which then goes through the one map too.
+///
+/// ```
+/// use sdfc_graph::{Dim, Graph, Type, dump, fold_transforms};
+///
+/// let mut graph = Graph::new();
+/// let p = graph.point(0, Dim::Three);
+/// let (by, two) = (graph.constant(Type::Vec3, &[1.0, 2.0, 3.0]), graph.number(2.0));
+/// let moved = graph.sub(p, by);
+/// let scaled = graph.mul(moved, two);
+/// let back = graph.add(scaled, by);
+/// let field = graph.unary(sdfc_graph::Unary::Normalize, back);
+/// let folded = fold_transforms(&mut graph, &[field]);
+/// assert_eq!(
+///     dump(&graph, &[("field", folded.roots[0])]),
+///     "%0 = point 0 : vec3\n\
+///      %1 = mul %0 [2, 2, 2] : vec3\n\
+///      %2 = sub %1 [1, 2, 3] : vec3\n\
+///      %3 = normalize %2 : vec3\n\
+///      field = %3\n"
+/// );
+/// ```
 pub fn fold_transforms(graph: &mut Graph, roots: &[NodeId]) -> Rewritten {
-    let nodes = crate::reachable(graph, roots).into_iter().map(|id| (id, id)).collect();
-    Rewritten { roots: roots.to_vec(), nodes }
+    let order = reachable(graph, roots);
+    let cones = Cones::new(graph, &order, roots);
+    let mut pass = Pass { graph, cones, forms: FxHashMap::default(), new: FxHashMap::default() };
+    for id in order {
+        pass.visit(id);
+    }
+    let Pass { new, .. } = pass;
+    let roots = roots.iter().map(|root| new.get(root).copied().unwrap_or(*root)).collect();
+    Rewritten { roots, nodes: new }
+}
+
+struct Pass<'a> {
+    graph: &'a mut Graph,
+    cones: Cones,
+    /// Of old nodes, over old bases; only in cones of more than one operation.
+    forms: FxHashMap<NodeId, Affine>,
+    new: FxHashMap<NodeId, NodeId>,
+}
+
+impl Pass<'_> {
+    fn visit(&mut self, id: NodeId) {
+        if self.graph.stage(id) < Stage::Point {
+            self.new.insert(id, id);
+            return;
+        }
+        let folded = self.form(id).and_then(|form| {
+            let folded = self.cones.is_head(id).then(|| self.fold(id, &form))?;
+            self.forms.insert(id, form);
+            folded
+        });
+        let new = folded.unwrap_or_else(|| {
+            let new = &self.new;
+            self.graph.rebuild(id, |old| new.get(&old).copied().unwrap_or(old))
+        });
+        self.new.insert(id, new);
+    }
+
+    fn form(&mut self, id: NodeId) -> Option<Affine> {
+        if !self.cones.is_worth_folding(id) {
+            return None;
+        }
+        let (cones, forms) = (&self.cones, &self.forms);
+        let form = affine::form(self.graph, id, |graph, argument| {
+            if !cones.is_head(argument) || cones.is_transparent(argument) {
+                forms.get(&argument).copied()
+            } else {
+                affine::base(graph, argument)
+            }
+        })?;
+        if !self.cones.is_head(id) {
+            self.forms.insert(id, form);
+        }
+        Some(form)
+    }
+
+    /// The cheapest form of a head, if it is cheaper than its cone.
+    fn fold(&mut self, id: NodeId, form: &Affine) -> Option<NodeId> {
+        let plan = emit::plan(form)?;
+        let base = *self.new.get(&form.base?)?;
+        (plan.cost < self.cones.cost(id)).then(|| plan.build(self.graph, base))
+    }
 }

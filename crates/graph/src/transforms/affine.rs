@@ -1,0 +1,253 @@
+//! Affine forms: a matrix over a base vector, and an offset.
+
+use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
+
+/// A coefficient that is known before the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Coefficient {
+    Number(f64),
+    Frame(NodeId),
+}
+
+use Coefficient::{Frame, Number};
+
+impl Coefficient {
+    fn of(graph: &Graph, id: NodeId) -> Self {
+        graph.as_number(id).map_or(Frame(id), Number)
+    }
+
+    pub(super) fn node(self, graph: &mut Graph) -> NodeId {
+        match self {
+            Number(value) => graph.number(value),
+            Frame(id) => id,
+        }
+    }
+
+    pub(super) fn is(self, value: f64) -> bool {
+        self == Number(value)
+    }
+
+    fn add(self, graph: &mut Graph, other: Self) -> Self {
+        match (self, other) {
+            (Number(x), Number(y)) => Number(x + y),
+            (x, y) if y.is(0.0) => x,
+            (x, y) if x.is(0.0) => y,
+            (x, y) => {
+                let (x, y) = (x.node(graph), y.node(graph));
+                let result = graph.add(x, y);
+                Self::of(graph, result)
+            }
+        }
+    }
+
+    fn mul(self, graph: &mut Graph, other: Self) -> Self {
+        match (self, other) {
+            (Number(x), Number(y)) => Number(x * y),
+            (x, y) if x.is(0.0) || y.is(0.0) => Number(0.0),
+            (x, y) if y.is(1.0) => x,
+            (x, y) if x.is(1.0) => y,
+            (x, y) => {
+                let (x, y) = (x.node(graph), y.node(graph));
+                let result = graph.mul(x, y);
+                Self::of(graph, result)
+            }
+        }
+    }
+}
+
+/// `matrix · base + offset` of one component.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) factors: [Coefficient; 3],
+    pub(super) offset: Coefficient,
+}
+
+impl Row {
+    const ZERO: Self = Self { factors: [Number(0.0); 3], offset: Number(0.0) };
+
+    fn low(offset: Coefficient) -> Self {
+        Self { offset, ..Self::ZERO }
+    }
+
+    fn add(self, graph: &mut Graph, other: Self) -> Self {
+        let mut factors = self.factors;
+        for (factor, other) in factors.iter_mut().zip(other.factors) {
+            *factor = factor.add(graph, other);
+        }
+        Self { factors, offset: self.offset.add(graph, other.offset) }
+    }
+
+    fn scaled(self, graph: &mut Graph, by: Coefficient) -> Self {
+        let factors = self.factors.map(|factor| factor.mul(graph, by));
+        Self { factors, offset: self.offset.mul(graph, by) }
+    }
+}
+
+/// A number or vector of up to three components as a map of one base vector.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Affine {
+    /// None: known before the points.
+    pub(super) base: Option<NodeId>,
+    pub(super) base_width: usize,
+    pub(super) width: usize,
+    /// Those beyond the width are unused.
+    pub(super) rows: [Row; 3],
+}
+
+/// A node in terms of itself, or of nothing if it is known before the points.
+pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
+    let width = graph.ty(id).width();
+    if width > 3 || graph.ty(id) == Type::Bool {
+        return None;
+    }
+    let mut rows = [Row::ZERO; 3];
+    if graph.stage(id) < Stage::Point {
+        for (lane, row) in (0..width).zip(&mut rows) {
+            let part = graph.component(id, lane as u8);
+            *row = Row::low(Coefficient::of(graph, part));
+        }
+        return Some(Affine { base: None, base_width: 0, width, rows });
+    }
+    if width == 1 {
+        return None;
+    }
+    for (lane, row) in rows.iter_mut().enumerate().take(width) {
+        row.factors[lane] = Number(1.0);
+    }
+    Some(Affine { base: Some(id), base_width: width, width, rows })
+}
+
+/// A node in terms of the forms of its arguments; `None` if they start from different vectors.
+pub(super) fn form(
+    graph: &mut Graph,
+    id: NodeId,
+    mut of: impl FnMut(&mut Graph, NodeId) -> Option<Affine>,
+) -> Option<Affine> {
+    match graph.node(id) {
+        Node::Unary(Unary::Neg, a) => {
+            let a = of(graph, a)?;
+            Some(a.scaled(graph, Number(-1.0)))
+        }
+        Node::Binary(Binary::Add, a, b) => {
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
+            a.add(graph, b)
+        }
+        Node::Binary(Binary::Sub, a, b) => {
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
+            let negative = b.scaled(graph, Number(-1.0));
+            a.add(graph, negative)
+        }
+        Node::Binary(Binary::Mul, a, b) => {
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
+            a.multiplied(graph, b)
+        }
+        Node::Binary(Binary::Dot, a, b) => {
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
+            let products = a.multiplied(graph, b)?;
+            let mut sum = products.rows[0];
+            for row in &products.rows[1..products.width] {
+                sum = sum.add(graph, *row);
+            }
+            Some(Affine { width: 1, rows: [sum; 3], ..products })
+        }
+        Node::Transform(columns, v) => {
+            let v = of(graph, v)?;
+            let mut sum: Option<Affine> = None;
+            for (lane, column) in columns.into_iter().enumerate() {
+                let column = of(graph, column).filter(|column| column.base.is_none())?;
+                let filled = Affine { rows: [v.rows[lane]; 3], ..v };
+                let product = filled.multiplied(graph, column)?;
+                sum = match sum {
+                    None => Some(product),
+                    Some(sum) => sum.add(graph, product),
+                };
+            }
+            sum
+        }
+        Node::Splat(ty, a) => {
+            let a = of(graph, a)?;
+            Some(Affine { width: ty.width(), rows: [a.rows[0]; 3], ..a })
+        }
+        Node::Compose(ty, parts) => {
+            let mut joined = of(graph, parts[0])?;
+            for (lane, &part) in parts.iter().enumerate().take(ty.width()) {
+                let part = of(graph, part)?;
+                joined = joined.based_like(&part)?;
+                joined.rows[lane] = part.rows[0];
+            }
+            Some(Affine { width: ty.width(), ..joined })
+        }
+        Node::Swizzle(ty, a, lanes) => {
+            let a = of(graph, a)?;
+            let rows = [0, 1, 2].map(|i| a.rows[usize::from(lanes[i])]);
+            Some(Affine { width: ty.width(), rows, ..a })
+        }
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => None,
+    }
+}
+
+impl Affine {
+    /// Over the base of both; `None` if those differ.
+    fn based_like(self, other: &Self) -> Option<Self> {
+        match (self.base, other.base) {
+            (_, None) => Some(self),
+            (None, Some(_)) => {
+                Some(Self { base: other.base, base_width: other.base_width, ..self })
+            }
+            (Some(mine), Some(theirs)) => (mine == theirs).then_some(self),
+        }
+    }
+
+    fn add(self, graph: &mut Graph, other: Self) -> Option<Self> {
+        let mut sum = self.based_like(&other)?;
+        for (row, other) in sum.rows.iter_mut().zip(other.rows) {
+            *row = row.add(graph, other);
+        }
+        Some(sum)
+    }
+
+    fn scaled(self, graph: &mut Graph, by: Coefficient) -> Self {
+        Self { rows: self.rows.map(|row| row.scaled(graph, by)), ..self }
+    }
+
+    /// Componentwise, one side known before the points.
+    fn multiplied(self, graph: &mut Graph, other: Self) -> Option<Self> {
+        let (mut varying, low) = match (self.base, other.base) {
+            (_, None) => (self, other),
+            (None, Some(_)) => (other, self),
+            (Some(_), Some(_)) => return None,
+        };
+        for (row, low) in varying.rows.iter_mut().zip(low.rows) {
+            *row = row.scaled(graph, low.offset);
+        }
+        Some(varying)
+    }
+
+    /// With factors that rounding alone keeps from 0, 1 or -1 put there, as the cosine of a right angle.
+    pub(super) fn snapped(mut self) -> Self {
+        const ROUNDING: f64 = 1e-12;
+        let factors = || self.rows[..self.width].iter().flat_map(|row| row.factors);
+        let size = |factor: Coefficient| match factor {
+            Number(value) => value.abs(),
+            Frame(_) => 1.0,
+        };
+        let largest = factors().map(size).fold(0.0, f64::max);
+        for factor in self.rows.iter_mut().flat_map(|row| &mut row.factors) {
+            if let Number(value) = factor {
+                if value.abs() <= largest * ROUNDING {
+                    *value = 0.0;
+                } else if (value.abs() - 1.0).abs() <= ROUNDING {
+                    *value = value.signum();
+                }
+            }
+        }
+        self
+    }
+}

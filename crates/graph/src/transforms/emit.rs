@@ -1,0 +1,137 @@
+//! The cheapest way to compute an affine form.
+
+use super::affine::{Affine, Coefficient, Row};
+use super::cone::TRANSFORM_COST;
+use crate::{Graph, NodeId};
+
+/// How a form is computed, and how many operations on single numbers that takes.
+pub(super) struct Plan {
+    pub(super) cost: usize,
+    shape: Shape,
+    /// Snapped.
+    form: Affine,
+}
+
+enum Shape {
+    /// Each row is one component of the base, scaled.
+    Picked([u8; 3]),
+    /// A sum for each row.
+    Rows,
+    /// One row with the base's every component.
+    Dot,
+    /// A matrix.
+    Transform,
+}
+
+/// `None` for a form without a base.
+pub(super) fn plan(form: &Affine) -> Option<Plan> {
+    form.base?;
+    let form = form.snapped();
+    let offset = offset_cost(&form);
+    let mut best = Plan { cost: rows_cost(&form) + offset, shape: Shape::Rows, form };
+    let mut offer = |cost: usize, shape: Shape| {
+        if cost + offset <= best.cost {
+            best = Plan { cost: cost + offset, shape, form };
+        }
+    };
+    if form.width == 1 && rows(&form).all(|row| terms(row, form.base_width) == form.base_width) {
+        offer(2 * form.base_width - 1, Shape::Dot);
+    }
+    if form.width == 3 && form.base_width == 3 {
+        offer(TRANSFORM_COST, Shape::Transform);
+    }
+    if let Some(lanes) = picked(&form) {
+        let scaled =
+            rows(&form).zip(lanes).any(|(row, lane)| !row.factors[usize::from(lane)].is(1.0));
+        offer(if scaled { form.width } else { 0 }, Shape::Picked(lanes));
+    }
+    Some(best)
+}
+
+fn rows(form: &Affine) -> impl Iterator<Item = &Row> {
+    form.rows[..form.width].iter()
+}
+
+fn terms(row: &Row, base_width: usize) -> usize {
+    row.factors[..base_width].iter().filter(|factor| !factor.is(0.0)).count()
+}
+
+fn rows_cost(form: &Affine) -> usize {
+    rows(form).map(|row| row_cost(row, form.base_width)).sum()
+}
+
+/// Products other than with 1 or -1, the additions between terms, and a negation where no term is positive.
+fn row_cost(row: &Row, base_width: usize) -> usize {
+    let factors = &row.factors[..base_width];
+    let products = factors.iter().filter(|f| !f.is(0.0) && !f.is(1.0) && !f.is(-1.0)).count();
+    let terms = terms(row, base_width);
+    let negations = factors.iter().filter(|factor| factor.is(-1.0)).count();
+    let negated = usize::from(terms > 0 && negations == terms);
+    products + terms.saturating_sub(1) + negated
+}
+
+fn offset_cost(form: &Affine) -> usize {
+    let moved = rows(form).any(|row| !row.offset.is(0.0));
+    if moved { form.width } else { 0 }
+}
+
+/// The components that the rows pick, if each picks one.
+fn picked(form: &Affine) -> Option<[u8; 3]> {
+    let mut lanes = [0; 3];
+    for (lane, row) in lanes.iter_mut().zip(rows(form)) {
+        let mut factors = row.factors[..form.base_width].iter();
+        *lane = factors.position(|factor| !factor.is(0.0))? as u8;
+        if factors.any(|factor| !factor.is(0.0)) {
+            return None;
+        }
+    }
+    Some(lanes)
+}
+
+impl Plan {
+    /// The form over a base (the form's own, or what it became).
+    pub(super) fn build(&self, graph: &mut Graph, base: NodeId) -> NodeId {
+        let form = &self.form;
+        let linear = match self.shape {
+            Shape::Picked(lanes) => {
+                let picked = graph.swizzle(base, &lanes[..form.width]);
+                let factors = [0, 1, 2].map(|i| form.rows[i].factors[usize::from(lanes[i])]);
+                let factors = vector(graph, &factors[..form.width]);
+                graph.mul(picked, factors)
+            }
+            Shape::Rows => {
+                let sums: Vec<NodeId> = rows(form).map(|row| sum(graph, base, row)).collect();
+                graph.compose(&sums)
+            }
+            Shape::Dot => {
+                let weights = vector(graph, &form.rows[0].factors[..form.base_width]);
+                graph.dot(base, weights)
+            }
+            Shape::Transform => {
+                let columns = [0, 1, 2].map(|j| {
+                    let column = form.rows.map(|row| row.factors[j]);
+                    vector(graph, &column)
+                });
+                graph.transform(columns, base)
+            }
+        };
+        let offsets = form.rows.map(|row| row.offset);
+        let offset = vector(graph, &offsets[..form.width]);
+        graph.add(linear, offset)
+    }
+}
+
+fn vector(graph: &mut Graph, coefficients: &[Coefficient]) -> NodeId {
+    let parts: Vec<NodeId> = coefficients.iter().map(|part| part.node(graph)).collect();
+    graph.compose(&parts)
+}
+
+fn sum(graph: &mut Graph, base: NodeId, row: &Row) -> NodeId {
+    let mut sum = graph.number(0.0);
+    for (lane, factor) in (0..).zip(row.factors).filter(|(_, factor)| !factor.is(0.0)) {
+        let (component, factor) = (graph.component(base, lane), factor.node(graph));
+        let term = graph.mul(component, factor);
+        sum = graph.add(sum, term);
+    }
+    sum
+}
