@@ -3,7 +3,8 @@
 //! # What
 //!
 //! [`parse`] turns the text of a file into an [`ast::File`] and everything that is wrong with
-//! how it is written. It knows the grammar and nothing else: no name, no type, no shape.
+//! how it is written; [`format()`] rewrites a file in the one layout. The crate knows the grammar
+//! and nothing else: no name, no type, no shape.
 //!
 //! # How
 //!
@@ -31,11 +32,13 @@
 //! extend the stack where that is not enough. After [`MAX_ERRORS`] errors the rest are counted.
 
 pub mod ast;
+mod format;
 mod lexer;
 mod literal;
 mod parser;
 mod token;
 
+pub use format::format;
 pub use parser::parse;
 
 /// The largest file in bytes: 4 MiB.

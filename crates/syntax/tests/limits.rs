@@ -4,7 +4,7 @@
 
 use sdfc_diagnostics::{Code, Diagnostic, Sources};
 use sdfc_syntax::ast::File;
-use sdfc_syntax::{MAX_BYTES, MAX_ERRORS, MAX_HEIGHT, MAX_NESTING, parse};
+use sdfc_syntax::{MAX_BYTES, MAX_ERRORS, MAX_HEIGHT, MAX_NESTING, format, parse};
 
 fn parsed(text: &str) -> (File, Vec<Diagnostic>) {
     let mut sources = Sources::new();
@@ -19,6 +19,9 @@ fn use_on_a_small_stack(text: String) -> Vec<Diagnostic> {
         let copy = tree.clone();
         assert!(copy == tree);
         assert!(format!("{copy:?}").len() > 10);
+        let mut sources = Sources::new();
+        let file = sources.add("scene.sdf", &text);
+        assert_eq!(format(&sources, file).is_ok(), found.is_empty());
         found
     };
     let thread = std::thread::Builder::new().stack_size(1 << 20).spawn(work);

@@ -194,6 +194,15 @@ fn a_signature_has_its_parts() {
 }
 
 #[test]
+fn types_may_begin_lines() {
+    let decl = decl("fn f(\n  a: fn(\n    solid,\n    region\n  ) -> number,\n) = a");
+    let Some(TypeExpr { kind: TypeExprKind::Fn(from, _), .. }) = &decl.signature.parms[0].ty else {
+        panic!()
+    };
+    assert_eq!(from.len(), 2);
+}
+
+#[test]
 fn words_of_clauses_are_names_elsewhere() {
     let text = "let exact = bounds(material).lo\nlet from = as + require";
     assert_eq!(shown(text), "exact = bounds(material).lo\nfrom = (as + require)");

@@ -173,9 +173,11 @@ impl<'a> Parser<'a> {
 
     /// Whether the next token begins a declaration on a new line.
     fn at_new_declaration(&self) -> bool {
-        let next = self.next();
-        let lambda = next.kind == TokenKind::Fn && self.peek(1).kind == TokenKind::OpenParen;
-        next.first && next.kind.declares() && !lambda
+        use TokenKind::{CloseBracket, CloseParen, Comma, Ellipsis, Fn, OpenParen};
+        let (next, after) = (self.next(), self.peek(1).kind);
+        let lambda = next.kind == Fn && after == OpenParen;
+        let ty = matches!(after, Comma | CloseParen | CloseBracket | Ellipsis);
+        next.first && next.kind.declares() && !lambda && !ty
     }
 
     /// Whether the next token begins an item by the look of the line.
