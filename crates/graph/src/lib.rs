@@ -1,5 +1,6 @@
 //! Shape instances and typed math in one hash-consed arena, with its evaluators.
 
+mod bounds;
 mod build;
 mod derive;
 mod dump;
@@ -16,6 +17,7 @@ mod simplify;
 mod transforms;
 mod walk;
 
+pub use bounds::{Bounds, bounds};
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};

@@ -201,7 +201,7 @@ pub enum Binary {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Ternary {
-    /// `x + (y - x) * t`, all of one type, componentwise.
+    /// `x * (1 - t) + y * t`, all of one type, componentwise.
     Mix,
     /// `clamp(x, lo, hi)`, componentwise.
     Clamp,

@@ -193,7 +193,7 @@ macro_rules! float {
 
             #[inline]
             fn mix(self, y: Self, t: Self) -> Self {
-                self + (y - self) * t
+                self * (1.0 - t) + y * t
             }
             #[inline]
             fn clamp(self, lo: Self, hi: Self) -> Self {

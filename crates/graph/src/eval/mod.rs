@@ -28,6 +28,7 @@
 //! # Ok::<(), sdfc_graph::eval::TapeError>(())
 //! ```
 
+pub(crate) mod direct;
 mod dual;
 mod float;
 mod fold;
@@ -69,7 +70,7 @@ impl FrameValues {
 
 impl<N: Number> FrameValues<N> {
     /// One lane of an input; of a param that is not there, 0.
-    fn lane(&self, input: FrameInput, lane: usize) -> N {
+    pub(crate) fn lane(&self, input: FrameInput, lane: usize) -> N {
         let param = |index: u32| self.params.get(index as usize).map(|lanes| lanes[lane]);
         match input {
             FrameInput::Param(index) => param(index).unwrap_or(N::constant(0.0)),

@@ -95,7 +95,7 @@ pub trait Number: Copy {
     /// Either of two truth values
     fn or(self, y: Self) -> Self;
 
-    /// `x + (y - x) * t`
+    /// `x * (1 - t) + y * t`
     fn mix(self, y: Self, t: Self) -> Self;
     /// `min(max(x, lo), hi)`
     fn clamp(self, lo: Self, hi: Self) -> Self;

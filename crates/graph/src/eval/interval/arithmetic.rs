@@ -70,20 +70,25 @@ impl Interval {
         ratio.clipped(lo, hi)
     }
 
-    /// `x + (y - x) * t`. For t from 0 to 1 it rises with x and y and is linear in t, so its extremes
-    /// are at ends; as each step rounds relative to x and y, so does the margin.
+    /// `x * (1 - t) + y * t`. For t from 0 to 1 it rises with x and y and is linear in t, so its
+    /// extremes are at ends, and so are those of the rounded one but for a margin relative to the terms.
     pub(super) fn mixture(self, y: Self, t: Self) -> Self {
         if t.lo < 0.0 || t.hi > 1.0 {
-            return self.sum(y.sub(self).product(t));
+            return self.product(Self::TRUE.sum(t.neg())).sum(y.product(t));
         }
-        let at = |x: f64, y: f64| {
-            let mixed = |t: f64| if x == y { x } else { x * (1.0 - t) + y * t };
-            [mixed(t.lo), mixed(t.hi)]
-        };
-        let (low, high) = (at(self.lo, y.lo), at(self.hi, y.hi));
-        let hull = Self { lo: low[0].min(low[1]), hi: high[0].max(high[1]) };
-        hull.grown(MARGIN * (self.magnitude() + y.magnitude()))
+        Self { lo: mixture_below(self.lo, y.lo, t), hi: -mixture_below(-self.hi, -y.hi, t) }
     }
+}
+
+/// Not above the least mixture of two lower ends, for t from 0 to 1.
+fn mixture_below(x: f64, y: f64, t: Interval) -> f64 {
+    let mixed = |t: f64| product(x, 1.0 - t) + product(y, t);
+    let (first, last) = (mixed(t.lo), mixed(t.hi));
+    if first.is_nan() || last.is_nan() {
+        return f64::NEG_INFINITY;
+    }
+    let size = |end: f64| if end.is_finite() { end.abs() } else { 0.0 };
+    lower(first.min(last) - MARGIN * (size(x) + size(y)))
 }
 
 /// The sum, rounded down unless it is exact (Knuth's two-sum tells).

@@ -1,0 +1,307 @@
+//! Recognising affine maps of the point, and boxes seen through them.
+
+use rustc_hash::FxHashMap;
+
+use super::Deriver;
+use super::ends::Ends;
+use super::zone::Zone;
+use crate::eval::{FrameValues, evaluate_frame};
+use crate::{Binary, Dim, Node, NodeId, Unary, reachable};
+
+/// `slopes · p + offset`, in scalar nodes that do not depend on p.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Form {
+    slopes: [NodeId; 3],
+    offset: NodeId,
+}
+
+/// The forms of a node's lanes, `None` where a lane is not affine.
+type Forms = [Option<Form>; 4];
+
+impl Deriver<'_> {
+    /// The point q as an affine map of the point of a level, by lane.
+    pub(super) fn affine(&mut self, q: NodeId, level: u16) -> Forms {
+        let mut known: FxHashMap<NodeId, Forms> = FxHashMap::default();
+        for id in reachable(self.graph, &[q]) {
+            let forms = self.forms(id, level, &known);
+            known.insert(id, forms);
+        }
+        known.remove(&q).unwrap_or_default()
+    }
+
+    fn forms(&mut self, id: NodeId, level: u16, known: &FxHashMap<NodeId, Forms>) -> Forms {
+        let width = self.graph.ty(id).width();
+        if self.graph.levels(id) <= level {
+            return self.lanes(width, |this, i| {
+                let offset = this.graph.lane(id, i);
+                Some(this.uniform(offset))
+            });
+        }
+        let get = |id: NodeId, lane: usize| known.get(&id).and_then(|forms| forms[lane]);
+        match self.graph.node(id) {
+            Node::Point(own, _) if own == level => self.lanes(width, |this, i| {
+                let (zero, one) = (this.graph.number(0.0), this.graph.number(1.0));
+                let mut slopes = [zero; 3];
+                slopes[i] = one;
+                Some(Form { slopes, offset: zero })
+            }),
+            Node::Unary(Unary::Neg, a) => self.lanes(width, |this, i| {
+                let minus = this.graph.number(-1.0);
+                Some(this.scaled(get(a, i)?, minus))
+            }),
+            Node::Binary(op, a, b) => self.lanes(width, |this, i| {
+                let (a, b) = (get(a, i)?, get(b, i)?);
+                if op == Binary::Add {
+                    Some(this.summed(a, b))
+                } else if op == Binary::Sub {
+                    let minus = this.graph.number(-1.0);
+                    let b = this.scaled(b, minus);
+                    Some(this.summed(a, b))
+                } else if op == Binary::Mul {
+                    this.product(a, b)
+                } else if op == Binary::Div && this.is_uniform(b) {
+                    Some(this.map(a, |this, part| this.graph.end_quotient(part, b.offset)))
+                } else {
+                    None
+                }
+            }),
+            Node::Splat(_, a) => [get(a, 0); 4],
+            Node::Compose(_, parts) => parts.map(|part| get(part, 0)),
+            Node::Swizzle(_, a, lanes) => lanes.map(|lane| get(a, usize::from(lane))),
+            Node::Transform(columns, v) => self.lanes(width, |this, row| {
+                let zero = this.graph.number(0.0);
+                let mut sum = this.uniform(zero);
+                for (j, column) in columns.into_iter().enumerate() {
+                    let term = this.product(get(column, row)?, get(v, j)?)?;
+                    sum = this.summed(sum, term);
+                }
+                Some(sum)
+            }),
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Ternary(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => [None; 4],
+        }
+    }
+
+    fn lanes(
+        &mut self,
+        width: usize,
+        mut lane: impl FnMut(&mut Self, usize) -> Option<Form>,
+    ) -> Forms {
+        let mut forms = [None; 4];
+        for (i, form) in forms.iter_mut().enumerate().take(width) {
+            *form = lane(self, i);
+        }
+        forms
+    }
+
+    fn uniform(&mut self, offset: NodeId) -> Form {
+        Form { slopes: [self.graph.number(0.0); 3], offset }
+    }
+
+    fn is_uniform(&self, form: Form) -> bool {
+        form.slopes.iter().all(|&slope| self.graph.is_number(slope, 0.0))
+    }
+
+    fn map(&mut self, form: Form, mut part: impl FnMut(&mut Self, NodeId) -> NodeId) -> Form {
+        let slopes = form.slopes.map(|slope| part(self, slope));
+        Form { slopes, offset: part(self, form.offset) }
+    }
+
+    fn scaled(&mut self, form: Form, factor: NodeId) -> Form {
+        self.map(form, |this, part| this.graph.end_product(part, factor))
+    }
+
+    fn summed(&mut self, a: Form, b: Form) -> Form {
+        let slopes = [0, 1, 2].map(|i| self.graph.end_sum(a.slopes[i], b.slopes[i]));
+        Form { slopes, offset: self.graph.end_sum(a.offset, b.offset) }
+    }
+
+    fn product(&mut self, a: Form, b: Form) -> Option<Form> {
+        if self.is_uniform(a) {
+            Some(self.scaled(b, a.offset))
+        } else if self.is_uniform(b) {
+            Some(self.scaled(a, b.offset))
+        } else {
+            None
+        }
+    }
+
+    /// A box that holds every p whose image lies in the target. Rows of one slope bound one axis each; a
+    /// square map of more is turned back whole if it is rigid or constant.
+    pub(super) fn preimage(&mut self, target: Zone, rows: &Forms, from: Dim, to: Dim) -> Zone {
+        let mut zone = Zone::everywhere(self.graph);
+        zone.tight = target.tight;
+        let width = to.point_type().width();
+        let mut mixing = false;
+        for (row, &ends) in rows.iter().zip(&target.axes).take(width) {
+            let Some(form) = *row else {
+                zone.tight = false;
+                continue;
+            };
+            let moved = self.shifted(ends, form.offset);
+            let steep = |&axis: &usize| !self.graph.is_number(form.slopes[axis], 0.0);
+            let axes: Vec<usize> = (0..3).filter(steep).collect();
+            if let [axis] = axes[..] {
+                let ends = self.divided(moved, form.slopes[axis]);
+                let mut bound = Zone::everywhere(self.graph);
+                bound.axes[axis] = ends;
+                zone = zone.overlap(self.graph, bound);
+            } else {
+                mixing |= !axes.is_empty();
+            }
+        }
+        if !mixing {
+            return zone;
+        }
+        let complete: Option<Vec<Form>> = rows[..width].iter().copied().collect();
+        let inverse = complete.filter(|_| from == to).and_then(|rows| self.inverse(&rows));
+        match (inverse, rows) {
+            (Some(inverse), &[Some(a), Some(b), c, _]) => {
+                let offsets = [a.offset, b.offset, c.map_or(a.offset, |c| c.offset)];
+                let image = self.image(target, &inverse, offsets);
+                zone.overlap(self.graph, image)
+            }
+            (None, _) | (Some(_), [..]) => zone.loose(),
+        }
+    }
+
+    fn shifted(&mut self, ends: Ends, offset: NodeId) -> Ends {
+        ends.map(|end| self.graph.end_difference(end, offset))
+    }
+
+    /// The range over a slope; all numbers where the slope may be 0.
+    fn divided(&mut self, [lo, hi]: Ends, slope: NodeId) -> Ends {
+        let range = self.range(slope);
+        let (positive, negative) = (range.lo() > 0.0, range.hi() < 0.0);
+        if !positive && !negative {
+            return self.graph.all_ends();
+        }
+        let infinite = [lo, hi].map(|end| self.graph.is_infinite(end));
+        let mut over = |end: NodeId, infinite: bool| match (infinite, positive) {
+            (true, true) => end,
+            (true, false) => self.graph.end_negated(end),
+            (false, true | false) => self.graph.end_quotient(end, slope),
+        };
+        let (a, b) = (over(lo, infinite[0]), over(hi, infinite[1]));
+        if positive { [a, b] } else { [b, a] }
+    }
+
+    /// The rows of the inverse map's linear part.
+    fn inverse(&mut self, rows: &[Form]) -> Option<Vec<[NodeId; 3]>> {
+        let n = rows.len();
+        let numbers: Option<Vec<[f64; 3]>> = rows
+            .iter()
+            .map(|row| {
+                let [x, y, z] = row.slopes.map(|slope| self.graph.as_number(slope));
+                Some([x?, y?, z?])
+            })
+            .collect();
+        if let Some(numbers) = numbers {
+            let inverse = invert(&numbers)?;
+            return Some(
+                inverse[..n].iter().map(|row| row.map(|x| self.graph.number(x))).collect(),
+            );
+        }
+        let zero = self.graph.number(0.0);
+        let transposed = |i: usize| {
+            let mut row = [zero; 3];
+            for (place, form) in row.iter_mut().zip(rows) {
+                *place = form.slopes[i];
+            }
+            row
+        };
+        self.is_rigid(rows).then(|| (0..n).map(transposed).collect())
+    }
+
+    /// Whether the rows are orthonormal whatever the params are. Their products are made of sums, products,
+    /// sines and cosines only, so they are analytic: equal to the identity at a few places that
+    /// nobody chose is equal everywhere.
+    fn is_rigid(&mut self, rows: &[Form]) -> bool {
+        let slopes: Vec<NodeId> = rows.iter().flat_map(|row| row.slopes).collect();
+        if !reachable(self.graph, &slopes).into_iter().all(|id| self.is_analytic(id)) {
+            return false;
+        }
+        let mut seed = 0x9e37_79b9_u32;
+        let mut next = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(seed >> 8) / f64::from(1 << 22) - 2.0
+        };
+        (0..6).all(|_| {
+            let params = self.ranges.params.iter().map(|_| [next(), next(), next(), next()]);
+            let frame = FrameValues { params: params.collect(), time: next(), frame: next() };
+            let values = evaluate_frame(self.graph, &slopes, &frame);
+            let entry = |i: usize, j: usize| values[3 * i + j][0];
+            let n = rows.len();
+            (0..n).all(|i| {
+                (0..n).all(|j| {
+                    let dot: f64 = (0..3).map(|k| entry(i, k) * entry(j, k)).sum();
+                    (dot - f64::from(u8::from(i == j))).abs() < 1e-9
+                })
+            })
+        })
+    }
+
+    fn is_analytic(&self, id: NodeId) -> bool {
+        match self.graph.node(id) {
+            Node::Const(_)
+            | Node::Frame(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..) => true,
+            Node::Unary(op, _) => matches!(op, Unary::Neg | Unary::Sin | Unary::Cos),
+            Node::Binary(op, ..) => matches!(op, Binary::Add | Binary::Sub | Binary::Mul),
+            Node::Point(..) | Node::Ternary(..) | Node::Sample(..) | Node::MaterialAt(..) => false,
+        }
+    }
+
+    /// The box around the target, taken back by the offsets and through a linear map.
+    fn image(&mut self, target: Zone, rows: &[[NodeId; 3]], offsets: [NodeId; 3]) -> Zone {
+        let mut zone = Zone::everywhere(self.graph);
+        zone.tight = target.tight;
+        let sides = [0, 1, 2].map(|j| self.shifted(target.axes[j], offsets[j]));
+        for (axis, row) in zone.axes.iter_mut().zip(rows) {
+            let zero = self.graph.number(0.0);
+            let mut sum = [zero; 2];
+            for (&factor, ends) in row.iter().zip(sides).take(rows.len()) {
+                let [lo, hi] = self.multiplied(ends, factor);
+                sum = [self.graph.end_sum(sum[0], lo), self.graph.end_sum(sum[1], hi)];
+            }
+            *axis = sum;
+        }
+        zone
+    }
+
+    fn multiplied(&mut self, [lo, hi]: Ends, factor: NodeId) -> Ends {
+        let unbounded = [lo, hi].into_iter().any(|end| self.graph.is_infinite(end));
+        if unbounded && self.graph.as_number(factor).is_none() {
+            return self.graph.all_ends();
+        }
+        let (a, b) = (self.graph.end_product(lo, factor), self.graph.end_product(hi, factor));
+        [self.graph.end_min(a, b), self.graph.end_max(a, b)]
+    }
+}
+
+/// The inverse of a map of 2 or 3 rows, the identity beyond them; `None` if it flattens.
+fn invert(rows: &[[f64; 3]]) -> Option<[[f64; 3]; 3]> {
+    let mut m = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for (place, row) in m.iter_mut().zip(rows) {
+        *place = *row;
+    }
+    // Cofactors, cyclic indices giving their signs.
+    let cofactor = |i: usize, j: usize| {
+        let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+        m[a][c] * m[b][d] - m[a][d] * m[b][c]
+    };
+    let determinant: f64 = (0..3).map(|j| m[0][j] * cofactor(0, j)).sum();
+    let size = m.iter().flatten().fold(0.0_f64, |size, x| size.max(x.abs()));
+    if determinant.abs() <= 1e-9 * size.powi(3) {
+        return None;
+    }
+    Some([0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactor(j, i) / determinant)))
+}

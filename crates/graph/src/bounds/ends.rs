@@ -1,0 +1,160 @@
+//! Ends of ranges as nodes. Constants may be infinite here, which folding elsewhere leaves alone.
+
+use crate::eval::Number;
+use crate::{Binary, Graph, Node, NodeId};
+
+/// A range from a lower to an upper end, both scalar nodes.
+pub(super) type Ends = [NodeId; 2];
+
+impl Graph {
+    /// All numbers.
+    pub(super) fn all_ends(&mut self) -> Ends {
+        [self.number(f64::NEG_INFINITY), self.number(f64::INFINITY)]
+    }
+
+    /// One component of a vector, looking through what it was composed of.
+    pub(super) fn lane(&mut self, vector: NodeId, lane: usize) -> NodeId {
+        match self.node(vector) {
+            Node::Const(value) if value.ty().width() > 1 => self.number(value.lanes()[lane]),
+            Node::Compose(_, parts) => parts[lane],
+            Node::Splat(_, part) => part,
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => self.component(vector, lane as u8),
+        }
+    }
+
+    /// Whether the node is this constant.
+    pub(super) fn is_number(&self, id: NodeId, value: f64) -> bool {
+        self.as_number(id) == Some(value)
+    }
+
+    /// Whether the node is an infinite constant.
+    pub(super) fn is_infinite(&self, id: NodeId) -> bool {
+        self.as_number(id).is_some_and(f64::is_infinite)
+    }
+
+    /// `a + b`; infinite if either is.
+    pub(super) fn end_sum(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b)) {
+            self.number(x + y)
+        } else if self.is_infinite(a) || self.is_number(b, 0.0) {
+            a
+        } else if self.is_infinite(b) || self.is_number(a, 0.0) {
+            b
+        } else {
+            self.add(a, b)
+        }
+    }
+
+    /// `-a`
+    pub(super) fn end_negated(&mut self, a: NodeId) -> NodeId {
+        match self.as_number(a) {
+            Some(x) => self.number(-x),
+            None => self.neg(a),
+        }
+    }
+
+    /// `a - b`
+    pub(super) fn end_difference(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.as_number(b).is_none() && !self.is_infinite(a) && !self.is_number(a, 0.0) {
+            return self.sub(a, b);
+        }
+        let b = self.end_negated(b);
+        self.end_sum(a, b)
+    }
+
+    /// `a * b`; 0 if either is.
+    pub(super) fn end_product(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if self.is_number(a, 0.0) || self.is_number(b, 0.0) {
+            return self.number(0.0);
+        }
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b)) {
+            self.number(x * y)
+        } else if self.is_number(a, 1.0) {
+            b
+        } else if self.is_number(b, 1.0) {
+            a
+        } else {
+            self.mul(a, b)
+        }
+    }
+
+    /// `a / b` for a b that is not 0.
+    pub(super) fn end_quotient(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b)) {
+            return self.number(x / y);
+        }
+        if self.is_number(a, 0.0) || self.is_number(b, 1.0) {
+            return a;
+        }
+        match self.node(b) {
+            Node::Binary(Binary::Div, one, by) if self.is_number(one, 1.0) => {
+                self.end_product(a, by)
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => self.div(a, b),
+        }
+    }
+
+    /// The lesser of two ends.
+    pub(super) fn end_min(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        match (self.as_number(a), self.as_number(b)) {
+            (Some(x), Some(y)) => self.number(Number::min(x, y)),
+            (Some(x), _) if x.is_infinite() => {
+                if x < 0.0 {
+                    a
+                } else {
+                    b
+                }
+            }
+            (_, Some(y)) if y.is_infinite() => {
+                if y < 0.0 {
+                    b
+                } else {
+                    a
+                }
+            }
+            (Some(_) | None, Some(_) | None) => self.min(a, b),
+        }
+    }
+
+    /// The greater of two ends.
+    pub(super) fn end_max(&mut self, a: NodeId, b: NodeId) -> NodeId {
+        match (self.as_number(a), self.as_number(b)) {
+            (Some(x), Some(y)) => self.number(Number::max(x, y)),
+            (Some(x), _) if x.is_infinite() => {
+                if x > 0.0 {
+                    a
+                } else {
+                    b
+                }
+            }
+            (_, Some(y)) if y.is_infinite() => {
+                if y > 0.0 {
+                    b
+                } else {
+                    a
+                }
+            }
+            (Some(_) | None, Some(_) | None) => self.max(a, b),
+        }
+    }
+}

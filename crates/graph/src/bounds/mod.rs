@@ -1,0 +1,157 @@
+//! Where shapes lie: stated bounds, or bounds derived from formulas.
+//!
+//! What a shape states is taken. Otherwise its formula is asked where it does not exceed 0, by rules that
+//! keep per-frame values: hull for `min`, overlap for `max`, a limit that travels through sums, factors and
+//! signs, and boxes seen through affine maps of the point. An operator without a rule (a smooth blend) is shown
+//! to stay positive wherever its samples are far enough from their surfaces. A leaf that states nothing is searched by
+//! interval exclusion: half-spaces first, then slabs that move the faces inwards. The result of a rule that
+//! gave something away is tightened in the same manner, on the whole formula.
+//!
+//! Every step is sound for all values that the params can take; numbers are computed in f64, whose rounding
+//! symbolic faces may carry. A face that cannot be found is infinite.
+
+mod affine;
+mod ends;
+mod level_set;
+mod opaque;
+mod search;
+mod zone;
+
+use rustc_hash::FxHashMap;
+
+use self::level_set::Question;
+use self::zone::Zone;
+use crate::eval::{FrameValues, Interval, Number, direct};
+use crate::{
+    Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
+};
+
+/// Derives the bounds of shapes of one arena, each once. It must not be used with another arena.
+#[derive(Debug)]
+pub struct Bounds {
+    ranges: FrameValues<Interval>,
+    memo: Memo,
+    known: FxHashMap<ShapeId, [NodeId; 2]>,
+}
+
+/// What was found on the way.
+#[derive(Debug, Default)]
+struct Memo {
+    shapes: FxHashMap<(ShapeId, NodeId), Zone>,
+    questions: FxHashMap<Question, Zone>,
+    expander: Expander,
+}
+
+/// A derivation under way.
+struct Deriver<'b> {
+    graph: &'b mut Graph,
+    ranges: &'b FrameValues<Interval>,
+    memo: &'b mut Memo,
+}
+
+/// The bounds of one shape; see [`Bounds::of`].
+pub fn bounds(graph: &mut Graph, shape: ShapeId, params: &[Param]) -> [NodeId; 2] {
+    Bounds::new(params).of(graph, shape)
+}
+
+impl Bounds {
+    /// Nothing derived yet. Bounds will hold for all values in the params' ranges; a number without a range
+    /// can be any.
+    pub fn new(params: &[Param]) -> Self {
+        let ranges = FrameValues {
+            params: params.iter().map(|param| [range_of(param); 4]).collect(),
+            time: Interval::ENTIRE,
+            frame: Interval::ENTIRE,
+        };
+        Self { ranges, memo: Memo::default(), known: FxHashMap::default() }
+    }
+
+    /// The lowest and highest corner of a box that holds the shape: vectors of its dimension and of stage `Const`
+    /// or `Frame`. A component is infinite where the box is open; `lo > hi` in any component means that there is
+    /// nothing. A shape whose arguments depend on outer points gets a box for all of them.
+    pub fn of(&mut self, graph: &mut Graph, shape: ShapeId) -> [NodeId; 2] {
+        if let Some(&known) = self.known.get(&shape) {
+            return known;
+        }
+        let mut deriver = Deriver { graph, ranges: &self.ranges, memo: &mut self.memo };
+        let corners = deriver.corners(shape);
+        self.known.insert(shape, corners);
+        corners
+    }
+}
+
+/// The values that a param can take.
+fn range_of(param: &Param) -> Interval {
+    match (param.range, param.kind) {
+        (Some([lo, hi]), _) => Interval::new(lo, hi),
+        (None, ParamKind::Bool | ParamKind::Color) => Interval::new(0.0, 1.0),
+        (None, ParamKind::Choice) => {
+            Interval::new(0.0, param.choices.len().saturating_sub(1) as f64)
+        }
+        (None, ParamKind::Number | ParamKind::Int | ParamKind::Angle) => Interval::ENTIRE,
+    }
+}
+
+impl Deriver<'_> {
+    fn corners(&mut self, shape: ShapeId) -> [NodeId; 2] {
+        let zero = self.graph.number(0.0);
+        let mut zone = self.shape_zone(shape, zero);
+        if !zone.tight {
+            let start = zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()]);
+            let region = self.tightened(shape, start);
+            let found = Zone::of_numbers(self.graph, region);
+            zone = zone.overlap(self.graph, found);
+        }
+        let axes = zone.axes.map(|[lo, hi]| {
+            let (lowest, highest) = (self.range(lo).lo(), self.range(hi).hi());
+            [self.per_frame(lo, lowest), self.per_frame(hi, highest)]
+        });
+        let dim = self.graph.shape(shape).dim;
+        [0, 1].map(|side| self.vector(dim, axes.map(|ends| ends[side])))
+    }
+
+    /// The end itself, or what bounds it if it is not known per frame.
+    fn per_frame(&mut self, end: NodeId, bound: f64) -> NodeId {
+        let undefined = self.graph.as_number(end).is_some_and(f64::is_nan);
+        if undefined || self.graph.stage(end) == Stage::Point {
+            self.graph.number(bound)
+        } else {
+            end
+        }
+    }
+
+    fn vector(&mut self, dim: Dim, parts: [NodeId; 3]) -> NodeId {
+        let (ty, parts) = (dim.point_type(), &parts[..dim.point_type().width()]);
+        let numbers: Option<Vec<f64>> =
+            parts.iter().map(|&part| self.graph.as_number(part)).collect();
+        match numbers {
+            Some(numbers) => self.graph.constant(ty, &numbers),
+            None => self.graph.compose(parts),
+        }
+    }
+
+    /// The values that a scalar or truth value can take, whatever the point.
+    fn range(&self, node: NodeId) -> Interval {
+        if let Some(number) = self.graph.as_number(node) {
+            return Interval::constant(number);
+        }
+        let graph = &*self.graph;
+        let order =
+            reachable_where(graph, &[node], |id| !matches!(graph.node(id), Node::Sample(..)));
+        direct::evaluate(graph, &order, |id| self.input(id))
+    }
+
+    /// Whether a condition holds for all values of the params.
+    fn is_true(&self, condition: NodeId) -> bool {
+        self.range(condition).lo() > 0.0
+    }
+
+    /// The lanes of a node that is no operation, whatever the point.
+    fn input(&self, id: NodeId) -> [Interval; 4] {
+        if let Node::Frame(input, _) = self.graph.node(id) {
+            [0, 1, 2, 3].map(|lane| self.ranges.lane(input, lane))
+        } else {
+            [Interval::ENTIRE; 4]
+        }
+    }
+}
