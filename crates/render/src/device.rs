@@ -8,9 +8,6 @@ use std::{
 
 use crate::RenderError;
 
-/// A tile that takes longer is given up.
-const PATIENCE: Duration = Duration::from_secs(300);
-
 /// An open device without a window.
 ///
 /// All errors of its calls come back as [`RenderError`]: those of the calling thread through error
@@ -121,16 +118,18 @@ impl Gpu {
         }
     }
 
-    /// Waits until the device has done all that was submitted.
-    pub(crate) fn wait(&self) -> Result<(), RenderError> {
-        let poll = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+    /// Waits until the device has done all that was submitted, or the time is over.
+    pub(crate) fn wait(&self, patience: Option<Duration>) -> Result<(), RenderError> {
+        let poll = wgpu::PollType::Wait { submission_index: None, timeout: patience };
         // wgpu panics where the device is lost while it is waited for; nothing of this crate is
         // left half-changed by that, since results are read only after the wait.
         let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(poll)));
         self.faults.check()?;
         match polled {
             Ok(Ok(_)) => Ok(()),
-            Ok(Err(wgpu::PollError::Timeout)) => Err(RenderError::Stalled(PATIENCE.as_secs())),
+            Ok(Err(wgpu::PollError::Timeout)) => {
+                Err(RenderError::Stalled(patience.map_or(0, |time| time.as_secs())))
+            }
             Ok(Err(error)) => Err(RenderError::DeviceLost(error.to_string())),
             Err(_) => Err(RenderError::DeviceLost("while waiting for it".to_owned())),
         }

@@ -1,6 +1,11 @@
 //! Drawing a frame on the GPU: one compute dispatch a tile, read back tile by tile.
 
-use std::{borrow::Cow, num::NonZero, sync::mpsc, time::Instant};
+use std::{
+    borrow::Cow,
+    num::NonZero,
+    sync::mpsc,
+    time::{Duration, Instant},
+};
 
 use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
@@ -13,6 +18,8 @@ use crate::{
 const WORKGROUP: u32 = 8;
 /// Most pixels of a tile: 32 MiB to read back.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
+/// A tile that takes longer is given up.
+const PATIENCE: Duration = Duration::from_secs(300);
 /// Bytes of the two timestamps about a pass.
 const TIMESTAMP_BYTES: u64 = 16;
 
@@ -135,7 +142,9 @@ impl Pipeline {
         let mut run = Run::new(self, &uniforms)?;
         run.make_room(WORKGROUP * WORKGROUP)?;
         let empty = vec![0; VIEW_BYTES];
-        run.submit(&empty, [1, 1], 0)
+        run.submit(&empty, [1, 1], 0)?;
+        // Compiling thousands of leaves can take a software driver many minutes.
+        self.gpu.wait(None)
     }
 }
 
@@ -230,7 +239,7 @@ impl<'a> Run<'a> {
         self.read(tile, image)
     }
 
-    /// Runs workgroups and copies the pixels that they made.
+    /// Hands in workgroups, and the copying of the pixels that they make.
     fn submit(&self, view: &[u8], groups: [u32; 2], pixels: u32) -> Result<(), RenderError> {
         let Some(buffers) = &self.pixels else { return Ok(()) };
         let gpu = &self.pipeline.gpu;
@@ -252,8 +261,7 @@ impl<'a> Run<'a> {
                 timestamps.resolve(&mut encoder, &buffers.staging, bytes);
             }
             gpu.queue.submit([encoder.finish()]);
-        })?;
-        gpu.wait()
+        })
     }
 
     /// Reads the pixels of a tile, and its time.
@@ -268,7 +276,7 @@ impl<'a> Run<'a> {
                 let _ = sender.send(result);
             });
         })?;
-        self.pipeline.gpu.wait()?;
+        self.pipeline.gpu.wait(Some(PATIENCE))?;
         let refused = |detail: String| RenderError::DeviceLost(format!("reading a tile: {detail}"));
         match receiver.try_recv() {
             Ok(Ok(())) => {}
