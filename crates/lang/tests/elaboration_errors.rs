@@ -41,6 +41,8 @@ shows! {
     shapes_nested_too_deep:
         "fn chain(n: int) -> solid = if n == 0 { sphere(1) } else { chain(n - 1).round(0.1) }\nfn long(n: int, a: solid) -> solid = if n == 0 { a } else { long(n - 1, a.round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1)) }\nlong(60, chain(10))\n";
     too_many_rounds: "sphere(iterate(5000, 1, fn(s) = s))\n";
+    an_infinite_radius: "let r = inf\nsphere(r)\n";
+    a_list_too_short: "solid it() = min([for x in [1] if x > 2: x])\nit()\n";
     settings_of_a_later_version: "sphere(1)\nreflections(count: 2)\nsun(shadow: soft(8))\n";
     settings_out_of_range: "sphere(1)\nmarch(steps: 0, method: \"spere\")\n";
 }

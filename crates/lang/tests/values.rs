@@ -131,3 +131,44 @@ fn recursion_ends_at_compile_time() {
     let text = "fn tower(n: int) -> solid = if n == 0 { sphere(1) } else { tower(n - 1).translate(y: 2) }\ntower(5)";
     assert_at(text, &[([0.0, 10.0, 0.0], -1.0)]);
 }
+
+#[test]
+fn colours_become_linear() {
+    // In a shape's formula a colour's channels can be looked at like any vector's.
+    let assert_color = |color: &str, expected: [f64; 4]| {
+        for (lane, expected) in ["r", "g", "b", "a"].into_iter().zip(expected) {
+            let found = Field::drawn(&format!("solid it() = {color}.{lane}\nit()")).at([0.0; 3]);
+            assert!((found - expected).abs() < 1e-6, "{color}.{lane}: {found}, not {expected}");
+        }
+    };
+    assert_color("#f80", [1.0, 0.246_201_3, 0.0, 1.0]);
+    assert_color("rgb(1, 0.533333333, 0)", [1.0, 0.246_201_3, 0.0, 1.0]);
+    assert_color("rgb(0.02, 0, 0, 0.5)", [0.02 / 12.92, 0.0, 0.0, 0.5]);
+    assert_color("hsv(0, 1, 1)", [1.0, 0.0, 0.0, 1.0]);
+    assert_color("hsv(1 / 3, 1, 1)", [0.0, 1.0, 0.0, 1.0]);
+    assert_color("hsv(2 / 3, 1, 1)", [0.0, 0.0, 1.0, 1.0]);
+    assert_color("hsv(0.2, 0, 1)", [1.0, 1.0, 1.0, 1.0]);
+    assert_color("hsv(1 / 6, 1, 0.5)", [0.214_041_1, 0.214_041_1, 0.0, 1.0]);
+    // Ottosson's own table: the hue and chroma of sRGB red.
+    assert_color("oklch(0.6279554, 0.2576833, 29.2338804deg)", [1.0, 0.0, 0.0, 1.0]);
+    assert_color("oklch(1, 0, 0)", [1.0, 1.0, 1.0, 1.0]);
+}
+
+#[test]
+fn hashes_are_spread_over_0_to_1_and_depend_on_every_argument() {
+    let value =
+        |expression: &str| Field::drawn(&format!("solid it() = {expression}\nit()")).at([0.0; 3]);
+    let values: Vec<f64> = (0..100).map(|i| value(&format!("hash({i})"))).collect();
+    assert!(values.iter().all(|value| (0.0..1.0).contains(value)));
+    let mean = values.iter().sum::<f64>() / 100.0;
+    assert!((mean - 0.5).abs() < 0.1, "{mean}");
+    assert_eq!(value("hash(1.9)"), value("hash(1)"), "the whole part counts");
+    assert_ne!(value("hash(1, 2)"), value("hash(2, 1)"));
+    assert_ne!(value("hash3(1).x"), value("hash3(1).y"));
+}
+
+#[test]
+fn ten_thousand_shapes_are_one_union() {
+    let text = "union(for i in 0..10000: sphere(0.1).translate(x: i))";
+    assert_at(text, &[([9999.0, 0.0, 0.0], -0.1)]);
+}

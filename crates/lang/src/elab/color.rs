@@ -1,4 +1,4 @@
-//! `rgb`, `hsv`, `oklch`: numbers to linear colours.
+//! `rgb`, `hsv`, `oklch`: numbers and alpha to linear colours.
 
 use sdfc_graph::{NodeId, Unary};
 
@@ -20,15 +20,15 @@ const CONES_TO_LINEAR: [[f64; 3]; 3] = [
 ];
 
 impl<'p> Elaborator<'p> {
-    /// `rgb(red, green, blue)`, each 0..1 and sRGB as colours are written.
+    /// `rgb(red, green, blue, alpha)`, each 0..1 and sRGB as colours are written.
     pub(super) fn rgb(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let channels = self.numbers(env, at.args)?;
-        self.opaque(at, channels.map(Channel::Srgb))
+        let [red, green, blue, alpha] = self.numbers(env, at.args)?;
+        self.joined(at, [red, green, blue].map(Channel::Srgb), alpha)
     }
 
-    /// `hsv(hue, saturation, value)`, each 0..1: a hue of 1 is a full turn.
+    /// `hsv(hue, saturation, value, alpha)`, each 0..1: a hue of 1 is a full turn.
     pub(super) fn hsv(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let [hue, saturation, value] = self.numbers(env, at.args)?;
+        let [hue, saturation, value, alpha] = self.numbers(env, at.args)?;
         let channels = [1.0, 2.0 / 3.0, 1.0 / 3.0].map(|shift| {
             // value * (1 - saturation * (1 - saturate(|6 fract(hue + shift) - 3| - 1)))
             let graph = &mut self.graph;
@@ -45,12 +45,13 @@ impl<'p> Elaborator<'p> {
             let share = graph.sub(one, lack);
             Channel::Srgb(graph.mul(value, share))
         });
-        self.opaque(at, channels)
+        self.joined(at, channels, alpha)
     }
 
-    /// `oklch(lightness, chroma, hue)`: lightness 0..1, hue an angle; clipped to what a screen shows.
+    /// `oklch(lightness, chroma, hue, alpha)`: lightness 0..1, hue an angle; clipped to what a
+    /// screen shows.
     pub(super) fn oklch(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let [lightness, chroma, hue] = self.numbers(env, at.args)?;
+        let [lightness, chroma, hue, alpha] = self.numbers(env, at.args)?;
         let [cosine, sine] = [Unary::Cos, Unary::Sin].map(|op| self.graph.unary(op, hue));
         let (a, b) = (self.graph.mul(chroma, cosine), self.graph.mul(chroma, sine));
         let cones = OKLAB_TO_CONES.map(|row| {
@@ -62,7 +63,7 @@ impl<'p> Elaborator<'p> {
             let channel = self.weighted(row, cones);
             Channel::Linear(self.graph.unary(Unary::Saturate, channel))
         });
-        self.opaque(at, channels)
+        self.joined(at, channels, alpha)
     }
 
     fn weighted(&mut self, weights: [f64; 3], values: [NodeId; 3]) -> NodeId {
@@ -75,13 +76,17 @@ impl<'p> Elaborator<'p> {
         sum
     }
 
-    fn opaque(&mut self, at: Application<'p>, channels: [Channel; 3]) -> Outcome<Value<'p>> {
+    fn joined(
+        &mut self,
+        at: Application<'p>,
+        channels: [Channel; 3],
+        alpha: NodeId,
+    ) -> Outcome<Value<'p>> {
         let [red, green, blue] = channels.map(|channel| match channel {
             Channel::Linear(node) => node,
             Channel::Srgb(node) => self.decode(node),
         });
-        let one = self.graph.number(1.0);
-        let color = self.graph.compose(&[red, green, blue, one]);
+        let color = self.graph.compose(&[red, green, blue, alpha]);
         self.checked(at, &[], color)
     }
 

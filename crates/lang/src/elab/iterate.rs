@@ -1,12 +1,13 @@
 //! `iterate`, the one loop: unrolled.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{FrameInput, Node, NodeId};
+use sdfc_graph::{NodeId, Stage};
 
+use super::expr::node_type;
 use super::report::show_number;
-use super::value::{Closure, Code, Value};
+use super::value::{Closure, Value};
 use super::{Elaborator, Env, MAX_ROUNDS, Outcome};
-use crate::hir::Expr;
+use crate::hir::{Expr, Type};
 
 /// What the rounds run over.
 struct Rounds<'p> {
@@ -28,9 +29,9 @@ impl<'p> Elaborator<'p> {
         };
         let rounds = self.rounds(env, over)?;
         let mut state = self.eval(env, start)?;
+        let with_item = matches!(&step.ty, Type::Fn(takes, _) if takes.len() == 2);
         let step = self.function(env, step)?;
         let go_on = rest.first().map(|expr| self.function(env, expr)).transpose()?;
-        let with_item = self.arity(&step) == 2;
         // Whether the loop is still running, where that is not known to be so.
         let mut running: Option<NodeId> = None;
         for (round, item) in rounds.items.into_iter().enumerate() {
@@ -70,9 +71,12 @@ impl<'p> Elaborator<'p> {
     }
 
     fn rounds(&mut self, env: &mut Env<'p>, over: &'p Expr) -> Outcome<Rounds<'p>> {
-        if crate::elab::expr::node_type(&over.ty).is_none() {
+        if node_type(&over.ty).is_none() {
             let items = self.sequence(env, over, "what `iterate` runs over")?;
-            self.check_rounds(items.len() as f64, over.span)?;
+            // The elements of a list were made one by one; a range can be long in few words.
+            if matches!(over.ty, Type::Range(_)) {
+                self.check_rounds(items.len() as f64, over.span)?;
+            }
             return Ok(Rounds { items, limit: None });
         }
         let count = self.number(env, over)?;
@@ -86,13 +90,11 @@ impl<'p> Elaborator<'p> {
         Ok(Rounds { items, limit })
     }
 
-    /// The upper end of a param with a range.
+    /// The most that a moving count can be, by the ranges of the params in it.
     fn highest(&mut self, count: NodeId, span: Span) -> Outcome<f64> {
-        if let Node::Frame(FrameInput::Param(index), _) = self.graph.node(count) {
-            let range = self.params.get(index as usize).and_then(|param| param.range);
-            if let Some([_, hi]) = range.filter(|[_, hi]| hi.is_finite()) {
-                return Ok(hi);
-            }
+        let highest = self.graph.range(count).hi;
+        if highest.is_finite() && self.graph.stage(count) == Stage::Frame {
+            return Ok(highest.floor());
         }
         let what = "the most rounds that `iterate` may run";
         Err(self.not_constant(span, what, count))
@@ -113,16 +115,6 @@ impl<'p> Elaborator<'p> {
         match self.eval(env, expr)? {
             Value::Closure(closure) => Ok(closure),
             other => Err(self.unexpected(expr.span, "a function", &other)),
-        }
-    }
-
-    fn arity(&self, closure: &Closure<'p>) -> usize {
-        match closure.code {
-            Code::Lambda(lambda) => lambda.parameters.len(),
-            Code::Function(id) => {
-                self.program.functions.get(id.0 as usize).map_or(1, |f| f.parameters.len())
-            }
-            Code::Constant => 1,
         }
     }
 }

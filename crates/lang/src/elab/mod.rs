@@ -43,7 +43,7 @@ pub const MAX_STEPS: u64 = 10_000_000;
 pub const MAX_RECURSION: u32 = 64;
 /// Longest chain of shapes within shapes.
 pub const MAX_DEPTH: u32 = 1024;
-/// Rounds of one `iterate`.
+/// Rounds of one `iterate` over a count or a range; over a list there is one per element.
 pub const MAX_ROUNDS: usize = 4096;
 
 /// A scene's graph with the way back to its text.
@@ -72,6 +72,7 @@ pub struct Site {
 pub fn elaborate(program: &hir::Program) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let mut elaborator = Elaborator::new(program);
     let scene = elaborator.scene();
+    elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let elaborated = Elaborated { scene, sites: elaborator.sites };
     ((!failed).then_some(elaborated), elaborator.diagnostics)
@@ -130,6 +131,8 @@ struct Elaborator<'p> {
     steps: u64,
     /// A limit was reached.
     stopped: bool,
+    /// The first place whose value is missing from the scene.
+    missing: Option<Span>,
     /// Within a clause, where infinite values mean "not known".
     in_clause: bool,
 }
@@ -151,6 +154,7 @@ impl<'p> Elaborator<'p> {
             reported: FxHashSet::default(),
             steps: 0,
             stopped: false,
+            missing: None,
             in_clause: false,
         }
     }

@@ -68,6 +68,18 @@ impl<'p> Elaborator<'p> {
         Poison
     }
 
+    /// A value is missing without an error only where the checker let something pass that it
+    /// should have refused: better an error here than a picture without the value.
+    pub(super) fn explain_silence(&mut self) {
+        if let Some(span) = self.missing
+            && !sdfc_diagnostics::has_errors(&self.diagnostics)
+        {
+            let message =
+                "this could not be elaborated, for a reason that should have been found before";
+            self.fail(Code::TYPE_MISMATCH, span, message);
+        }
+    }
+
     /// The scene's innermost place that leads to a span: itself, or the call that entered the library.
     pub(super) fn user_span(&self, span: Span) -> Span {
         if !self.is_library(span) {

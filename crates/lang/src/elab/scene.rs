@@ -37,8 +37,9 @@ impl<'p> Elaborator<'p> {
         let program = self.program;
         let mut shapes = Vec::with_capacity(program.drawn.len());
         for expr in &program.drawn {
-            if let Ok(value) = self.eval(&mut Env::new(program.locals), expr) {
-                shapes.push((value, expr.span));
+            match self.eval(&mut Env::new(program.locals), expr) {
+                Ok(value) => shapes.push((value, expr.span)),
+                Err(Poison) => self.missing = self.missing.or(Some(expr.span)),
             }
         }
         let (first, span) = shapes.first()?.clone();
@@ -48,7 +49,10 @@ impl<'p> Elaborator<'p> {
         let parts = Value::List(shapes.into_iter().map(|(value, _)| value).collect());
         match self.instance(program.union?, vec![Some((parts, span))], span) {
             Ok(Value::Shape(shape)) => Some(shape),
-            Ok(_) | Err(Poison) => None,
+            Ok(_) | Err(Poison) => {
+                self.missing = self.missing.or(Some(span));
+                None
+            }
         }
     }
 

@@ -23,8 +23,9 @@ impl<'p> Elaborator<'p> {
     pub(super) fn settings(&mut self) -> Settings {
         let mut settings = Settings::default();
         for setting in &self.program.settings {
-            // An error was reported; the other settings may have more.
-            let _ = self.setting(setting, &mut settings);
+            if self.setting(setting, &mut settings).is_err() {
+                self.missing = self.missing.or(Some(setting.span));
+            }
         }
         settings
     }

@@ -101,7 +101,14 @@ impl<'p> Elaborator<'p> {
 
     /// Adds an instance whose children are yet to be found.
     pub(super) fn add_shape(&mut self, mut shape: Shape, span: Span) -> Outcome<Value<'p>> {
-        shape.children = children(&self.graph, shape.formula);
+        let formula = survey(&self.graph, shape.formula);
+        if formula.infinite {
+            let message = format!("`{}` computes with an infinite value here", shape.definition);
+            let help = "no shader can hold one; give a large number instead";
+            let error = Diagnostic::error(ErrorCode::NOT_FINITE, span, message).help(help);
+            return Err(self.report(error));
+        }
+        shape.children = formula.children;
         let deepest = shape.children.iter().map(|&child| self.graph.shape(child).depth).max();
         shape.depth = 1 + deepest.unwrap_or(0);
         if shape.depth > MAX_DEPTH {
@@ -210,22 +217,33 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// The shapes that a formula samples, in order of first use.
-fn children(graph: &Graph, formula: NodeId) -> Vec<ShapeId> {
+/// What a walk over a formula finds.
+#[derive(Default)]
+struct Formula {
+    /// The shapes that it samples, in order of first use.
+    children: Vec<ShapeId>,
+    /// Whether it computes with a constant that is not finite.
+    infinite: bool,
+}
+
+fn survey(graph: &Graph, root: NodeId) -> Formula {
+    let mut found = Formula::default();
     let mut seen: FxHashSet<NodeId> = FxHashSet::default();
-    let mut found_before: FxHashSet<ShapeId> = FxHashSet::default();
-    let mut found = Vec::new();
-    let mut stack = vec![formula];
+    let mut known: FxHashSet<ShapeId> = FxHashSet::default();
+    let mut stack = vec![root];
     while let Some(id) = stack.pop() {
+        if let Some(value) = graph.as_const(id) {
+            found.infinite |= value.lanes().iter().any(|lane| !lane.is_finite());
+        }
         // Only what depends on a point can hold a sample.
         if graph.stage(id) != Stage::Point || !seen.insert(id) {
             continue;
         }
         let node = graph.node(id);
         if let Node::Sample(child, _) | Node::MaterialAt(child, ..) = node
-            && found_before.insert(child)
+            && known.insert(child)
         {
-            found.push(child);
+            found.children.push(child);
         }
         let arguments: Vec<NodeId> = node.arguments().collect();
         stack.extend(arguments.into_iter().rev());
