@@ -3,7 +3,8 @@
 
 mod common;
 
-use common::Library;
+use common::verify::verify;
+use common::{Library, printed};
 use sdfc_diagnostics::render;
 
 #[test]
@@ -12,6 +13,7 @@ fn every_library_entry_checks_in_both_dimensions() {
     let (program, found) = library.check_all();
     assert!(found.is_empty(), "{}", render(&library.sources, &found, false));
     assert!(program.shapes.len() > 20);
+    verify(&program);
 }
 
 #[test]
@@ -20,4 +22,66 @@ fn a_scene_reaches_only_what_it_needs() {
     assert!(found.is_empty());
     let names: Vec<&str> = program.shapes.iter().map(|shape| shape.name.as_str()).collect();
     assert_eq!(names, ["union", "sphere"]);
+}
+
+/// The scenes of the repository; later ones may warn, none may be wrong.
+#[test]
+fn all_example_scenes_check() {
+    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let library = Library::new();
+    let mut folders = vec![std::path::PathBuf::from(examples)];
+    let mut seen = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("the examples") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "sdf") {
+                let text = std::fs::read_to_string(&path).expect("a scene");
+                let (program, found, rendered) = library.check(&text);
+                assert!(found.is_empty(), "{}\n{rendered}", path.display());
+                verify(&program);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 10);
+}
+
+#[test]
+fn the_typed_program_of_a_blend() {
+    insta::assert_snapshot!(printed(
+        "param k = 0.4 in 0..1
+let ball = sphere(0.8).translate(y: 1)
+union(ball, box(2), blend: smooth(k)).rotate(y: 30deg) - ball
+camera(eye: [4, 3, 5], fov: 35deg)"
+    ));
+}
+
+#[test]
+fn captures_come_first_and_through_every_level() {
+    insta::assert_snapshot!(printed(
+        "solid bumpy(a: solid, h = 0.1) = {
+  let n = 8
+  let out = fn(q: vec3) = {
+    let wave = fn(t) = h * sin(n * t) + q.y
+    wave(q.x) + p.z
+  }
+  a(p) - out(p)
+}
+bumpy(sphere())"
+    ));
+}
+
+#[test]
+fn coercions_are_written_out() {
+    insta::assert_snapshot!(printed(
+        "fn far(a: vec3 = 1, f: fn(vec3) -> vec3 = 2, l: [vec2] = [1, [2, 3]]) = length(a + 1 - f(0))
+shape grow(a: shape, by: fn(point) -> length) bounds -1..bounds(a).hi = a(p) - by(p)
+let list = [for i in 0..3: 0.1 * i]
+let range = 0..2
+fn ends(r: range) = r.lo
+circle(far(l: [list[0], 1])).grow(fn(q) = q.x).grow(ends(range)).grow(length).extrude()
+sphere(min(list)).color(#f00 * 0.5)"
+    ));
 }

@@ -31,7 +31,6 @@ impl<'a> Checker<'a> {
         let mut values = Vec::with_capacity(lets.len());
         for item in lets {
             let name = &item.name;
-            self.forbid_point(&name.text, name.span);
             let value = self.infer(&item.value);
             let local = self.body.declare(&name.text, value.ty.clone(), name.span);
             values.push((local, name.text.clone(), value));

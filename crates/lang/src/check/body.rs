@@ -146,12 +146,4 @@ impl<'a> Checker<'a> {
             );
         }
     }
-
-    /// Reports a variable named `p` in a shape, where `p` is the point.
-    pub(super) fn forbid_point(&mut self, name: &str, span: Span) {
-        if name == "p" && self.body.point.is_some() {
-            let message = "`p` is the point of the formula and cannot be declared here";
-            self.report(Diagnostic::error(Code::RESERVED, span, message).help("rename it: q"));
-        }
-    }
 }

@@ -2,14 +2,13 @@
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
-use super::call::{Callee, Given, Value, count};
-use super::coerce::{Role, bind, has_no_need_of_a_unit};
+use super::call::{Callee, Given, count};
 use super::decl::Slot;
-use super::kernel::{Builtin, Math, MathResult};
+use super::kernel::Builtin;
 use super::operators::as_type;
-use super::types::{self, describe, is_numeric, is_scalar, lanes};
+use super::types::{self, describe, is_scalar, lanes};
 use super::{Checker, poison};
-use crate::hir::{Element, Expr, ExprKind, Kernel, MaterialField, Type};
+use crate::hir::{Expr, ExprKind, Kernel, MaterialField, Type};
 
 /// What a material is where nothing else is said: a light, matt, non-metallic grey that gives
 /// off no light and is not occluded.
@@ -25,12 +24,18 @@ const FIELDS: [(&str, MaterialField, Type); 5] = [
     ("occlusion", MaterialField::Occlusion, Type::Number),
 ];
 
-fn slot(name: &str, ty: Type, optional: bool) -> Slot<'_> {
+/// A parameter of a kernel function.
+pub(super) fn slot(name: &str, ty: Type, optional: bool) -> Slot<'_> {
     Slot { name, ty, variadic: false, optional }
 }
 
-fn kernel(kernel: Kernel, arguments: Vec<Expr>, ty: Type, span: Span) -> Expr {
+/// An operation of the kernel.
+pub(super) fn kernel(kernel: Kernel, arguments: Vec<Expr>, ty: Type, span: Span) -> Expr {
     Expr { kind: ExprKind::Kernel(kernel, arguments), ty, span }
+}
+
+fn color(value: [f64; 4], span: Span) -> Expr {
+    Expr { kind: ExprKind::Color(value), ty: Type::Color, span }
 }
 
 fn number(value: f64, span: Span) -> Expr {
@@ -88,7 +93,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Positional arguments of whatever type, so many of them; `None` if one is wrong.
-    fn positional(
+    pub(super) fn positional(
         &mut self,
         callee: Callee,
         given: Vec<Given<'a>>,
@@ -116,158 +121,17 @@ impl<'a> Checker<'a> {
         (!values.iter().any(|value| types::poisoned(&value.ty))).then_some(values)
     }
 
-    fn unnamed(&mut self, callee: Callee, given: &Given) {
+    pub(super) fn unnamed(&mut self, callee: Callee, given: &Given) {
         if let Some(name) = given.name {
             let message = format!("the arguments of `{}` have no names", callee.name);
             self.report(Diagnostic::error(Code::ARGUMENTS, name.span, message));
         }
     }
 
-    fn wrong_argument(&mut self, callee: Callee, value: &Expr, wants: &str) -> Expr {
+    pub(super) fn wrong_argument(&mut self, callee: Callee, value: &Expr, wants: &str) -> Expr {
         let message = format!("`{}` takes {wants}; this is {}", callee.name, describe(&value.ty));
         self.report(Diagnostic::error(Code::TYPE_MISMATCH, value.span, message));
         poison(callee.span)
-    }
-
-    /// Componentwise functions: numbers are spread to the vectors beside them.
-    fn math(&mut self, math: Math, callee: Callee, given: Vec<Given<'a>>) -> Expr {
-        let Some(arity) = math.arity else { return self.extreme(math, callee, given) };
-        let Some(values) = self.positional(callee, given, arity, arity) else {
-            return poison(callee.span);
-        };
-        let decide = if math.result == MathResult::Mix { 2 } else { arity };
-        let Some(ty) = self.common(callee, values.iter().map(|value| (value, &value.ty))) else {
-            return poison(callee.span);
-        };
-        let ty = match lanes(&ty) {
-            Some(_) => ty,
-            None => scalar_result(math.result, &values[..decide]),
-        };
-        let of_arguments = match (math.result, &ty) {
-            (MathResult::Same | MathResult::Mix, _) | (_, Type::Vec(_) | Type::Color) => &ty,
-            _ => &Type::Number,
-        };
-        let arguments = values.into_iter().map(|value| as_type(value, of_arguments)).collect();
-        kernel(math.kernel, arguments, ty, callee.span)
-    }
-
-    /// `min`, `max`: of any number of values or lists; of one vector, of its components.
-    fn extreme(&mut self, math: Math, callee: Callee, given: Vec<Given<'a>>) -> Expr {
-        if given.is_empty() {
-            let message = format!("`{}` takes at least 1 argument", callee.name);
-            self.report(Diagnostic::error(Code::ARGUMENTS, callee.at, message));
-            return poison(callee.span);
-        }
-        let mut elements = Vec::with_capacity(given.len());
-        for given in given {
-            self.unnamed(callee, &given);
-            elements.push(self.any_element(given));
-        }
-        if elements.iter().any(|(_, ty)| types::poisoned(ty)) {
-            return poison(callee.span);
-        }
-        if let [(Element::One(_), Type::Vec(width))] = &elements[..] {
-            let width = *width;
-            let Some((Element::One(value), _)) = elements.pop() else { return poison(callee.span) };
-            return self.extreme_component(math.kernel, value, width, callee.span);
-        }
-        let place = poison(callee.span);
-        let shown = elements.iter().map(|(element, ty)| match element {
-            Element::One(value) | Element::Spread(value) => (value, ty),
-            Element::For(_) => (&place, ty),
-        });
-        let Some(ty) = self.common(callee, shown) else { return poison(callee.span) };
-        let plain: Option<Vec<&Expr>> = elements
-            .iter()
-            .map(|(element, _)| match element {
-                Element::One(value) => Some(value),
-                Element::Spread(_) | Element::For(_) => None,
-            })
-            .collect();
-        let ty = match (&plain, lanes(&ty)) {
-            (_, Some(_)) => ty,
-            (Some(values), None) => {
-                let values: Vec<Expr> = values.iter().map(|value| (*value).clone()).collect();
-                scalar_result(math.result, &values)
-            }
-            (None, None) => one_kind(elements.iter().map(|(_, ty)| ty)),
-        };
-        if plain.is_some() {
-            let arguments = elements.into_iter().filter_map(|(element, _)| match element {
-                Element::One(value) => Some(as_type(value, &ty)),
-                Element::Spread(_) | Element::For(_) => None,
-            });
-            return kernel(math.kernel, arguments.collect(), ty, callee.span);
-        }
-        let role = Role::The("this element");
-        let elements = elements
-            .into_iter()
-            .map(|(element, _)| self.coerce_element(element, &ty, role))
-            .collect();
-        let list = Expr {
-            kind: ExprKind::List(elements),
-            ty: Type::List(Box::new(ty.clone())),
-            span: callee.span,
-        };
-        kernel(math.kernel, vec![list], ty, callee.span)
-    }
-
-    /// An argument as an element, lists spread; with the type of what it gives.
-    fn any_element(&mut self, given: Given<'a>) -> (Element, Type) {
-        let (element, ty) = match given.value {
-            Value::Expr(e) => {
-                let value = self.infer(e);
-                let ty = value.ty.clone();
-                (Element::One(value), ty)
-            }
-            Value::Element(element) => self.element(element, None),
-            Value::Done(element, ty) => (element, ty),
-        };
-        match (element, ty) {
-            (Element::One(value), Type::List(of)) => (Element::Spread(value), *of),
-            other => other,
-        }
-    }
-
-    fn extreme_component(&mut self, function: Kernel, vector: Expr, width: u8, span: Span) -> Expr {
-        let (local, mention) = self.name_value(&vector);
-        let components = (0..width).map(|at| {
-            let kind = ExprKind::Swizzle(Box::new(mention.clone()), vec![at]);
-            Expr { kind, ty: Type::Number, span }
-        });
-        let result = kernel(function, components.collect(), Type::Number, span);
-        Expr { span, ..bind(local, "v", vector, result) }
-    }
-
-    /// The widest of the types, if all go together; scalars of all kinds are `number`.
-    fn common<'e>(
-        &mut self,
-        callee: Callee,
-        values: impl Iterator<Item = (&'e Expr, &'e Type)>,
-    ) -> Option<Type> {
-        let mut common = Type::Number;
-        for (value, ty) in values {
-            if !is_numeric(ty) {
-                let shown = Expr { kind: ExprKind::Error, ty: ty.clone(), span: value.span };
-                self.wrong_argument(callee, &shown, "numbers and vectors");
-                return None;
-            }
-            if is_scalar(ty) || *ty == common {
-                continue;
-            }
-            if common != Type::Number {
-                let message = format!(
-                    "`{}` takes values of one width; these are {} and {}",
-                    callee.name,
-                    describe(&common),
-                    describe(ty)
-                );
-                self.report(Diagnostic::error(Code::TYPE_MISMATCH, value.span, message));
-                return None;
-            }
-            common = ty.clone();
-        }
-        Some(common)
     }
 
     /// `vec3(v.xy, z)`: parts joined in order; one number fills all.
@@ -446,130 +310,4 @@ impl<'a> Checker<'a> {
         let opaque = |value: Option<Expr>| value.unwrap_or_else(|| number(1.0, span));
         kernel(function, arguments.into_iter().map(opaque).collect(), Type::Color, span)
     }
-
-    /// `iterate(over, start, step, while)`: the step sees the state, and the item if it wants.
-    fn iterate(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
-        // What comes first decides what is wanted of the rest, so the first two are read here.
-        for given in given.iter_mut().filter(|given| given.name.is_none()).take(1) {
-            self.read_sequence(given);
-        }
-        for given in given.iter_mut().filter(|g| g.name.is_some_and(|n| n.text == "over")) {
-            self.read_sequence(given);
-        }
-        let place = |name: &str, at: usize, given: &[Given]| {
-            let named = given.iter().position(|g| g.name.is_some_and(|n| n.text == name));
-            let positional = given.iter().take_while(|g| g.name.is_none()).count();
-            named.or((at < positional).then_some(at))
-        };
-        let over = place("over", 0, &given).and_then(|at| done_type(&given[at]));
-        let state = place("start", 1, &given).map(|at| {
-            let value = self.one_value(given[at].clone());
-            let value = self.as_state(value, callee);
-            let ty = value.ty.clone();
-            given[at].value = Value::Done(Element::One(value), ty.clone());
-            ty
-        });
-        let item = match over {
-            Some(Type::Int) => Type::Int,
-            Some(Type::Range(of)) if is_scalar(&of) => *of,
-            Some(Type::List(of)) => *of,
-            Some(other) if !types::poisoned(&other) => {
-                let message = format!(
-                    "`iterate` runs over an int, a range or a list; this is {}",
-                    describe(&other)
-                );
-                self.report(Diagnostic::error(Code::TYPE_MISMATCH, callee.at, message));
-                return self.give_up(given, callee.span);
-            }
-            _ => Type::Error,
-        };
-        let state = state.unwrap_or(Type::Error);
-        let arity = place("step", 2, &given).and_then(|at| match given[at].value {
-            Value::Expr(e) => self.arity(e),
-            Value::Element(_) | Value::Done(..) => None,
-        });
-        let takes = match arity {
-            Some(2) => vec![state.clone(), item],
-            _ => vec![state.clone()],
-        };
-        let step = Type::Fn(takes, Box::new(state.clone()));
-        let goes_on = Type::Fn(vec![state.clone()], Box::new(Type::Bool));
-        let over = over_type(&given, place("over", 0, &given));
-        let slots = [
-            slot("over", over, false),
-            slot("start", state.clone(), false),
-            slot("step", step, false),
-            slot("while", goes_on, true),
-        ];
-        let arguments = self.arguments(callee, &slots, given);
-        if arguments[..3].iter().any(|value| value.as_ref().is_none_or(|v| types::poisoned(&v.ty)))
-        {
-            return poison(callee.span);
-        }
-        kernel(Kernel::Iterate, arguments.into_iter().flatten().collect(), state, callee.span)
-    }
-
-    fn read_sequence(&mut self, given: &mut Given<'a>) {
-        if let Value::Expr(e) = given.value {
-            let value = self.sequence(e);
-            let ty = value.ty.clone();
-            given.value = Value::Done(Element::One(value), ty);
-        }
-    }
-
-    /// The state of a loop is a number or a vector.
-    fn as_state(&mut self, value: Expr, callee: Callee) -> Expr {
-        match &value.ty {
-            ty if is_scalar(ty) => as_type(value, &Type::Number),
-            Type::Vec(_) | Type::Color | Type::Error => value,
-            _ => {
-                let message = format!(
-                    "the state of `{}` is a number or a vector; this is {}",
-                    callee.name,
-                    describe(&value.ty)
-                );
-                self.report(Diagnostic::error(Code::TYPE_MISMATCH, value.span, message));
-                poison(value.span)
-            }
-        }
-    }
-}
-
-/// The type of an argument that was read.
-fn done_type(given: &Given) -> Option<Type> {
-    match &given.value {
-        Value::Done(_, ty) => Some(ty.clone()),
-        Value::Expr(_) | Value::Element(_) => None,
-    }
-}
-
-fn over_type(given: &[Given], at: Option<usize>) -> Type {
-    at.and_then(|at| done_type(&given[at])).unwrap_or(Type::Error)
-}
-
-fn color(value: [f64; 4], span: Span) -> Expr {
-    Expr { kind: ExprKind::Color(value), ty: Type::Color, span }
-}
-
-/// What a componentwise function gives for scalars.
-fn scalar_result(result: MathResult, values: &[Expr]) -> Type {
-    match result {
-        MathResult::Number => Type::Number,
-        MathResult::Whole => Type::Int,
-        MathResult::Angle => Type::Angle,
-        MathResult::Same | MathResult::Mix => {
-            let with_unit = values.iter().filter(|value| !has_no_need_of_a_unit(value));
-            match one_kind(with_unit.map(|value| &value.ty)) {
-                Type::Int if result == MathResult::Mix => Type::Number,
-                Type::Number => one_kind(values.iter().map(|value| &value.ty)),
-                ty => ty,
-            }
-        }
-    }
-}
-
-/// The type of scalars that are all of one kind, else `number`.
-fn one_kind<'t>(mut types: impl Iterator<Item = &'t Type>) -> Type {
-    let Some(first) = types.next() else { return Type::Number };
-    if types.all(|ty| ty == first) { first.clone() } else { Type::Number }
 }

@@ -3,7 +3,7 @@
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Dim;
 
-use super::types::{describe, is_scalar, poisoned, same_value};
+use super::types::{self, describe, is_scalar, poisoned, same_value};
 use super::{Checker, poison};
 use crate::hir::{Comprehension, Element, Expr, ExprKind, Kernel, Lambda, LocalId, Type};
 
@@ -63,6 +63,8 @@ impl Checker<'_> {
             (Type::Fn(parameters, result), Type::Fn(want, want_result)) => {
                 self.coerce_function(value, (&parameters, &result), (want, want_result))
             }
+            // A blend that ignores both distances is a slip: its width was meant.
+            (_, Type::Fn(..)) if *want == types::blend() => Err(value),
             (_, Type::Fn(_, result)) => {
                 let span = value.span;
                 let value = Box::new(self.try_coerce(value, result)?);
@@ -189,7 +191,11 @@ fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
     // A value may stand for a constant function: then what that function gives is wanted.
     let want = match (&value.ty, want) {
         (Type::Fn(..), _) => want,
-        (_, Type::Fn(_, result)) if !matches!(**result, Type::Fn(..)) => &**result,
+        (_, Type::Fn(_, result))
+            if !matches!(**result, Type::Fn(..)) && *want != types::blend() =>
+        {
+            &**result
+        }
         _ => want,
     };
     match (&value.ty, want) {
@@ -198,9 +204,7 @@ fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
             region_for_solid(value.span, &format!("{subject} is a solid"))
         }
         (Type::Shape(Dim::Three), Type::Shape(Dim::Two)) => {
-            let message = format!("this is a solid (3D); {subject} is a region");
-            Diagnostic::error(Code::SOLID_FOR_REGION, value.span, message)
-                .help("regions are made by circle, rect and the other 2D entries of the library")
+            solid_for_region(value.span, &format!("{subject} is a region"))
         }
         _ => {
             let message =
@@ -220,6 +224,13 @@ pub(super) fn region_for_solid(span: Span, wanted: &str) -> Diagnostic {
     Diagnostic::error(Code::REGION_FOR_SOLID, span, message).help(".extrude(0.2) or .revolve()")
 }
 
+/// A solid where a region is wanted.
+pub(super) fn solid_for_region(span: Span, wanted: &str) -> Diagnostic {
+    let message = format!("this is a solid (3D); {wanted}");
+    Diagnostic::error(Code::SOLID_FOR_REGION, span, message)
+        .help("regions are made by circle, rect and the other 2D entries of the library")
+}
+
 fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
     let literal = literal(value);
     let what = literal.map_or("this number".to_owned(), |value| format!("`{value}`"));
@@ -227,8 +238,11 @@ fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
     let found = Diagnostic::error(Code::NOT_AN_ANGLE, value.span, message);
     match literal {
         Some(value) => {
-            let turn = value / 360.0;
-            found.help(format!("{value}deg, {turn}turn, or {value} * 1rad"))
+            let turn = match value / 360.0 {
+                short if (short * 1000.0).fract() == 0.0 => format!(" {short}turn,"),
+                _ => String::new(),
+            };
+            found.help(format!("{value}deg,{turn} or {value} * 1rad"))
         }
         None => found.help("multiply it by a unit: `* 1deg`, `* 1turn`, or `* 1rad`"),
     }
@@ -247,6 +261,9 @@ fn literal(value: &Expr) -> Option<f64> {
 fn way_out(have: &Type, want: &Type) -> Option<String> {
     match (have, want) {
         (Type::Number | Type::Angle, Type::Int) => Some("round(x) or floor(x) make it whole".into()),
+        (Type::Number | Type::Int, Type::Fn(..)) if *want == types::blend() => {
+            Some("a blend of that width: smooth(0.1)".into())
+        }
         (Type::Shape(_), Type::Number) => {
             Some("a shape called with a point gives its distance there: a(p)".into())
         }

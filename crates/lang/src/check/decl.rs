@@ -231,7 +231,6 @@ impl<'a> Checker<'a> {
         let (mut parameters, mut slots) = (Vec::<Parameter>::new(), Vec::new());
         for (at, parm) in parms.iter().enumerate() {
             let name = parm.name.text.as_str();
-            self.forbid_point(name, parm.name.span);
             if let Some(first) = parameters.iter().find(|other| other.name == name) {
                 let message = format!("two parameters are called `{name}`");
                 let found = Diagnostic::error(Code::DECLARED_TWICE, parm.name.span, message)
@@ -387,9 +386,8 @@ impl<'a> Checker<'a> {
         let mut clauses = Clauses::default();
         let mut material = false;
         for clause in &decl.signature.clauses {
+            // The parser has reported clauses of shapes that stand at a `fn`.
             if self.body.point.is_none() && !belongs_to_functions(&clause.kind) {
-                let message = "a function states only `lipschitz` and `require`";
-                self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, clause.span, message));
                 continue;
             }
             let twice = match &clause.kind {
@@ -457,8 +455,8 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Whether a clause may stand at a `fn` or lambda.
-pub(super) fn belongs_to_functions(clause: &ClauseKind) -> bool {
+/// Whether a clause may stand at a `fn`.
+fn belongs_to_functions(clause: &ClauseKind) -> bool {
     match clause {
         ClauseKind::Lipschitz(_) | ClauseKind::Require(..) => true,
         ClauseKind::Exact(..)

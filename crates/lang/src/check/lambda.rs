@@ -47,7 +47,7 @@ impl<'a> Checker<'a> {
         let ty = Type::Fn(parameters.clone(), Box::new(body.ty.clone()));
         let names = signature.parms.iter().map(|parm| parm.name.text.clone()).collect();
         let lambda = Lambda { captures, parameters, names, locals, lipschitz, requires, body };
-        Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span }
+        self.limit_depth(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
     }
 
     fn lambda_parameters(
@@ -57,7 +57,6 @@ impl<'a> Checker<'a> {
     ) -> Vec<Type> {
         let mut types = Vec::with_capacity(signature.parms.len());
         for (at, parm) in signature.parms.iter().enumerate() {
-            self.forbid_point(&parm.name.text, parm.name.span);
             if parm.default.is_some() || parm.range.is_some() || parm.variadic {
                 let message = "parameters of a lambda have neither default, nor `in`, nor `...`";
                 self.report(
@@ -114,16 +113,13 @@ impl<'a> Checker<'a> {
                 ClauseKind::Exact(..)
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
-                | ClauseKind::Material(_) => {
-                    let message = "a function states only `lipschitz` and `require`";
-                    self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, clause.span, message));
-                }
+                | ClauseKind::Material(_) => {} // reported by the parser
             }
         }
         (lipschitz, requires)
     }
 
-    /// The number of parameters that a function written here takes, if it can be told.
+    /// The number of parameters of a lambda or named function; `None` for all else.
     pub(super) fn arity(&mut self, e: &'a ast::Expr) -> Option<usize> {
         match &e.kind {
             Ast::Lambda(signature, _) => Some(signature.parms.len()),
@@ -137,18 +133,13 @@ impl<'a> Checker<'a> {
                 }
                 found => arity_of(&self.value_of(&found, name, e.span).ty),
             },
-            _ => {
-                // Only the type counts: the caller reads it again, with a type in mind.
-                self.body.attempts.push(Vec::new());
-                let ty = self.infer(e).ty;
-                self.body.attempts.pop();
-                arity_of(&ty)
-            }
+            _ => None,
         }
     }
 }
 
-fn arity_of(ty: &Type) -> Option<usize> {
+/// The number of parameters of a function type.
+pub(super) fn arity_of(ty: &Type) -> Option<usize> {
     match ty {
         Type::Fn(parameters, _) => Some(parameters.len()),
         _ => None,

@@ -89,7 +89,7 @@ impl<'a> Checker<'a> {
             .into_iter()
             .map(|(element, _)| self.coerce_element(element, &ty, role))
             .collect();
-        list(elements, ty, span)
+        self.limit_depth(list(elements, ty, span))
     }
 
     /// One element with its type; with a `want`, its type is that.
@@ -108,7 +108,6 @@ impl<'a> Checker<'a> {
     }
 
     fn comprehension(&mut self, each: &'a ast::Comprehension, want: Want) -> (Element, Type) {
-        self.forbid_point(&each.name.text, each.name.span);
         let over = self.sequence(&each.over);
         let item = self.item_type(&over);
         let mark = self.body.enter();

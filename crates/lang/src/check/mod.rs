@@ -6,7 +6,7 @@
 //!
 //! One module per question: what a name means (`names`, `value`), which declaration a call
 //! means (`overload`) and where its arguments go (`call`), what the kernel takes (`kernel`,
-//! `builtins`), what becomes of operators, brackets, blocks and lambdas, and what fits where
+//! `builtins`, `math`, `iterate`), what becomes of operators, brackets, blocks and lambdas, and what fits where
 //! (`types`, `coerce`). Declarations are opened when they are first mentioned (`decl`), what
 //! stands at top level drives it all (`top`), and circles are found at the end (`order`).
 #![allow(
@@ -21,9 +21,11 @@ mod call;
 mod coerce;
 mod decl;
 mod expr;
+mod iterate;
 mod kernel;
 mod lambda;
 mod list;
+mod math;
 mod names;
 mod operators;
 mod order;

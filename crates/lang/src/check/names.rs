@@ -206,8 +206,14 @@ impl<'a> Checker<'a> {
     pub(super) fn unknown_name(&mut self, name: &str, span: Span) {
         if name == "p" {
             self.report(
-                Diagnostic::error(Code::NO_POINT, span, "`p` exists only in a shape's formula")
-                    .help("pass a function of the point: fn(q) = q.y"),
+                Diagnostic::error(Code::NO_POINT, span, "`p` exists only in a shape's formula").help(
+                    match self.body.point {
+                        None => "pass a function of the point: fn(q) = q.y",
+                        Some(_) => {
+                            "clauses and defaults hold for the whole shape: use its parameters and `bounds(a)`"
+                        }
+                    },
+                ),
             );
             return;
         }

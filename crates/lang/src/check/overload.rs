@@ -4,7 +4,7 @@ use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, DeclKind};
 
 use super::call::{Callee, Given, Value, is_lambda};
-use super::coerce::Role;
+use super::coerce::{Role, region_for_solid, solid_for_region};
 use super::decl::Target;
 use super::kernel::Builtin;
 use super::names;
@@ -15,7 +15,7 @@ use crate::hir::{Element, Expr, ExprKind, Type};
 
 /// Lambdas inside lambdas are read in both dimensions down to this depth, since each level
 /// doubles the readings; deeper ones are read in 3D.
-const MAX_ATTEMPTS: usize = 8;
+const MAX_ATTEMPTS: usize = 4;
 
 /// What a call turned out to mean.
 enum Picked<'a> {
@@ -35,12 +35,42 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         match self.pick(decls, callee, &mut given) {
             Picked::Declared(signature) => {
+                if self.wants_other_dimension(decls, &signature, callee, &given) {
+                    return self.give_up(given, callee.span);
+                }
                 let arguments = self.arguments(callee, &signature.slots, given);
                 self.make(&signature, arguments, callee)
             }
             Picked::Kernel(builtin) => self.call_builtin(builtin, callee, given),
             Picked::Nothing => self.give_up(given, callee.span),
         }
+    }
+
+    /// Reports an argument that only the name's other dimension has: `translate`'s `z`.
+    fn wants_other_dimension(
+        &mut self,
+        decls: &[DeclIndex],
+        signature: &Shared<'a>,
+        callee: Callee,
+        given: &[Given<'a>],
+    ) -> bool {
+        let others = decls.iter().map(|decl| self.decls[decl.0].ast).filter(|_| decls.len() > 1);
+        let elsewhere: Vec<&str> = others
+            .flat_map(|decl| decl.signature.parms.iter().map(|parm| parm.name.text.as_str()))
+            .filter(|name| signature.slots.iter().all(|slot| slot.name != *name))
+            .collect();
+        let named = given.iter().filter_map(|given| given.name);
+        let Some(name) = named.into_iter().find(|name| elsewhere.contains(&name.text.as_str()))
+        else {
+            return false;
+        };
+        let (span, subject) = (given[0].span, format!("{}'s `{}`", callee.name, name.text));
+        let found = match signature.result {
+            Type::Shape(Dim::Two) => region_for_solid(span, &format!("{subject} wants a solid")),
+            _ => solid_for_region(span, &format!("{subject} wants a region")),
+        };
+        self.report(found);
+        true
     }
 
     /// The call itself, its arguments in place.

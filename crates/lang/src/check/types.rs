@@ -4,8 +4,8 @@ use sdfc_diagnostics::{Code, Diagnostic};
 use sdfc_graph::Dim;
 use sdfc_syntax::ast::{DeclKind, Signature, TypeExpr, TypeExprKind};
 
-use super::{Checker, names};
-use crate::hir::Type;
+use super::{Checker, names, poison};
+use crate::hir::{Expr, Type};
 
 /// The words that name a type.
 const TYPE_WORDS: &[&str] = &[
@@ -50,7 +50,7 @@ pub(super) fn show(ty: &Type) -> String {
         Type::Vec(width) => format!("vec{width}"),
         Type::Color => "color".into(),
         Type::Range(of) => match **of {
-            Type::Number | Type::Int | Type::Error => "range".into(),
+            Type::Number | Type::Error => "range".into(),
             _ => format!("range of {}s", show(of)),
         },
         Type::List(of) => format!("[{}]", show(of)),
@@ -82,6 +82,31 @@ pub(super) fn describe(ty: &Type) -> String {
         | Type::Range(_)
         | Type::Material
         | Type::Shadow => format!("a {}", show(ty)),
+    }
+}
+
+/// How many functions and lists a type may be nested in. Types as written nest no deeper than
+/// the parser allows; inferred ones could grow by one with each `let`.
+pub(super) const MAX_DEPTH: usize = 256;
+
+/// How many functions and lists the type is nested in.
+pub(super) fn depth(ty: &Type) -> usize {
+    match ty {
+        Type::Range(of) | Type::List(of) => 1 + depth(of),
+        Type::Fn(parameters, result) => {
+            1 + parameters.iter().map(depth).fold(depth(result), usize::max)
+        }
+        Type::Number
+        | Type::Int
+        | Type::Angle
+        | Type::Bool
+        | Type::Text
+        | Type::Vec(_)
+        | Type::Color
+        | Type::Shape(_)
+        | Type::Material
+        | Type::Shadow
+        | Type::Error => 0,
     }
 }
 
@@ -227,6 +252,16 @@ pub(super) fn is_generic(kind: DeclKind, signature: &Signature) -> bool {
 }
 
 impl Checker<'_> {
+    /// The value, unless its type is nested too deep: that is reported.
+    pub(super) fn limit_depth(&mut self, value: Expr) -> Expr {
+        if depth(&value.ty) <= MAX_DEPTH {
+            return value;
+        }
+        let message = format!("functions and lists nest deeper than {MAX_DEPTH} levels here");
+        self.report(Diagnostic::error(Code::NESTING, value.span, message));
+        poison(value.span)
+    }
+
     /// The type that was written. Unknown words are reported.
     pub(super) fn resolve_type(&mut self, ty: &TypeExpr) -> Type {
         match &ty.kind {

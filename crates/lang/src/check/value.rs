@@ -113,7 +113,7 @@ impl<'a> Checker<'a> {
             Target::Fn(id) => {
                 self.needs(Node::Fn(id.0), span);
                 let ty = Type::Fn(parameters, Box::new(signature.result.clone()));
-                Expr { kind: ExprKind::FnValue(id), ty, span }
+                self.limit_depth(Expr { kind: ExprKind::FnValue(id), ty, span })
             }
             Target::Shape(_) => {
                 let callee = Callee { name, at: span, span };
@@ -164,16 +164,18 @@ impl<'a> Checker<'a> {
             requires: Vec::new(),
             body,
         };
-        Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span }
+        self.limit_depth(Expr { kind: ExprKind::Lambda(Box::new(lambda)), ty, span })
     }
 
     fn let_value(&mut self, index: LetIndex, span: Span) -> Expr {
         if matches!(self.lets[index.0].state, State::Unseen) {
             self.with_stack(|checker| checker.check_let(index));
         }
-        self.needs(Node::of_let(index), span);
-        match &self.lets[index.0].state {
-            State::Done(id, ty) => Expr { kind: ExprKind::Global(*id), ty: ty.clone(), span },
+        match self.lets[index.0].state.clone() {
+            State::Done(id, ty) => {
+                self.needs(Node::of_let(index), span);
+                Expr { kind: ExprKind::Global(id), ty, span }
+            }
             State::Unseen | State::Failed => poison(span),
             State::Open => {
                 let name = &self.lets[index.0].ast.name;

@@ -1,5 +1,15 @@
 //! What the tests of the checker share.
-#![allow(dead_code)]
+#![allow(
+    dead_code,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::wildcard_enum_match_arm,
+    reason = "helpers of tests: each test uses some, and a panic is how a test fails"
+)]
+
+pub mod print;
+pub mod verify;
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, render};
 use sdfc_lang::hir::Program;
@@ -50,4 +60,12 @@ impl Library {
 pub fn findings(text: &str) -> String {
     let (_, _, rendered) = Library::new().check(text);
     format!("{}\n----\n{}", text.trim_end(), rendered.trim_end())
+}
+
+/// The typed program of a scene, as short text.
+pub fn printed(text: &str) -> String {
+    let (program, _, rendered) = Library::new().check(text);
+    assert_eq!(rendered, "");
+    verify::verify(&program);
+    print::print(&program)
 }

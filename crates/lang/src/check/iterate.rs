@@ -1,0 +1,124 @@
+//! The one loop: `iterate(over, start, step, while)`.
+
+use sdfc_diagnostics::{Code, Diagnostic};
+
+use super::builtins::{kernel, slot};
+use super::call::{Callee, Given, Value, is_lambda};
+use super::lambda::arity_of;
+use super::operators::as_type;
+use super::types::{self, describe, is_scalar};
+use super::{Checker, poison};
+use crate::hir::{Element, Expr, Kernel, Type};
+
+impl<'a> Checker<'a> {
+    /// `iterate(over, start, step, while)`: the step sees the state, and the item if it wants.
+    pub(super) fn iterate(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
+        // What comes first decides what is wanted of the rest, so the first two are read here.
+        for given in given.iter_mut().filter(|given| given.name.is_none()).take(1) {
+            self.read_sequence(given);
+        }
+        for given in given.iter_mut().filter(|g| g.name.is_some_and(|n| n.text == "over")) {
+            self.read_sequence(given);
+        }
+        let place = |name: &str, at: usize, given: &[Given]| {
+            let named = given.iter().position(|g| g.name.is_some_and(|n| n.text == name));
+            let positional = given.iter().take_while(|g| g.name.is_none()).count();
+            named.or((at < positional).then_some(at))
+        };
+        let over = place("over", 0, &given).and_then(|at| done_type(&given[at]));
+        let state = place("start", 1, &given).map(|at| {
+            let value = self.one_value(given[at].clone());
+            let value = self.as_state(value, callee);
+            let ty = value.ty.clone();
+            given[at].value = Value::Done(Element::One(value), ty.clone());
+            ty
+        });
+        let item = match over {
+            Some(Type::Int) => Type::Int,
+            Some(Type::Range(of)) if is_scalar(&of) => *of,
+            Some(Type::List(of)) => *of,
+            Some(other) if !types::poisoned(&other) => {
+                let message = format!(
+                    "`iterate` runs over an int, a range or a list; this is {}",
+                    describe(&other)
+                );
+                self.report(Diagnostic::error(Code::TYPE_MISMATCH, callee.at, message));
+                return self.give_up(given, callee.span);
+            }
+            _ => Type::Error,
+        };
+        let state = state.unwrap_or(Type::Error);
+        let arity = place("step", 2, &given).and_then(|at| self.step_arity(&mut given[at]));
+        let takes = match arity {
+            Some(2) => vec![state.clone(), item],
+            _ => vec![state.clone()],
+        };
+        let step = Type::Fn(takes, Box::new(state.clone()));
+        let goes_on = Type::Fn(vec![state.clone()], Box::new(Type::Bool));
+        let over = over_type(&given, place("over", 0, &given));
+        let slots = [
+            slot("over", over, false),
+            slot("start", state.clone(), false),
+            slot("step", step, false),
+            slot("while", goes_on, true),
+        ];
+        let arguments = self.arguments(callee, &slots, given);
+        if arguments[..3].iter().any(|value| value.as_ref().is_none_or(|v| types::poisoned(&v.ty)))
+        {
+            return poison(callee.span);
+        }
+        kernel(Kernel::Iterate, arguments.into_iter().flatten().collect(), state, callee.span)
+    }
+
+    /// How many arguments the step takes; one that is neither lambda nor name is read here.
+    fn step_arity(&mut self, given: &mut Given<'a>) -> Option<usize> {
+        let Value::Expr(e) = given.value else { return None };
+        if let Some(arity) = self.arity(e) {
+            return Some(arity);
+        }
+        if is_lambda(e) {
+            return None;
+        }
+        let value = self.infer(e);
+        let ty = value.ty.clone();
+        given.value = Value::Done(Element::One(value), ty.clone());
+        arity_of(&ty)
+    }
+
+    fn read_sequence(&mut self, given: &mut Given<'a>) {
+        if let Value::Expr(e) = given.value {
+            let value = self.sequence(e);
+            let ty = value.ty.clone();
+            given.value = Value::Done(Element::One(value), ty);
+        }
+    }
+
+    /// The state of a loop is a number or a vector.
+    fn as_state(&mut self, value: Expr, callee: Callee) -> Expr {
+        match &value.ty {
+            ty if is_scalar(ty) => as_type(value, &Type::Number),
+            Type::Vec(_) | Type::Color | Type::Error => value,
+            _ => {
+                let message = format!(
+                    "the state of `{}` is a number or a vector; this is {}",
+                    callee.name,
+                    describe(&value.ty)
+                );
+                self.report(Diagnostic::error(Code::TYPE_MISMATCH, value.span, message));
+                poison(value.span)
+            }
+        }
+    }
+}
+
+/// The type of an argument that was read.
+fn done_type(given: &Given) -> Option<Type> {
+    match &given.value {
+        Value::Done(_, ty) => Some(ty.clone()),
+        Value::Expr(_) | Value::Element(_) => None,
+    }
+}
+
+fn over_type(given: &[Given], at: Option<usize>) -> Type {
+    at.and_then(|at| done_type(&given[at])).unwrap_or(Type::Error)
+}

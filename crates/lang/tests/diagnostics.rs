@@ -1,0 +1,162 @@
+//! Every finding of the checker, rendered below its scene, by theme.
+#![allow(missing_docs)]
+
+mod common;
+
+use common::findings;
+
+/// Scenes separated by lines of dashes, each followed by what is found in it.
+fn all(scenes: &[&str]) -> String {
+    let found: Vec<String> = scenes.iter().map(|scene| findings(scene)).collect();
+    found.join("\n\n================\n\n")
+}
+
+/// A snapshot without the expression: the scenes stand in it already.
+macro_rules! assert_findings {
+    ($found:expr) => {
+        insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!($found) })
+    };
+}
+
+#[test]
+fn names() {
+    assert_findings!(all(&[
+        "spere(1)",
+        "let r = 2 * raduis\nsphere(r).color(#fff)",
+        "sphere(k)\nparam k = 1 in 0..2",
+        "let a = b\nlet b = a\nsphere(a)",
+        "fn f() -> number = k\nlet k = f()\nsphere(k)",
+        "let box = box(1)\nbox(2)",
+        "let k = 3\nsphere(k(1))",
+        "fn a(x: lenght) = x\nsphere(a(1))",
+        "let a = 1\nfn a() = 2\nsphere(a)",
+        "solid a(r: length) = length(p) - r\nregion a(r: length) = length(p) - r\na(1)",
+        "fn f(a, a) = a\nsphere(f(1, 2))",
+        "sphere(1).smooooth(2).tralate(x: 1)",
+    ]));
+}
+
+#[test]
+fn calls() {
+    assert_findings!(all(&[
+        "sphere(1, 2)\nsphere(radius: 1)\nsphere(r: 1, r: 2)\nsphere(r: 1, 2)",
+        "capsule(r: 1)",
+        "torus(majr: 1)",
+        "sphere(for i in 0..3: i)",
+        "let ball = sphere(1)\nlet d = ball(1, 2, 3)\nlet e = ball([1, 2])\nsphere(d + e)",
+        "let f = fn(a, b) = a + b\nsphere(f(1)).round(f(a: 1, b: 2))",
+        "sphere(min()).round(max(a: 1, 2)).round(pow(2)).round(pi(3))",
+        "sphere(length(vec3(1, 2))).round(dot([1, 2], [1, 2, 3]))",
+        "solid wall(p: length) = p\nsolid slab() = { let p = 1\n p }\nwall(1) | slab()",
+        "camera(target: [0, 0, 0])\ncamera(eye: [1, 2, 3])\nsun(shadow: 8)\nsphere(1)\nlet s = sun(direction: [1, 2, 3])",
+        "camera(eye: [1, 2, 3], fov: 40deg, height: 3)\nambient(1, 2, 3)\nsphere(camera)",
+        "fn f(a = 1) exact = a\nsolid g() -> number\n lipschitz 1\n lipschitz 2\n = f()\ng()\nlet h = fn(a = 1, b: number...) bounds 0..1 = a",
+    ]));
+}
+
+#[test]
+fn dimensions() {
+    assert_findings!(all(&[
+        "circle(1)",
+        "circle(1).translate(z: 1).extrude(1)",
+        "union(sphere(1), circle(1))\nsphere(1) | rect([1, 2])",
+        "sphere(1).extrude(1)",
+        "shape stretch(a: shape) = a(p * [1, 2, 1])\nsphere(1).stretch()",
+        "shape tall(a: shape) = a(p) - p.z\nsphere(1).tall()",
+        "let f = fn(a: shape, q: point) = a(q)\nsphere(f(sphere(1), [0, 0, 0]))",
+        "sphere.translate(x: 1)",
+        "[sphere(1), box(1)]\nfn ball() = sphere(1)\nball\n3 + 4",
+    ]));
+}
+
+#[test]
+fn angles() {
+    assert_findings!(all(&[
+        "sphere(1).rotate(y: 90)",
+        "param turn = 10 in 0..90\nsphere(1).rotate(y: turn).rotate(x: -1.5, z: 45deg + 10)",
+        "sphere(1).rotate(y: 0).rotate(x: 90 * 1rad, z: 45deg * 2 - 0.25turn / 2)",
+        "let a = 30deg\nsphere(a / 1deg).twist(atan2(1, 2) + a).rotate(y: a / 2deg)",
+        "fn f(t: angle = 45) = sin(t)\nparam tilt: angle = 30 in 0..45deg\nsphere(f(0))",
+    ]));
+}
+
+#[test]
+fn types() {
+    assert_findings!(all(&[
+        "sphere(\"big\")\nsphere([1, 2, 3])\nsphere(true)",
+        "sphere(1).color(0.5)\nsphere(1).color([1, 0, 0])\nsphere(1).color(fn(q) = q.x)",
+        "box([1, 2])\nbox([1, 2, 3, 4])",
+        "fn f(n: int) = n\nsphere(f(1.5)).round(f(round(1.5)))",
+        "sphere(if true { 1 } else { [1, 2] })\nlet a = if 1 { 2 } else { 3 }\nlet b = if true { sphere(1) } else { 2 }",
+        "let a = [1, sphere(1)]\nlet b = []\nlet c = [[1, 2], 3]\nsphere(1)",
+        "let v = [1, 2]\nsphere(v.z).round(v.length).round((1..2).x).round(v.xw)",
+        "let v = [1, 2]\nsphere(v[0.5]).round(1[0]).round([for i in 0..3: i][0..1.5])",
+        "let a = [for i in 5: i]\nlet b = [for i in true: i]\nsphere(1)",
+        "union(sphere(1), sphere(2), blend: 0.1)\nunion(sphere(1), sphere(2), blend: fn(a) = a)\nunion(sphere(1), sphere(2), blend: checker)",
+        "fn f(n: int) = if n == 0 { 0 } else { f(n - 1) }\nsphere(f(3))",
+        "fn a(n) = b(n)\nfn b(n) = a(n)\nsphere(a(1))",
+        "let f = min\nlet g = sphere\nlet h = union\nsphere(1)",
+        "let s = iterate(3.5, 0, fn(s) = s + 1)\nlet t = iterate(3, 0, fn(s) = [s, 1])\nlet u = iterate(3, true, fn(s) = s)\nlet v = iterate(3, 0, fn(s, i, j) = s)\nsphere(1)",
+        "let m = material(color: 1)\nlet n = material(shine: 1)\nlet o = m.with(roughness: true)\nsphere(1).paint(#fff)",
+        "solid a() exact if 1\n lipschitz [1, 2]\n bounds 1\n require 2, \"no\"\n material true\n = [1, 2, 3]\na()",
+    ]));
+}
+
+#[test]
+fn operators() {
+    assert_findings!(all(&[
+        "sphere(1) + box(1)",
+        "sphere(1) * 2\nsphere(1) - 0.5\n-sphere(1)\n!sphere(1)",
+        "sphere(1 | 2).round(true & false)",
+        "sphere(1).round([1, 2] + [1, 2, 3]).round(#fff + [1, 2, 3])",
+        "sphere(if [1, 2] == [1, 2] { 1 } else { 2 })\nlet a = true < false\nlet b = \"a\" == \"b\"\nlet c = 1 == true",
+        "sphere(1) && box(1)\nlet a = 1 && 2\nlet b = true..false",
+    ]));
+}
+
+#[test]
+fn points() {
+    assert_findings!(all(&[
+        "sphere(p.x)",
+        "fn f(a) = a + p.y\nsphere(f(1))",
+        "solid a(r = p.x) bounds -p..p\n lipschitz p.x\n = length(p) - r\na()",
+        "sphere(1).color(fn(q) = mix(#fff, #000, p.y))",
+        "solid a() = sphere(abs(p.x))(p)\nsolid b() = union(for i in 0..3: sphere(0.1 * i + 0.01 * p.y))(p)\na() | b()",
+    ]));
+}
+
+#[test]
+fn circles() {
+    assert_findings!(all(&[
+        "solid a(n: int) = if n == 0 { length(p) } else { a(n - 1)(p) }\na(3)",
+        "solid a() = b()(p)\nsolid b() = c()(p)\nfn c() -> solid = a()\na()",
+        "let a = f()\nfn f() -> number = g()(0)\nfn g() -> fn(number) -> number = fn(x) = a + x\nsphere(a)",
+        "fn f(n: int) -> solid = if n == 0 { sphere(1) } else { f(n - 1).round(0.1) }\nf(3)",
+        "let ball = knob()\nlet r = 0.8\nsolid knob() = sphere(r)(p)\nball",
+    ]));
+}
+
+#[test]
+fn params() {
+    assert_findings!(all(&[
+        "param a = [1, 2]\nparam b = \"round\"\nparam c = \"x\" in [\"a\", \"b\"]\nparam d = true in 0..1\nparam e: int = 1.5 in 0..3\nparam f = 3 in [1, 2]\nparam g = \"a\" in [\"a\", 1]\nsphere(1)",
+        "param a = 8 in 2..12\nparam n: int = 6 in 3..12\nparam lid = true\nparam wood = #8a5a34\nparam style = \"round\" in [\"round\", \"flat\"]\nparam tilt = 10deg in 0deg..45deg\nsphere(if lid && style == \"flat\" { a } else { n }).color(wood).rotate(y: tilt)",
+    ]));
+}
+
+#[test]
+fn unused() {
+    assert_findings!(all(&[
+        "let _a = 1\nfn _b() = 2\nsolid _c() = { let q = p\n let r = 1\n length(q) }\nsphere(1)",
+        "let _a = 1\nfn _b() = { let k = 2\n fn(x) = x + k + _a }\nsphere(_b()(1))",
+    ]));
+}
+
+#[test]
+fn one_mistake_is_told_once() {
+    assert_findings!(all(&[
+        "let a = spere(1)\nlet b = a.translate(x: 1) | box(1)\nb.rotate(y: 90deg)\nfn f() = a\nf() - b",
+        "import spur from \"gear.sdf\"\nspur(3).extrude(1)",
+        "sphere(1 + true).rotate(y: 10)\nbox(\"a\" + 1)",
+    ]));
+}
