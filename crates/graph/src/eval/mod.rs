@@ -5,7 +5,7 @@
 //! [`fold`] computes them at once.
 //!
 //! ```
-//! use sdfc_graph::eval::{Dual, FrameValues, Packet, Tape};
+//! use sdfc_graph::eval::{Dual, FrameValues, Interval, Packet, Tape};
 //! use sdfc_graph::{Dim, Graph};
 //!
 //! let mut graph = Graph::new();
@@ -21,6 +21,12 @@
 //!
 //! let slope = tape.prepare::<Dual>(&frame).scalar(Dual::point([0.0, 0.0, 2.0]));
 //! assert_eq!(slope.partials, [0.0, 0.0, 1.0]);
+//!
+//! // Over a box, the distance is from that of its nearest point to that of its farthest.
+//! let side = Interval::new(1.0, 3.0);
+//! let region = [side, Interval::new(0.0, 4.0), Interval::new(0.0, 0.0)];
+//! let over = tape.prepare::<Interval>(&frame).scalar(region);
+//! assert!(over.contains(0.5) && over.contains(4.5) && over.lo() > 0.499 && over.hi() < 4.501);
 //!
 //! let mut pair = tape.prepare::<Packet<f32, 2>>(&frame);
 //! let [x, y, z] = [Packet([0.0, 2.0]), Packet([1.0, 0.0]), Packet([0.0, 0.0])];
