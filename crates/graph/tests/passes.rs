@@ -1,4 +1,5 @@
 //! Passes keep values: on random expressions, against plain arithmetic.
+#![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod twin;
 
@@ -88,7 +89,7 @@ proptest! {
             point[axis] += step;
             eval(&case.graph, &[field], point, param)[0][0]
         };
-        for axis in 0..3 {
+        for (axis, exact) in exact.into_iter().take(3).enumerate() {
             let [back, middle, forth] = [-STEP, 0.0, STEP].map(|step| at(axis, step));
             let central = (forth - back) / (2.0 * STEP);
             // A kink or a pole within the step.
@@ -96,9 +97,8 @@ proptest! {
                 continue;
             }
             prop_assert!(
-                close(central, exact[axis], 2e-3),
-                "{central} against {} along {axis}\n{}",
-                exact[axis],
+                close(central, exact, 2e-3),
+                "{central} against {exact} along {axis}\n{}",
                 sdfc_graph::dump(&case.graph, &[("field", field)])
             );
         }

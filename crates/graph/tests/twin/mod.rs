@@ -20,6 +20,8 @@ pub fn maps(size: usize) -> impl Strategy<Value = Vec<Step>> {
     prop::collection::vec((kind, any::<[u8; 4]>()), 1..size)
 }
 
+type Function = fn(f64) -> f64;
+
 const CONSTANTS: [f64; 12] =
     [0.0, 1.0, -1.0, 0.5, 2.0, -2.5, 3.7, 1.0 / 3.0, -0.3, 10.0, 1.57, 0.1];
 
@@ -60,7 +62,8 @@ impl Case {
     }
 
     pub fn replay(&mut self, steps: &[Step]) {
-        (self.scalars.truncate(12 + 4), self.vectors.truncate(1));
+        self.scalars.truncate(4 + CONSTANTS.len());
+        self.vectors.truncate(1);
         steps.iter().for_each(|&step| self.step(step));
     }
 
@@ -113,7 +116,7 @@ impl Case {
     }
 
     fn unary(&mut self, op: usize, a: Twin<1>) {
-        const OPS: [(Unary, fn(f64) -> f64); 8] = [
+        const OPS: [(Unary, Function); 8] = [
             (Unary::Neg, Number::neg),
             (Unary::Neg, Number::neg),
             (Unary::Abs, Number::abs),
@@ -209,7 +212,8 @@ impl Case {
     /// Of the last vector, or of an earlier one.
     fn map(&mut self, kind: u8, picks: [u8; 4]) {
         let last = self.vectors.len() - 1;
-        let v = self.vectors[if picks[0] % 8 == 0 { pick(last + 1, picks[1]) } else { last }];
+        let v =
+            self.vectors[if picks[0].is_multiple_of(8) { pick(last + 1, picks[1]) } else { last }];
         let constants = [1, 2, 3].map(|i| CONSTANTS[usize::from(picks[i]) % CONSTANTS.len()]);
         match kind {
             20 => {
@@ -219,7 +223,7 @@ impl Case {
             21 => {
                 let quarter = self.graph.number(f64::from(picks[2] % 4) * 90.0_f64.to_radians());
                 let [id, value] = [self.graph.as_number(quarter), Some(constants[0])];
-                let angle = if picks[1] % 3 == 0 { id } else { value }.unwrap_or(0.0);
+                let angle = if picks[1].is_multiple_of(3) { id } else { value }.unwrap_or(0.0);
                 let id = self.graph.number(angle);
                 self.turn(v, picks[3], Twin { id, value: [angle] });
             }
@@ -260,12 +264,12 @@ impl Case {
 }
 
 fn picks_max(op: usize) -> bool {
-    op / 8 % 2 == 0
+    (op / 8).is_multiple_of(2)
 }
 
 /// Mostly recent ones, so that expressions grow deep.
 fn pick(len: usize, by: u8) -> usize {
-    len - 1 - usize::from(by) % len.min(if by % 3 == 0 { len } else { 6 })
+    len - 1 - usize::from(by) % len.min(if by.is_multiple_of(3) { len } else { 6 })
 }
 
 /// A point, a param and constants, and what the steps make of them.
