@@ -3,6 +3,8 @@
 //! Right-handed, y up, z towards the viewer. Lengths are in scene units, angles in radians,
 //! colours linear.
 
+mod pose;
+
 use std::fmt;
 
 use glam::DVec3;
@@ -13,13 +15,8 @@ use sdfc_graph::{
 use sdfc_march::{LightBlock, MAX_LIGHTS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
 
 use crate::tiles::Tile;
+use pose::Pose;
 
-/// Vertical field of view of a camera that is fitted to the bounds.
-const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
-/// From the middle of the bounds towards a fitted camera: from the right, above and in front.
-const FITTED_DIRECTION: DVec3 = DVec3::new(0.5, 0.45, 1.0);
-/// A fitted camera stands so much farther than where the sphere about the bounds just fits.
-const FITTED_MARGIN: f64 = 1.05;
 /// Steps of a ray where the scene states none.
 const DEFAULT_STEPS: u32 = 256;
 /// Tolerance of a hit in parts of the distance from eye to target, where the scene states none:
@@ -232,79 +229,6 @@ fn setting_nodes(settings: &Settings) -> Vec<NodeId> {
     camera.chain(lights).chain(*ambient).chain(*background).collect()
 }
 
-/// Where the camera stands and how it looks.
-struct Pose {
-    eye: DVec3,
-    target: DVec3,
-    up: DVec3,
-    fov: f64,
-}
-
-impl Pose {
-    fn of_camera(camera: &Camera, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<Self, ViewError> {
-        let eye = finite(value(camera.eye), "the camera's eye")?;
-        let target = finite(value(camera.target), "the camera's target")?;
-        let up = finite(value(camera.up), "the camera's up")?;
-        let fov = value(camera.fov)[0];
-        if (target - eye).try_normalize().is_none() {
-            return Err(ViewError::EyeIsTarget(eye.to_array()));
-        }
-        if !(fov > 0.0 && fov < std::f64::consts::PI) {
-            return Err(ViewError::Fov(fov));
-        }
-        Ok(Self { eye, target, up, fov })
-    }
-
-    fn fitted(bounds: Option<Bounds>, aspect: f64) -> Self {
-        let [lo, hi] = limited(bounds);
-        let target = (lo + hi) / 2.0;
-        // The narrower side decides; a flat or single-point box still wants some distance.
-        let narrower = FITTED_FOV.min(2.0 * ((FITTED_FOV / 2.0).tan() * aspect).atan());
-        let radius = ((hi - lo).length() / 2.0).max(1e-3);
-        let distance = FITTED_MARGIN * radius / (narrower / 2.0).sin();
-        let eye = target + FITTED_DIRECTION.normalize() * distance;
-        Self { eye, target, up: DVec3::Y, fov: FITTED_FOV }
-    }
-
-    /// Unit vectors to the right, upwards and into the picture.
-    fn basis(&self) -> [DVec3; 3] {
-        let forward = (self.target - self.eye).normalize_or(DVec3::NEG_Z);
-        // Looking along `up`: then what lies behind is at the bottom, as on a map; z points at the
-        // viewer of a scene, so it is at the bottom of a view from above.
-        let stand_in = if forward.z.abs() > 0.9 { DVec3::Y } else { DVec3::NEG_Z * -forward.y };
-        let up = self.up.normalize_or_zero();
-        let right = match forward.cross(up) {
-            cross if cross.length() > 1e-6 => cross.normalize(),
-            _ => forward.cross(stand_in).normalize_or(DVec3::X),
-        };
-        [right, right.cross(forward), forward]
-    }
-}
-
-/// The box with each unlimited side replaced: centred on 0 where both ends are open, else on its
-/// one end, and as long as the longest limited side (2 if there is none).
-fn limited(bounds: Option<Bounds>) -> [DVec3; 2] {
-    let [lo, hi] = bounds.unwrap_or([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]]);
-    let sides = [0, 1, 2].map(|axis| hi[axis] - lo[axis]);
-    let longest = sides.into_iter().filter(|side| side.is_finite() && *side > 0.0);
-    let half = longest.fold(0.0, f64::max) / 2.0;
-    let half = if half > 0.0 { half } else { 1.0 };
-    let [mut low, mut high] = [DVec3::ZERO; 2];
-    for axis in 0..3 {
-        let middle = match [lo[axis].is_finite(), hi[axis].is_finite()] {
-            [true, true] if sides[axis] >= 0.0 => {
-                (low[axis], high[axis]) = (lo[axis], hi[axis]);
-                continue;
-            }
-            [true, false] => lo[axis],
-            [false, true] => hi[axis],
-            [true, true] | [false, false] => 0.0,
-        };
-        (low[axis], high[axis]) = (middle - half, middle + half);
-    }
-    [low, high]
-}
-
 /// How far and how finely rays go.
 struct Limits {
     t_max: f64,
@@ -480,20 +404,6 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn unlimited_sides_take_the_length_of_the_longest_limited_one() {
-        let inf = f64::INFINITY;
-        let [lo, hi] = limited(Some([[-inf, -inf, 1.0], [inf, 2.0, 5.0]]));
-        close(lo, [-2.0, 0.0, 1.0]);
-        close(hi, [2.0, 4.0, 5.0]);
-        let [lo, hi] = limited(None);
-        close(lo, [-1.0; 3]);
-        close(hi, [1.0; 3]);
-        // Nothing is inside an empty box.
-        let [lo, hi] = limited(Some([[inf; 3], [-inf; 3]]));
-        close(hi - lo, [2.0; 3]);
     }
 
     #[test]
