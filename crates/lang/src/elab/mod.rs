@@ -29,7 +29,7 @@ mod value;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
-use sdfc_graph::{Graph, Scene, ShapeId};
+use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
 
 use crate::hir;
 use report::Frame;
@@ -120,6 +120,8 @@ struct Elaborator<'p> {
     /// Names of definitions in the graph: unique where files declare the same name.
     definitions: Vec<String>,
     closures: FxHashMap<ClosureKey, u32>,
+    /// Made when the first bounds are asked for.
+    bounds: Option<Bounds>,
     sites: Vec<Site>,
     seen_sites: FxHashSet<(ShapeId, Span)>,
     /// Calls from the outermost inwards.
@@ -146,6 +148,7 @@ impl<'p> Elaborator<'p> {
             globals: vec![None; program.globals.len()],
             definitions: shape::definition_names(program),
             closures: FxHashMap::default(),
+            bounds: None,
             sites: Vec::new(),
             seen_sites: FxHashSet::default(),
             frames: Vec::new(),

@@ -1,7 +1,7 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Dim, MaterialField, NodeId, Type};
+use sdfc_graph::{Bounds, MaterialField, NodeId, ShapeId, Type};
 
 use super::kernel::{Application, name};
 use super::value::Value;
@@ -49,15 +49,10 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    fn shape_bounds(&mut self, shape: sdfc_graph::ShapeId) -> [NodeId; 2] {
-        let known = self.graph.shape(shape).contract.bounds;
-        known.unwrap_or_else(|| {
-            let ty = match self.graph.shape(shape).dim {
-                Dim::Two => sdfc_graph::Type::Vec2,
-                Dim::Three => sdfc_graph::Type::Vec3,
-            };
-            [f64::NEG_INFINITY, f64::INFINITY].map(|end| self.graph.constant(ty, &[end; 4]))
-        })
+    /// Derived once per shape. All params are known by then: only they stand before shapes.
+    fn shape_bounds(&mut self, shape: ShapeId) -> [NodeId; 2] {
+        let bounds = self.bounds.get_or_insert_with(|| Bounds::new(&self.params));
+        bounds.of(&mut self.graph, shape)
     }
 
     /// `material(...)`: the colour's alpha is the coverage.
