@@ -19,6 +19,8 @@ pub enum Reason {
     Varying(String),
     /// A child without a constant.
     Child(String),
+    /// A stated constant that is infinite, as one over bounds that are.
+    Infinite,
     /// A constant that holds only within the child's bounds, used where the point may lie outside.
     Within(String),
 }
@@ -32,6 +34,7 @@ impl std::fmt::Display for Reason {
             }
             Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),
             Self::Child(name) => write!(f, "`{name}` has no constant"),
+            Self::Infinite => f.write_str("its constant is infinite, since its bounds are"),
             Self::Within(name) => {
                 write!(
                     f,
@@ -70,7 +73,10 @@ impl Slopes {
             }
             let constant = match stretch {
                 Some(constant) => Ok(constant),
-                None => slopes.by_rule(graph, node, level, shapes),
+                None => {
+                    let derived = slopes.by_rule(graph, node, level, shapes);
+                    slopes.with_claim(graph, node, derived)
+                }
             };
             slopes.constants.insert(node, constant);
         }
@@ -95,6 +101,23 @@ impl Slopes {
         let Some(stretch) = affine::similarity(graph, linear) else { return false };
         let product = graph.mul(stretch, factor);
         graph.as_number(product).is_some_and(|value| (value.abs() - 1.0).abs() < 1e-12)
+    }
+
+    /// The derived constant, or the one that the node's function states if that is better.
+    fn with_claim(&self, graph: &mut Graph, node: NodeId, derived: Constant) -> Constant {
+        let Some(claim) = graph.claim_of(node).cloned() else { return derived };
+        let mut largest = graph.number(0.0);
+        for argument in claim.arguments {
+            match self.constants.get(&argument) {
+                Some(Ok(constant)) => largest = graph.max(largest, *constant),
+                Some(Err(_)) | None => return derived,
+            }
+        }
+        let stated = graph.mul(claim.lipschitz, largest);
+        match derived {
+            Ok(derived) => Ok(graph.min(derived, stated)),
+            Err(_) => Ok(stated),
+        }
     }
 
     fn by_rule(

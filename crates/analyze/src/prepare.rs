@@ -1,8 +1,8 @@
 //! The passes, in order, from a scene to a flat program.
 
 use sdfc_graph::{
-    Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, fold_transforms, gradient,
-    uniforms,
+    Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, bounds, fold_transforms,
+    gradient, uniforms,
 };
 
 use crate::cost::{Cost, cost};
@@ -17,6 +17,8 @@ pub struct Prepared {
     pub program: Program,
     /// What was modelled and why.
     pub report: Report,
+    /// Lowest and highest point of what is drawn, per-frame nodes of the program's graph.
+    pub bounds: Option<[NodeId; 2]>,
 }
 
 /// What was modelled and why.
@@ -75,9 +77,10 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
         Some(root) => flatten(&mut program, root, scene.painted)?,
         None => Report::default(),
     };
+    let bounds = scene.root.map(|root| bounds(&mut program.graph, root, &program.params));
     let roots = roots(&program);
     program.uniforms = uniforms(&program.graph, &roots);
-    Ok(Prepared { program, report })
+    Ok(Prepared { program, report, bounds })
 }
 
 fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report, ExpandError> {
@@ -92,7 +95,7 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
         flat.extend(expander.material(graph, root, point)?);
     }
     let folded = fold_transforms(graph, &flat);
-    program.names = folded.names(&expander.names());
+    program.names = folded.names(graph, &expander.names());
     let [distance, material @ ..] = &folded.roots[..] else { return Ok(Report::default()) };
     let distance = *distance;
     program.distance = Some(distance);

@@ -146,7 +146,10 @@ impl Qualities {
             children.iter().all(|child| self.get(*child).is_some_and(|q| q.everywhere));
         let (lipschitz, everywhere) = match contract.lipschitz {
             Some(constant) => {
-                let stated = self.times_children(graph, constant, &children);
+                let stated = self.times_children(graph, constant, &children).and_then(|node| {
+                    let finite = graph.as_number(node).is_none_or(f64::is_finite);
+                    if finite { Ok(node) } else { Err(Reason::Infinite) }
+                });
                 let confirmed = children_everywhere && at_most(graph, &derived, &stated);
                 (stated, confirmed || contract.bounds.is_none())
             }

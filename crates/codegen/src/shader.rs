@@ -1,5 +1,7 @@
 //! A validated module and what can be written of it.
 
+use std::time::{Duration, Instant};
+
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, back};
 use sdfc_march::Features;
@@ -15,14 +17,21 @@ pub struct Shader {
     info: ModuleInfo,
     parts: Parts,
     features: Features,
+    validation: Duration,
 }
 
 impl Shader {
     pub(crate) fn new(module: Module, parts: Parts, features: Features) -> Result<Self, Error> {
+        let start = Instant::now();
         let info = Validator::new(ValidationFlags::all(), Capabilities::default())
             .validate(&module)
             .map_err(|error| Error::Naga(error.emit_to_string("")))?;
-        Ok(Self { module, info, parts, features })
+        Ok(Self { module, info, parts, features, validation: start.elapsed() })
+    }
+
+    /// How long validation took.
+    pub fn validation_time(&self) -> Duration {
+        self.validation
     }
 
     /// The module, for `wgpu::ShaderSource::Naga`.

@@ -17,6 +17,16 @@ struct Facts {
     levels: u16,
 }
 
+/// What the author of a function states of its result: it changes by at most `lipschitz` where each of
+/// the arguments changes by at most 1, vectors by Euclidean length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// A scalar known before the point is.
+    pub lipschitz: NodeId,
+    /// The arguments that depend on a point.
+    pub arguments: Vec<NodeId>,
+}
+
 /// Hash-consed nodes and shape instances. Equal nodes have equal ids.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
@@ -25,6 +35,7 @@ pub struct Graph {
     ids: FxHashMap<Node, NodeId>,
     shapes: Vec<Shape>,
     shape_ids: FxHashMap<u64, Vec<ShapeId>>,
+    claims: FxHashMap<NodeId, Claim>,
 }
 
 impl Graph {
@@ -191,6 +202,16 @@ impl Graph {
                 && shape.level == level
                 && shape.args == args
         })
+    }
+
+    /// Records what is stated of a node; the first claim stays.
+    pub fn claim(&mut self, node: NodeId, claim: Claim) {
+        self.claims.entry(node).or_insert(claim);
+    }
+
+    /// What is stated of a node.
+    pub fn claim_of(&self, node: NodeId) -> Option<&Claim> {
+        self.claims.get(&node)
     }
 
     /// Names a shape after the scene's `let`; the first name stays.

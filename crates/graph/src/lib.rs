@@ -21,7 +21,7 @@ pub use bounds::{Bounds, bounds};
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
-pub use graph::Graph;
+pub use graph::{Claim, Graph};
 pub use hoist::uniforms;
 pub use node::{
     Binary, Const, Dim, FrameInput, MaterialField, Node, NodeId, ShapeId, Stage, Ternary, Type,

@@ -53,6 +53,27 @@ pub struct Settings {
     pub march: March,
 }
 
+impl Settings {
+    /// All nodes that the settings are made of.
+    pub fn nodes(&self) -> Vec<NodeId> {
+        // Taken apart so that a new setting does not compile until it is thought of here.
+        let Self { camera, lights, ambient, background, march: _ } = self;
+        let camera = camera.iter().flat_map(|camera| {
+            let Camera { eye, target, up, fov } = *camera;
+            [eye, target, up, fov]
+        });
+        let lights = lights.iter().flat_map(|light| {
+            let Light { direction, color, shadow } = *light;
+            let sharpness = match shadow {
+                Shadow::Soft(sharpness) => Some(sharpness),
+                Shadow::Off | Shadow::Hard => None,
+            };
+            [Some(direction), Some(color), sharpness].into_iter().flatten()
+        });
+        camera.chain(lights).chain(*ambient).chain(*background).collect()
+    }
+}
+
 /// A perspective camera, right-handed, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -1,1 +1,50 @@
-//! To be written.
+//! A compiler for signed distance functions: scene scripts to specialised shaders.
+//!
+//! # What
+//!
+//! [`compile`] takes the text of a scene and gives [`Compiled`]: findings as data, and a [`Scene`] if
+//! none of them is an error. A scene can be evaluated on the CPU, written as a shader, explained, and
+//! drawn.
+//!
+//! # How
+//!
+//! ```
+//! use sdfc::{Backend, PictureOptions, compile, unwatched};
+//!
+//! let compiled = compile("ball.sdf", "sphere(0.5)\nplane(y: -0.5)");
+//! assert!(compiled.diagnostics.is_empty());
+//! let scene = compiled.scene.expect("no errors");
+//!
+//! let shader = scene.field_shader(&sdfc::FieldOptions::default())?;
+//! assert!(shader.wgsl()?.contains("fn sdf_distance"));
+//!
+//! let options = PictureOptions { size: [32, 18], backend: Backend::Cpu, ..Default::default() };
+//! let picture = scene.render(&options, &mut unwatched)?;
+//! assert!(picture.stats.pixels.hit > 0);
+//! # Ok::<(), sdfc::Error>(())
+//! ```
+//!
+//! # Limits
+//!
+//! Nothing here prints, opens files or exits. A scene that imports other files needs them handed in, which
+//! this version does not do yet.
+
+mod compile;
+mod error;
+mod explain;
+mod picture;
+mod scene;
+
+pub use compile::{Compiled, FrontTimes, Scene, compile};
+pub use error::Error;
+pub use explain::{Bounds, Explanation, Knob, QualityRow};
+pub use picture::{Backend, Picture, PictureOptions};
+
+pub use sdfc_codegen::{FieldOptions, Shader};
+pub use sdfc_diagnostics as diagnostics;
+pub use sdfc_graph as graph;
+pub use sdfc_graph::eval::FrameValues;
+pub use sdfc_lang as lang;
+pub use sdfc_march as march;
+pub use sdfc_render as render;
+pub use sdfc_render::{Progress, unwatched};

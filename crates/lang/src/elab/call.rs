@@ -1,12 +1,12 @@
 //! Calls: arguments, defaults, ranges, requirements, recursion.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{NodeId, Stage};
+use sdfc_graph::{Claim, NodeId, Stage};
 
 use super::report::{Frame, show_lanes, show_number};
 use super::value::{Closure, Code, Value};
 use super::{Elaborator, Env, MAX_RECURSION, Outcome};
-use crate::hir::{Expr, FnId, Lambda, Parameter, Require};
+use crate::hir::{Expr, FnId, Lambda, LocalId, Parameter, Require};
 
 /// An argument as the caller wrote it: its value, and its place if it has one.
 pub(super) type Given<'p> = Option<(Value<'p>, Span)>;
@@ -52,6 +52,9 @@ impl<'p> Elaborator<'p> {
             .bind(&mut env, &function.parameters, given, span)
             .and_then(|()| self.requirements(&mut env, &function.requires))
             .and_then(|()| self.eval(&mut env, &function.body));
+        if let (Ok(value), Some(stated)) = (&result, &function.lipschitz) {
+            self.claim(&mut env, value, stated, 0..function.parameters.len());
+        }
         self.frames.pop();
         self.active[index] -= 1;
         result
@@ -104,8 +107,37 @@ impl<'p> Elaborator<'p> {
         let result = self
             .requirements(&mut env, &lambda.requires)
             .and_then(|()| self.eval(&mut env, &lambda.body));
+        if let (Ok(value), Some(stated)) = (&result, &lambda.lipschitz) {
+            let first = lambda.captures.len();
+            self.claim(&mut env, value, stated, first..first + lambda.parameters.len());
+        }
         self.frames.pop();
         result
+    }
+
+    /// Records the constant that a function states, on its result. An error in the expression is
+    /// reported; a constant that depends on the point states nothing.
+    fn claim(
+        &mut self,
+        env: &mut Env<'p>,
+        result: &Value<'p>,
+        stated: &'p Expr,
+        arguments: std::ops::Range<usize>,
+    ) {
+        let Value::Node(result) = *result else { return };
+        if self.graph.stage(result) < Stage::Point {
+            return;
+        }
+        let Ok(Value::Node(lipschitz)) = self.eval(env, stated) else { return };
+        if self.graph.stage(lipschitz) == Stage::Point {
+            return;
+        }
+        let varying = |local: usize| match env.get(LocalId(local as u32)) {
+            Ok(Value::Node(node)) if self.graph.stage(node) == Stage::Point => Some(node),
+            Ok(_) | Err(_) => None,
+        };
+        let arguments = arguments.filter_map(varying).collect();
+        self.graph.claim(result, Claim { lipschitz, arguments });
     }
 
     /// Gives each parameter its argument or default and checks its range. All errors are reported.

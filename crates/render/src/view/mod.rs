@@ -9,7 +9,7 @@ use std::fmt;
 
 use glam::DVec3;
 use sdfc_graph::{
-    Camera, Light, March, NodeId, Program, Settings, Shadow,
+    Light, March, NodeId, Program, Settings, Shadow,
     eval::{FrameValues, evaluate_frame},
 };
 use sdfc_march::{LightBlock, MAX_LIGHTS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
@@ -128,7 +128,7 @@ impl View {
         size: [u32; 2],
     ) -> Result<Self, ViewError> {
         let settings = &program.settings;
-        let nodes = setting_nodes(settings);
+        let nodes = settings.nodes();
         let values = evaluate_frame(&program.graph, &nodes, frame);
         let value = |id: NodeId| {
             let found = nodes.iter().position(|node| *node == id);
@@ -215,18 +215,6 @@ impl View {
             lights,
         }
     }
-}
-
-/// The nodes whose values a view needs.
-fn setting_nodes(settings: &Settings) -> Vec<NodeId> {
-    // Taken apart so that a new setting does not compile until it is thought of here.
-    let Settings { camera, lights, ambient, background, march: _ } = settings;
-    let camera = camera.iter().flat_map(|camera| {
-        let Camera { eye, target, up, fov } = *camera;
-        [eye, target, up, fov]
-    });
-    let lights = lights.iter().flat_map(|light| [light.direction, light.color]);
-    camera.chain(lights).chain(*ambient).chain(*background).collect()
 }
 
 /// How far and how finely rays go.

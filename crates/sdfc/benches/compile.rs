@@ -1,0 +1,70 @@
+//! How long each stage takes from a scene's text to a validated module. Medians of repeated runs in one process;
+//! run with `cargo bench -p sdfc --bench compile`.
+
+use std::fmt::Write as _;
+
+use sdfc::compile;
+
+/// Runs of each scene; the first is left out.
+const RUNS: usize = 21;
+
+fn main() {
+    // `cargo test --benches` passes no `--bench`: then there is nothing to measure.
+    if !std::env::args().any(|argument| argument == "--bench") {
+        return;
+    }
+    let scenes = [
+        ("course/blend", include_str!("../../../examples/course/blend.sdf").to_owned()),
+        ("bench/thirty", include_str!("../../../examples/bench/thirty.sdf").to_owned()),
+        ("100 hard", many(100, "min")),
+        ("1000 hard", many(1000, "min")),
+        ("1000 smooth", many(1000, "smooth(0.05)")),
+    ];
+    let mut table =
+        String::from("scene           front  analyze    lower  validate    total  (ms, median)\n");
+    for (name, text) in &scenes {
+        let times = median_times(name, text);
+        let total: f64 = times.iter().sum();
+        let [front, analyze, lower, validate] = times;
+        let _ = writeln!(
+            table,
+            "{name:<13} {front:>7.2}  {analyze:>7.2}  {lower:>7.2}  {validate:>8.2}  {total:>7.2}"
+        );
+    }
+    // A benchmark is a program of its own; it may print.
+    #[allow(clippy::print_stdout)]
+    {
+        print!("{table}");
+    }
+}
+
+/// A scene of so many leaves, moved and turned, joined by a blend.
+fn many(leaves: usize, blend: &str) -> String {
+    format!(
+        "union(for i in 0..{leaves}: sphere(0.1 + 0.05 * sin(7 * i)).translate([3 * sin(i * 12.9898), \
+         3 * sin(i * 78.233), 3 * sin(i * 37.719)]), blend: {blend})\n"
+    )
+}
+
+fn median_times(name: &str, text: &str) -> [f64; 4] {
+    let mut runs: Vec<[f64; 4]> = (0..RUNS).map(|_| times(name, text)).skip(1).collect();
+    std::array::from_fn(|stage| {
+        runs.sort_by(|a, b| a[stage].total_cmp(&b[stage]));
+        runs[runs.len() / 2][stage]
+    })
+}
+
+fn times(name: &str, text: &str) -> [f64; 4] {
+    let compiled = compile(name, text);
+    let Some(scene) = compiled.scene else {
+        return [f64::NAN; 4];
+    };
+    let start = std::time::Instant::now();
+    let Ok(shader) = scene.picture_shader("auto") else {
+        return [f64::NAN; 4];
+    };
+    let linked = start.elapsed().as_secs_f64() * 1e3;
+    let validate = shader.validation_time().as_secs_f64() * 1e3;
+    let front = scene.times();
+    [front.front, front.analyze, linked - validate, validate]
+}

@@ -1,0 +1,134 @@
+//! From text to a scene ready for code generation.
+
+use std::time::Instant;
+
+use sdfc_analyze::{Report, prepare};
+use sdfc_diagnostics::{Code, Diagnostic, FileId, Located, Sources, Span, locate, render};
+use sdfc_graph::{NodeId, Param, Program};
+use sdfc_lang::{Elaborated, Site};
+
+/// What compiling a source gave: findings, and the scene if none of them is an error.
+#[derive(Debug)]
+pub struct Compiled {
+    /// Texts of the scene and the library.
+    pub sources: Sources,
+    /// Findings in order of place.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The scene, if there were no errors.
+    pub scene: Option<Scene>,
+}
+
+impl Compiled {
+    /// The findings as text for people.
+    pub fn diagnostics_text(&self, color: bool) -> String {
+        render(&self.sources, &self.diagnostics, color)
+    }
+
+    /// The findings with lines and columns.
+    pub fn located(&self) -> Vec<Located> {
+        self.diagnostics.iter().map(|found| locate(&self.sources, found)).collect()
+    }
+}
+
+/// Time spent in the front stages, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrontTimes {
+    /// Parsing, checking, elaborating.
+    pub front: f64,
+    /// Analyses and passes.
+    pub analyze: f64,
+}
+
+/// A compiled scene: all that is known of it before a target is chosen.
+#[derive(Debug)]
+pub struct Scene {
+    pub(crate) elaborated: Elaborated,
+    pub(crate) program: Program,
+    pub(crate) report: Report,
+    pub(crate) bounds: Option<[NodeId; 2]>,
+    pub(crate) times: FrontTimes,
+}
+
+impl Scene {
+    /// The flat program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// The graph with its shapes, as elaborated.
+    pub fn graph(&self) -> &sdfc_graph::Scene {
+        &self.elaborated.scene
+    }
+
+    /// Which calls made which shapes.
+    pub fn sites(&self) -> &[Site] {
+        &self.elaborated.sites
+    }
+
+    /// What was modelled and why.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// The params, in order of declaration.
+    pub fn params(&self) -> &[Param] {
+        &self.program.params
+    }
+
+    /// Whether the scene draws anything.
+    pub fn draws(&self) -> bool {
+        self.program.distance.is_some()
+    }
+
+    /// Time spent so far.
+    pub fn times(&self) -> FrontTimes {
+        self.times
+    }
+}
+
+/// Compiles a scene; `name` is what messages call it.
+///
+/// ```
+/// let compiled = sdfc::compile("ball.sdf", "sphere(0.5) | plane(y: -0.5)");
+/// let scene = compiled.scene.expect("no errors");
+/// assert_eq!(scene.distance([0.0, 2.0, 0.0]).expect("something is drawn"), 1.5);
+///
+/// let wrong = sdfc::compile("ball.sdf", "spere(0.5)");
+/// assert!(wrong.scene.is_none());
+/// assert!(wrong.diagnostics_text(false).contains("did you mean `sphere`?"));
+/// ```
+pub fn compile(name: &str, text: &str) -> Compiled {
+    let start = Instant::now();
+    let mut sources = Sources::new();
+    let file = sources.add(name, text);
+    let (elaborated, mut diagnostics) = sdfc_lang::front(&mut sources, file);
+    let front = milliseconds(start);
+    let scene = elaborated.and_then(|elaborated| finish(elaborated, front, file, &mut diagnostics));
+    Compiled { sources, diagnostics, scene }
+}
+
+fn finish(
+    elaborated: Elaborated,
+    front: f64,
+    file: FileId,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Scene> {
+    let start = Instant::now();
+    match prepare(&elaborated.scene) {
+        Ok(prepared) => {
+            let times = FrontTimes { front, analyze: milliseconds(start) };
+            let (program, report, bounds) = (prepared.program, prepared.report, prepared.bounds);
+            Some(Scene { elaborated, program, report, bounds, times })
+        }
+        Err(error) => {
+            let span = Span::new(file, 0, 0);
+            let found = Diagnostic::error(Code::TOO_MANY_NODES, span, error.to_string());
+            diagnostics.push(found.help("use repetition for copies, or draw less"));
+            None
+        }
+    }
+}
+
+pub(crate) fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}

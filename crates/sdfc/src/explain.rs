@@ -1,0 +1,131 @@
+//! What was modelled and why, as `sdfc explain` shows it.
+
+use serde::Serialize;
+
+/// The explanation of a scene. The keys are a promise to other tools: some may be added, none renamed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// Leaf shapes evaluated in one evaluation of the field.
+    pub leaves: usize,
+    /// Nodes of the flat field, constants and per-frame ones included.
+    pub nodes: usize,
+    /// Arithmetic operations of one evaluation of the field; a vector operation counts once.
+    pub ops_per_eval: usize,
+    /// Arithmetic operations of one evaluation of the gradient, which hits alone need.
+    pub ops_per_gradient: usize,
+    /// Arithmetic operations done once a frame on the CPU.
+    pub ops_per_frame: usize,
+    /// Instructions of the field's function in SPIR-V, all kinds, as emitted.
+    pub spirv_instructions: usize,
+    /// Arithmetic ones among them.
+    pub spirv_arithmetic: usize,
+    /// What the shader holds beside the march: `material`, `shadow`, ...
+    pub features: Vec<String>,
+    /// Ray method.
+    pub method: String,
+    /// By what a distance is multiplied to be a safe step; 1, since the field is divided where it must be.
+    pub step_scale: f64,
+    /// Whether every part has a Lipschitz constant.
+    pub certified: bool,
+    /// Where the scene lies.
+    pub bounds: Bounds,
+    /// Params, and the stage at which each is known.
+    pub knobs: Vec<Knob>,
+    /// Every shape of the scene that a call in it made, in order of place.
+    pub quality: Vec<QualityRow>,
+}
+
+/// Lowest and highest coordinates; `None` (null) where infinite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Bounds {
+    /// Lowest.
+    pub min: [Option<f64>; 3],
+    /// Highest.
+    pub max: [Option<f64>; 3],
+}
+
+/// A param or other per-frame input.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Knob {
+    /// Its name.
+    pub name: String,
+    /// `frame`: it moves without a recompile.
+    pub stage: &'static str,
+    /// Whether the field, the material or a setting uses it.
+    pub used: bool,
+}
+
+/// What is known of one shape.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct QualityRow {
+    /// Its name: the scene's `let`, or its definition.
+    pub name: String,
+    /// Line of the call that made it, from 1.
+    pub line: u32,
+    /// Column, from 1.
+    pub column: u32,
+    /// `exact`, `bound` or `none`.
+    pub outside: String,
+    /// `exact`, `bound` or `none`.
+    pub inside: String,
+    /// Its Lipschitz constant; null where it follows a param or is not known.
+    pub lipschitz: Option<f64>,
+    /// Whether it has one.
+    pub certified: bool,
+    /// Why it is not certified, or what is done about a constant above 1.
+    pub why: Option<String>,
+}
+
+impl std::fmt::Display for Explanation {
+    /// The explanation as a page of text.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "leaves              {}", self.leaves)?;
+        writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
+        writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
+        writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
+        let (all, arithmetic) = (self.spirv_instructions, self.spirv_arithmetic);
+        writeln!(f, "SPIR-V              {all} instructions, {arithmetic} of them arithmetic")?;
+        let features =
+            if self.features.is_empty() { "none".to_owned() } else { self.features.join(", ") };
+        writeln!(f, "features            {features}")?;
+        writeln!(f, "method              {}", self.method)?;
+        writeln!(f, "certified           {}", if self.certified { "yes" } else { "no" })?;
+        writeln!(f, "bounds              {}", self.bounds)?;
+        for knob in &self.knobs {
+            let unused = if knob.used { "" } else { ", unused" };
+            writeln!(f, "knob                {}: per {}{unused}", knob.name, knob.stage)?;
+        }
+        if !self.quality.is_empty() {
+            writeln!(f, "\n  line  shape             outside  inside   lipschitz")?;
+        }
+        for row in &self.quality {
+            let constant = row.lipschitz.map_or_else(
+                || if row.certified { "per frame".to_owned() } else { "unknown".to_owned() },
+                |value| {
+                    format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
+                },
+            );
+            write!(
+                f,
+                "{:>6}  {:<16}  {:<7}  {:<7}  {constant}",
+                row.line, row.name, row.outside, row.inside
+            )?;
+            match &row.why {
+                Some(why) => writeln!(f, "  ({why})")?,
+                None => writeln!(f)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Display for Bounds {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let end = |value: Option<f64>, infinite: &str| {
+            value.map_or_else(|| infinite.to_owned(), |v| format!("{:.4}", v + 0.0))
+        };
+        let point =
+            |ends: [Option<f64>; 3], infinite| ends.map(|value| end(value, infinite)).join(", ");
+        write!(f, "[{}] .. [{}]", point(self.min, "-inf"), point(self.max, "inf"))
+    }
+}

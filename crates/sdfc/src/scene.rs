@@ -1,0 +1,166 @@
+//! A compiled scene's field on the CPU, as a shader, and explained.
+
+use sdfc_analyze::{Lipschitz, ShapeReport};
+use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
+use sdfc_diagnostics::Sources;
+use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
+use sdfc_graph::{FrameInput, Node, NodeId, reachable};
+
+use crate::explain::{Bounds, Explanation, Knob, QualityRow};
+use crate::{Error, Scene};
+
+impl Scene {
+    /// Signed distance at a point, in f64, with the params' defaults; never more than the true distance
+    /// where the scene is certified.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NothingDrawn`].
+    pub fn distance(&self, point: [f64; 3]) -> Result<f64, Error> {
+        let frame = FrameValues::defaults(self.params());
+        let samples = sample_field(&self.program, &frame, &[point])?;
+        samples.first().map(|sample| sample.distance).ok_or(Error::NothingDrawn)
+    }
+
+    /// The field alone, as functions to embed.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Codegen`].
+    pub fn field_shader(&self, options: &FieldOptions) -> Result<Shader, Error> {
+        Ok(field_module(&self.program, options)?)
+    }
+
+    /// The shader of the picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Codegen`], for an unknown method too.
+    pub fn picture_shader(&self, method: &str) -> Result<Shader, Error> {
+        Ok(render_module(&self.program, method)?)
+    }
+
+    /// Where the scene lies at a frame: lowest and highest corner, infinite where not limited.
+    pub fn bounds_at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
+        let [lo, hi] = self.bounds?;
+        let values = evaluate_frame(&self.program.graph, &[lo, hi], frame);
+        let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
+        Some([corner(values.first()?), corner(values.get(1)?)])
+    }
+
+    /// What was modelled and why.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NothingDrawn`], [`Error::Codegen`].
+    pub fn explain(&self, sources: &Sources) -> Result<Explanation, Error> {
+        let program = &self.program;
+        if program.distance.is_none() {
+            return Err(Error::NothingDrawn);
+        }
+        let material = program.material.is_some();
+        let options = FieldOptions { gradient: false, material: false, ..FieldOptions::default() };
+        let costs = self.field_shader(&options)?.instructions()?;
+        let field = costs.iter().find(|cost| cost.role == Role::Distance);
+        let shadows = self.picture_shader(self.method())?.features().shadows;
+        let features = [("material", material), ("shadow", shadows)];
+        let report = &self.report;
+        Ok(Explanation {
+            leaves: report.leaves,
+            nodes: report.distance.nodes,
+            ops_per_eval: report.distance.operations,
+            ops_per_gradient: report.gradient.operations,
+            ops_per_frame: report.distance.per_frame,
+            spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
+            spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
+            features: features.iter().filter(|f| f.1).map(|f| f.0.to_owned()).collect(),
+            method: self.method().to_owned(),
+            step_scale: 1.0,
+            certified: report.uncertified.is_empty(),
+            bounds: self.finite_bounds(),
+            knobs: self.knobs(),
+            quality: self.quality_rows(sources),
+        })
+    }
+
+    fn finite_bounds(&self) -> Bounds {
+        let frame = FrameValues::defaults(self.params());
+        let finite = |corner: [f64; 3]| corner.map(|value| value.is_finite().then_some(value));
+        match self.bounds_at(&frame) {
+            Some([lo, hi]) => Bounds { min: finite(lo), max: finite(hi) },
+            None => Bounds::default(),
+        }
+    }
+
+    fn knobs(&self) -> Vec<Knob> {
+        let used: Vec<Node> = reachable(&self.program.graph, &self.all_roots())
+            .into_iter()
+            .map(|id| self.program.graph.node(id))
+            .collect();
+        let is_used =
+            |input| used.iter().any(|node| matches!(node, Node::Frame(i, _) if *i == input));
+        let mut knobs: Vec<Knob> = self
+            .params()
+            .iter()
+            .enumerate()
+            .map(|(index, param)| Knob {
+                name: param.name.clone(),
+                stage: "frame",
+                used: is_used(FrameInput::Param(index as u32)),
+            })
+            .collect();
+        for (name, input) in [("time", FrameInput::Time), ("frame", FrameInput::Frame)] {
+            if is_used(input) {
+                knobs.push(Knob { name: name.to_owned(), stage: "frame", used: true });
+            }
+        }
+        knobs
+    }
+
+    /// Field, gradient, material and settings.
+    fn all_roots(&self) -> Vec<NodeId> {
+        let program = &self.program;
+        let mut roots: Vec<NodeId> = program.distance.into_iter().collect();
+        roots.extend(program.material.into_iter().flatten());
+        roots.extend(program.settings.nodes());
+        roots
+    }
+
+    /// One row for each call in the scene's own files whose shape is drawn.
+    fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
+        let mut rows: Vec<QualityRow> = Vec::new();
+        for site in self.sites() {
+            let Some(shape) = self.report.shapes.iter().find(|s| s.shape == site.shape) else {
+                continue;
+            };
+            let place = sources.line_column(site.span.file, site.span.start);
+            rows.push(self.quality_row(shape, &site.name, place.line, place.column));
+        }
+        rows.sort_by_key(|row| (row.line, row.column));
+        rows
+    }
+
+    fn quality_row(&self, shape: &ShapeReport, name: &str, line: u32, column: u32) -> QualityRow {
+        let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
+        let lipschitz = match shape.lipschitz {
+            Lipschitz::Number(value) => Some(value),
+            Lipschitz::PerFrame | Lipschitz::Unknown(_) => None,
+        };
+        let why = match (&shape.lipschitz, uncertified) {
+            (_, Some(found)) => Some(found.reason.to_string()),
+            (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
+            (_, None) if shape.divided => Some("divided by its constant".to_owned()),
+            (_, None) => None,
+        };
+        QualityRow {
+            name: name.to_owned(),
+            line,
+            column,
+            outside: shape.sides.outside.to_string(),
+            inside: shape.sides.inside.to_string(),
+            lipschitz,
+            certified: !matches!(shape.lipschitz, Lipschitz::Unknown(_)) && uncertified.is_none(),
+            why,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The field that rays march: divided where it must be, and nowhere moved.
+//!
+//! For each scene the marched distance, in f64, must change no faster than the point moves and have the sign of
+//! the undivided field. The undivided field is the graph's plain expansion.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test stops where it fails")]
+
+use sdfc::graph::eval::{FrameValues, Tape};
+use sdfc::graph::{Dim, Expander};
+use sdfc::{Scene, compile};
+
+/// Pairs of points for each scene.
+const PAIRS: usize = 20_000;
+/// Rounding of f64 in a slope of a pair of points at least 1e-4 apart.
+const ROUNDING: f64 = 1e-6;
+
+/// Scenes whose plain field is steeper than 1, or is 1 only thanks to a constant.
+const SCENES: &[(&str, &str)] = &[
+    ("twisted box", "box([0.6, 2, 0.6]).twist(120deg)"),
+    ("twisted off the axis", "box([0.4, 2, 0.4]).translate(x: 0.5).twist(200deg)"),
+    ("twist by a param", "param t = 90deg in 0deg..180deg\nbox([0.6, 2, 0.6]).twist(t)"),
+    ("twist under hard union", "box([0.6, 2, 0.6]).twist(120deg) | sphere(0.5).translate(x: 1)"),
+    ("twist cut out", "sphere(1.2) - box([0.6, 4, 0.6]).twist(120deg)"),
+    (
+        "twist turned and scaled",
+        "box([0.6, 2, 0.6]).twist(120deg).rotate(x: 40deg, z: 10deg).scale(0.7)",
+    ),
+    (
+        "twist turned by a param",
+        "param a = 20deg in 0deg..90deg\nbox([0.6, 2, 0.6]).twist(120deg).rotate(y: a, x: a)",
+    ),
+    ("ellipsoid", "ellipsoid([1, 0.2, 0.5])"),
+    (
+        "own steep field",
+        "solid steep(k: number = 3)\n  lipschitz k\n  bounds -1..1\n  = k * (length(p) - 1)\nsteep(4)",
+    ),
+    ("own field without clauses", "solid steep() = 4 * (length(p) - 1)\nsteep() | plane(y: -1)"),
+    (
+        "own squeezed field",
+        "solid squeezed(a: solid) = a([2 * p.x, p.y, p.z])\nsqueezed(sphere(1)) - sphere(0.3)",
+    ),
+    (
+        "blend of scaled fields",
+        "union(sphere(0.5), box(1).translate(x: 0.6), blend: smooth(0.3)).scale(2)",
+    ),
+];
+
+#[test]
+fn marched_fields_change_no_faster_than_the_point() {
+    for (name, text) in SCENES {
+        let scene = scene(name, text);
+        assert!(scene.report().uncertified.is_empty(), "{name}: {:?}", scene.report().uncertified);
+        let steepest = steepest(&scene);
+        assert!(steepest <= 1.0 + ROUNDING, "{name}: slope {steepest}");
+    }
+}
+
+#[test]
+fn no_division_moves_a_surface() {
+    for (name, text) in SCENES {
+        let scene = scene(name, text);
+        let frame = FrameValues::defaults(scene.params());
+        let mut graph = scene.graph().graph.clone();
+        let point = graph.point(0, Dim::Three);
+        let root = scene.graph().root.expect("something is drawn");
+        let plain = Expander::new().field(&mut graph, root, point).expect("it expands");
+        let plain = Tape::new(&graph, &[plain]).expect("it is flat");
+        let mut plain = plain.prepare::<f64>(&frame);
+        let marched = tape(&scene);
+        let mut marched = marched.prepare::<f64>(&frame);
+        let mut random = Random(7);
+        for _ in 0..PAIRS {
+            let p = random.point(2.0);
+            let (a, b) = (plain.scalar(p), marched.scalar(p));
+            assert!(a.abs() < 1e-9 || (a > 0.0) == (b > 0.0), "{name} at {p:?}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn a_blend_that_reaches_past_a_constants_bounds_is_not_certified() {
+    let text = "union(box([0.6, 2, 0.6]).twist(120deg), sphere(0.7), blend: smooth(0.2))";
+    assert!(!scene("blend", text).report().uncertified.is_empty());
+}
+
+#[test]
+fn a_field_without_a_constant_is_told_with_its_reason() {
+    let scene = scene("product", "solid odd() = p.x * p.y - 0.1\nodd()");
+    let reasons: Vec<String> =
+        scene.report().uncertified.iter().map(|found| found.reason.to_string()).collect();
+    assert_eq!(reasons, ["the slope of `*` depends on the point; state it with `lipschitz`"]);
+}
+
+fn scene(name: &str, text: &str) -> Scene {
+    let compiled = compile(name, text);
+    let findings = compiled.diagnostics_text(false);
+    compiled.scene.unwrap_or_else(|| panic!("{findings}"))
+}
+
+fn tape(scene: &Scene) -> Tape {
+    let distance = scene.program().distance.expect("something is drawn");
+    Tape::new(&scene.program().graph, &[distance]).expect("the program is flat")
+}
+
+/// The largest slope between pairs of points, near ones and far ones.
+fn steepest(scene: &Scene) -> f64 {
+    let tape = tape(scene);
+    let mut field = tape.prepare::<f64>(&FrameValues::defaults(scene.params()));
+    let mut random = Random(3);
+    let mut steepest = 0.0f64;
+    for pair in 0..PAIRS {
+        let p = random.point(4.0);
+        let reach = [1e-3, 0.1, 2.0][pair % 3];
+        let offset = random.point(reach);
+        let q = [p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]];
+        let apart = offset.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if apart > 1e-4 {
+            steepest = steepest.max((field.scalar(p) - field.scalar(q)).abs() / apart);
+        }
+    }
+    steepest
+}
+
+/// Xorshift64* (Vigna 2016): repeatable points.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, reach: f64) -> [f64; 3] {
+        std::array::from_fn(|_| reach * (2.0 * self.unit() - 1.0))
+    }
+}
