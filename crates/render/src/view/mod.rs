@@ -297,6 +297,8 @@ fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError
 
 #[cfg(test)]
 mod tests {
+    use sdfc_graph::Camera;
+
     use super::*;
 
     /// A program that has only settings.
