@@ -27,28 +27,45 @@
 //!
 //! # Limits
 //!
-//! Those of the parser ([`sdfc_syntax`]) and of elaboration ([`elab`]). Imports, strings other
-//! than choices, soft shadows and the settings that need more than one light bounce are refused
-//! with `E0411`.
+//! Those of the parser ([`sdfc_syntax`]), of [`import`] and of elaboration ([`elab`]). Strings
+//! other than choices, soft shadows and the settings that need more than one light bounce are
+//! refused with `E0411`.
 
 mod check;
 pub mod elab;
 pub mod hir;
+pub mod import;
 pub mod library;
 pub mod settings;
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
 
-pub use check::{check, check_library};
+pub use check::{check, check_library, check_with_imports};
 pub use elab::{Elaborated, Site};
+pub use import::{NoFiles, Resolver};
 
 /// Parses, checks and elaborates a scene. The library's files are added to `sources`, since
 /// messages show lines of them. Without a scene there is at least one error among the findings;
 /// all findings of the phases that ran are there, in the order of the phases.
 pub fn front(sources: &mut Sources, file: FileId) -> (Option<Elaborated>, Vec<Diagnostic>) {
+    front_with_imports(sources, file, &NoFiles)
+}
+
+/// As [`front`], for scenes that import files: the resolver gives their texts, which are added
+/// to `sources` under their paths.
+pub fn front_with_imports(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let (scene, mut found) = sdfc_syntax::parse(sources, file);
-    let ((program, of_check), of_library) =
-        library::with_parsed(sources, |library| check(library, (file, &scene)));
+    // The library comes before the imports, so that its places are the same in every scene.
+    library::with_parsed(sources, |_| ());
+    let (imports, of_imports) = import::load(sources, &scene, resolver);
+    found.extend(of_imports);
+    let ((program, of_check), of_library) = library::with_parsed(sources, |library| {
+        check_with_imports(library, &imports, (file, &scene))
+    });
     found.extend(of_library);
     found.extend(of_check);
     if has_errors(&found) {

@@ -157,6 +157,7 @@ fn one_mistake_is_told_once() {
     assert_findings!(all(&[
         "let a = spere(1)\nlet b = a.translate(x: 1) | box(1)\nb.rotate(y: 90deg)\nfn f() = a\nf() - b",
         "import spur from \"gear.sdf\"\nspur(3).extrude(1)",
+        "let a = 1",
         "sphere(1 + true).rotate(y: 10)\nbox(\"a\" + 1)",
     ]));
 }

@@ -42,19 +42,43 @@ use sdfc_graph::Dim;
 use sdfc_syntax::ast;
 
 use crate::hir::{Expr, ExprKind, GlobalId, Param, ParamId, Program, Type};
+use crate::import::{self, Imported};
 use crate::settings::{self, SettingRow};
 
-/// Checks a scene against the library. The program is complete and free of [`Type::Error`]
-/// if no error is among the findings, which come in the order of their places.
-///
-/// Library bodies that the scene does not reach are not looked at; [`check_library`] does that.
+/// Checks a scene that stands alone, as [`check_with_imports`] does; imports are errors.
 pub fn check(
     library: &[(FileId, ast::File)],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
+    let (program, of_check) = check_with_imports(library, &[], scene);
+    let mut found: Vec<Diagnostic> =
+        scene.1.items.iter().filter_map(import::refuse_without_files).collect();
+    found.extend(of_check);
+    (program, found)
+}
+
+/// Checks a scene and what it imports against the library. The program is complete and free of [`Type::Error`]
+/// if no error is among the findings, which come in the order of their places.
+///
+/// Library bodies that the scene does not reach are not looked at; [`check_library`] does that.
+///
+/// `imports` are the files that [`load`](crate::import::load) gives for the scene; what it could
+/// not give, it has reported.
+pub fn check_with_imports(
+    library: &[(FileId, ast::File)],
+    imports: &[Imported],
+    scene: (FileId, &ast::File),
+) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
-    let module = checker.add_module(scene.1, false);
-    checker.check_scene(module, scene.1);
+    for import in imports {
+        let module = checker.add_module(&import.tree, Some(&import.path), false);
+        checker.modules[module].whole = import.whole;
+    }
+    let module = checker.add_module(scene.1, Some(""), false);
+    for (import, module) in imports.iter().zip(library.len()..) {
+        checker.check_imported(module, &import.tree);
+    }
+    checker.check_scene(module, scene);
     checker.finish()
 }
 
@@ -153,7 +177,7 @@ impl<'a> Checker<'a> {
     fn new(library: &'a [(FileId, ast::File)]) -> Self {
         let mut checker = Self { settings: settings::table(), ..Self::default() };
         for (_, ast) in library {
-            checker.add_module(ast, true);
+            checker.add_module(ast, None, true);
         }
         checker.program.library = library.iter().map(|(file, _)| *file).collect();
         checker

@@ -25,15 +25,20 @@ pub(super) enum Entry {
 /// One file.
 #[derive(Debug)]
 pub(super) struct Module<'a> {
+    /// Its path below the folder of the scene, which has an empty one itself; `None` for the
+    /// library.
+    pub path: Option<&'a str>,
+    /// Whether all of it was parsed.
+    pub whole: bool,
     /// Its own top-level names.
     pub names: FxHashMap<&'a str, Entry>,
     /// Names that it imports.
-    pub imports: FxHashMap<&'a str, Imported>,
+    pub imports: FxHashMap<&'a str, ImportedName>,
 }
 
 /// A name that came by `import`.
 #[derive(Clone, Debug)]
-pub(super) struct Imported {
+pub(super) struct ImportedName {
     /// What it means in the file that declares it; `None` if that was reported as an error.
     pub entry: Option<Entry>,
     /// Where it was imported.
@@ -68,10 +73,15 @@ pub(super) fn kernel_alternative(name: &str) -> Option<Builtin> {
 
 impl<'a> Checker<'a> {
     /// Takes in a file: its declarations, lets and params get indices, its names a table.
-    pub(super) fn add_module(&mut self, ast: &'a ast::File, library: bool) -> usize {
+    pub(super) fn add_module(
+        &mut self,
+        ast: &'a ast::File,
+        path: Option<&'a str>,
+        library: bool,
+    ) -> usize {
         let module = self.modules.len();
         let (names, imports) = Default::default();
-        self.modules.push(Module { names, imports });
+        self.modules.push(Module { path, whole: true, names, imports });
         for item in &ast.items {
             match item {
                 Item::Decl(decl) => self.add_decl(module, decl),

@@ -1,6 +1,6 @@
 //! What stands at top level: imports, params, lets, drawings and settings, in order.
 
-use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_diagnostics::{Code, Diagnostic, FileId, Span, has_errors};
 use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, ExprKind as Ast, Item};
 
@@ -8,58 +8,124 @@ use super::body::Body;
 use super::call::{Callee, Given};
 use super::coerce::region_for_solid;
 use super::decl::{Slot, Target};
-use super::names::{Found, Imported, is_private};
+use super::names::{Entry, Found, ImportedName, is_private, nearest};
 use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
 use crate::hir::{Setting, SettingKind, Type};
+use crate::import;
+
+/// What is evaluated at top level.
+enum TopLevel<'a> {
+    Let(LetIndex),
+    Param(ParamIndex),
+    Expr(&'a ast::Expr),
+}
 
 impl<'a> Checker<'a> {
     /// Checks all of the scene's file.
-    pub(super) fn check_scene(&mut self, module: usize, ast: &'a ast::File) {
-        for item in &ast.items {
-            if let Item::Import(import) = item {
-                self.refuse_import(module, import);
-            }
-        }
+    pub(super) fn check_scene(&mut self, module: usize, (file, ast): (FileId, &'a ast::File)) {
+        self.import(module, ast);
         self.find_union();
-        let (mut lets, mut params) = (0, 0);
-        let own_lets: Vec<LetIndex> = (0..self.lets.len())
-            .filter(|at| self.lets[*at].module == module)
-            .map(LetIndex)
-            .collect();
-        let own_params: Vec<ParamIndex> = (0..self.params.len())
-            .filter(|at| self.params[*at].module == module)
-            .map(ParamIndex)
-            .collect();
-        for item in &ast.items {
+        for item in self.named_items(module, ast) {
             match item {
-                Item::Import(_) | Item::Decl(_) => {}
-                Item::Let(_) => {
-                    self.check_let(own_lets[lets]);
-                    lets += 1;
-                }
-                Item::Param(_) => {
-                    self.check_param(own_params[params]);
-                    params += 1;
-                }
-                Item::Expr(e) => self.check_top_level(module, e),
+                TopLevel::Let(index) => self.check_let(index),
+                TopLevel::Param(index) => self.check_param(index),
+                TopLevel::Expr(e) => self.check_top_level(module, e),
             }
         }
         self.check_declarations(module);
         self.program.params = self.params.iter_mut().filter_map(|p| p.checked.take()).collect();
         self.warn_unused(module);
+        if self.program.drawn.is_empty() && !has_errors(&self.diagnostics) {
+            let message = "this file draws nothing";
+            self.report(
+                Diagnostic::warning(Code::NOTHING_DRAWN, Span::new(file, 0, 0), message)
+                    .help("a solid on a line of its own is drawn: sphere(1)"),
+            );
+        }
     }
 
-    fn refuse_import(&mut self, module: usize, import: &'a ast::Import) {
-        let message = "this version has no imports";
-        self.report(
-            Diagnostic::error(Code::NOT_YET, import.span, message)
-                .help("copy the declarations into this file"),
-        );
-        for (name, renamed) in &import.names {
-            let name = renamed.as_ref().unwrap_or(name);
-            let imported = Imported { entry: None, span: name.span, used: true };
-            self.modules[module].imports.insert(&name.text, imported);
+    /// Checks what a file declares; what it draws and sets is its own affair.
+    pub(super) fn check_imported(&mut self, module: usize, ast: &'a ast::File) {
+        self.import(module, ast);
+        for item in self.named_items(module, ast) {
+            match item {
+                TopLevel::Let(index) => self.check_let(index),
+                TopLevel::Param(index) => self.check_param(index),
+                TopLevel::Expr(_) => {}
+            }
+        }
+        self.check_declarations(module);
+    }
+
+    /// Lets, params and expressions of a file in their order.
+    fn named_items(&self, module: usize, ast: &'a ast::File) -> Vec<TopLevel<'a>> {
+        let lets = (0..self.lets.len()).filter(|at| self.lets[*at].module == module);
+        let params = (0..self.params.len()).filter(|at| self.params[*at].module == module);
+        let (mut lets, mut params) = (lets.map(LetIndex), params.map(ParamIndex));
+        let item = |item: &'a Item| match item {
+            Item::Import(_) | Item::Decl(_) => None,
+            Item::Let(_) => lets.next().map(TopLevel::Let),
+            Item::Param(_) => params.next().map(TopLevel::Param),
+            Item::Expr(e) => Some(TopLevel::Expr(e)),
+        };
+        ast.items.iter().filter_map(item).collect()
+    }
+
+    /// Brings the imported names of a file into its scope. Files that could not be read, or
+    /// that import each other in a circle, were reported when they were loaded.
+    fn import(&mut self, module: usize, ast: &'a ast::File) {
+        for item in &ast.items {
+            let Item::Import(import) = item else { continue };
+            let from = self.modules[module].path.unwrap_or("");
+            let path = import::locate(from, &import.path.text).ok();
+            // Files come after those that they import, so a later one closes a circle.
+            let earlier = &self.modules[..module];
+            let source = path.and_then(|path| {
+                earlier.iter().position(|module| module.path == Some(path.as_str()))
+            });
+            for (name, renamed) in &import.names {
+                let entry = source.and_then(|source| self.exported(source, name));
+                self.import_name(module, renamed.as_ref().unwrap_or(name), entry);
+            }
+        }
+    }
+
+    fn exported(&mut self, source: usize, name: &'a ast::Name) -> Option<Entry> {
+        let names = &self.modules[source].names;
+        let file = self.modules[source].path.unwrap_or("");
+        let entry = names.get(name.text.as_str()).cloned();
+        let found = match &entry {
+            Some(_) if is_private(&name.text) => {
+                let message = format!("`{}` is private to `{file}`", name.text);
+                Diagnostic::error(Code::IMPORT, name.span, message)
+                    .help("a name without a leading `_` can be imported")
+            }
+            Some(_) => return entry,
+            None if !self.modules[source].whole => return None,
+            None => {
+                let message = format!("`{file}` declares no `{}`", name.text);
+                let found = Diagnostic::error(Code::IMPORT, name.span, message);
+                let public = names.keys().copied().filter(|name| !is_private(name));
+                match nearest(&name.text, public) {
+                    Some(near) => found.help(format!("did you mean `{near}`?")),
+                    None => found,
+                }
+            }
+        };
+        self.report(found);
+        None
+    }
+
+    fn import_name(&mut self, module: usize, name: &'a ast::Name, entry: Option<Entry>) {
+        let imported = ImportedName { used: entry.is_none(), entry, span: name.span };
+        if let Some(first) = self.modules[module].imports.insert(&name.text, imported) {
+            let message = format!("`{}` is imported twice", name.text);
+            self.report(
+                Diagnostic::error(Code::DECLARED_TWICE, name.span, message)
+                    .note_at(first.span, "first imported here")
+                    .help(format!("give one another name: {} as other", name.text)),
+            );
         }
     }
 

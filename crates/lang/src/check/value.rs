@@ -12,6 +12,7 @@ use super::names::Found;
 use super::order::Node;
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, State, poison, types};
 use crate::hir::{Expr, ExprKind, Global, GlobalId, Kernel, Lambda, Param, ParamId, Type};
+use crate::import;
 
 impl<'a> Checker<'a> {
     /// A name that is not called.
@@ -286,7 +287,11 @@ impl<'a> Checker<'a> {
             );
             self.report(Diagnostic::error(Code::TYPE_MISMATCH, item.default.span, message));
         }
-        let (name, span, docs) = (name.to_owned(), item.name.span, item.docs.lines.clone());
+        let name = match self.modules[self.body.module].path {
+            Some(path) if !path.is_empty() => format!("{}.{name}", import::stem(path)),
+            _ => name.to_owned(),
+        };
+        let (span, docs) = (item.name.span, item.docs.lines.clone());
         Param { name, ty, default, range, choices, span, docs }
     }
 

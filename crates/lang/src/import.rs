@@ -1,0 +1,192 @@
+//! Files that a scene imports: their paths, their texts, circles among them.
+//!
+//! Nothing here opens a file: whoever compiles a scene hands in a [`Resolver`].
+
+use rustc_hash::FxHashMap;
+use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, Span, has_errors};
+use sdfc_syntax::ast::{self, Item};
+
+/// How many files one scene may import, those of its imports included.
+pub const MAX_FILES: usize = 256;
+
+/// Gives the texts of files.
+pub trait Resolver {
+    /// The text of a file by its path below the folder of the opened scene, with `/` between
+    /// its parts and neither `.` nor `..` among them: `parts/gear.sdf`.
+    ///
+    /// # Errors
+    ///
+    /// Why there is none, in one line: `no such file`.
+    fn read(&self, path: &str) -> Result<String, String>;
+}
+
+const WITHOUT_FILES: &str = "this scene was opened without access to files";
+
+/// Gives nothing, for scenes that stand alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl Resolver for NoFiles {
+    fn read(&self, _: &str) -> Result<String, String> {
+        Err(WITHOUT_FILES.into())
+    }
+}
+
+/// A file that was imported.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// Its place in the [`Sources`].
+    pub file: FileId,
+    /// Its path below the folder of the scene.
+    pub path: String,
+    /// Its tree.
+    pub tree: ast::File,
+    /// Whether it was parsed without errors: a name that it lacks may stand where it was not.
+    pub whole: bool,
+}
+
+/// A file on its way: how many of its imports have been followed.
+struct Open {
+    /// Position among the imported; `None` is the scene itself.
+    at: Option<usize>,
+    path: String,
+    imports: Vec<(String, Span)>,
+}
+
+/// Reads and parses all files that a scene imports, each once, those first that others need.
+/// What cannot be followed is reported, as is everything wrong with how the files are written.
+pub fn load(
+    sources: &mut Sources,
+    scene: &ast::File,
+    resolver: &dyn Resolver,
+) -> (Vec<Imported>, Vec<Diagnostic>) {
+    let mut found = Vec::new();
+    let mut loaded: Vec<Imported> = Vec::new();
+    let mut known: FxHashMap<String, Option<usize>> = FxHashMap::default();
+    let mut done = Vec::new();
+    let mut open = vec![Open { at: None, path: String::new(), imports: imports(scene) }];
+    while let Some(file) = open.last_mut() {
+        let Some((written, span)) = file.imports.pop() else {
+            done.extend(file.at);
+            open.pop();
+            continue;
+        };
+        let Ok(path) = locate(&file.path, &written).map_err(|why| found.push(error(span, why)))
+        else {
+            continue;
+        };
+        if let Some(first) = open.iter().position(|file| file.at.is_some() && file.path == path) {
+            let circle: Vec<&str> = open[first..].iter().map(|file| file.path.as_str()).collect();
+            let why =
+                format!("files import each other in a circle: {} -> {path}", circle.join(" -> "));
+            found.push(error(span, why));
+            continue;
+        }
+        if known.contains_key(&path) {
+            continue;
+        }
+        if known.len() >= MAX_FILES {
+            found.push(error(span, format!("a scene imports at most {MAX_FILES} files")));
+            break;
+        }
+        let text = match resolver.read(&path) {
+            Ok(text) => text,
+            Err(why) => {
+                found.push(error(span, format!("`{path}` cannot be read: {why}")));
+                known.insert(path, None);
+                continue;
+            }
+        };
+        let id = sources.add(path.as_str(), text);
+        let (tree, of_parser) = sdfc_syntax::parse(sources, id);
+        let whole = !has_errors(&of_parser);
+        found.extend(of_parser);
+        known.insert(path.clone(), Some(loaded.len()));
+        open.push(Open { at: Some(loaded.len()), path: path.clone(), imports: imports(&tree) });
+        loaded.push(Imported { file: id, path, tree, whole });
+    }
+    done.extend(open.iter().rev().filter_map(|file| file.at));
+    let mut places: Vec<Option<Imported>> = loaded.into_iter().map(Some).collect();
+    let ordered = done.into_iter().filter_map(|at| places[at].take()).collect();
+    (ordered, found)
+}
+
+/// What a file imports, last first.
+fn imports(tree: &ast::File) -> Vec<(String, Span)> {
+    let import = |item: &Item| match item {
+        Item::Import(import) => Some((import.path.text.clone(), import.path.span)),
+        Item::Param(_) | Item::Decl(_) | Item::Let(_) | Item::Expr(_) => None,
+    };
+    tree.items.iter().rev().filter_map(import).collect()
+}
+
+/// What is said of an import where no files can be had.
+pub(crate) fn refuse_without_files(item: &Item) -> Option<Diagnostic> {
+    match item {
+        Item::Import(import) => Some(error(import.path.span, WITHOUT_FILES.into())),
+        Item::Param(_) | Item::Decl(_) | Item::Let(_) | Item::Expr(_) => None,
+    }
+}
+
+fn error(span: Span, why: String) -> Diagnostic {
+    Diagnostic::error(Code::IMPORT, span, why)
+}
+
+/// The path of an import below the folder of the scene; `from` is the path of the file that
+/// imports, empty for the scene.
+///
+/// # Errors
+///
+/// Why it is no such path.
+pub(crate) fn locate(from: &str, written: &str) -> Result<String, String> {
+    if written.is_empty() {
+        return Err("the path of an import is empty".into());
+    }
+    if written.starts_with('/') || written.contains([':', '\\', '\0']) {
+        return Err(format!("`{written}` is not a path relative to this file, written with `/`"));
+    }
+    let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    for part in written.split('/') {
+        match part {
+            "" | "." => {}
+            ".." => {
+                if parts.pop().is_none() {
+                    return Err(format!("`{written}` leaves the folder of the scene"));
+                }
+            }
+            part => parts.push(part),
+        }
+    }
+    match parts.is_empty() {
+        true => Err(format!("`{written}` names a folder")),
+        false => Ok(parts.join("/")),
+    }
+}
+
+/// The name under which the params of a file appear: `gear` for `parts/gear.sdf`.
+pub(crate) fn stem(path: &str) -> &str {
+    let name = path.rsplit_once('/').map_or(path, |(_, name)| name);
+    name.split_once('.').map_or(name, |(stem, _)| stem)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_stay_below_the_scene() {
+        assert_eq!(locate("", "parts/gear.sdf").as_deref(), Ok("parts/gear.sdf"));
+        assert_eq!(locate("parts/gear.sdf", "./tooth.sdf").as_deref(), Ok("parts/tooth.sdf"));
+        assert_eq!(locate("a/b/c.sdf", "../../d.sdf").as_deref(), Ok("d.sdf"));
+        for bad in ["../a.sdf", "/etc/passwd", "a\\b.sdf", "c:/a.sdf", "", ".", "a/../../b"] {
+            assert!(locate("", bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn params_are_named_after_their_file() {
+        assert_eq!(stem("parts/gear.sdf"), "gear");
+        assert_eq!(stem("gear"), "gear");
+    }
+}
