@@ -15,7 +15,7 @@ pub struct Method {
 pub const METHODS: [Method; 3] = [
     Method {
         name: "auto",
-        summary: "Sphere tracing to a quarter of a pixel, with a bracket and a last secant.",
+        summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
         source: include_str!("wgsl/auto.wgsl"),
     },
     Method {

@@ -1,38 +1,44 @@
-// Sphere tracing down to a quarter of a pixel, wherever on the ray that is, with a bracket where
-// the field led through the surface, and a last secant through the two nearest samples.
+// Sphere tracing to a fraction of a pixel, wherever on the ray that is. Within a quarter of a pixel of a
+// surface the ray closes in by secants, so that a ray that only passes by an edge is not taken for a hit
+// on it; where the field led through the surface it closes in on the bracket.
+
+// A hit is nearer than this part of the tolerance.
+const HIT_PART: f32 = 0.00390625;
+// The ray is never taken to approach a surface at less than this slope: steps are at most its inverse
+// times the distance.
+const LEAST_SLOPE: f32 = 0.125;
 
 // A quarter of a pixel's width, but no finer than what rounding allows.
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return max(0.5 * footprint(ray, t), rounding(ray, t));
 }
 
-// A hit within tolerance of the surface is moved along the ray by the secant through the last two
-// samples, which costs no evaluation. Where the ray approaches slower than at a slope of 1/4 the
-// secant is not to be trusted further than four times the distance left.
-fn polished(t: f32, distance: f32, before: vec2f) -> f32 {
+// How far along the ray the line through two samples reaches zero.
+fn secant(before: vec2f, t: f32, distance: f32) -> f32 {
     let slope = (before.y - distance) / (t - before.x);
-    if slope > 0.0 {
-        return t + distance / max(slope, 0.25);
-    }
-    return t;
+    return distance / max(slope, LEAST_SLOPE);
 }
 
 fn trace(ray: Ray) -> Trace {
     // Last sample outside and first sample inside, as (t, distance).
-    var outside = vec2f();
+    var outside = vec2f(-1.0, 0.0);
     var inside = vec2f();
     var crossed = false;
     var t = 0.0;
     for (var step = 0u; step < view.steps; step++) {
         let distance = field(ray_point(ray, t));
+        // A ray that starts inside is at its hit.
+        if step == 0u && distance < 0.0 {
+            return Trace(t, HIT, 1u);
+        }
         let near = tolerance(ray, t);
-        if step == 0u {
-            // A ray that starts inside is at its hit.
-            if distance < near {
-                return Trace(t, HIT, 1u);
-            }
-        } else if abs(distance) < near {
-            return Trace(polished(t, distance, outside), HIT, step + 1u);
+        let hit = max(HIT_PART * near, rounding(ray, t));
+        var stride = distance;
+        if abs(distance) < near {
+            stride = secant(outside, t, distance);
+        }
+        if abs(distance) < hit {
+            return Trace(t + stride, HIT, step + 1u);
         }
         if distance < 0.0 {
             inside = vec2f(t, distance);
@@ -41,14 +47,14 @@ fn trace(ray: Ray) -> Trace {
             outside = vec2f(t, distance);
         }
         if crossed {
-            if inside.x - outside.x < near {
+            if inside.x - outside.x < hit {
                 return Trace(inside.x, HIT, step + 1u);
             }
             // False position, kept off the ends so that the bracket always shrinks.
             let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
             t = mix(outside.x, inside.x, part);
         } else {
-            t += distance;
+            t += stride;
             if !(t <= ray.t_max) {
                 return Trace(t, MISS, step + 1u);
             }

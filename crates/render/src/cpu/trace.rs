@@ -36,7 +36,7 @@ impl Real for f64 {}
 pub(super) enum Method {
     /// Steps as long as the distance, up to an absolute tolerance.
     Sphere,
-    /// Steps as long as the distance up to a quarter of a pixel, then closing in on a sign change.
+    /// Steps as long as the distance up to a quarter of a pixel, then secants; or closing in on a sign change.
     Auto,
 }
 
@@ -65,6 +65,12 @@ pub(super) struct Ray<T> {
 /// Rounding of a point relative to its distance from the scene's origin: eight units in the last
 /// place of f32, also in f64, where the same tolerances are wanted.
 const ROUNDING: f64 = 1e-6;
+
+/// A hit of `auto` is nearer than this part of the tolerance.
+const HIT_PART: f64 = 0.00390625;
+
+/// Steps of `auto` are at most the inverse of this times the distance.
+const LEAST_SLOPE: f64 = 0.125;
 
 impl<T: Real> Ray<T> {
     pub(super) fn at(&self, t: T) -> [T; 3] {
@@ -164,12 +170,13 @@ impl<T: Real> Walk<T> {
 
     fn auto(&mut self, distance: T, near: T) -> Turn<T> {
         let zero = T::constant(0.0);
-        match self.outside {
-            None if self.inside.is_none() && distance < near => return Turn::Hit(self.t),
-            Some(before) if distance.abs() < near => {
-                return Turn::Hit(self.secant(before, distance));
-            }
-            Some(_) | None => {}
+        if self.evaluations == 1 && distance < zero {
+            return Turn::Hit(self.t);
+        }
+        let hit = (T::constant(HIT_PART) * near).max(self.ray.rounding(self.t));
+        let stride = if distance.abs() < near { self.secant(distance) } else { distance };
+        if distance.abs() < hit {
+            return Turn::Hit(self.t + stride);
         }
         if distance < zero {
             self.inside = Some((self.t, distance));
@@ -177,9 +184,9 @@ impl<T: Real> Walk<T> {
             self.outside = Some((self.t, distance));
         }
         let (Some((last, above)), Some((first, below))) = (self.outside, self.inside) else {
-            return Turn::Onward(self.t + distance);
+            return Turn::Onward(self.t + stride);
         };
-        if first - last < near {
+        if first - last < hit {
             return Turn::Hit(first);
         }
         // Where a line through both samples is zero, but within the middle 8 tenths.
@@ -187,14 +194,11 @@ impl<T: Real> Walk<T> {
         Turn::Onward(last + part * (first - last))
     }
 
-    /// Where a line through the last two samples is zero; at most four times the distance away.
-    fn secant(&self, (t, distance): (T, T), here: T) -> T {
-        let slope = (distance - here).div(self.t - t);
-        if slope > T::constant(0.0) {
-            self.t + here.div(slope.max(T::constant(0.25)))
-        } else {
-            self.t
-        }
+    /// How far along the ray a line through the last sample outside and this one reaches zero.
+    fn secant(&self, here: T) -> T {
+        let (t, before) = self.outside.unwrap_or((T::constant(-1.0), T::constant(0.0)));
+        let slope = (before - here).div(self.t - t);
+        here.div(slope.max(T::constant(LEAST_SLOPE)))
     }
 }
 
