@@ -340,6 +340,30 @@ fn an_unbounded_param_that_no_rule_carries_leaves_bounds_open() {
 }
 
 #[test]
+fn a_shape_made_at_each_point_gets_a_box_for_all_of_them() {
+    let mut scene = Scene::default();
+    let outer = scene.p();
+    let g = &mut scene.graph;
+    let (p, x) = (g.point(1, Dim::Three), g.component(outer, 0));
+    let radius = g.unary(Unary::Fract, x); // from 0 to 1
+    let length = g.length(p);
+    let formula = g.sub(length, radius);
+    let half = g.splat(Type::Vec3, radius);
+    let bounds = Some([g.neg(half), half]);
+    let ball = scene.add(formula, &[], Contract { bounds, ..Contract::default() });
+    let own = Shape { level: 1, ..scene.graph.shape(ball).clone() };
+    let ball = scene.graph.add_shape(own);
+    scene.assert_bounds(ball, cube(1.0), 0.0);
+    let unstated = Shape {
+        contract: Contract::default(),
+        definition: "unstated".to_owned(),
+        ..scene.graph.shape(ball).clone()
+    };
+    let ball = scene.graph.add_shape(unstated);
+    scene.assert_bounds(ball, cube(1.0), 0.01);
+}
+
+#[test]
 fn long_chains_are_cheap_and_do_not_overflow() {
     let mut scene = Scene::default();
     let mut chain = scene.ball(1.0);
@@ -401,7 +425,7 @@ fn places(mut seed: u32) -> impl Iterator<Item = [f64; 3]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
 
     #[test]
     fn bounds_hold_what_is_inside(

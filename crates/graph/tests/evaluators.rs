@@ -38,7 +38,7 @@ fn frame<N: Number>(param: N) -> FrameValues<N> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
     fn a_tape_computes_what_its_nodes_do(

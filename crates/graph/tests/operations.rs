@@ -383,6 +383,13 @@ fn lengths_and_repeated_factors_do_not_forget_that_they_are_one_value() {
     assert_range(evaluate(&graph, square, region), [0.0, 9.0]);
     assert_range(evaluate(&graph, length, region), [0.0, 5.0]);
     assert_range(evaluate(&graph, dot, region), [0.0, 25.0]);
+    let (one, k) = (graph.number(1.0), graph.number(0.4));
+    let rest = graph.sub(one, x);
+    let scaled = graph.mul(k, x);
+    let dip = graph.mul(scaled, rest);
+    let third = [Interval::new(0.0, 1.0); 3];
+    assert_range(evaluate(&graph, dip, third), [0.0, 0.1]);
+    assert_range(evaluate(&graph, dip, region), [-4.8, 0.1]);
     let unit = evaluate(&graph, unit, region);
     assert!(unit.lo() >= -1.5 && unit.hi() <= 1.5, "{unit:?}");
 }

@@ -4,20 +4,20 @@ use super::Deriver;
 use super::level_set::Question;
 use super::search::{Region, Search};
 use super::zone::Zone;
-use crate::eval::{Interval, direct};
+use crate::eval::{Interval, Tape};
 use crate::{Node, NodeId, ShapeId, Type, reachable_where};
 
 /// An operator of more samples is not asked about each of them.
 const MOST_SINGLE: usize = 4;
 
-/// How far above the limit a sample may have to be: `2^-10` to `2^40`, then to an accuracy of `2^-12` of that.
-const SMALLEST_MARGIN: i32 = -10;
+/// How far above the limit a sample may have to be: from `2^-12` to `2^40`, found to `2^-10` of that.
+const SMALLEST_MARGIN: i32 = -12;
 const LARGEST_MARGIN: i32 = 40;
-const REFINEMENTS: usize = 12;
+const REFINEMENTS: usize = 10;
 
 /// An operator's formula as a function of what it samples.
 struct Operator {
-    order: Vec<NodeId>,
+    tape: Tape,
     samples: Vec<NodeId>,
     question: Question,
     limit: Interval,
@@ -34,7 +34,11 @@ impl Deriver<'_> {
             return self.searched(question);
         }
         let limit = self.range(question.limit);
-        self.by_samples(&Operator { order, samples, question, limit }).loose()
+        let first = self.ranges.params.len() as u32;
+        let Ok(tape) = Tape::of_operator(self.graph, question.node, &samples, first) else {
+            return Zone::everywhere(self.graph).loose();
+        };
+        self.by_samples(&Operator { tape, samples, question, limit }).loose()
     }
 
     /// If the formula exceeds the limit wherever some of its samples exceed a threshold, the zone lies
@@ -82,9 +86,14 @@ impl Deriver<'_> {
         if clears(base) {
             return Some(base);
         }
-        let margins = (SMALLEST_MARGIN..=LARGEST_MARGIN).map(|power| 2_f64.powi(power));
-        let mut high = base + margins.into_iter().find(|margin| clears(base + margin))?;
-        let mut low = base + (high - base) / 2.0;
+        // What holds above one threshold holds above all higher ones.
+        if !clears(base + 2_f64.powi(LARGEST_MARGIN)) {
+            return None;
+        }
+        let mut margins =
+            (SMALLEST_MARGIN..=LARGEST_MARGIN).step_by(4).map(|power| 2_f64.powi(power));
+        let mut high = base + margins.find(|margin| clears(base + margin))?;
+        let mut low = base;
         for _ in 0..REFINEMENTS {
             let middle = f64::midpoint(low, high);
             if clears(middle) {
@@ -116,13 +125,12 @@ impl Deriver<'_> {
                 clear
             });
         }
-        let value = direct::evaluate(self.graph, &operator.order, |id| {
-            if !operator.samples.contains(&id) {
-                return self.input(id);
-            }
-            let other = others.iter().position(|&other| other == id);
+        let mut frame = self.ranges.clone();
+        frame.params.extend(operator.samples.iter().map(|sample| {
+            let other = others.iter().position(|other| other == sample);
             [other.map_or(Interval::new(threshold, f64::INFINITY), |i| halves[i]); 4]
-        });
+        }));
+        let value = operator.tape.prepare_in(&frame).scalar([Interval::ENTIRE; 3]);
         if operator.question.above {
             value.hi() < operator.limit.lo()
         } else {

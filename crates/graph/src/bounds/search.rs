@@ -4,8 +4,8 @@ use crate::eval::{Evaluator, FrameValues, Interval, Tape};
 use crate::{Dim, Graph, NodeId};
 
 /// Scalar operations that a search may spend, and evaluations that it may in any case and at most.
-const OPERATIONS: usize = 200_000;
-const LEAST_EVALUATIONS: usize = 64;
+const OPERATIONS: usize = 400_000;
+const LEAST_EVALUATIONS: usize = 32;
 const MOST_EVALUATIONS: usize = 8_000;
 
 /// Evaluations that one slab may take to be shown empty, round by round.
@@ -168,6 +168,9 @@ impl Work<'_> {
             }
             left -= 1;
             if !self.is_clear(part) {
+                if !self.is_clear(part.map(middle)) {
+                    return false; // inside, most likely
+                }
                 let Some(halves) = self.halves(part) else { return false };
                 parts.extend(halves);
             }
@@ -180,7 +183,7 @@ impl Work<'_> {
         let bounded = (0..self.search.width).filter(|axis| width(axis).is_finite());
         let axis = bounded.max_by(|a, b| width(a).total_cmp(&width(b)))?;
         let [lo, hi] = region[axis];
-        let middle = f64::midpoint(lo, hi);
+        let [middle, _] = middle([lo, hi]);
         if middle <= lo || middle >= hi {
             return None;
         }
@@ -188,4 +191,10 @@ impl Work<'_> {
         (first[axis], second[axis]) = ([lo, middle], [middle, hi]);
         Some([first, second])
     }
+}
+
+/// The middle of a side; of an open one some place in it.
+fn middle([lo, hi]: [f64; 2]) -> [f64; 2] {
+    let place = if lo.is_finite() && hi.is_finite() { f64::midpoint(lo, hi) } else { 0.0 };
+    [place.clamp(lo, hi); 2]
 }

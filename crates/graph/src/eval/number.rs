@@ -104,6 +104,12 @@ pub trait Number: Copy {
     /// `yes` where this truth value holds, else `no`
     fn select(self, yes: Self, no: Self) -> Self;
 
+    /// `x * y` for a y known to be `c * (1 - x)`: the dip of a quadratic blend
+    fn parabola(self, y: Self, c: Self) -> Self {
+        let _ = c;
+        self.mul(y)
+    }
+
     /// `clamp(x, 0, 1)`
     fn saturate(self) -> Self {
         self.clamp(Self::constant(0.0), Self::constant(1.0))

@@ -88,5 +88,6 @@ operations! {
         Clamp = clamp,
         Smoothstep = smoothstep,
         Select = select,
+        Parabola = parabola,
     }
 }

@@ -5,7 +5,8 @@ use rustc_hash::FxHashMap;
 use super::op::Op;
 use super::scalarise::{Lanes, Machine};
 use super::tape::{Definition, Instruction, POINT_LANES, Tape};
-use crate::Node;
+use crate::graph::result_type;
+use crate::{FrameInput, Node, Type};
 
 /// Collects definitions in order; equal constants become one.
 #[derive(Default)]
@@ -14,13 +15,43 @@ pub(super) struct Recorder {
     /// Whether each value depends on the point.
     varying: Vec<bool>,
     constants: FxHashMap<u64, u32>,
+    /// If given, points are unknown and samples are params, by position.
+    samples: Option<FxHashMap<Node, u32>>,
 }
 
 impl Recorder {
+    /// One that reads samples as params and knows no point.
+    pub(super) fn of_operator(samples: FxHashMap<Node, u32>) -> Self {
+        Self { samples: Some(samples), ..Self::default() }
+    }
+
     fn define(&mut self, definition: Definition, varying: bool) -> u32 {
         self.definitions.push(definition);
         self.varying.push(varying);
         self.definitions.len() as u32 - 1
+    }
+
+    /// A product of x and `c * (1 - x)`, either way round: intervals are tighter if told.
+    fn parabola(&mut self, [a, b, _]: [u32; 3]) -> Option<(Op, [u32; 3])> {
+        let one = self.constant(1.0);
+        for (x, y) in [(a, b), (b, a)] {
+            let mut splits = vec![(y, one)];
+            if let Definition::Apply(Op::Mul, [p, q, _]) = self.definitions[y as usize] {
+                splits.extend([(p, q), (q, p)]);
+            }
+            let fits = |&(rest, _): &(u32, u32)| {
+                self.is_complement(x, rest, one) || self.is_complement(rest, x, one)
+            };
+            if let Some((_, factor)) = splits.into_iter().find(fits) {
+                return Some((Op::Parabola, [x, y, factor]));
+            }
+        }
+        None
+    }
+
+    /// Whether a is `1 - b`.
+    fn is_complement(&self, a: u32, b: u32, one: u32) -> bool {
+        matches!(self.definitions[a as usize], Definition::Apply(Op::Sub, [x, y, _]) if x == one && y == b)
     }
 }
 
@@ -37,12 +68,25 @@ impl Machine for Recorder {
     }
 
     fn apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
+        let parabola = if op == Op::Mul { self.parabola(arguments) } else { None };
+        let (op, arguments) = parabola.unwrap_or((op, arguments));
         let varying = arguments.iter().take(op.arity()).any(|&a| self.varying[a as usize]);
         self.define(Definition::Apply(op, arguments), varying)
     }
 
     fn input(&mut self, node: &Node) -> Option<Lanes<u32>> {
+        let param = self.samples.as_ref().map(|samples| samples.get(node).copied());
         match *node {
+            Node::Sample(..) | Node::Point(..) | Node::MaterialAt(..) if param.is_some() => {
+                let width = result_type(node, |_| Type::Scalar).width(); // whatever the argument
+                let value = match param.flatten() {
+                    Some(param) => {
+                        self.define(Definition::Input(FrameInput::Param(param), 0), false)
+                    }
+                    None => self.constant(f64::NAN),
+                };
+                Some(Lanes::new(width, |_| value))
+            }
             Node::Point(0, dim) => {
                 let width = dim.point_type().width();
                 Some(Lanes::new(width, |i| self.define(Definition::Point(i), true)))

@@ -1,12 +1,12 @@
 //! Flat programs of scalar instructions over a small register file.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::op::Op;
 use super::record::Recorder;
 use super::scalarise::{Lanes, scalarise};
 use super::{FrameValues, Number};
-use crate::{FrameInput, Graph, Node, NodeId};
+use crate::{FrameInput, Graph, Node, NodeId, reachable, reachable_where};
 
 /// Why nodes cannot be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,9 +72,34 @@ impl Tape {
     /// # Errors
     /// Where a root depends on anything but operations, per-frame inputs and the outermost point.
     pub fn new(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
-        let mut recorder = Recorder::default();
+        Self::record(graph, Recorder::default(), &reachable(graph, roots), roots)
+    }
+
+    /// The tape of an operator as a function of what it samples, whatever the point: its samples are read
+    /// as params, the first of them at a position. Points are NaN, which intervals take for anything.
+    ///
+    /// # Errors
+    /// Where an input has no meaning, which none is.
+    pub(crate) fn of_operator(
+        graph: &Graph,
+        root: NodeId,
+        samples: &[NodeId],
+        first: u32,
+    ) -> Result<Self, TapeError> {
+        let params = samples.iter().zip(first..).map(|(&id, param)| (graph.node(id), param));
+        let recorder = Recorder::of_operator(params.collect());
+        let order = reachable_where(graph, &[root], |id| !samples.contains(&id));
+        Self::record(graph, recorder, &order, &[root])
+    }
+
+    fn record(
+        graph: &Graph,
+        mut recorder: Recorder,
+        order: &[NodeId],
+        roots: &[NodeId],
+    ) -> Result<Self, TapeError> {
         let mut lanes: FxHashMap<NodeId, Lanes<u32>> = FxHashMap::default();
-        for id in reachable(graph, roots) {
+        for &id in order {
             let node = graph.node(id);
             let value = scalarise(&mut recorder, &node, |argument| lanes[&argument])
                 .ok_or_else(|| unavailable(id, &node))?;
@@ -167,19 +192,6 @@ impl<N: Number> Evaluator<'_, N> {
             registers[instruction.result as usize] = result;
         }
     }
-}
-
-/// The nodes that the roots need, arguments first.
-fn reachable(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
-    let mut seen: FxHashSet<NodeId> = roots.iter().copied().collect();
-    let mut found: Vec<NodeId> = seen.iter().copied().collect();
-    let mut next = 0;
-    while let Some(&id) = found.get(next) {
-        next += 1;
-        found.extend(graph.node(id).arguments().filter(|&argument| seen.insert(argument)));
-    }
-    found.sort_unstable();
-    found
 }
 
 fn unavailable(id: NodeId, node: &Node) -> TapeError {

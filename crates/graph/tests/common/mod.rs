@@ -74,7 +74,7 @@ pub type Steps = Vec<(u8, u8, [u8; 3])>;
 
 /// Up to `size` steps.
 pub fn steps(size: usize) -> impl Strategy<Value = Steps> {
-    prop::collection::vec((0_u8..12, any::<u8>(), any::<[u8; 3]>()), 1..size)
+    prop::collection::vec((0_u8..13, any::<u8>(), any::<[u8; 3]>()), 1..size)
 }
 
 /// A graph of operations on a point, a param and constants; all its nodes are of interest.
@@ -147,6 +147,12 @@ impl Build {
                 2 => graph.unary(Unary::Not, t[0]),
                 _ => graph.binary(COMPARISONS[op % 4], s[0], s[1]),
             }),
+            11 => {
+                // What intervals know to be one value: c x (1 - x).
+                let one = graph.number(1.0);
+                let (rest, scaled) = (graph.sub(one, s[0]), graph.mul(s[0], s[1]));
+                self.scalars.push(graph.mul(scaled, rest));
+            }
             _ => match op % 2 {
                 0 => self.scalars.push(graph.select(t[0], s[0], s[1])),
                 _ => self.vectors.push(graph.select(t[0], v[0], v[1])),

@@ -80,6 +80,20 @@ impl Interval {
     }
 }
 
+impl Interval {
+    /// `x * y` for `y = c * (1 - x)`: `x * (1 - x)` is extreme at the ends of x, and 1/4 at 1/2.
+    pub(super) fn dip(self, y: Self, c: Self) -> Self {
+        let apart = self.product(y);
+        let at = |x: f64| x * (1.0 - x);
+        let (a, b) = (at(self.lo), at(self.hi));
+        let top = if self.contains(0.5) { 0.25 } else { a.max(b) };
+        let rounding = MARGIN * self.magnitude() * y.magnitude();
+        let together = Self::new(a.min(b), top).widened().product(c).grown(rounding);
+        let (lo, hi) = (apart.lo.max(together.lo), apart.hi.min(together.hi));
+        if lo <= hi { Self { lo, hi } } else { apart }
+    }
+}
+
 /// Not above the least mixture of two lower ends, for t from 0 to 1.
 fn mixture_below(x: f64, y: f64, t: Interval) -> f64 {
     let mixed = |t: f64| product(x, 1.0 - t) + product(y, t);

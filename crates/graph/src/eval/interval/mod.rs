@@ -268,6 +268,9 @@ impl Number for Interval {
         let t = x.sub(self).div(width).saturate();
         t.increasing(|t| t * t * (3.0 - 2.0 * t)).grown(MARGIN)
     }
+    fn parabola(self, y: Self, c: Self) -> Self {
+        self.dip(y, c)
+    }
     fn select(self, yes: Self, no: Self) -> Self {
         if self.contains(0.0) { if self == Self::FALSE { no } else { yes.hull(no) } } else { yes }
     }
