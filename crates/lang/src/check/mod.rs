@@ -5,15 +5,17 @@
 //! [`Type::Error`], about which nothing more is said.
 //!
 //! One module per question: what a name means (`names`, `value`), which declaration a call
-//! means (`overload`) and where its arguments go (`call`), what the kernel takes (`kernel`,
-//! `builtins`, `math`, `iterate`), what becomes of operators, brackets, blocks and lambdas, and what fits where
-//! (`types`, `coerce`). Declarations are opened when they are first mentioned (`decl`), what
-//! stands at top level drives it all (`top`), and circles are found at the end (`order`).
+//! means (`overload`), where its arguments go (`call`, `arguments`), what the kernel takes
+//! (`kernel`, `builtins`, `math`, `iterate`), what becomes of operators, brackets, blocks and
+//! lambdas, and what fits where (`types`, `coerce`). Declarations are opened when they are first
+//! mentioned (`decl`), what stands at top level drives it all (`top`), and circles are found at
+//! the end (`order`).
 #![allow(
     clippy::wildcard_enum_match_arm,
     reason = "the rule for all other types and forms is an error message, also for new ones"
 )]
 
+mod arguments;
 mod block;
 mod body;
 mod builtins;

@@ -1,0 +1,230 @@
+//! Arguments find their parameters.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_syntax::ast::Name;
+
+use super::call::{Callee, Given, Value, count, is_lambda};
+use super::coerce::Role;
+use super::decl::Slot;
+use super::types::{self, show};
+use super::{Checker, names, poison};
+use crate::hir::{Element, Expr, ExprKind, Type};
+
+impl<'a> Checker<'a> {
+    /// The arguments in the order of the parameters; `None` where the default is taken.
+    /// Everything that does not fit is reported.
+    pub(super) fn arguments(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        given: Vec<Given<'a>>,
+    ) -> Vec<Option<Expr>> {
+        let bound = self.bind(callee, slots, given);
+        slots
+            .iter()
+            .enumerate()
+            .zip(bound)
+            .map(|((at, slot), mut given)| {
+                let role = Role::Argument(callee.name, slot.name);
+                if slot.variadic && given.first().is_none_or(|given| given.name.is_none()) {
+                    return Some(self.variadic(&slots[at..], given, role, callee.span));
+                }
+                let given = given.pop()?;
+                Some(self.one_argument(given, &slot.ty, role))
+            })
+            .collect()
+    }
+
+    /// Which arguments go to which parameter.
+    fn bind(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        given: Vec<Given<'a>>,
+    ) -> Vec<Vec<Given<'a>>> {
+        let mut bound: Vec<Vec<Given>> = vec![Vec::new(); slots.len()];
+        let (mut next, mut named, mut excess) = (0, false, Vec::new());
+        for given in given {
+            let place = match given.name {
+                None if named => {
+                    let message = "positional arguments come before named ones";
+                    self.report(Diagnostic::error(Code::ARGUMENTS, given.span, message));
+                    None
+                }
+                None => {
+                    let place = (next < slots.len()).then_some(next);
+                    next += usize::from(slots.get(next).is_some_and(|slot| !slot.variadic));
+                    place
+                }
+                Some(name) => {
+                    named = true;
+                    self.named_place(callee, slots, name, &bound)
+                }
+            };
+            match place {
+                Some(place) => bound[place].push(given),
+                None => excess.push(given),
+            }
+        }
+        if let Some(first) = excess.first()
+            && first.name.is_none()
+            && !named
+        {
+            let found = too_many(callee, slots, first.span);
+            self.report(found);
+        }
+        self.give_up(excess, callee.span);
+        self.report_missing(callee, slots, &bound);
+        bound
+    }
+
+    fn named_place(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        name: &Name,
+        bound: &[Vec<Given<'a>>],
+    ) -> Option<usize> {
+        let Some(place) = slots.iter().position(|slot| slot.name == name.text) else {
+            let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
+            let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
+            let near = names::nearest(&name.text, slots.iter().map(|slot| slot.name));
+            let found = match near {
+                Some(near) => found.help(format!("did you mean `{near}`?")),
+                None => found.help(signature(callee.name, slots)),
+            };
+            self.report(found);
+            return None;
+        };
+        if let Some(first) = bound[place].first() {
+            let message = format!("`{}` is given twice", name.text);
+            let found = Diagnostic::error(Code::ARGUMENTS, name.span, message)
+                .note_at(first.span, "the first one");
+            self.report(found);
+            return None;
+        }
+        Some(place)
+    }
+
+    fn report_missing(&mut self, callee: Callee, slots: &[Slot<'a>], bound: &[Vec<Given<'a>>]) {
+        let missing: Vec<String> = slots
+            .iter()
+            .zip(bound)
+            .filter(|(slot, given)| given.is_empty() && !slot.optional && !slot.variadic)
+            .map(|(slot, _)| format!("`{}`", slot.name))
+            .collect();
+        if !missing.is_empty() {
+            let message = format!("`{}` needs {}", callee.name, missing.join(" and "));
+            self.report(
+                Diagnostic::error(Code::ARGUMENTS, callee.at, message)
+                    .help(signature(callee.name, slots)),
+            );
+        }
+    }
+
+    /// All that a variadic parameter, the first of the slots, takes: values, lists and `for`.
+    fn variadic(
+        &mut self,
+        slots: &[Slot<'a>],
+        given: Vec<Given<'a>>,
+        role: Role,
+        span: Span,
+    ) -> Expr {
+        let [slot, later @ ..] = slots else { return poison(span) };
+        let Type::List(want) = &slot.ty else { return poison(span) };
+        let mut elements = Vec::with_capacity(given.len());
+        for given in given {
+            let element = match given.value {
+                Value::Expr(e) if is_lambda(e) => Element::One(self.check_expr(e, want, role)),
+                Value::Expr(e) => {
+                    let value = self.infer(e);
+                    match later.iter().find(|later| meant_for(&value.ty, later, want)) {
+                        Some(later) => Element::One(self.needs_name(value.span, slot, later)),
+                        None => self.spread(Element::One(value), want, role),
+                    }
+                }
+                Value::Element(element) => self.element(element, Some((want, role))).0,
+                Value::Done(element, _) => self.spread(element, want, role),
+            };
+            elements.push(element);
+        }
+        Expr { kind: ExprKind::List(elements), ty: slot.ty.clone(), span }
+    }
+
+    /// Reports an argument that only a name brings to its parameter.
+    fn needs_name(&mut self, span: Span, slot: &Slot<'a>, later: &Slot<'a>) -> Expr {
+        let message = format!("what follows `{}` is named", slot.name);
+        self.report(
+            Diagnostic::error(Code::ARGUMENTS, span, message).help(format!("{}: ...", later.name)),
+        );
+        poison(span)
+    }
+
+    /// A list among the arguments of a variadic parameter gives its elements.
+    fn spread(&mut self, element: Element, want: &Type, role: Role) -> Element {
+        let element = match element {
+            Element::One(value)
+                if matches!(value.ty, Type::List(_)) && !matches!(want, Type::List(_)) =>
+            {
+                Element::Spread(value)
+            }
+            other => other,
+        };
+        self.coerce_element(element, want, role)
+    }
+
+    /// An argument that is one value.
+    pub(super) fn one_argument(&mut self, given: Given<'a>, want: &Type, role: Role) -> Expr {
+        match given.value {
+            Value::Expr(e) => self.check_expr(e, want, role),
+            Value::Done(Element::One(value), _) => self.coerce(value, want, role),
+            Value::Done(..) | Value::Element(_) => self.not_one_value(given.span),
+        }
+    }
+
+    /// An argument that is one value of whatever type.
+    pub(super) fn one_value(&mut self, given: Given<'a>) -> Expr {
+        match given.value {
+            Value::Expr(e) => self.infer(e),
+            Value::Done(Element::One(value), _) => value,
+            Value::Done(..) | Value::Element(_) => self.not_one_value(given.span),
+        }
+    }
+
+    fn not_one_value(&mut self, span: Span) -> Expr {
+        let message = "`for` makes many values; this parameter takes one";
+        self.report(
+            Diagnostic::error(Code::ARGUMENTS, span, message).help("a list: [for x in list: ...]"),
+        );
+        poison(span)
+    }
+}
+
+/// Whether a value that is no `want` fits a later parameter, which only its name can reach.
+fn meant_for(ty: &Type, later: &Slot, want: &Type) -> bool {
+    !types::poisoned(ty) && !types::same_value(ty, want) && types::same_value(ty, &later.ty)
+}
+
+fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
+    let message = match slots.len() {
+        0 => format!("`{}` takes no arguments", callee.name),
+        n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
+    };
+    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
+}
+
+/// How to call it: `capsule(a: vec3, b: vec3, r: number = ...)`
+fn signature(name: &str, slots: &[Slot]) -> String {
+    let slots: Vec<String> = slots
+        .iter()
+        .map(|slot| {
+            let ty = match &slot.ty {
+                Type::List(of) if slot.variadic => format!("{}...", show(of)),
+                ty => show(ty),
+            };
+            let default = if slot.optional { " = ..." } else { "" };
+            format!("{}: {ty}{default}", slot.name)
+        })
+        .collect();
+    format!("{name}({})", slots.join(", "))
+}
