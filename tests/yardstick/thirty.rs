@@ -118,7 +118,7 @@ fn scene(parts: &[Part]) -> String {
     }
     let _ = write!(
         text,
-        "\njoin{}\n\ncamera(eye: [5, 4, 6], target: [0, 0, 0], fov: 40deg)\nsun(direction: [1, 2, 1])\n",
+        "\njoin{}\n\ncamera(eye: [5, 4, 6], target: [0, 0, 0], fov: 40deg)\nsun(direction: [1, 2, 1])\nambient(strength: 0.2)\n",
         parts.len() - 1
     );
     text

@@ -1,2 +1,39 @@
-//! The command line. To be written.
-fn main() {}
+//! The command line of sdfc: arguments, files and exit statuses around the `sdfc` library.
+//!
+//! Exit statuses: 0, done; 1, the scene is wrong; 2, the call is wrong; 3, the machine cannot.
+//! This is the only crate that prints, opens files or ends the process.
+
+mod args;
+mod commands;
+mod console;
+mod failure;
+mod input;
+mod output;
+
+use std::process::ExitCode;
+
+use args::{Args, Command};
+use clap::Parser;
+use console::Console;
+use failure::Failure;
+
+fn main() -> ExitCode {
+    let args = Args::parse();
+    let console = Console::new(&args.global);
+    match run(&args, &console) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            console.failure(&failure);
+            failure.status()
+        }
+    }
+}
+
+fn run(args: &Args, console: &Console) -> Result<(), Failure> {
+    match &args.command {
+        Command::Check(args) => commands::check::run(args, console),
+        Command::Compile(args) => commands::compile::run(args, console),
+        Command::Render(args) => commands::render::run(args, console),
+        Command::Explain(args) => commands::explain::run(args, console),
+    }
+}

@@ -1,0 +1,192 @@
+//! The arguments, as clap reads them.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Parser, Subcommand, ValueEnum};
+use sdfc::march::METHODS;
+use sdfc::render::{MAX_PIXELS, MAX_SIDE};
+
+/// Compiles scenes of signed distance functions to shaders and pictures.
+#[derive(Debug, Parser)]
+#[command(name = "sdfc", version, propagate_version = true, max_term_width = 100)]
+#[command(
+    after_help = "Exit status: 0 done, 1 the scene is wrong, 2 the call is wrong, 3 the machine cannot."
+)]
+pub struct Args {
+    /// Options that every command takes.
+    #[command(flatten)]
+    pub global: Global,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Options that every command takes.
+#[derive(clap::Args, Debug)]
+pub struct Global {
+    /// Colour in messages
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    pub color: ColorChoice,
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say more about what is done
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+/// When messages are coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ColorChoice {
+    /// On a terminal, unless NO_COLOR is set
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Show all that is wrong with scenes, and nothing else
+    Check(Check),
+    /// Write the shader of a scene
+    Compile(Compile),
+    /// Draw a scene
+    Render(Render),
+    /// Say what was modelled and why
+    Explain(Explain),
+}
+
+/// Arguments of `check`.
+#[derive(clap::Args, Debug)]
+pub struct Check {
+    /// Scenes; `-` is stdin
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Write the diagnostics to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `compile`.
+#[derive(clap::Args, Debug)]
+pub struct Compile {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Where the shader goes; `-`, the default, is stdout
+    #[arg(short, long, value_name = "OUT", default_value = "-")]
+    pub output: PathBuf,
+    /// The language to write
+    #[arg(long, value_enum, default_value_t)]
+    pub target: Target,
+    /// Which part to write
+    #[arg(long, value_enum, default_value_t)]
+    pub emit: Emit,
+}
+
+/// Languages that shaders are written in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// WebGPU's
+    #[default]
+    Wgsl,
+}
+
+/// Parts of the shader, and what it is made from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    /// The functions for distance, gradient and material
+    #[default]
+    Field,
+    /// The whole shader that draws pictures
+    Render,
+}
+
+/// Arguments of `render`.
+#[derive(clap::Args, Debug)]
+pub struct Render {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Where the PNG goes; `-` is stdout [default: the scene's name with .png, here]
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
+    pub size: [u32; 2],
+    /// The ray method; the scene's `march(...)` or auto if not given
+    #[arg(long, value_name = "METHOD", value_parser = methods())]
+    pub march: Option<String>,
+    /// What draws
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// Where figures about the picture go, as JSON; `-` is stdout. The frame is drawn five times
+    #[arg(long, value_name = "OUT.json")]
+    pub stats: Option<PathBuf>,
+}
+
+/// What draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The graphics adapter if there is one, else the processor
+    #[default]
+    Auto,
+    /// The graphics adapter
+    Gpu,
+    /// The processor
+    Cpu,
+}
+
+/// Arguments of `explain`.
+#[derive(clap::Args, Debug)]
+pub struct Explain {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Write it to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn methods() -> PossibleValuesParser {
+    PossibleValuesParser::new(METHODS.iter().map(|method| method.name))
+}
+
+/// `640x400` as `[640, 400]`.
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(w, h)| (w.parse::<u32>(), h.parse::<u32>()));
+    let Some((Ok(width), Ok(height))) = sides else {
+        return Err("write width and height with an `x` between, such as 640x400".to_owned());
+    };
+    if width == 0 || height == 0 {
+        return Err("a picture has at least one pixel on each side".to_owned());
+    }
+    if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(format!(
+            "a picture has at most {MAX_SIDE} pixels on a side and {MAX_PIXELS} in all"
+        ));
+    }
+    Ok([width, height])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_contradict_nowhere() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(size("640x400"), Ok([640, 400]));
+        assert_eq!(size("1x1"), Ok([1, 1]));
+        for wrong in ["", "640", "640x", "0x4", "4x0", "-1x4", "4x4x4", "99999x1", "32768x32768"] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! One file a command.
+
+pub mod check;
+pub mod compile;
+pub mod explain;
+pub mod render;
+
+use std::path::Path;
+
+use sdfc::Error;
+use sdfc::render::RenderError;
+
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::input;
+
+/// Reads and compiles a scene and shows what was found.
+///
+/// # Errors
+///
+/// The scene cannot be read, or has errors.
+fn scene(path: &Path, console: &Console) -> Result<sdfc::Scene, Failure> {
+    let mut compiled = compiled(path)?;
+    show(&mut compiled, console);
+    compiled.scene.ok_or(Failure::Scene)
+}
+
+/// Why a scene that has compiled could not be lowered or drawn.
+fn lowering(error: &Error, console: &Console) -> Failure {
+    let message = error.to_string();
+    if error.is_machine() {
+        return Failure::Machine(message);
+    }
+    if matches!(error, Error::Render(RenderError::Size(_) | RenderError::MethodNotOnCpu(_))) {
+        return Failure::Call(message);
+    }
+    console.error(&message);
+    Failure::Scene
+}
+
+fn compiled(path: &Path) -> Result<sdfc::Compiled, Failure> {
+    let input = input::read(path)?;
+    Ok(sdfc::compile(&input.name, &input.text))
+}
+
+/// The diagnostics on stderr; with `-q` errors only.
+fn show(compiled: &mut sdfc::Compiled, console: &Console) {
+    if !console.shows_warnings() {
+        compiled.diagnostics.retain(|found| found.is_error());
+    }
+    console.text(&compiled.diagnostics_text(console.color));
+}
+
+/// A value as JSON text with a final line end.
+///
+/// # Errors
+///
+/// None for the plain data that commands write.
+fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
+    let text = serde_json::to_vec_pretty(value);
+    let mut bytes = text.map_err(|e| Failure::Machine(format!("cannot write JSON: {e}")))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

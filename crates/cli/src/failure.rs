@@ -1,0 +1,25 @@
+//! Why a command ended without doing all that it was asked to.
+
+use std::process::ExitCode;
+
+/// Ordered by exit status, so that the worst of several is the greatest.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Failure {
+    /// The scene is wrong; its diagnostics have been shown.
+    Scene,
+    /// The call is wrong: a missing or unreadable input, an option that does not fit.
+    Call(String),
+    /// The machine cannot: no adapter, device lost, output not writable, disk full.
+    Machine(String),
+}
+
+impl Failure {
+    /// The exit status for it.
+    pub fn status(&self) -> ExitCode {
+        match self {
+            Self::Scene => ExitCode::from(1),
+            Self::Call(_) => ExitCode::from(2),
+            Self::Machine(_) => ExitCode::from(3),
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! The binary from outside: exit statuses, streams, files.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENE: &str = "sphere(0.8).color(#d94f30)\nplane(y: -0.8)\nsun(direction: [1, 2, 1])\n";
+const WRONG: &str = "spere(0.8)\nbox(1).foo\n";
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("scene.sdf"), SCENE).unwrap();
+    std::fs::write(folder.path().join("wrong.sdf"), WRONG).unwrap();
+    folder
+}
+
+fn run_with(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
+        .args(args)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that refuses its arguments may be gone before it reads.
+    let _ = child.stdin.take().unwrap().write_all(stdin);
+    child.wait_with_output().unwrap()
+}
+
+fn run(folder: &TempDir, args: &[&str]) -> Output {
+    run_with(folder.path(), args, b"")
+}
+
+fn status(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Names in a folder, so that stray temporary files are seen.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_scene_without_faults_checks_silently() {
+    let folder = folder();
+    let output = run(&folder, &["check", "scene.sdf"]);
+    assert_eq!((status(&output), output.stdout, text(&output.stderr)), (0, vec![], String::new()));
+}
+
+#[test]
+fn a_wrong_scene_is_status_1_and_all_its_errors_are_shown() {
+    let folder = folder();
+    let output = run(&folder, &["check", "wrong.sdf"]);
+    let shown = text(&output.stderr);
+    assert_eq!(status(&output), 1);
+    assert!(output.stdout.is_empty());
+    assert!(shown.contains("wrong.sdf:1:1") && shown.contains("wrong.sdf:2:"), "{shown}");
+    assert!(shown.contains("did you mean `sphere`?"), "{shown}");
+    assert!(!shown.contains('\x1b'), "no colour where no terminal is");
+}
+
+#[test]
+fn diagnostics_as_json_have_their_keys() {
+    let folder = folder();
+    let output = run(&folder, &["check", "--json", "wrong.sdf", "scene.sdf"]);
+    assert_eq!(status(&output), 1);
+    let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(rows.len() >= 2);
+    let mut keys: Vec<_> = rows[0].as_object().unwrap().keys().cloned().collect();
+    keys.sort();
+    let expected = "code column end_column end_line file help line message severity"
+        .split(' ')
+        .collect::<Vec<_>>();
+    assert_eq!(keys, expected);
+    assert_eq!(rows[0]["code"], "E0201");
+    assert_eq!(rows[0]["file"], "wrong.sdf");
+    assert_eq!((&rows[0]["line"], &rows[0]["column"]), (&1.into(), &1.into()));
+}
+
+#[test]
+fn a_missing_file_is_status_2_and_the_others_are_checked() {
+    let folder = folder();
+    let output = run(&folder, &["check", "missing.sdf", "wrong.sdf"]);
+    let shown = text(&output.stderr);
+    assert_eq!(status(&output), 2);
+    assert!(shown.contains("missing.sdf") && shown.contains("wrong.sdf:1:1"), "{shown}");
+}
+
+#[test]
+fn what_is_no_text_is_status_2() {
+    let folder = folder();
+    std::fs::write(folder.path().join("picture.sdf"), b"\x89PNG\xff").unwrap();
+    let output = run(&folder, &["check", "picture.sdf"]);
+    assert_eq!(status(&output), 2);
+    assert!(text(&output.stderr).contains("not UTF-8"));
+}
+
+#[test]
+fn wrong_calls_are_status_2() {
+    let folder = folder();
+    for args in [
+        &["check"][..],
+        &["paint", "scene.sdf"],
+        &["render", "scene.sdf", "--size", "0x10"],
+        &["render", "scene.sdf", "--size", "big"],
+        &["render", "scene.sdf", "--march", "magic"],
+        &["render", "scene.sdf", "--backend", "abacus"],
+        &["compile", "scene.sdf", "--target", "cobol"],
+        &["check", "-q", "-v", "scene.sdf"],
+        &["render", "scene.sdf", "-o", "scene.sdf"],
+        &["render", "scene.sdf", "-o", "-", "--stats", "-"],
+    ] {
+        let output = run(&folder, args);
+        assert_eq!(status(&output), 2, "{args:?}: {}", text(&output.stderr));
+        assert!(output.stdout.is_empty() && !output.stderr.is_empty(), "{args:?}");
+    }
+    assert_eq!(names(folder.path()), ["scene.sdf", "wrong.sdf"]);
+}
+
+#[test]
+fn stdin_is_a_scene_like_any_other() {
+    let folder = folder();
+    let output = run_with(folder.path(), &["check", "-"], WRONG.as_bytes());
+    assert_eq!(status(&output), 1);
+    assert!(text(&output.stderr).contains("<stdin>:1:1"));
+}
+
+#[test]
+fn colour_is_given_when_asked_for() {
+    let folder = folder();
+    let output = run(&folder, &["--color", "always", "check", "wrong.sdf"]);
+    assert!(text(&output.stderr).contains("\x1b["));
+}
+
+#[test]
+fn shaders_go_to_stdout_or_whole_into_a_file() {
+    let folder = folder();
+    let streamed = run(&folder, &["compile", "scene.sdf"]);
+    assert_eq!(status(&streamed), 0, "{}", text(&streamed.stderr));
+    assert!(text(&streamed.stdout).contains("fn "));
+    let written = run(&folder, &["compile", "scene.sdf", "-o", "scene.wgsl"]);
+    assert_eq!(status(&written), 0);
+    assert!(written.stdout.is_empty());
+    assert_eq!(std::fs::read(folder.path().join("scene.wgsl")).unwrap(), streamed.stdout);
+    assert_eq!(names(folder.path()), ["scene.sdf", "scene.wgsl", "wrong.sdf"]);
+}
+
+#[test]
+fn a_wrong_scene_leaves_an_older_output_alone() {
+    let folder = folder();
+    std::fs::write(folder.path().join("out.wgsl"), "older").unwrap();
+    let output = run(&folder, &["compile", "wrong.sdf", "-o", "out.wgsl"]);
+    assert_eq!(status(&output), 1);
+    assert_eq!(std::fs::read(folder.path().join("out.wgsl")).unwrap(), b"older");
+}
+
+#[test]
+fn an_output_in_no_folder_is_status_3() {
+    let folder = folder();
+    for args in [
+        ["compile", "scene.sdf", "-o", "none/out.wgsl"],
+        ["render", "scene.sdf", "-o", "none/out.png"],
+        ["render", "scene.sdf", "--stats", "none/out.json"],
+    ] {
+        let output = run(&folder, &args);
+        assert_eq!(status(&output), 3, "{args:?}: {}", text(&output.stderr));
+    }
+    assert_eq!(names(folder.path()), ["scene.sdf", "wrong.sdf"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_status_3() {
+    let folder = folder();
+    let output = run(&folder, &["compile", "scene.sdf", "-o", "/dev/full"]);
+    assert_eq!(status(&output), 3, "{}", text(&output.stderr));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_is_written_through() {
+    let folder = folder();
+    std::fs::write(folder.path().join("target.wgsl"), "older").unwrap();
+    std::os::unix::fs::symlink("target.wgsl", folder.path().join("link.wgsl")).unwrap();
+    assert_eq!(status(&run(&folder, &["compile", "scene.sdf", "-o", "link.wgsl"])), 0);
+    assert!(folder.path().join("link.wgsl").is_symlink());
+    assert_ne!(std::fs::read(folder.path().join("target.wgsl")).unwrap(), b"older");
+}
+
+#[test]
+fn the_processor_draws_and_gives_figures() {
+    let folder = folder();
+    let args =
+        ["render", "scene.sdf", "--backend", "cpu", "--size", "40x24", "--stats", "stats.json"];
+    let output = run(&folder, &args);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("scene.png"), "it says where the picture is");
+    let png = std::fs::read(folder.path().join("scene.png")).unwrap();
+    assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+    assert_eq!((&png[16..20], &png[20..24]), (&[0, 0, 0, 40][..], &[0, 0, 0, 24][..]));
+    let stats = std::fs::read(folder.path().join("stats.json")).unwrap();
+    let stats: Value = serde_json::from_slice(&stats).unwrap();
+    assert_eq!(stats["size"], serde_json::json!([40, 24]));
+    let pixels = &stats["pixels"];
+    let count = |key: &str| pixels[key].as_u64().unwrap();
+    assert_eq!(count("hit") + count("miss") + count("capped") + count("nan"), 40 * 24);
+    assert!(count("hit") > 100, "{pixels}");
+    for key in "adapter driver backend method frame_ms compile_ms first_picture_ms evals_per_pixel \
+                leaf_evals_per_pixel"
+        .split_whitespace()
+    {
+        assert!(stats.get(key).is_some(), "{key}");
+    }
+}
+
+#[test]
+fn a_picture_streams_to_stdout() {
+    let folder = folder();
+    let args = ["render", "-", "-o", "-", "--backend", "cpu", "--size", "8x8"];
+    let output = run_with(folder.path(), &args, SCENE.as_bytes());
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    assert_eq!(&output.stdout[..8], b"\x89PNG\r\n\x1a\n");
+}
+
+#[test]
+fn explain_says_what_was_modelled() {
+    let folder = folder();
+    let output = run(&folder, &["explain", "--json", "scene.sdf"]);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let explained: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(explained["leaves"], 2);
+    for key in
+        "nodes ops_per_eval spirv_instructions features method step_scale certified bounds quality"
+            .split_whitespace()
+    {
+        assert!(explained.get(key).is_some(), "{key}");
+    }
+    assert!(text(&run(&folder, &["explain", "scene.sdf"]).stdout).contains("leaves"));
+}
+
+#[test]
+fn a_scene_that_draws_nothing_is_checked_not_rendered() {
+    let folder = folder();
+    let check = run_with(folder.path(), &["check", "-"], b"let a = sphere(1)\n");
+    assert_eq!(status(&check), 0, "{}", text(&check.stderr));
+    let args = ["render", "-", "-o", "out.png", "--backend", "cpu"];
+    let render = run_with(folder.path(), &args, b"let a = sphere(1)\n");
+    assert_eq!(status(&render), 1, "{}", text(&render.stderr));
+    assert!(!render.stderr.is_empty());
+    assert!(!folder.path().join("out.png").exists());
+}
