@@ -19,8 +19,7 @@ mod rules;
 
 pub(crate) use rules::TINY;
 
-use rustc_hash::{FxHashMap, FxHashSet};
-
+use crate::ids::{IdMap, IdSet};
 use crate::walk::reachable_where;
 use crate::{Binary, Graph, NodeId, Type};
 
@@ -44,13 +43,13 @@ use crate::{Binary, Graph, NodeId, Type};
 /// assert_eq!([values[0][0], values[1][0]], [3.0, 2.0]);
 /// ```
 pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> {
-    let inputs: FxHashSet<NodeId> = wrt.iter().copied().collect();
-    let order = reachable_where(graph, &[root], |id| !inputs.contains(&id));
+    let inputs: IdSet = wrt.iter().copied().collect();
+    let order = reachable_where(graph, &[root], |id| !inputs.contains(id));
     let live = live_nodes(graph, &order, &inputs);
-    let mut sweep = Sweep { graph, live, adjoints: FxHashMap::default() };
+    let mut sweep = Sweep { graph, live, adjoints: IdMap::default() };
     let one = sweep.graph.number(1.0);
     sweep.give(root, one);
-    for &id in order.iter().rev().filter(|id| !inputs.contains(id)) {
+    for &id in order.iter().rev().filter(|&&id| !inputs.contains(id)) {
         if let Some(adjoint) = sweep.take(id) {
             sweep.hand_down(id, adjoint);
         }
@@ -67,12 +66,12 @@ pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
 }
 
 /// The nodes whose value moves with one of the inputs.
-fn live_nodes(graph: &Graph, order: &[NodeId], inputs: &FxHashSet<NodeId>) -> FxHashSet<NodeId> {
-    let mut live = FxHashSet::default();
+fn live_nodes(graph: &Graph, order: &[NodeId], inputs: &IdSet) -> IdSet {
+    let mut live = IdSet::default();
     for &id in order {
-        let moves = inputs.contains(&id)
+        let moves = inputs.contains(id)
             || (rules::passes_derivatives(graph, id)
-                && graph.node(id).arguments().any(|argument| live.contains(&argument)));
+                && graph.node(id).arguments().any(|argument| live.contains(argument)));
         if moves {
             live.insert(id);
         }
@@ -94,19 +93,19 @@ struct Adjoint {
 
 struct Sweep<'a> {
     graph: &'a mut Graph,
-    live: FxHashSet<NodeId>,
-    adjoints: FxHashMap<NodeId, Adjoint>,
+    live: IdSet,
+    adjoints: IdMap<Adjoint>,
 }
 
 impl Sweep<'_> {
     /// Adds to a node's adjoint; `part` has the node's type.
     fn give(&mut self, id: NodeId, part: NodeId) {
-        if !self.live.contains(&id) || self.is_zero(part) {
+        if !self.live.contains(id) || self.is_zero(part) {
             return;
         }
-        let whole = self.adjoints.get(&id).and_then(|adjoint| adjoint.whole);
+        let whole = self.adjoints.get(id).and_then(|adjoint| adjoint.whole);
         let sum = whole.map_or(part, |whole| self.graph.add(whole, part));
-        self.adjoints.entry(id).or_default().whole = Some(sum);
+        self.adjoints.slot(id).get_or_insert_default().whole = Some(sum);
     }
 
     /// Adds to the adjoint of one component.
@@ -114,13 +113,13 @@ impl Sweep<'_> {
         if self.graph.ty(id).width() == 1 {
             return self.give(id, part);
         }
-        if !self.live.contains(&id) || self.is_zero(part) {
+        if !self.live.contains(id) || self.is_zero(part) {
             return;
         }
         let lane = usize::from(lane);
-        let before = self.adjoints.get(&id).and_then(|adjoint| adjoint.lanes[lane]);
+        let before = self.adjoints.get(id).and_then(|adjoint| adjoint.lanes[lane]);
         let sum = before.map_or(part, |before| self.graph.add(before, part));
-        self.adjoints.entry(id).or_default().lanes[lane] = Some(sum);
+        self.adjoints.slot(id).get_or_insert_default().lanes[lane] = Some(sum);
     }
 
     fn is_zero(&self, id: NodeId) -> bool {
@@ -129,7 +128,7 @@ impl Sweep<'_> {
 
     /// All that a node was given, as one node; `None` for nothing.
     fn take(&mut self, id: NodeId) -> Option<NodeId> {
-        let Adjoint { whole, lanes } = self.adjoints.remove(&id)?;
+        let Adjoint { whole, lanes } = self.adjoints.slot(id).take()?;
         if lanes == [None; 4] {
             return whole;
         }
@@ -141,7 +140,7 @@ impl Sweep<'_> {
     }
 
     fn total(&mut self, id: NodeId) -> NodeId {
-        let adjoint = self.adjoints.get(&id).copied();
+        let adjoint = self.adjoints.get(id);
         let total = self.take(id);
         if let Some(adjoint) = adjoint {
             self.adjoints.insert(id, adjoint);

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use rustc_hash::FxHashMap;
 
+use crate::ids::IdSet;
 use crate::walk::reachable;
 use crate::{Const, Graph, Node, NodeId, Stage, Type};
 
@@ -50,7 +51,7 @@ pub fn dump(graph: &Graph, roots: &[(&str, NodeId)]) -> String {
 
 /// Arguments before uses, left to right, whatever the ids are.
 fn first_use_order(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
-    let mut done = rustc_hash::FxHashSet::default();
+    let mut done = IdSet::default();
     let mut order = Vec::new();
     let mut stack: Vec<(NodeId, bool)> = roots.iter().rev().map(|&id| (id, false)).collect();
     while let Some((id, arguments_done)) = stack.pop() {

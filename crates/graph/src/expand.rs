@@ -299,8 +299,10 @@ impl Expander {
             return point.map(Step::Done).ok_or(ExpandError::MissingPoint { level });
         }
         let before = stack.len();
-        for argument in graph.node(node).arguments() {
-            if self.lookup(graph, (argument, env)).is_none() {
+        let mut expanded = [None; 4];
+        for (place, argument) in expanded.iter_mut().zip(graph.node(node).arguments()) {
+            *place = self.lookup(graph, (argument, env)).map(|new| (argument, new));
+            if place.is_none() {
                 stack.push((argument, env));
             }
         }
@@ -321,11 +323,7 @@ impl Expander {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..) => {
-                let mut arguments = [None; 4];
-                for (place, argument) in arguments.iter_mut().zip(graph.node(node).arguments()) {
-                    *place = self.lookup(graph, (argument, env)).map(|new| (argument, new));
-                }
-                let find = |old| arguments.iter().flatten().find(|pair| pair.0 == old);
+                let find = |old| expanded.iter().flatten().find(|pair| pair.0 == old);
                 Ok(Step::Done(graph.rebuild(node, |old| find(old).map_or(old, |pair| pair.1))))
             }
         }

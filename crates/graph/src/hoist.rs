@@ -1,7 +1,6 @@
 //! What a frame knows and its points use.
 
-use rustc_hash::FxHashSet;
-
+use crate::ids::IdSet;
 use crate::walk::reachable_where;
 use crate::{Graph, Node, NodeId, Stage};
 
@@ -12,16 +11,18 @@ use crate::{Graph, Node, NodeId, Stage};
 /// reads the slots must look through a per-frame `Splat` to its argument. Truth values may be among the slots.
 pub fn uniforms(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let per_point = |id: NodeId| graph.stage(id) == Stage::Point;
-    let mut slots = FxHashSet::default();
+    let mut slots = IdSet::default();
     for id in reachable_where(graph, roots, per_point) {
         if per_point(id) {
-            slots.extend(graph.node(id).arguments().filter_map(|used| slot(graph, used)));
+            for slot in graph.node(id).arguments().filter_map(|used| slot(graph, used)) {
+                slots.insert(slot);
+            }
         }
     }
-    slots.extend(roots.iter().filter_map(|&root| slot(graph, root)));
-    let mut slots: Vec<NodeId> = slots.into_iter().collect();
-    slots.sort_unstable();
-    slots
+    for slot in roots.iter().filter_map(|&root| slot(graph, root)) {
+        slots.insert(slot);
+    }
+    slots.to_vec()
 }
 
 /// The node that holds the value of a per-frame node; none for one of another stage.

@@ -306,18 +306,19 @@ pub enum Node {
 impl Node {
     /// Its arguments in order.
     pub fn arguments(&self) -> impl Iterator<Item = NodeId> + use<> {
-        let (list, count): ([Option<NodeId>; 4], usize) = match *self {
-            Self::Const(_) | Self::Point(..) | Self::Frame(..) => ([None; 4], 0),
+        let unused = NodeId(0);
+        let (list, count) = match *self {
+            Self::Const(_) | Self::Point(..) | Self::Frame(..) => ([unused; 4], 0),
             Self::Unary(_, a)
             | Self::Splat(_, a)
             | Self::Swizzle(_, a, _)
             | Self::Sample(_, a)
-            | Self::MaterialAt(_, a, _) => ([Some(a), None, None, None], 1),
-            Self::Binary(_, a, b) => ([Some(a), Some(b), None, None], 2),
-            Self::Ternary(_, [a, b, c]) => ([Some(a), Some(b), Some(c), None], 3),
-            Self::Compose(ty, parts) => (parts.map(Some), ty.width()),
-            Self::Transform([a, b, c], v) => ([Some(a), Some(b), Some(c), Some(v)], 4),
+            | Self::MaterialAt(_, a, _) => ([a; 4], 1),
+            Self::Binary(_, a, b) => ([a, b, unused, unused], 2),
+            Self::Ternary(_, [a, b, c]) => ([a, b, c, unused], 3),
+            Self::Compose(ty, parts) => (parts, ty.width()),
+            Self::Transform([a, b, c], v) => ([a, b, c, v], 4),
         };
-        list.into_iter().take(count).flatten()
+        list.into_iter().take(count)
     }
 }

@@ -17,7 +17,7 @@ pub struct Program {
     /// Material fields in the order of `MaterialField::ALL`; `None` without materials.
     pub material: Option<[NodeId; 6]>,
     /// Per-frame nodes that per-point nodes or settings use: evaluated on the CPU, one uniform slot each,
-    /// in this order.
+    /// in this order. As [`crate::uniforms`] lists them: a per-frame `Splat` has none, its argument has.
     pub uniforms: Vec<NodeId>,
     /// Names for the generated text, from the script's `let`s and definitions.
     pub names: FxHashMap<NodeId, String>,

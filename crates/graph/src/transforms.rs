@@ -20,6 +20,7 @@ use rustc_hash::FxHashMap;
 
 use self::affine::Affine;
 use self::cone::Cones;
+use crate::ids::IdMap;
 use crate::walk::reachable;
 use crate::{Graph, Node, NodeId, Stage};
 
@@ -28,11 +29,15 @@ use crate::{Graph, Node, NodeId, Stage};
 pub struct Rewritten {
     /// In the order of the roots given.
     pub roots: Vec<NodeId>,
-    /// New by old.
-    pub nodes: FxHashMap<NodeId, NodeId>,
+    nodes: IdMap<NodeId>,
 }
 
 impl Rewritten {
+    /// What a node became; `None` for one that no root was computed from.
+    pub fn new_id(&self, old: NodeId) -> Option<NodeId> {
+        self.nodes.get(old)
+    }
+
     /// Names of the old nodes, carried over to the new ones. Constants and points have none.
     pub fn names(
         &self,
@@ -43,7 +48,7 @@ impl Rewritten {
         old.sort_unstable();
         let mut renamed = FxHashMap::default();
         for (id, name) in old {
-            let new = self.nodes.get(id).copied();
+            let new = self.nodes.get(*id);
             if let Some(new) = new.filter(|&new| !matches!(graph.node(new), Node::Point(..))) {
                 renamed.entry(new).or_insert_with(|| name.clone());
             }
@@ -78,12 +83,12 @@ impl Rewritten {
 pub fn fold_transforms(graph: &mut Graph, roots: &[NodeId]) -> Rewritten {
     let order = reachable(graph, roots);
     let cones = Cones::new(graph, &order, roots);
-    let mut pass = Pass { graph, cones, forms: FxHashMap::default(), new: FxHashMap::default() };
+    let mut pass = Pass { graph, cones, forms: FxHashMap::default(), new: IdMap::default() };
     for id in order {
         pass.visit(id);
     }
     let Pass { new, .. } = pass;
-    let roots = roots.iter().map(|root| new.get(root).copied().unwrap_or(*root)).collect();
+    let roots = roots.iter().map(|root| new.get(*root).unwrap_or(*root)).collect();
     Rewritten { roots, nodes: new }
 }
 
@@ -92,7 +97,7 @@ struct Pass<'a> {
     cones: Cones,
     /// Of old nodes, over old bases; only in cones of more than one operation.
     forms: FxHashMap<NodeId, Affine>,
-    new: FxHashMap<NodeId, NodeId>,
+    new: IdMap<NodeId>,
 }
 
 impl Pass<'_> {
@@ -101,40 +106,42 @@ impl Pass<'_> {
             self.new.insert(id, id);
             return;
         }
-        let folded = self.form(id).and_then(|form| {
-            let folded = self.cones.is_head(id).then(|| self.fold(id, &form))?;
+        let form = self.form(id);
+        if let Some(form) = form {
             self.forms.insert(id, form);
-            folded
-        });
+        }
+        let folded = form.filter(|_| self.cones.is_head(id)).and_then(|form| self.fold(id, &form));
         let new = folded.unwrap_or_else(|| {
             let new = &self.new;
-            self.graph.rebuild(id, |old| new.get(&old).copied().unwrap_or(old))
+            self.graph.rebuild(id, |old| new.get(old).unwrap_or(old))
         });
         self.new.insert(id, new);
     }
 
+    /// A node in a cone worth folding, over what the cone starts from.
     fn form(&mut self, id: NodeId) -> Option<Affine> {
         if !self.cones.is_worth_folding(id) {
             return None;
         }
         let (cones, forms) = (&self.cones, &self.forms);
-        let form = affine::form(self.graph, id, |graph, argument| {
-            if !cones.is_head(argument) || cones.is_transparent(argument) {
-                forms.get(&argument).copied()
-            } else {
-                affine::base(graph, argument)
+        affine::form(self.graph, id, |graph, argument| {
+            if !cones.is_head(argument) {
+                return forms.get(&argument).copied();
             }
-        })?;
-        if !self.cones.is_head(id) {
-            self.forms.insert(id, form);
-        }
-        Some(form)
+            // Picking components costs nothing, whoever else uses them: look through it.
+            let source = |graph: &mut Graph, source| affine::base(graph, source);
+            match (forms.get(&argument), graph.node(argument)) {
+                (None, Node::Swizzle(..)) => affine::form(graph, argument, source),
+                (Some(form), Node::Swizzle(..)) => Some(*form),
+                _ => affine::base(graph, argument),
+            }
+        })
     }
 
     /// The cheapest form of a head, if it is cheaper than its cone.
     fn fold(&mut self, id: NodeId, form: &Affine) -> Option<NodeId> {
         let plan = emit::plan(form)?;
-        let base = *self.new.get(&form.base?)?;
+        let base = self.new.get(form.base?)?;
         (plan.cost < self.cones.cost(id)).then(|| plan.build(self.graph, base))
     }
 }

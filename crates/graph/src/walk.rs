@@ -1,7 +1,6 @@
 //! Walking and copying nodes; what every pass is made of.
 
-use rustc_hash::FxHashSet;
-
+use crate::ids::IdSet;
 use crate::{Graph, Node, NodeId, Ternary};
 
 /// The nodes that the roots are computed from, the roots included, in ascending order: arguments
@@ -16,16 +15,14 @@ pub fn reachable_where(
     roots: &[NodeId],
     enter: impl Fn(NodeId) -> bool,
 ) -> Vec<NodeId> {
-    let mut seen = FxHashSet::default();
+    let mut seen = IdSet::default();
     let mut pending = roots.to_vec();
     while let Some(id) = pending.pop() {
         if seen.insert(id) && enter(id) {
             pending.extend(graph.node(id).arguments());
         }
     }
-    let mut order: Vec<NodeId> = seen.into_iter().collect();
-    order.sort_unstable();
-    order
+    seen.to_vec()
 }
 
 impl Graph {

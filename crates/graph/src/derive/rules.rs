@@ -47,7 +47,7 @@ impl Sweep<'_> {
             | Node::Sample(..)
             | Node::MaterialAt(..) => {}
             Node::Unary(op, a) => {
-                if self.live.contains(&a) {
+                if self.live.contains(a) {
                     let part = self.unary(op, id, a, adjoint);
                     self.give(a, part);
                 }
@@ -84,7 +84,7 @@ impl Sweep<'_> {
     }
 
     fn transform(&mut self, columns: [NodeId; 3], v: NodeId, adjoint: NodeId) {
-        if self.live.contains(&v) {
+        if self.live.contains(v) {
             let transposed = [0, 1, 2].map(|row| {
                 let parts = columns.map(|column| self.graph.component(column, row));
                 self.graph.compose(&parts)
@@ -93,7 +93,7 @@ impl Sweep<'_> {
             self.give(v, part);
         }
         for (lane, column) in (0..).zip(columns) {
-            if self.live.contains(&column) {
+            if self.live.contains(column) {
                 let factor = self.graph.component(v, lane);
                 let part = self.graph.mul(adjoint, factor);
                 self.give(column, part);
@@ -337,7 +337,7 @@ impl Sweep<'_> {
 
     /// Gives a part that is only built if the argument takes it.
     fn give_with(&mut self, id: NodeId, part: impl FnOnce(&mut Self) -> NodeId) {
-        if self.live.contains(&id) {
+        if self.live.contains(id) {
             let part = part(self);
             self.give(id, part);
         }

@@ -5,9 +5,10 @@
 //! are 0, or there is one sample, it is the first's. The result is written in the shape's own point, with the
 //! children's materials as nodes: expansion treats it as any other formula.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use crate::derive::TINY;
+use crate::ids::IdSet;
 use crate::walk::reachable_where;
 use crate::{
     Binary, Graph, MaterialField, MaterialRule, Node, NodeId, ShapeId, Ternary, Unary, adjoints,
@@ -108,7 +109,7 @@ fn weight(graph: &mut Graph, share: NodeId, coverage: NodeId) -> NodeId {
 struct Selection<'a> {
     graph: &'a mut Graph,
     /// Nodes that a sample's distance reaches.
-    live: FxHashSet<NodeId>,
+    live: IdSet,
     /// The first sample's material.
     first: Fields,
     /// By node, and whether it counts negatively.
@@ -124,10 +125,10 @@ enum Choice {
 
 impl<'a> Selection<'a> {
     fn new(graph: &'a mut Graph, order: &[NodeId], first: Fields) -> Self {
-        let mut live = FxHashSet::default();
+        let mut live = IdSet::default();
         for &id in order {
             let node = graph.node(id);
-            if is_sample(graph, id) || node.arguments().any(|argument| live.contains(&argument)) {
+            if is_sample(graph, id) || node.arguments().any(|argument| live.contains(argument)) {
                 live.insert(id);
             }
         }
@@ -168,7 +169,7 @@ impl<'a> Selection<'a> {
     }
 
     fn choice(&mut self, id: NodeId, negative: bool) -> Option<Choice> {
-        if !self.live.contains(&id) {
+        if !self.live.contains(id) {
             return Some(Choice::Material(self.first));
         }
         let of = |argument, negated| Some(Choice::Of { argument, negated });
@@ -216,7 +217,7 @@ impl<'a> Selection<'a> {
     }
 
     fn moves(&self, id: NodeId) -> bool {
-        self.live.contains(&id)
+        self.live.contains(id)
     }
 
     /// The sign of a constant factor.

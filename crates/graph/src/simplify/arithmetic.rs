@@ -45,7 +45,7 @@ impl Graph {
             return self.sub(sum, y);
         }
         if let Some(value) = self.as_const(f)
-            && lanes(&value).iter().all(|&lane| lane <= 0.0)
+            && value.lanes().iter().all(|&lane| lane <= 0.0)
         {
             let negative = self.neg(f);
             return self.intern(Node::Binary(Binary::Sub, x, negative));
@@ -269,6 +269,9 @@ impl Graph {
 
     /// A vector times a constant of zeros and ones picks components.
     fn mul_mask(&mut self, v: NodeId, f: NodeId) -> Option<NodeId> {
+        if self.ty(v).width() == 1 {
+            return None;
+        }
         let mask = lanes(&self.as_const(f)?);
         if mask.iter().any(|&lane| lane != 0.0 && lane != 1.0) {
             return None;

@@ -1,7 +1,6 @@
 //! Which affine operations lead to which head.
 
-use rustc_hash::{FxHashMap, FxHashSet};
-
+use crate::ids::IdMap;
 use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
 
 /// Operations on single numbers of a 3x3 matrix times a vector, additions fused.
@@ -18,9 +17,8 @@ enum Use {
 
 /// The heads of all nodes and the costs of their cones.
 pub(super) struct Cones {
-    heads: FxHashMap<NodeId, NodeId>,
-    transparent: FxHashSet<NodeId>,
-    costs: FxHashMap<NodeId, Cost>,
+    heads: IdMap<NodeId>,
+    costs: IdMap<Cost>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -32,31 +30,24 @@ struct Cost {
 impl Cones {
     /// `order` is ascending and holds everything that the roots are computed from.
     pub(super) fn new(graph: &Graph, order: &[NodeId], roots: &[NodeId]) -> Self {
-        let mut uses: FxHashMap<NodeId, Use> = roots.iter().map(|&id| (id, Use::Shared)).collect();
-        let mut cones = Self {
-            heads: FxHashMap::default(),
-            transparent: FxHashSet::default(),
-            costs: FxHashMap::default(),
-        };
+        let mut uses: IdMap<Use> = roots.iter().map(|&id| (id, Use::Shared)).collect();
+        let mut cones = Self { heads: IdMap::default(), costs: IdMap::default() };
         for &id in order.iter().rev().filter(|&&id| graph.stage(id) == Stage::Point) {
             let cost = affine_cost(graph, id);
-            let head = match (cost, uses.get(&id)) {
-                (Some(_), Some(&Use::By(head))) => head,
+            let head = match (cost, uses.get(id)) {
+                (Some(_), Some(Use::By(head))) => head,
                 (Some(_), Some(Use::Shared) | None) | (None, _) => id,
             };
             cones.heads.insert(id, head);
-            if let Node::Swizzle(..) = graph.node(id) {
-                cones.transparent.insert(id);
-            }
             let numbers = cost.unwrap_or(0);
             if numbers > 0 {
-                let sum = cones.costs.entry(head).or_default();
+                let sum = cones.costs.slot(head).get_or_insert_default();
                 sum.operations += 1;
                 sum.numbers += numbers;
             }
             let used = if cost.is_some() { Use::By(head) } else { Use::Shared };
             for argument in graph.node(id).arguments() {
-                let known = uses.entry(argument).or_insert(used);
+                let known = uses.slot(argument).get_or_insert(used);
                 if *known != used {
                     *known = Use::Shared;
                 }
@@ -66,25 +57,18 @@ impl Cones {
     }
 
     pub(super) fn is_head(&self, id: NodeId) -> bool {
-        self.heads.get(&id).is_none_or(|&head| head == id)
+        self.heads.get(id).is_none_or(|head| head == id)
     }
 
-    /// Picking components costs nothing, whoever uses them.
-    pub(super) fn is_transparent(&self, id: NodeId) -> bool {
-        self.transparent.contains(&id)
-    }
-
-    /// Whether the node's cone has more than one operation. Where picked components are shared between
-    /// cones their own cone has none, but others look through them.
+    /// Whether the node's cone has more than one operation.
     pub(super) fn is_worth_folding(&self, id: NodeId) -> bool {
         let operations = |head| self.costs.get(head).map_or(0, |cost| cost.operations);
-        let worth = |head| operations(head) > 1 || self.is_transparent(*head);
-        self.is_transparent(id) || self.heads.get(&id).is_some_and(worth)
+        self.heads.get(id).is_some_and(|head| operations(head) > 1)
     }
 
     /// Operations on single numbers in a head's cone.
     pub(super) fn cost(&self, head: NodeId) -> usize {
-        self.costs.get(&head).map_or(0, |cost| cost.numbers)
+        self.costs.get(head).map_or(0, |cost| cost.numbers)
     }
 }
 

@@ -169,7 +169,7 @@ impl Case {
 
     fn select(&mut self, [a, b, c]: [Twin<1>; 3], d: Twin<1>) {
         let (x, y) = (a.value[0], b.value[0]);
-        self.fragile |= (x - y).abs() < 1e-7 && a.id != b.id;
+        self.fragile |= (x - y).abs() < 1e-7 && (a.id != b.id || x != y);
         let condition = self.graph.lt(a.id, b.id);
         let id = self.graph.select(condition, c.id, d.id);
         self.scalar_of(id, if x < y { c.value[0] } else { d.value[0] });

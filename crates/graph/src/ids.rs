@@ -1,0 +1,128 @@
+//! Sets and maps of nodes, in pages: as quick as arrays, as large as what they hold.
+
+use crate::NodeId;
+
+const SET_PAGE: usize = 1024;
+const MAP_PAGE: usize = 64;
+
+/// A set of nodes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct IdSet {
+    pages: Vec<Option<Box<[u64; SET_PAGE / 64]>>>,
+}
+
+impl IdSet {
+    /// Whether the node was not there before.
+    pub(crate) fn insert(&mut self, id: NodeId) -> bool {
+        let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
+        if self.pages.len() <= page {
+            self.pages.resize(page + 1, None);
+        }
+        let words = self.pages[page].get_or_insert_default();
+        let (word, bit) = (&mut words[place / 64], 1 << (place % 64));
+        let new = *word & bit == 0;
+        *word |= bit;
+        new
+    }
+
+    pub(crate) fn contains(&self, id: NodeId) -> bool {
+        let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
+        let page = self.pages.get(page).and_then(Option::as_ref);
+        page.is_some_and(|words| words[place / 64] >> (place % 64) & 1 == 1)
+    }
+
+    /// All, ascending.
+    pub(crate) fn to_vec(&self) -> Vec<NodeId> {
+        let mut ids = Vec::new();
+        for (page, words) in self.pages.iter().enumerate() {
+            for (i, word) in words.iter().flat_map(|words| words.iter().enumerate()) {
+                let mut rest = *word;
+                while rest != 0 {
+                    let place = page * SET_PAGE + i * 64 + rest.trailing_zeros() as usize;
+                    ids.push(NodeId(place as u32));
+                    rest &= rest - 1;
+                }
+            }
+        }
+        ids
+    }
+}
+
+impl FromIterator<NodeId> for IdSet {
+    fn from_iter<I: IntoIterator<Item = NodeId>>(ids: I) -> Self {
+        let mut set = Self::default();
+        for id in ids {
+            set.insert(id);
+        }
+        set
+    }
+}
+
+/// Values by node.
+#[derive(Clone, Debug)]
+pub(crate) struct IdMap<T> {
+    pages: Vec<Option<Box<[Option<T>; MAP_PAGE]>>>,
+}
+
+impl<T> Default for IdMap<T> {
+    fn default() -> Self {
+        Self { pages: Vec::new() }
+    }
+}
+
+impl<T: Copy> IdMap<T> {
+    pub(crate) fn get(&self, id: NodeId) -> Option<T> {
+        let page = self.pages.get(id.index() / MAP_PAGE)?.as_ref()?;
+        page[id.index() % MAP_PAGE]
+    }
+
+    pub(crate) fn insert(&mut self, id: NodeId, value: T) {
+        *self.slot(id) = Some(value);
+    }
+
+    /// The place of a node's value.
+    pub(crate) fn slot(&mut self, id: NodeId) -> &mut Option<T> {
+        let page = id.index() / MAP_PAGE;
+        if self.pages.len() <= page {
+            self.pages.resize(page + 1, None);
+        }
+        let values = self.pages[page].get_or_insert_with(|| Box::new([None; MAP_PAGE]));
+        &mut values[id.index() % MAP_PAGE]
+    }
+}
+
+impl<T: Copy> FromIterator<(NodeId, T)> for IdMap<T> {
+    fn from_iter<I: IntoIterator<Item = (NodeId, T)>>(pairs: I) -> Self {
+        let mut map = Self::default();
+        for (id, value) in pairs {
+            map.insert(id, value);
+        }
+        map
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{IdMap, IdSet};
+    use crate::NodeId;
+
+    #[test]
+    fn a_set_holds_what_was_put_in() {
+        let ids = [5000, 3, 1024, 1023, 3, 64, 0].map(NodeId);
+        let mut set = IdSet::default();
+        let new: Vec<bool> = ids.into_iter().map(|id| set.insert(id)).collect();
+        assert_eq!(new, [true, true, true, true, false, true, true]);
+        assert_eq!(set.to_vec(), [0, 3, 64, 1023, 1024, 5000].map(NodeId));
+        assert!(!set.contains(NodeId(2)) && !set.contains(NodeId(100_000)));
+    }
+
+    #[test]
+    fn a_map_holds_the_last_value() {
+        let map: IdMap<u8> =
+            [(NodeId(7), 1), (NodeId(700), 2), (NodeId(7), 3)].into_iter().collect();
+        assert_eq!(
+            [7, 700, 8, 70_000].map(|id| map.get(NodeId(id))),
+            [Some(3), Some(2), None, None]
+        );
+    }
+}
