@@ -10,6 +10,20 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 
+/// The compiler's scenes that have a hand-written field.
+const SCENES: [(&str, &str); 2] =
+    [("blend", "examples/course/blend.sdf"), ("thirty", "examples/bench/thirty.sdf")];
+
+/// What the hand-written files end with, around the compiler's function.
+const ENTRY: &str = "
+@group(0) @binding(0) var<storage, read_write> sample: vec4f;
+
+@compute @workgroup_size(1)
+fn main() {
+    sample.w = sdf_distance(sample.xyz);
+}
+";
+
 /// A hand-written field, and its row of the table in README.md.
 const HAND_WRITTEN: [(&str, usize); 4] =
     [("blend", 21), ("thirty", 421), ("tight/blend", 19), ("tight/thirty", 371)];
@@ -26,6 +40,10 @@ fn main() {
     }
     for name in ["blend", "thirty"] {
         trials.push(counting(format!("values_of_{name}"), tight_form_is_the_same_field, name));
+    }
+    for (name, _) in SCENES {
+        trials.push(counting(format!("emitted_{name}_is_no_longer"), emitted_is_no_longer, name));
+        trials.push(counting(format!("emitted_{name}_is_the_same"), emitted_is_the_same, name));
     }
     trials.push(counting("values_by_formula".into(), blend_is_its_formula, "blend"));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
@@ -65,6 +83,34 @@ fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
         return Err(format!("README.md has no row for {name} with {counted}").into());
     }
     Ok(())
+}
+
+/// The field that the compiler makes of the scene, optimised.
+fn emitted(name: &str) -> Result<spirv::Words, Failed> {
+    let path = SCENES.iter().find(|row| row.0 == name).map_or("", |row| row.1);
+    let compiled = sdfc::compile(path, &std::fs::read_to_string(root().join(path))?);
+    let scene = compiled.scene.ok_or_else(|| {
+        sdfc::diagnostics::render(&compiled.sources, &compiled.diagnostics, false)
+    })?;
+    let options =
+        sdfc::FieldOptions { gradient: false, material: false, ..sdfc::FieldOptions::default() };
+    let wgsl = scene.field_shader(&options)?.wgsl()? + ENTRY;
+    Ok(spirv::optimize(&spirv::compile(&wgsl)?)?)
+}
+
+fn emitted_is_no_longer(name: &str) -> Result<(), Failed> {
+    let by_hand = spirv::arithmetic(&hand_written(name)?);
+    let by_compiler = spirv::arithmetic(&emitted(name)?);
+    println!("{name}: {by_compiler} arithmetic instructions emitted, {by_hand} by hand");
+    if by_compiler > by_hand {
+        return Err(format!("{name}: {by_compiler} emitted, {by_hand} by hand").into());
+    }
+    Ok(())
+}
+
+fn emitted_is_the_same(name: &str) -> Result<(), Failed> {
+    let (by_hand, by_compiler) = (hand_written(name)?, emitted(name)?);
+    compare(name, |p| Ok((run::field(&by_hand, p)?, run::field(&by_compiler, p)?)))
 }
 
 /// Points in and around the scenes, from a lattice that meets no symmetry of theirs.
