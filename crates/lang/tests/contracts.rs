@@ -11,9 +11,11 @@ use sdfc_graph::{Dim, Graph, NodeId, Scene, ShapeId, SidePromise};
 use sdfc_lang::library;
 use support::{elaborated, flat};
 
-/// Pairs for a Lipschitz constant, points for a promise, points of a surface.
+/// Pairs for a Lipschitz constant, points for a promise, of which so many are compared with all points of
+/// a surface.
 const PAIRS: usize = 4000;
-const POINTS: usize = 300;
+const POINTS: usize = 3000;
+const COMPARED: usize = 600;
 const SURFACE: usize = 1500;
 /// How far an unbounded shape, and the outside of any, is looked at.
 const REACH: f64 = 1.5;
@@ -23,7 +25,7 @@ const TRANSPARENT: [&str; 7] =
     ["translate", "rotate", "scale", "color", "roughness", "metallic", "paint"];
 
 /// Arguments where formulas degenerate or contracts change; the examples have the usual ones.
-const AWKWARD: [&str; 16] = [
+const AWKWARD: [&str; 17] = [
     "torus(major: 0.3, minor: 0.5)",
     "capsule([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], r: 0.3)",
     "box([2, 0.5, 0.02])",
@@ -35,6 +37,8 @@ const AWKWARD: [&str; 16] = [
     "circle(0.3).translate(x: -0.1, y: 0.4).revolve()",
     "rect([0.4, 1]).translate(x: 0.2).revolve()",
     "box([0.6, 2, 0.6]).twist(-150deg)",
+    // A bound whose gradient has no part towards the axis, which an exact distance has far out.
+    "solid plate() lipschitz 1 bounds [-1, -1, -0.05] .. [1, 1, 0.05] = max(abs(p.x) - 1, abs(p.y) - 1, abs(p.z) - 0.05)\nplate().twist(90deg)",
     "ellipsoid([0.9, 0.4, 0.2]).twist(90deg).scale(0.7)",
     "union(sphere(0.5), box(0.8).translate(x: 0.5), blend: smooth(0))",
     "intersection(sphere(0.7), box(1.1), blend: smooth(0.2))",
@@ -63,6 +67,42 @@ fn contracts_hold_for_awkward_arguments() {
     for text in AWKWARD {
         check_scene(&elaborated(text).scene, text);
     }
+}
+
+#[test]
+fn blends_change_no_faster_than_they_state() {
+    for entry in library::entries().iter().filter(|entry| entry.signature.ends_with("-> blend")) {
+        let call = format!("{}({{k}})", entry.name);
+        for k in ["0", "0.1", "0.7"] {
+            let blend = call.replace("{k}", k);
+            // Distances that are coordinates: the blend as a function of two numbers.
+            let text = format!(
+                "union(plane(normal: [1, 0, 0]), plane(normal: [0, 1, 0]), blend: {blend})"
+            );
+            let scene = elaborated(&text).scene;
+            let formula = support::root(&scene).formula;
+            let claim = scene.graph.claim_of(formula).expect("a blend states its constant");
+            let constant = scene.graph.as_number(claim.lipschitz).expect("it is constant");
+            let field = support::Field::drawn(&text);
+            let mut random = Random(11);
+            for round in 0..PAIRS {
+                let p = [0; 3].map(|_| random.next() * 2.0 - 1.0);
+                let q = mix(p, [0; 3].map(|_| random.next() * 2.0 - 1.0), [1.0, 0.01][round % 2]);
+                let rise = (field.at(p) - field.at(q)).abs();
+                let run = (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
+                assert!(rise <= constant * run + 1e-12, "{blend}: {rise} over {run}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_entry_that_the_documentation_adds_is_right() {
+    let page = include_str!("../../../docs/adding-a-shape.md");
+    let entry = page.split("```").nth(1).expect("the page shows an entry").trim();
+    let example = entry.lines().find_map(|line| line.strip_prefix("/// example:"));
+    let text = format!("{entry}\n{}", example.expect("the entry has an example"));
+    check_scene(&elaborated(&text).scene, &text);
 }
 
 #[test]
@@ -159,7 +199,7 @@ struct Probe {
     tape: Tape,
     frame: FrameValues,
     dim: Dim,
-    /// The stated bounds, cut where they are infinite, and whether they were stated.
+    /// The stated or derived bounds, cut where they are infinite, and as they are.
     bounds: [[f64; 3]; 2],
     stated: [[f64; 3]; 2],
     label: String,
@@ -170,12 +210,12 @@ impl Probe {
     fn new(scene: &Scene, id: ShapeId, label: String) -> Self {
         let mut graph = scene.graph.clone();
         let dim = graph.shape(id).dim;
-        let infinite = [[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]];
+        let ends = sdfc_graph::bounds(&mut graph, id, &scene.params);
         let lanes = |node| {
             let [x, y, z, _] = graph.as_const(node).expect("examples have constant bounds").lanes();
             [x, y, z]
         };
-        let stated = graph.shape(id).contract.bounds.map_or(infinite, |ends| ends.map(lanes));
+        let stated = ends.map(lanes);
         let bounds = [
             stated[0].map(|end| if end.is_finite() { end } else { -REACH }),
             stated[1].map(|end| if end.is_finite() { end } else { REACH }),
@@ -195,7 +235,13 @@ impl Probe {
         let axes = if self.dim == Dim::Two { 2 } else { 3 };
         for (axis, place) in point.iter_mut().enumerate().take(axes) {
             let (lo, hi) = (self.bounds[0][axis] - grown, self.bounds[1][axis] + grown);
-            *place = lo + (hi - lo) * self.random.next();
+            // Worst cases like edges and corners: one coordinate in four lies on a face.
+            let share = match self.random.below(8) {
+                0 => 0.0,
+                1 => 1.0,
+                _ => self.random.next(),
+            };
+            *place = lo + (hi - lo) * share;
         }
         point
     }
@@ -207,12 +253,12 @@ impl Probe {
         self.check_lipschitz(lipschitz);
         let surface = self.surface();
         self.check_bounds(&surface);
-        for _ in 0..POINTS {
-            let p = self.point(REACH);
+        for round in 0..POINTS {
+            let p = self.point([0.0, REACH][round % 2]);
             let f = self.at(p);
             assert!(f.is_finite(), "{}: {f} at {p:?}", self.label);
             let side = usize::from(f < 0.0);
-            if facts.bound[side] {
+            if facts.bound[side] && round < COMPARED {
                 self.check_bound(p, f.abs(), &surface);
             }
             if facts.exact[side] && !surface.is_empty() {
@@ -220,7 +266,7 @@ impl Probe {
             }
         }
         if lipschitz.is_finite() {
-            for _ in 0..POINTS {
+            for _ in 0..COMPARED {
                 let p = self.point(0.0);
                 self.check_bound(p, self.at(p).abs() / lipschitz.max(1.0), &surface);
             }
@@ -244,7 +290,18 @@ impl Probe {
                 self.label,
                 rise / run
             );
+            // The slope in the steepest direction, which few pairs happen to lie in.
+            let slope = distance(self.slope(p), [0.0; 3]);
+            assert!(
+                slope <= constant + 1e-9,
+                "{}: lipschitz {constant}, but a slope of {slope} at {p:?}",
+                self.label
+            );
         }
+    }
+
+    fn slope(&self, p: [f64; 3]) -> [f64; 3] {
+        self.tape.prepare::<Dual>(&self.frame).scalar(Dual::point(p)).partials
     }
 
     /// Points of the surface, between points of opposite sign.
@@ -293,13 +350,15 @@ impl Probe {
         );
     }
 
-    /// With [`Self::check_bound`]: the distance is no less than |f|, and here no more.
+    /// With [`Self::check_bound`]: the distance is no less than |f|, and here no more. Beyond the foot
+    /// point the sign changes: a zero within the inside is no surface.
     fn check_exact(&self, p: [f64; 3], f: f64) {
-        let slope = self.tape.prepare::<Dual>(&self.frame).scalar(Dual::point(p)).partials;
+        let slope = self.slope(p);
         let foot = [0, 1, 2].map(|axis| p[axis] - f * slope[axis]);
+        let beyond = [0, 1, 2].map(|axis| foot[axis] - 1e-4 * f.signum() * slope[axis]);
         let (rest, length) = (self.at(foot), distance(slope, [0.0; 3]));
         assert!(
-            rest.abs() < 1e-6 && (length - 1.0).abs() < 1e-6,
+            rest.abs() < 1e-6 && (length - 1.0).abs() < 1e-6 && self.at(beyond) * f <= 0.0,
             "{}: exact, but {f} at {p:?} leads to {foot:?}, where it is {rest}",
             self.label
         );

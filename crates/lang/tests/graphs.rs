@@ -104,3 +104,22 @@ fn only_scenes_that_state_a_material_are_painted() {
     assert!(elaborated("sphere(1).color(#f00) | box(1)").scene.painted);
     assert!(!elaborated("let unused = sphere(1).color(#f00)\nbox(1)").scene.painted);
 }
+
+#[test]
+fn a_stated_constant_of_a_function_is_kept_with_its_value() {
+    let scene = elaborated("union(sphere(1), box(1), blend: smooth(0.2))").scene;
+    let union = root(&scene);
+    let claim = scene.graph.claim_of(union.formula).expect("`smooth` states a constant");
+    assert_eq!(scene.graph.as_number(claim.lipschitz), Some(1.0));
+    let point = scene.graph.clone().point(0, sdfc_graph::Dim::Three);
+    let samples = union.children.iter().map(|&child| scene.graph.clone().sample(child, point));
+    // The blend's width, which it captures, does not vary.
+    assert_eq!(claim.arguments.len(), 2);
+    assert!(samples.into_iter().all(|sample| claim.arguments.contains(&sample)));
+    let text = "fn wave(q: vec3, by: number) lipschitz 2 * by = by * sin(q.x + q.y)\n\
+                solid it() = length(p) - 1 - wave(p, 0.25)\nit()";
+    let scene = elaborated(text).scene;
+    let claims: Vec<_> = scene.graph.ids().filter_map(|id| scene.graph.claim_of(id)).collect();
+    assert_eq!(claims.len(), 1);
+    assert_eq!(scene.graph.as_number(claims[0].lipschitz), Some(0.5));
+}

@@ -6,7 +6,7 @@ use sdfc_graph::{Claim, NodeId, Stage};
 use super::report::{Frame, show_lanes, show_number};
 use super::value::{Closure, Code, Value};
 use super::{Elaborator, Env, MAX_RECURSION, Outcome};
-use crate::hir::{Expr, FnId, Lambda, LocalId, Parameter, Require};
+use crate::hir::{Expr, FnId, Lambda, Parameter, Require};
 
 /// An argument as the caller wrote it: its value, and its place if it has one.
 pub(super) type Given<'p> = Option<(Value<'p>, Span)>;
@@ -51,10 +51,12 @@ impl<'p> Elaborator<'p> {
         let result = self
             .bind(&mut env, &function.parameters, given, span)
             .and_then(|()| self.requirements(&mut env, &function.requires))
-            .and_then(|()| self.eval(&mut env, &function.body));
-        if let (Ok(value), Some(stated)) = (&result, &function.lipschitz) {
-            self.claim(&mut env, value, stated, 0..function.parameters.len());
-        }
+            .and_then(|()| {
+                let arguments = env.locals[..function.parameters.len()].to_vec();
+                let value = self.eval(&mut env, &function.body)?;
+                self.claim(&mut env, function.lipschitz.as_ref(), arguments, &value)?;
+                Ok(value)
+            });
         self.frames.pop();
         self.active[index] -= 1;
         result
@@ -103,41 +105,52 @@ impl<'p> Elaborator<'p> {
         for (local, value) in closure.captures.iter().cloned().chain(args).enumerate() {
             env.set(local, value);
         }
+        let varying = env.locals[..lambda.captures.len() + lambda.parameters.len()].to_vec();
         self.frames.push(Frame { name: "this function", span });
         let result = self
             .requirements(&mut env, &lambda.requires)
-            .and_then(|()| self.eval(&mut env, &lambda.body));
-        if let (Ok(value), Some(stated)) = (&result, &lambda.lipschitz) {
-            let first = lambda.captures.len();
-            self.claim(&mut env, value, stated, first..first + lambda.parameters.len());
-        }
+            .and_then(|()| self.eval(&mut env, &lambda.body))
+            .and_then(|value| {
+                self.claim(&mut env, lambda.lipschitz.as_ref(), varying, &value)?;
+                Ok(value)
+            });
         self.frames.pop();
         result
     }
 
-    /// Records the constant that a function states, on its result. An error in the expression is
-    /// reported; a constant that depends on the point states nothing.
+    /// Notes a stated constant at the value it is about. It speaks of numbers and vectors: where a
+    /// shape or function among the arguments and captures moves with the point, nothing is noted.
     fn claim(
         &mut self,
         env: &mut Env<'p>,
-        result: &Value<'p>,
-        stated: &'p Expr,
-        arguments: std::ops::Range<usize>,
-    ) {
-        let Value::Node(result) = *result else { return };
-        if self.graph.stage(result) < Stage::Point {
-            return;
+        stated: Option<&'p Expr>,
+        arguments: Vec<Option<Value<'p>>>,
+        value: &Value<'p>,
+    ) -> Outcome<()> {
+        let (Some(stated), Value::Node(value)) = (stated, value) else { return Ok(()) };
+        let mut varying = Vec::with_capacity(arguments.len());
+        for argument in arguments.into_iter().flatten() {
+            match argument {
+                Value::Node(node) if self.graph.stage(node) < Stage::Point => {}
+                Value::Node(node) => varying.push(node),
+                other if other.levels(&self.graph) > 0 => return Ok(()),
+                _ => {}
+            }
         }
-        let Ok(Value::Node(lipschitz)) = self.eval(env, stated) else { return };
-        if self.graph.stage(lipschitz) == Stage::Point {
-            return;
-        }
-        let varying = |local: usize| match env.get(LocalId(local as u32)) {
-            Ok(Value::Node(node)) if self.graph.stage(node) == Stage::Point => Some(node),
-            Ok(_) | Err(_) => None,
+        let outer = std::mem::replace(&mut self.in_clause, true);
+        let constant = self.number(env, stated);
+        self.in_clause = outer;
+        let constant = constant?;
+        let known = match self.graph.stage(constant) {
+            Stage::Const => self.graph.as_number(constant).is_some_and(f64::is_finite),
+            Stage::Frame => true,
+            Stage::Point => false,
         };
-        let arguments = arguments.filter_map(varying).collect();
-        self.graph.claim(result, Claim { lipschitz, arguments });
+        if known && self.graph.stage(*value) == Stage::Point && !varying.contains(value) {
+            let claim = Claim { arguments: varying, lipschitz: constant };
+            self.graph.claim(*value, claim);
+        }
+        Ok(())
     }
 
     /// Gives each parameter its argument or default and checks its range. All errors are reported.
