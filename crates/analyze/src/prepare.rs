@@ -1,8 +1,8 @@
 //! The passes, in order, from a scene to a flat program.
 
 use sdfc_graph::{
-    Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, bounds, fold_transforms,
-    gradient, uniforms,
+    Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, fold_transforms, gradient,
+    uniforms,
 };
 
 use crate::cost::{Cost, cost};
@@ -17,8 +17,6 @@ pub struct Prepared {
     pub program: Program,
     /// What was modelled and why.
     pub report: Report,
-    /// Lowest and highest point of what is drawn, per-frame nodes of the program's graph.
-    pub bounds: Option<[NodeId; 2]>,
 }
 
 /// What was modelled and why.
@@ -77,10 +75,9 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
         Some(root) => flatten(&mut program, root, scene.painted)?,
         None => Report::default(),
     };
-    let bounds = scene.root.map(|root| bounds(&mut program.graph, root, &program.params));
     let roots = roots(&program);
     program.uniforms = uniforms(&program.graph, &roots);
-    Ok(Prepared { program, report, bounds })
+    Ok(Prepared { program, report })
 }
 
 fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report, ExpandError> {

@@ -1,11 +1,14 @@
 //! From text to a scene ready for code generation.
 
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use sdfc_analyze::{Report, prepare};
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Located, Sources, Span, locate, render};
-use sdfc_graph::{NodeId, Param, Program};
+use sdfc_graph::{Param, Program};
 use sdfc_lang::{Elaborated, Site};
+
+use crate::scene::DerivedBounds;
 
 /// What compiling a source gave: findings, and the scene if none of them is an error.
 #[derive(Debug)]
@@ -45,7 +48,8 @@ pub struct Scene {
     pub(crate) elaborated: Elaborated,
     pub(crate) program: Program,
     pub(crate) report: Report,
-    pub(crate) bounds: Option<[NodeId; 2]>,
+    /// Derived when first asked for; a shader needs none.
+    pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
     pub(crate) times: FrontTimes,
 }
 
@@ -117,8 +121,8 @@ fn finish(
     match prepare(&elaborated.scene) {
         Ok(prepared) => {
             let times = FrontTimes { front, analyze: milliseconds(start) };
-            let (program, report, bounds) = (prepared.program, prepared.report, prepared.bounds);
-            Some(Scene { elaborated, program, report, bounds, times })
+            let (program, report) = (prepared.program, prepared.report);
+            Some(Scene { elaborated, program, report, bounds: OnceLock::new(), times })
         }
         Err(error) => {
             let span = Span::new(file, 0, 0);

@@ -4,10 +4,17 @@ use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
-use sdfc_graph::{FrameInput, Node, NodeId, reachable};
+use sdfc_graph::{FrameInput, Graph, Node, NodeId, bounds, reachable};
 
 use crate::explain::{Bounds, Explanation, Knob, QualityRow};
 use crate::{Error, Scene};
+
+/// Lowest and highest point of what is drawn, per-frame nodes of a graph of their own.
+#[derive(Debug)]
+pub(crate) struct DerivedBounds {
+    graph: Graph,
+    corners: [NodeId; 2],
+}
 
 impl Scene {
     /// Signed distance at a point, in f64, with the params' defaults; never more than the true distance
@@ -42,10 +49,16 @@ impl Scene {
 
     /// Where the scene lies at a frame: lowest and highest corner, infinite where not limited.
     pub fn bounds_at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
-        let [lo, hi] = self.bounds?;
-        let values = evaluate_frame(&self.program.graph, &[lo, hi], frame);
+        let derived = self.bounds.get_or_init(|| self.derive_bounds()).as_ref()?;
+        let values = evaluate_frame(&derived.graph, &derived.corners, frame);
         let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
         Some([corner(values.first()?), corner(values.get(1)?)])
+    }
+
+    fn derive_bounds(&self) -> Option<DerivedBounds> {
+        let mut graph = self.graph().graph.clone();
+        let corners = bounds(&mut graph, self.graph().root?, self.params());
+        Some(DerivedBounds { graph, corners })
     }
 
     /// What was modelled and why.
