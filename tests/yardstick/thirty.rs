@@ -107,14 +107,15 @@ fn scene(parts: &[Part]) -> String {
                 format!("capsule([{}], [{}], r: {})", triple(*from), triple(*to), decimal(*radius))
             }
         };
-        let joined = match index {
-            0 => leaf,
-            _ => {
-                let blend = decimal(part.blend);
-                format!("union(join{}, {leaf}, blend: smooth({blend}))", index - 1)
-            }
-        };
-        let _ = writeln!(text, "let join{index} = {joined}");
+        let _ = writeln!(text, "let part{index} = {leaf}");
+        if index > 0 {
+            let before = if index == 1 { "part0".into() } else { format!("join{}", index - 1) };
+            let blend = decimal(part.blend);
+            let _ = writeln!(
+                text,
+                "let join{index} = union({before}, part{index}, blend: smooth({blend}))"
+            );
+        }
     }
     let _ = write!(
         text,

@@ -53,6 +53,9 @@ pub enum ColorChoice {
 pub enum Command {
     /// Show all that is wrong with scenes, and nothing else
     Check(Check),
+    /// Write scenes in the one layout
+    #[command(name = "fmt")]
+    Format(Format),
     /// Write the shader of a scene
     Compile(Compile),
     /// Draw a scene
@@ -70,6 +73,17 @@ pub struct Check {
     /// Write the diagnostics to stdout as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `fmt`.
+#[derive(clap::Args, Debug)]
+pub struct Format {
+    /// Scenes, formatted in place; `-` is stdin, formatted to stdout
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change nothing; fail if anything would change
+    #[arg(long)]
+    pub check: bool,
 }
 
 /// Arguments of `compile`.

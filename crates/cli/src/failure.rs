@@ -23,3 +23,12 @@ impl Failure {
         }
     }
 }
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Scene => f.write_str("the scene has errors"),
+            Self::Call(message) | Self::Machine(message) => f.write_str(message),
+        }
+    }
+}

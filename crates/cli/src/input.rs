@@ -1,7 +1,7 @@
 //! Scenes from files and from stdin.
 
-use std::io::Read;
-use std::path::Path;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
@@ -40,6 +40,33 @@ pub fn read(path: &Path) -> Result<Input, Failure> {
             Err(Failure::Call(format!(
                 "{name} is not UTF-8 text: the byte at offset {at} is wrong"
             )))
+        }
+    }
+}
+
+/// The files that a scene may import: those below the folder where it lies, for stdin the current one.
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Of the scene at `path`.
+    pub fn of(path: &Path) -> Self {
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+        Self(parent.unwrap_or(Path::new(".")).to_owned())
+    }
+
+    fn place(&self, path: &str) -> std::io::Result<PathBuf> {
+        let (folder, place) = (self.0.canonicalize()?, self.0.join(path).canonicalize()?);
+        // A link could lead out of the folder although the path does not.
+        if place.starts_with(&folder) { Ok(place) } else { Err(ErrorKind::PermissionDenied.into()) }
+    }
+}
+
+impl sdfc::Resolver for Folder {
+    fn read(&self, path: &str) -> Result<String, String> {
+        let place = self.place(path).map_err(|e| e.to_string())?;
+        match read(&place) {
+            Ok(input) => Ok(input.text),
+            Err(failure) => Err(failure.to_string()),
         }
     }
 }

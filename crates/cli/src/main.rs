@@ -32,6 +32,7 @@ fn main() -> ExitCode {
 fn run(args: &Args, console: &Console) -> Result<(), Failure> {
     match &args.command {
         Command::Check(args) => commands::check::run(args, console),
+        Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
         Command::Explain(args) => commands::explain::run(args, console),

@@ -263,3 +263,37 @@ fn a_scene_that_draws_nothing_is_checked_not_rendered() {
     assert!(!render.stderr.is_empty());
     assert!(!folder.path().join("out.png").exists());
 }
+
+#[test]
+fn scenes_are_formatted_in_place_or_only_looked_at() {
+    let folder = folder();
+    let ragged = folder.path().join("ragged.sdf");
+    std::fs::write(&ragged, "sphere( 1 ) // ball\n").unwrap();
+    assert_eq!(status(&run(&folder, &["fmt", "--check", "ragged.sdf"])), 1);
+    assert_eq!(std::fs::read(&ragged).unwrap(), b"sphere( 1 ) // ball\n");
+    assert_eq!(status(&run(&folder, &["fmt", "ragged.sdf"])), 0);
+    assert_eq!(std::fs::read(&ragged).unwrap(), b"sphere(1)  // ball\n");
+    assert_eq!(status(&run(&folder, &["fmt", "--check", "ragged.sdf"])), 0);
+    let streamed = run_with(folder.path(), &["fmt", "-"], b"box( 2 )\n");
+    assert_eq!((status(&streamed), text(&streamed.stdout).as_str()), (0, "box(2)\n"));
+    std::fs::write(&ragged, "sphere( 1\n").unwrap();
+    assert_eq!(status(&run(&folder, &["fmt", "ragged.sdf"])), 1);
+    assert_eq!(std::fs::read(&ragged).unwrap(), b"sphere( 1\n");
+}
+
+#[test]
+fn imports_are_files_beside_the_scene() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    std::fs::write(folder.path().join("parts/knob.sdf"), "let knob = sphere(0.2)\n").unwrap();
+    let importing = b"import knob from \"parts/knob.sdf\"\nknob\n";
+    std::fs::write(folder.path().join("main.sdf"), importing).unwrap();
+    let above = folder.path().parent().unwrap().to_owned();
+    let name = folder.path().file_name().unwrap().to_str().unwrap();
+    let output = run_with(&above, &["check", &format!("{name}/main.sdf")], b"");
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let missing =
+        run_with(folder.path(), &["check", "-"], b"import knob from \"none.sdf\"\nknob\n");
+    assert_eq!(status(&missing), 1);
+    assert!(text(&missing.stderr).contains("E0209"), "{}", text(&missing.stderr));
+}

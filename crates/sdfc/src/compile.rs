@@ -6,7 +6,7 @@ use std::time::Instant;
 use sdfc_analyze::{Report, prepare};
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Located, Sources, Span, locate, render};
 use sdfc_graph::{Param, Program};
-use sdfc_lang::{Elaborated, Site};
+use sdfc_lang::{Elaborated, NoFiles, Resolver, Site};
 
 use crate::scene::DerivedBounds;
 
@@ -102,13 +102,33 @@ impl Scene {
 /// assert!(wrong.diagnostics_text(false).contains("did you mean `sphere`?"));
 /// ```
 pub fn compile(name: &str, text: &str) -> Compiled {
+    compile_with_imports(name, text, &NoFiles)
+}
+
+/// As [`compile`], for scenes that import files: the resolver gives their texts.
+pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> Compiled {
     let start = Instant::now();
     let mut sources = Sources::new();
     let file = sources.add(name, text);
-    let (elaborated, mut diagnostics) = sdfc_lang::front(&mut sources, file);
+    let (elaborated, mut diagnostics) = sdfc_lang::front_with_imports(&mut sources, file, resolver);
     let front = milliseconds(start);
     let scene = elaborated.and_then(|elaborated| finish(elaborated, front, file, &mut diagnostics));
     Compiled { sources, diagnostics, scene }
+}
+
+/// The text of a scene in the one layout; formatting that again changes nothing.
+///
+/// # Errors
+///
+/// A scene that does not parse is not formatted: gives what is wrong, as text for people.
+///
+/// ```
+/// assert_eq!(sdfc::format("a.sdf", "sphere( 1 )", false).as_deref(), Ok("sphere(1)\n"));
+/// ```
+pub fn format(name: &str, text: &str, color: bool) -> Result<String, String> {
+    let mut sources = Sources::new();
+    let file = sources.add(name, text);
+    sdfc_syntax::format(&sources, file).map_err(|found| render(&sources, &found, color))
 }
 
 fn finish(

@@ -26,8 +26,8 @@
 //!
 //! # Limits
 //!
-//! Nothing here prints, opens files or exits. A scene that imports other files needs them handed in, which
-//! this version does not do yet.
+//! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
+//! them in, see [`compile_with_imports`].
 
 mod compile;
 mod error;
@@ -35,7 +35,7 @@ mod explain;
 mod picture;
 mod scene;
 
-pub use compile::{Compiled, FrontTimes, Scene, compile};
+pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use picture::{Backend, Picture, PictureOptions};
@@ -45,6 +45,7 @@ pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;
 pub use sdfc_graph::eval::FrameValues;
 pub use sdfc_lang as lang;
+pub use sdfc_lang::Resolver;
 pub use sdfc_march as march;
 pub use sdfc_render as render;
 pub use sdfc_render::{Progress, unwatched};

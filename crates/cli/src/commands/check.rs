@@ -28,30 +28,19 @@ struct Row {
 /// The worst of all files: one has errors, or one cannot be read.
 pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
     let mut rows = Vec::new();
-    let mut worst = None;
-    for path in &args.files {
-        let result = super::compiled(path).and_then(|mut compiled| {
-            if args.json {
-                rows.extend(compiled.located().into_iter().map(row));
-            } else {
-                super::show(&mut compiled, console);
-            }
-            compiled.scene.map(drop).ok_or(Failure::Scene)
-        });
-        if let Err(failure) = result {
-            // The last failure is told by the caller; those before it must not go unsaid.
-            let (told, kept) = match worst.take() {
-                Some(before) if before > failure => (Some(failure), before),
-                before => (before, failure),
-            };
-            told.iter().for_each(|failure| console.failure(failure));
-            worst = Some(kept);
+    let result = super::each(&args.files, console, |path| {
+        let mut compiled = super::compiled(path)?;
+        if args.json {
+            rows.extend(compiled.located().into_iter().map(row));
+        } else {
+            super::show(&mut compiled, console);
         }
-    }
+        compiled.scene.map(drop).ok_or(Failure::Scene)
+    });
     if args.json {
         output::to_stdout(&super::json(&rows)?)?;
     }
-    worst.map_or(Ok(()), Err)
+    result
 }
 
 fn row(found: sdfc::diagnostics::Located) -> Row {

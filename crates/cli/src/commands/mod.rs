@@ -3,9 +3,10 @@
 pub mod check;
 pub mod compile;
 pub mod explain;
+pub mod format;
 pub mod render;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sdfc::Error;
 use sdfc::render::RenderError;
@@ -40,7 +41,31 @@ fn lowering(error: &Error, console: &Console) -> Failure {
 
 fn compiled(path: &Path) -> Result<sdfc::Compiled, Failure> {
     let input = input::read(path)?;
-    Ok(sdfc::compile(&input.name, &input.text))
+    Ok(sdfc::compile_with_imports(&input.name, &input.text, &input::Folder::of(path)))
+}
+
+/// Does the same to every file, also after one that fails.
+///
+/// # Errors
+///
+/// The worst of all files' failures; the others have been told.
+fn each(
+    files: &[PathBuf],
+    console: &Console,
+    mut act: impl FnMut(&Path) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let mut worst = Ok(());
+    for path in files {
+        let Err(failure) = act(path) else { continue };
+        let (told, kept) = match worst {
+            Err(before) if before > failure => (Some(failure), before),
+            Err(before) => (Some(before), failure),
+            Ok(()) => (None, failure),
+        };
+        told.iter().for_each(|failure| console.failure(failure));
+        worst = Err(kept);
+    }
+    worst
 }
 
 /// The diagnostics on stderr; with `-q` errors only.
