@@ -54,8 +54,6 @@ fn examples_compile_without_a_finding_and_draw_something() {
         let compiled = sdfc::compile(&name, &text);
         assert!(compiled.diagnostics.is_empty(), "{}", compiled.diagnostics_text(false));
         let scene = compiled.scene.unwrap();
-        let explanation = scene.explain(&compiled.sources).unwrap();
-        assert!(explanation.certified, "{name} has a part without a Lipschitz constant");
         let pixels = scene.render(&options, &mut unwatched).unwrap().stats.pixels;
         assert!(pixels.hit > 32 && pixels.nan == 0, "{name}: {pixels:?}");
     }
