@@ -1,9 +1,9 @@
 //! Chains of affine maps become one map.
 //!
 //! The pass looks at cones: a node that something other than an affine operation uses, or that several cones use, is
-//! a head; the affine operations that only lead to one head are its cone. What a cone computes is, over the one
-//! vector that it starts from, a matrix and an offset, whose coefficients are known before the points. The
-//! cheapest form of that replaces the cone, where it is cheaper than the cone:
+//! a head; the affine operations that only lead to one head are its cone. What a cone computes is, over the up to
+//! three numbers that it starts from (most often one vector's), a matrix and an offset, whose coefficients are
+//! known before the points. The cheapest form of that replaces the cone, where it is cheaper than the cone:
 //!
 //! - components picked and scaled, and an offset: translations, scales, rotations by right angles;
 //! - sums of scaled components, row by row: rotations about one axis;
@@ -125,15 +125,10 @@ impl Pass<'_> {
         }
         let (cones, forms) = (&self.cones, &self.forms);
         affine::form(self.graph, id, |graph, argument| {
-            if !cones.is_head(argument) {
-                return forms.get(&argument).copied();
-            }
-            // Picking components costs nothing, whoever else uses them: look through it.
-            let source = |graph: &mut Graph, source| affine::base(graph, source);
-            match (forms.get(&argument), graph.node(argument)) {
-                (None, Node::Swizzle(..)) => affine::form(graph, argument, source),
-                (Some(form), Node::Swizzle(..)) => Some(*form),
-                _ => affine::base(graph, argument),
+            if cones.is_head(argument) {
+                affine::base(graph, argument)
+            } else {
+                forms.get(&argument).copied()
             }
         })
     }
@@ -141,7 +136,20 @@ impl Pass<'_> {
     /// The cheapest form of a head, if it is cheaper than its cone.
     fn fold(&mut self, id: NodeId, form: &Affine) -> Option<NodeId> {
         let plan = emit::plan(form)?;
-        let base = self.new.get(form.base?)?;
-        (plan.cost < self.cones.cost(id)).then(|| plan.build(self.graph, base))
+        if plan.cost >= self.cones.cost(id) {
+            return None;
+        }
+        let atoms: Option<Vec<NodeId>> =
+            form.atoms.into_iter().flatten().map(|atom| self.new_atom(atom)).collect();
+        Some(plan.build(self.graph, &atoms?))
+    }
+
+    /// What an atom became: components are picked from what their vector became.
+    fn new_atom(&mut self, atom: NodeId) -> Option<NodeId> {
+        if let Node::Swizzle(_, vector, lanes) = self.graph.node(atom) {
+            let vector = self.new.get(vector)?;
+            return Some(self.graph.component(vector, lanes[0]));
+        }
+        self.new.get(atom)
     }
 }

@@ -106,6 +106,23 @@ fn what_several_maps_share_is_computed_once() {
 }
 
 #[test]
+fn a_map_after_a_bend_folds_over_what_the_bend_gives() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let rate = graph.number(0.5);
+    let mut q = graph.abs(p);
+    let angle = graph.component(p, 1);
+    let angle = graph.mul(angle, rate);
+    q = turned(&mut graph, q, 1, angle);
+    for axis in 0..3 {
+        let angle = degrees(&mut graph, 20.0 + f64::from(axis));
+        q = turned(&mut graph, q, axis, angle);
+    }
+    let text = folded(&mut graph, q);
+    assert_eq!(text.matches("transform").count(), 1, "{text}");
+}
+
+#[test]
 fn per_frame_coefficients_fill_slots_as_vectors() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);

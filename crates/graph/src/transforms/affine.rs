@@ -1,4 +1,4 @@
-//! Affine forms: a matrix over a base vector, and an offset.
+//! Affine forms: a matrix over up to three numbers, and an offset.
 
 use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
 
@@ -83,12 +83,11 @@ impl Row {
     }
 }
 
-/// A number or vector of up to three components as a map of one base vector.
+/// A number or vector of up to three components as a map of up to three numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Affine {
-    /// None: known before the points.
-    pub(super) base: Option<NodeId>,
-    pub(super) base_width: usize,
+    /// What it starts from: components of vectors, and numbers. None at all if it is known before the points.
+    pub(super) atoms: [Option<NodeId>; 3],
     pub(super) width: usize,
     /// Those beyond the width are unused.
     pub(super) rows: [Row; 3],
@@ -106,18 +105,17 @@ pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
             let part = graph.component(id, lane as u8);
             *row = Row::low(Coefficient::of(graph, part));
         }
-        return Some(Affine { base: None, base_width: 0, width, rows });
+        return Some(Affine { atoms: [None; 3], width, rows });
     }
-    if width == 1 {
-        return None;
+    let mut atoms = [None; 3];
+    for lane in 0..width {
+        atoms[lane] = Some(graph.component(id, lane as u8));
+        rows[lane].factors[lane] = Number(1.0);
     }
-    for (lane, row) in rows.iter_mut().enumerate().take(width) {
-        row.factors[lane] = Number(1.0);
-    }
-    Some(Affine { base: Some(id), base_width: width, width, rows })
+    Some(Affine { atoms, width, rows })
 }
 
-/// A node in terms of the forms of its arguments; `None` if they start from different vectors.
+/// A node in terms of the forms of its arguments; `None` if they start from more than three numbers.
 pub(super) fn form(
     graph: &mut Graph,
     id: NodeId,
@@ -154,7 +152,7 @@ pub(super) fn form(
             let v = of(graph, v)?;
             let mut sum: Option<Affine> = None;
             for (lane, column) in columns.into_iter().enumerate() {
-                let column = of(graph, column).filter(|column| column.base.is_none())?;
+                let column = of(graph, column).filter(|column| column.is_low())?;
                 let filled = Affine { rows: [v.rows[lane]; 3], ..v };
                 let product = filled.multiplied(graph, column)?;
                 sum = match sum {
@@ -169,18 +167,17 @@ pub(super) fn form(
             Some(Affine { width: ty.width(), rows: [a.rows[0]; 3], ..a })
         }
         Node::Compose(ty, parts) => {
-            let mut joined = of(graph, parts[0])?;
+            let mut joined = Affine { atoms: [None; 3], width: ty.width(), rows: [Row::ZERO; 3] };
             for (lane, &part) in parts.iter().enumerate().take(ty.width()) {
-                let part = of(graph, part)?;
-                joined = joined.based_like(&part)?;
+                let part = of(graph, part)?.over(&mut joined.atoms)?;
                 joined.rows[lane] = part.rows[0];
             }
-            Some(Affine { width: ty.width(), ..joined })
+            Some(joined)
         }
         Node::Swizzle(ty, a, lanes) => {
             let a = of(graph, a)?;
             let rows = [0, 1, 2].map(|i| a.rows[usize::from(lanes[i])]);
-            Some(Affine { width: ty.width(), rows, ..a })
+            Affine { width: ty.width(), rows, ..a }.trimmed()
         }
         Node::Const(_)
         | Node::Point(..)
@@ -194,19 +191,37 @@ pub(super) fn form(
 }
 
 impl Affine {
-    /// Over the base of both; `None` if those differ.
-    fn based_like(self, other: &Self) -> Option<Self> {
-        match (self.base, other.base) {
-            (_, None) => Some(self),
-            (None, Some(_)) => {
-                Some(Self { base: other.base, base_width: other.base_width, ..self })
-            }
-            (Some(mine), Some(theirs)) => (mine == theirs).then_some(self),
+    /// Without the atoms that no row needs.
+    fn trimmed(mut self) -> Option<Self> {
+        for (i, atom) in self.atoms.iter_mut().enumerate() {
+            *atom =
+                atom.filter(|_| self.rows[..self.width].iter().any(|row| !row.factors[i].is(0.0)));
         }
+        self.over(&mut [None; 3])
+    }
+
+    fn is_low(&self) -> bool {
+        self.atoms == [None; 3]
+    }
+
+    /// Written in terms of these atoms, to which its own are added; `None` if there is no room.
+    fn over(self, atoms: &mut [Option<NodeId>; 3]) -> Option<Self> {
+        let mut rows = self.rows.map(|row| Row::low(row.offset));
+        for (own, atom) in self.atoms.into_iter().enumerate() {
+            let Some(atom) = atom else { continue };
+            let place = atoms.iter().position(|&known| known == Some(atom) || known.is_none())?;
+            atoms[place] = Some(atom);
+            for (row, before) in rows.iter_mut().zip(&self.rows) {
+                row.factors[place] = before.factors[own];
+            }
+        }
+        Some(Self { atoms: *atoms, rows, ..self })
     }
 
     fn add(self, graph: &mut Graph, other: Self) -> Option<Self> {
-        let mut sum = self.based_like(&other)?;
+        let mut atoms = self.atoms;
+        let other = other.over(&mut atoms)?;
+        let mut sum = Self { atoms, ..self };
         for (row, other) in sum.rows.iter_mut().zip(other.rows) {
             *row = row.add(graph, other);
         }
@@ -219,10 +234,10 @@ impl Affine {
 
     /// Componentwise, one side known before the points.
     fn multiplied(self, graph: &mut Graph, other: Self) -> Option<Self> {
-        let (mut varying, low) = match (self.base, other.base) {
-            (_, None) => (self, other),
-            (None, Some(_)) => (other, self),
-            (Some(_), Some(_)) => return None,
+        let (mut varying, low) = match (self.is_low(), other.is_low()) {
+            (_, true) => (self, other),
+            (true, false) => (other, self),
+            (false, false) => return None,
         };
         for (row, low) in varying.rows.iter_mut().zip(low.rows) {
             *row = row.scaled(graph, low.offset);

@@ -1,6 +1,6 @@
 //! Which affine operations lead to which head.
 
-use crate::ids::IdMap;
+use crate::ids::{IdMap, IdSet};
 use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
 
 /// Operations on single numbers of a 3x3 matrix times a vector, additions fused.
@@ -32,8 +32,9 @@ impl Cones {
     pub(super) fn new(graph: &Graph, order: &[NodeId], roots: &[NodeId]) -> Self {
         let mut uses: IdMap<Use> = roots.iter().map(|&id| (id, Use::Shared)).collect();
         let mut cones = Self { heads: IdMap::default(), costs: IdMap::default() };
+        let affine = affine_nodes(graph, order);
         for &id in order.iter().rev().filter(|&&id| graph.stage(id) == Stage::Point) {
-            let cost = affine_cost(graph, id);
+            let cost = affine_cost(graph, id).filter(|_| affine.contains(id));
             let head = match (cost, uses.get(id)) {
                 (Some(_), Some(Use::By(head))) => head,
                 (Some(_), Some(Use::Shared) | None) | (None, _) => id,
@@ -70,6 +71,66 @@ impl Cones {
     pub(super) fn cost(&self, head: NodeId) -> usize {
         self.costs.get(head).map_or(0, |cost| cost.numbers)
     }
+}
+
+/// The numbers that a node is a map of: a vector's component, or a node itself.
+#[derive(Clone, Copy)]
+struct Sources {
+    list: [Option<(NodeId, u8)>; 3],
+    /// It is a number that no affine operation made.
+    bare: bool,
+}
+
+impl Sources {
+    fn own(graph: &Graph, id: NodeId) -> Self {
+        let width = graph.ty(id).width();
+        let list = [0, 1, 2].map(|lane| (usize::from(lane) < width).then_some((id, lane)));
+        Self { list, bare: width == 1 }
+    }
+
+    /// False if there is no room.
+    fn include(&mut self, other: &Self) -> bool {
+        other.list.iter().flatten().all(|&source| {
+            let free = |known: &Option<_>| known.is_none_or(|known| known == source);
+            let place = self.list.iter_mut().find(|known| free(known));
+            place.map(|place| *place = Some(source)).is_some()
+        })
+    }
+}
+
+/// The operations that are maps of at most three numbers. What would need more starts anew, as does the sum
+/// of two numbers that no affine operation made: the turned components of a twist, not the products in them, are
+/// what later maps start from.
+fn affine_nodes(graph: &Graph, order: &[NodeId]) -> IdSet {
+    let mut sources: IdMap<Sources> = IdMap::default();
+    let mut affine = IdSet::default();
+    for &id in order.iter().filter(|&&id| graph.stage(id) == Stage::Point) {
+        let joined = affine_cost(graph, id).and_then(|_| joined_sources(graph, id, &sources));
+        if joined.is_some() {
+            affine.insert(id);
+        }
+        sources.insert(id, joined.unwrap_or_else(|| Sources::own(graph, id)));
+    }
+    affine
+}
+
+fn joined_sources(graph: &Graph, id: NodeId, sources: &IdMap<Sources>) -> Option<Sources> {
+    let node = graph.node(id);
+    if let Node::Swizzle(Type::Scalar, v, lanes) = node
+        && sources.get(v)?.list[0] == Some((v, 0))
+    {
+        return Some(Sources { list: [Some((v, lanes[0])), None, None], bare: false });
+    }
+    let mut joined = Sources { list: [None; 3], bare: false };
+    let mut bare = 0;
+    for argument in node.arguments().filter_map(|argument| sources.get(argument)) {
+        bare += usize::from(argument.bare);
+        if !joined.include(&argument) {
+            return None;
+        }
+    }
+    let sum = matches!(node, Node::Binary(Binary::Add | Binary::Sub, ..));
+    (!sum || bare < 2).then_some(joined)
 }
 
 /// Operations on single numbers, where the operation is affine in what depends on the point.

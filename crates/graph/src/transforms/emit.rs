@@ -13,20 +13,23 @@ pub(super) struct Plan {
 }
 
 enum Shape {
-    /// Each row is one component of the base, scaled.
+    /// Each row is one atom, scaled.
     Picked([u8; 3]),
     /// A sum for each row.
     Rows,
-    /// One row with the base's every component.
+    /// One row with every atom.
     Dot,
     /// A matrix.
     Transform,
 }
 
-/// `None` for a form without a base.
+/// `None` for a form that no point changes.
 pub(super) fn plan(form: &Affine) -> Option<Plan> {
-    form.base?;
     let form = form.snapped();
+    let atoms = form.atoms.iter().flatten().count();
+    if atoms == 0 {
+        return None;
+    }
     let offset = offset_cost(&form);
     let mut best = Plan { cost: rows_cost(&form) + offset, shape: Shape::Rows, form };
     let mut offer = |cost: usize, shape: Shape| {
@@ -34,10 +37,10 @@ pub(super) fn plan(form: &Affine) -> Option<Plan> {
             best = Plan { cost: cost + offset, shape, form };
         }
     };
-    if form.width == 1 && rows(&form).all(|row| terms(row, form.base_width) == form.base_width) {
-        offer(2 * form.base_width - 1, Shape::Dot);
+    if form.width == 1 && atoms > 1 && terms(&form.rows[0]) == atoms {
+        offer(2 * atoms - 1, Shape::Dot);
     }
-    if form.width == 3 && form.base_width == 3 {
+    if form.width == 3 && atoms == 3 {
         offer(TRANSFORM_COST, Shape::Transform);
     }
     if let Some(lanes) = picked(&form) {
@@ -52,19 +55,19 @@ fn rows(form: &Affine) -> impl Iterator<Item = &Row> {
     form.rows[..form.width].iter()
 }
 
-fn terms(row: &Row, base_width: usize) -> usize {
-    row.factors[..base_width].iter().filter(|factor| !factor.is(0.0)).count()
+fn terms(row: &Row) -> usize {
+    row.factors.iter().filter(|factor| !factor.is(0.0)).count()
 }
 
 fn rows_cost(form: &Affine) -> usize {
-    rows(form).map(|row| row_cost(row, form.base_width)).sum()
+    rows(form).map(row_cost).sum()
 }
 
 /// Products other than with 1 or -1, the additions between terms, and a negation where no term is positive.
-fn row_cost(row: &Row, base_width: usize) -> usize {
-    let factors = &row.factors[..base_width];
+fn row_cost(row: &Row) -> usize {
+    let factors = &row.factors;
     let products = factors.iter().filter(|f| !f.is(0.0) && !f.is(1.0) && !f.is(-1.0)).count();
-    let terms = terms(row, base_width);
+    let terms = terms(row);
     let negations = factors.iter().filter(|factor| factor.is(-1.0)).count();
     let negated = usize::from(terms > 0 && negations == terms);
     products + terms.saturating_sub(1) + negated
@@ -75,11 +78,11 @@ fn offset_cost(form: &Affine) -> usize {
     if moved { form.width } else { 0 }
 }
 
-/// The components that the rows pick, if each picks one.
+/// The atoms that the rows pick, if each picks one.
 fn picked(form: &Affine) -> Option<[u8; 3]> {
     let mut lanes = [0; 3];
     for (lane, row) in lanes.iter_mut().zip(rows(form)) {
-        let mut factors = row.factors[..form.base_width].iter();
+        let mut factors = row.factors.iter();
         *lane = factors.position(|factor| !factor.is(0.0))? as u8;
         if factors.any(|factor| !factor.is(0.0)) {
             return None;
@@ -89,22 +92,25 @@ fn picked(form: &Affine) -> Option<[u8; 3]> {
 }
 
 impl Plan {
-    /// The form over a base (the form's own, or what it became).
-    pub(super) fn build(&self, graph: &mut Graph, base: NodeId) -> NodeId {
+    /// The form over atoms (the form's own, or what they became).
+    pub(super) fn build(&self, graph: &mut Graph, atoms: &[NodeId]) -> NodeId {
         let form = &self.form;
+        let base = graph.compose(atoms);
         let linear = match self.shape {
             Shape::Picked(lanes) => {
-                let picked = graph.swizzle(base, &lanes[..form.width]);
+                let picked: Vec<NodeId> =
+                    lanes[..form.width].iter().map(|&lane| atoms[usize::from(lane)]).collect();
+                let picked = graph.compose(&picked);
                 let factors = [0, 1, 2].map(|i| form.rows[i].factors[usize::from(lanes[i])]);
                 let factors = vector(graph, &factors[..form.width]);
                 graph.mul(picked, factors)
             }
             Shape::Rows => {
-                let sums: Vec<NodeId> = rows(form).map(|row| sum(graph, base, row)).collect();
+                let sums: Vec<NodeId> = rows(form).map(|row| sum(graph, atoms, row)).collect();
                 graph.compose(&sums)
             }
             Shape::Dot => {
-                let weights = vector(graph, &form.rows[0].factors[..form.base_width]);
+                let weights = vector(graph, &form.rows[0].factors[..atoms.len()]);
                 graph.dot(base, weights)
             }
             Shape::Transform => {
@@ -126,11 +132,11 @@ fn vector(graph: &mut Graph, coefficients: &[Coefficient]) -> NodeId {
     graph.compose(&parts)
 }
 
-fn sum(graph: &mut Graph, base: NodeId, row: &Row) -> NodeId {
+fn sum(graph: &mut Graph, atoms: &[NodeId], row: &Row) -> NodeId {
     let mut sum = graph.number(0.0);
-    for (lane, factor) in (0..).zip(row.factors).filter(|(_, factor)| !factor.is(0.0)) {
-        let (component, factor) = (graph.component(base, lane), factor.node(graph));
-        let term = graph.mul(component, factor);
+    for (&atom, factor) in atoms.iter().zip(row.factors).filter(|(_, factor)| !factor.is(0.0)) {
+        let factor = factor.node(graph);
+        let term = graph.mul(atom, factor);
         sum = graph.add(sum, term);
     }
     sum
