@@ -110,7 +110,7 @@ impl Pass<'_> {
         if let Some(form) = form {
             self.forms.insert(id, form);
         }
-        let folded = form.filter(|_| self.cones.is_head(id)).and_then(|form| self.fold(id, &form));
+        let folded = form.filter(|_| self.cones.is_head(id)).and_then(|form| self.fold(id, form));
         let new = folded.unwrap_or_else(|| {
             let new = &self.new;
             self.graph.rebuild(id, |old| new.get(old).unwrap_or(old))
@@ -134,8 +134,9 @@ impl Pass<'_> {
     }
 
     /// The cheapest form of a head, if it is cheaper than its cone.
-    fn fold(&mut self, id: NodeId, form: &Affine) -> Option<NodeId> {
-        let plan = emit::plan(form)?;
+    fn fold(&mut self, id: NodeId, form: Affine) -> Option<NodeId> {
+        let form = form.sorted(self.graph)?;
+        let plan = emit::plan(&form)?;
         if plan.cost >= self.cones.cost(id) {
             return None;
         }

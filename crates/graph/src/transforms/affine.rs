@@ -108,9 +108,12 @@ pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
         return Some(Affine { atoms: [None; 3], width, rows });
     }
     let mut atoms = [None; 3];
-    for lane in 0..width {
-        atoms[lane] = Some(graph.component(id, lane as u8));
-        rows[lane].factors[lane] = Number(1.0);
+    for (lane, row) in (0..width).zip(&mut rows) {
+        // Two components of a vector may be one number.
+        let atom = Some(graph.component(id, lane as u8));
+        let place = atoms.iter().position(|&known| known == atom || known.is_none())?;
+        atoms[place] = atom;
+        row.factors[place] = Number(1.0);
     }
     Some(Affine { atoms, width, rows })
 }
@@ -243,6 +246,23 @@ impl Affine {
             *row = row.scaled(graph, low.offset);
         }
         Some(varying)
+    }
+
+    /// With the components of one vector in its order, so that they are that vector.
+    pub(super) fn sorted(self, graph: &Graph) -> Option<Self> {
+        let mut order: Vec<NodeId> = self.atoms.into_iter().flatten().collect();
+        order.sort_unstable_by_key(|&atom| {
+            if let Node::Swizzle(_, v, lanes) = graph.node(atom) {
+                (v, lanes[0])
+            } else {
+                (atom, 0)
+            }
+        });
+        let mut atoms = [None; 3];
+        for (place, atom) in atoms.iter_mut().zip(order) {
+            *place = Some(atom);
+        }
+        self.over(&mut atoms)
     }
 
     /// With factors that rounding alone keeps from 0, 1 or -1 put there, as the cosine of a right angle.
