@@ -98,6 +98,7 @@ fn emitted(name: &str) -> Result<spirv::Words, Failed> {
     Ok(spirv::optimize(&spirv::compile(&wgsl)?)?)
 }
 
+#[allow(clippy::print_stdout, reason = "the margin is worth seeing")]
 fn emitted_is_no_longer(name: &str) -> Result<(), Failed> {
     let by_hand = spirv::arithmetic(&hand_written(name)?);
     let by_compiler = spirv::arithmetic(&emitted(name)?);
