@@ -80,16 +80,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The scene's innermost place that leads to a span: itself, or the call that entered the library.
-    pub(super) fn user_span(&self, span: Span) -> Span {
-        if !self.is_library(span) {
-            return span;
-        }
-        let mut calls = self.frames.iter().rev().map(|frame| frame.span);
-        calls.find(|&call| !self.is_library(call)).unwrap_or(span)
-    }
-
-    fn is_library(&self, span: Span) -> bool {
+    pub(super) fn is_library(&self, span: Span) -> bool {
         self.program.library.contains(&span.file)
     }
 

@@ -48,7 +48,11 @@ impl<'p> Elaborator<'p> {
         }
         let parts = Value::List(shapes.into_iter().map(|(value, _)| value).collect());
         match self.instance(program.union?, vec![Some((parts, span))], span) {
-            Ok(Value::Shape(shape)) => Some(shape),
+            Ok(Value::Shape(shape)) => {
+                // Nobody wrote this call.
+                self.sites.retain(|site| (site.shape, site.span) != (shape, span));
+                Some(shape)
+            }
             Ok(_) | Err(Poison) => {
                 self.missing = self.missing.or(Some(span));
                 None

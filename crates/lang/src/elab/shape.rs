@@ -122,9 +122,9 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Shape(id))
     }
 
+    /// Records a call of the scene's own; what the library builds for itself stands below it.
     fn add_site(&mut self, shape: ShapeId, span: Span) {
-        let span = self.user_span(span);
-        if self.seen_sites.insert((shape, span)) {
+        if !self.is_library(span) && self.seen_sites.insert((shape, span)) {
             let name = self.graph.shape(shape).definition.clone();
             self.sites.push(Site { shape, span, name });
         }
