@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand, ValueEnum};
 use sdfc::march::METHODS;
-use sdfc::render::{MAX_PIXELS, MAX_SIDE};
+use sdfc::render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+
+use crate::sequence::{self, Frames};
 
 /// Compiles scenes of signed distance functions to shaders and pictures.
 #[derive(Debug, Parser)]
@@ -125,8 +127,9 @@ pub enum Emit {
 pub struct Render {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Where the PNG goes; `-` is stdout [default: the scene's name with .png, here]
-    #[arg(short, long, value_name = "OUT.png")]
+    /// Where the picture goes: a PNG, or a GIF by its ending; `-` is stdout, as a PNG [default: the
+    /// scene's name with .png, here]
+    #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
@@ -137,9 +140,36 @@ pub struct Render {
     /// What draws
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
+    /// Give a param a value, written as in a scene: 0.5, 90deg, true, #d94f30, or a choice's name
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// The time, in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = finite, conflicts_with = "frames")]
+    pub time: f64,
+    /// Draw the frames from A to before B, as OUT.0007.png and so on, or as one GIF; the time of frame n
+    /// is n / fps
+    #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
+    pub frames: Option<Frames>,
+    /// Frames a second
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = sequence::rate)]
+    pub fps: f64,
+    /// Rays from the eye for each pixel, averaged
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    pub samples: u32,
     /// Where figures about the picture go, as JSON; `-` is stdout. The frame is drawn five times
-    #[arg(long, value_name = "OUT.json")]
+    #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
     pub stats: Option<PathBuf>,
+}
+
+/// A param and the text of its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The param.
+    pub name: String,
+    /// The value, as written.
+    pub value: String,
 }
 
 /// What draws.
@@ -166,6 +196,19 @@ pub struct Explain {
 
 fn methods() -> PossibleValuesParser {
     PossibleValuesParser::new(METHODS.iter().map(|method| method.name))
+}
+
+/// `NAME=VALUE`
+fn assignment(text: &str) -> Result<Assignment, String> {
+    let (name, value) =
+        text.split_once('=').ok_or("write NAME=VALUE, such as wall=0.1 or tilt=90deg")?;
+    Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
+}
+
+/// A number that is not infinite.
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "write a number of seconds, such as 1.5".to_owned())
 }
 
 /// `640x400` as `[640, 400]`.

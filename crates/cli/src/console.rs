@@ -34,7 +34,9 @@ impl Console {
     pub fn failure(&self, failure: &Failure) {
         match failure {
             Failure::Scene => {}
-            Failure::Call(message) | Failure::Machine(message) => self.error(message),
+            Failure::Call(message) | Failure::Machine(message) | Failure::Interrupted(message) => {
+                self.error(message)
+            }
         }
     }
 

@@ -11,6 +11,8 @@ pub enum Failure {
     Call(String),
     /// The machine cannot: no adapter, device lost, output not writable, disk full.
     Machine(String),
+    /// Ctrl-C was pressed; what is done so far.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -20,6 +22,7 @@ impl Failure {
             Self::Scene => ExitCode::from(1),
             Self::Call(_) => ExitCode::from(2),
             Self::Machine(_) => ExitCode::from(3),
+            Self::Interrupted(_) => ExitCode::from(130),
         }
     }
 }
@@ -28,7 +31,9 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Scene => f.write_str("the scene has errors"),
-            Self::Call(message) | Self::Machine(message) => f.write_str(message),
+            Self::Call(message) | Self::Machine(message) | Self::Interrupted(message) => {
+                f.write_str(message)
+            }
         }
     }
 }

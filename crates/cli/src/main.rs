@@ -1,6 +1,7 @@
 //! The command line of sdfc: arguments, files and exit statuses around the `sdfc` library.
 //!
-//! Exit statuses: 0, done; 1, the scene is wrong; 2, the call is wrong; 3, the machine cannot.
+//! Exit statuses: 0, done; 1, the scene is wrong; 2, the call is wrong; 3, the machine cannot; 130,
+//! stopped by ctrl-C.
 //! This is the only crate that prints, opens files or ends the process.
 
 mod args;
@@ -8,7 +9,9 @@ mod commands;
 mod console;
 mod failure;
 mod input;
+mod interrupt;
 mod output;
+mod sequence;
 
 use std::process::ExitCode;
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::image::{MAX_PIXELS, MAX_SIDE};
+use crate::image::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
 /// Why a picture could not be drawn. Nothing in this crate panics in its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +21,8 @@ pub enum RenderError {
     Validation(String),
     /// A side of the picture is 0 or beyond [`MAX_SIDE`], or it has more than [`MAX_PIXELS`].
     Size([u32; 2]),
+    /// No rays for each pixel, or more than [`MAX_SAMPLES`].
+    Samples(u32),
     /// The scene has more per-frame values than a uniform buffer of this adapter holds.
     Uniforms {
         /// How many the scene has.
@@ -57,6 +59,7 @@ impl RenderError {
             | Self::Validation(_)
             | Self::Uniforms { .. } => true,
             Self::Size(_)
+            | Self::Samples(_)
             | Self::UniformCount { .. }
             | Self::NothingDrawn
             | Self::Cancelled
@@ -84,6 +87,9 @@ impl fmt::Display for RenderError {
                 "a picture of {width}x{height}: each side must be 1 to {MAX_SIDE} pixels, \
                  both together at most {MAX_PIXELS} pixels"
             ),
+            Self::Samples(count) => {
+                write!(f, "{count} samples for each pixel: there must be 1 to {MAX_SAMPLES}")
+            }
             Self::Uniforms { count, limit } => write!(
                 f,
                 "the scene has {count} per-frame values, this adapter's uniform buffers hold {limit}"

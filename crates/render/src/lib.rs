@@ -54,7 +54,8 @@ pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, uniform_values, unwatched};
 pub use gpu::Pipeline;
 pub use image::{
-    CAPPED, HIT, Image, MAX_PIXELS, MAX_SIDE, MISS, PixelCounts, linear_to_srgb, linear_to_srgb8,
+    Animation, CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts,
+    linear_to_srgb, linear_to_srgb8, sample_places,
 };
 pub use stats::{Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};

@@ -32,13 +32,15 @@
 mod compile;
 mod error;
 mod explain;
+mod params;
 mod picture;
 mod scene;
 
 pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
-pub use picture::{Backend, Picture, PictureOptions};
+pub use params::ParamError;
+pub use picture::{Backend, Painter, Picture, PictureOptions};
 
 pub use sdfc_codegen::{FieldOptions, Shader};
 pub use sdfc_diagnostics as diagnostics;

@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use sdfc_codegen::render_module;
-use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline,
-    RenderError, RenderOptions, Stats, View, Why,
+    Progress, RenderError, RenderOptions, Stats, View, Why, sample_places, uniform_values,
 };
 
 use crate::compile::milliseconds;
@@ -35,6 +35,8 @@ pub struct PictureOptions {
     pub backend: Backend,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
+    /// Rays from the eye for each pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES).
+    pub samples: u32,
     /// How often the frame is drawn, to time it; at least 1.
     pub repetitions: u32,
 }
@@ -42,8 +44,8 @@ pub struct PictureOptions {
 impl Default for PictureOptions {
     /// 640 by 360, everything else left to the scene and the machine.
     fn default() -> Self {
-        let (size, backend, repetitions) = ([640, 360], Backend::Auto, 1);
-        Self { size, method: None, backend, frame: None, repetitions }
+        let (size, backend) = ([640, 360], Backend::Auto);
+        Self { size, method: None, backend, frame: None, samples: 1, repetitions: 1 }
     }
 }
 
@@ -75,105 +77,172 @@ impl Scene {
         options: &PictureOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Picture, Error> {
-        let start = Instant::now();
         let defaults = || FrameValues::defaults(self.params());
         let values = options.frame.clone().unwrap_or_else(defaults);
-        let bounds = self.bounds_at(&values);
-        let view = View::new(&self.program, &values, bounds, options.size)?;
+        self.painter(options)?.paint(&values, options.repetitions, progress)
+    }
+
+    /// Makes all ready to draw pictures that differ only in the frame's values: nothing is compiled
+    /// again between them. `frame` and `repetitions` of the options have no effect here.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Render`] where the machine cannot draw or there are too many samples, [`Error::Codegen`]
+    /// where the scene cannot be lowered.
+    pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
+        let start = Instant::now();
         let method = options.method.as_deref().unwrap_or(self.method());
-        let request = Request { view, values, method, repetitions: options.repetitions.max(1) };
-        let (mut picture, note) = match options.backend {
-            Backend::Cpu => (self.render_cpu(&request, progress)?, None),
-            Backend::Gpu => (self.render_gpu(&Gpu::new()?, &request, progress)?, None),
+        let samples = sample_places(options.samples)?;
+        let on_cpu = || CpuScene::new(&self.program).map(|scene| Engine::Cpu(Box::new(scene)));
+        let (engine, compile, note) = match options.backend {
+            Backend::Cpu => (on_cpu()?, cpu_times(start), None),
+            Backend::Gpu => {
+                let (engine, compile) = self.pipeline(&Gpu::new()?, method)?;
+                (engine, compile, None)
+            }
             Backend::Auto => match Gpu::new() {
-                Ok(gpu) => (self.render_gpu(&gpu, &request, progress)?, None),
+                Ok(gpu) => {
+                    let (engine, compile) = self.pipeline(&gpu, method)?;
+                    (engine, compile, None)
+                }
                 Err(error) => {
                     let note = format!("{error}; drawn on the CPU");
-                    (self.render_cpu(&request, progress)?, Some(note))
+                    (on_cpu()?, cpu_times(start), Some(note))
                 }
             },
         };
-        let first = self.times.front + self.times.analyze + milliseconds(start);
-        let extra = picture.stats.frame_ms.median * f64::from(request.repetitions - 1);
-        picture.stats.set_first_picture(first - extra);
-        picture.note = note;
-        Ok(picture)
+        let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
+        let compile = CompileTimes { front, analyze, ..compile };
+        let (method, size) = (method.to_owned(), options.size);
+        Ok(Painter { scene: self, engine, method, size, samples, compile, note, start })
     }
 
-    fn render_gpu(
-        &self,
-        gpu: &Gpu,
-        request: &Request<'_>,
-        progress: &mut OnProgress<'_>,
-    ) -> Result<Picture, Error> {
+    fn pipeline(&self, gpu: &Gpu, method: &str) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
-        let shader = render_module(&self.program, request.method)?;
+        let shader = render_module(&self.program, method)?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds(start) - validate;
-        let slots = &self.program.uniforms;
-        let uniforms: Vec<[f32; 4]> = evaluate_frame(&self.program.graph, slots, &request.values)
-            .into_iter()
-            .map(|lanes| lanes.map(|lane| lane as f32))
-            .collect();
-        let pipeline = Pipeline::new(gpu, shader, uniforms.len())?;
+        let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
         let compile = CompileTimes {
             lower: Some(lower),
             validate: Some(validate),
             pipeline: Some(pipeline.milliseconds()),
-            ..self.compile_times()
+            ..CompileTimes::default()
         };
-        let (frame, spent) = repeated(request.repetitions, || {
-            pipeline.render(&request.view, &uniforms, &RenderOptions::default(), progress)
-        })?;
-        self.picture(frame, &spent, Some(gpu.info()), request.method, compile)
-    }
-
-    fn render_cpu(
-        &self,
-        request: &Request<'_>,
-        progress: &mut OnProgress<'_>,
-    ) -> Result<Picture, Error> {
-        let start = Instant::now();
-        let scene = CpuScene::new(&self.program)?;
-        let no_shader = || "drawn on the CPU, without a shader".to_owned();
-        let compile = CompileTimes {
-            lower: Some(milliseconds(start)),
-            why: Why::from([("validate", no_shader()), ("pipeline", no_shader())]),
-            ..self.compile_times()
-        };
-        let (frame, spent) = repeated(request.repetitions, || {
-            let options = RenderOptions::default();
-            scene.render(&request.view, &request.values, request.method, &options, progress)
-        })?;
-        self.picture(frame, &spent, None, request.method, compile)
-    }
-
-    fn compile_times(&self) -> CompileTimes {
-        let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
-        CompileTimes { front, analyze, ..CompileTimes::default() }
-    }
-
-    fn picture(
-        &self,
-        frame: Frame,
-        spent: &[f64],
-        adapter: Option<&AdapterInfo>,
-        method: &str,
-        compile_ms: CompileTimes,
-    ) -> Result<Picture, Error> {
-        let frame_ms = FrameTimes::of(spent, frame.clock).ok_or(Error::NothingDrawn)?;
-        let mut stats = Stats::new(&frame, frame_ms, adapter, method, compile_ms);
-        stats.set_leaves(self.report.leaves);
-        Ok(Picture { image: frame.image, stats, note: None })
+        Ok((Engine::Gpu(Box::new(pipeline)), compile))
     }
 }
 
-/// What both renderers need.
-struct Request<'a> {
-    view: View,
-    values: FrameValues,
-    method: &'a str,
-    repetitions: u32,
+fn cpu_times(start: Instant) -> CompileTimes {
+    let no_shader = || "drawn on the CPU, without a shader".to_owned();
+    CompileTimes {
+        lower: Some(milliseconds(start)),
+        why: Why::from([("validate", no_shader()), ("pipeline", no_shader())]),
+        ..CompileTimes::default()
+    }
+}
+
+/// What draws.
+#[derive(Debug)]
+enum Engine {
+    Gpu(Box<Pipeline>),
+    Cpu(Box<CpuScene>),
+}
+
+/// A scene made ready to be drawn with one method at one size: see [`Scene::painter`].
+#[derive(Debug)]
+pub struct Painter<'s> {
+    scene: &'s Scene,
+    engine: Engine,
+    method: String,
+    size: [u32; 2],
+    /// Where in a pixel its rays pass.
+    samples: Vec<[f64; 2]>,
+    compile: CompileTimes,
+    note: Option<String>,
+    start: Instant,
+}
+
+impl Painter<'_> {
+    /// Draws one frame, `repetitions` times (at least once) to time it. `progress` is called now and
+    /// then and may cancel; it counts each sample of a pixel.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::View`] where the settings make no picture, [`Error::Render`] where the machine cannot
+    /// draw it.
+    pub fn paint(
+        &self,
+        values: &FrameValues,
+        repetitions: u32,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Picture, Error> {
+        let scene = self.scene;
+        let view = View::new(&scene.program, values, scene.bounds_at(values), self.size)?;
+        let repetitions = repetitions.max(1);
+        let (frame, spent) =
+            repeated(repetitions, || self.averaged(&view, values, &mut *progress))?;
+        let frame_ms = FrameTimes::of(&spent, frame.clock).ok_or(Error::NothingDrawn)?;
+        let adapter = self.adapter();
+        let mut stats = Stats::new(&frame, frame_ms, adapter, &self.method, self.compile.clone());
+        stats.set_leaves(scene.report.leaves);
+        let first = scene.times.front + scene.times.analyze + milliseconds(self.start);
+        stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
+        Ok(Picture { image: frame.image, stats, note: self.note.clone() })
+    }
+
+    fn adapter(&self) -> Option<&AdapterInfo> {
+        match &self.engine {
+            Engine::Gpu(pipeline) => Some(pipeline.gpu().info()),
+            Engine::Cpu(_) => None,
+        }
+    }
+
+    /// The mean of all samples in linear light. Depth and status are those of the first, which is the
+    /// nearest to the pixel's centre.
+    fn averaged(
+        &self,
+        view: &View,
+        values: &FrameValues,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
+        let count = self.samples.len() as u64;
+        let mut mean: Option<Frame> = None;
+        for (place, before) in self.samples.iter().zip(0..) {
+            let mut part = |part: Progress| {
+                let done = part.total * before + part.done;
+                progress(Progress { done, total: part.total * count })
+            };
+            let frame = self.one(&view.shifted(*place), values, &mut part)?;
+            match &mut mean {
+                None => mean = Some(frame),
+                Some(mean) => {
+                    mean.image.add(&frame.image);
+                    mean.milliseconds += frame.milliseconds;
+                    mean.tiles += frame.tiles;
+                }
+            }
+        }
+        let mut mean = mean.ok_or(RenderError::Samples(0))?;
+        mean.image.divide(self.samples.len() as f32);
+        Ok(mean)
+    }
+
+    fn one(
+        &self,
+        view: &View,
+        values: &FrameValues,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
+        let options = RenderOptions::default();
+        match &self.engine {
+            Engine::Gpu(pipeline) => {
+                let uniforms = uniform_values(&self.scene.program, values);
+                pipeline.render(view, &uniforms, &options, progress)
+            }
+            Engine::Cpu(scene) => scene.render(view, values, &self.method, &options, progress),
+        }
+    }
 }
 
 /// The last frame, and the time that each took.

@@ -32,6 +32,9 @@ fn lowering(error: &Error, console: &Console) -> Failure {
     if error.is_machine() {
         return Failure::Machine(message);
     }
+    if matches!(error, Error::Render(RenderError::Cancelled)) {
+        return Failure::Interrupted("stopped; no picture is written".to_owned());
+    }
     if matches!(error, Error::Render(RenderError::Size(_) | RenderError::MethodNotOnCpu(_))) {
         return Failure::Call(message);
     }

@@ -1,51 +1,94 @@
-//! `sdfc render`: a picture of a scene.
+//! `sdfc render`: pictures of a scene.
+
+mod format;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use sdfc::PictureOptions;
+use sdfc::render::{Animation, RenderError};
+use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene};
 
 use crate::args::{Backend, Render};
-use crate::console::Console;
+use crate::console::{Console, Progress};
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
+use crate::sequence::{self, Frames};
+use format::Format;
 
 /// How often a frame is drawn for its figures.
 const TIMED_FRAMES: u32 = 5;
+/// Viewers slow a GIF down whose frames are shorter than two hundredths of a second.
+const MAX_GIF_RATE: f64 = 50.0;
 
-/// Draws the scene, and says where the picture is.
+/// Draws the scene, and says where the pictures are.
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing; two outputs, or an output and the scene, are
-/// one file; the machine cannot draw or write it.
+/// The scene cannot be read, has errors or draws nothing; a param does not take its value; two outputs,
+/// or an output and the scene, are one file; the machine cannot draw or write it; ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
-    let picture_path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
-    let stats_path = args.stats.as_deref();
-    let outputs: Vec<&Path> =
-        [Some(picture_path.as_path()), stats_path].into_iter().flatten().collect();
-    output::distinct(&args.file, &outputs)?;
+    let outputs = Outputs::new(args)?;
     let scene = super::scene(&args.file, console)?;
     if !scene.draws() {
-        return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
+        return Err(super::lowering(&Error::NothingDrawn, console));
     }
-    let output = Output::new(&picture_path);
-    let stats_output = stats_path.map(Output::new);
-    output.check()?;
-    stats_output.as_ref().map_or(Ok(()), Output::check)?;
-
-    let picture = draw(&scene, args, console)?;
-    let png = picture.image.to_png().map_err(|e| super::lowering(&e.into(), console))?;
-    output.write(&png)?;
-    if let Some(stats_output) = stats_output {
-        stats_output.write(&super::json(&picture.stats)?)?;
+    let values = values(&scene, args)?;
+    outputs.check(args.frames)?;
+    let interrupt = Interrupt::watch();
+    let painter = scene.painter(&options(args)).map_err(|e| super::lowering(&e, console))?;
+    let job = Job { args, console, interrupt, painter, values };
+    match args.frames {
+        None => job.still(&outputs),
+        Some(frames) if outputs.format == Format::Gif => job.animation(&outputs, frames),
+        Some(frames) => job.sequence(&outputs, frames),
     }
-    tell(&picture, &output, console);
-    Ok(())
 }
 
-fn draw(scene: &sdfc::Scene, args: &Render, console: &Console) -> Result<sdfc::Picture, Failure> {
-    let options = PictureOptions {
+/// Where the results go.
+struct Outputs {
+    path: PathBuf,
+    format: Format,
+    stats: Option<Output>,
+}
+
+impl Outputs {
+    fn new(args: &Render) -> Result<Self, Failure> {
+        let path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
+        let format = Format::of(&path)?;
+        let paths: Vec<&Path> =
+            [Some(path.as_path()), args.stats.as_deref()].into_iter().flatten().collect();
+        output::distinct(&args.file, &paths)?;
+        if args.frames.is_some() && format == Format::Gif && args.fps > MAX_GIF_RATE {
+            let message = format!("a GIF shows at most {MAX_GIF_RATE} frames a second");
+            return Err(Failure::Call(message));
+        }
+        if args.frames.is_some() && format != Format::Gif && path.as_os_str() == "-" {
+            let message = "stdout takes one picture; name a file with -o, or a .gif";
+            return Err(Failure::Call(message.to_owned()));
+        }
+        Ok(Self { path, format, stats: args.stats.as_deref().map(Output::new) })
+    }
+
+    /// Fails now where writing would fail after long work.
+    fn check(&self, frames: Option<Frames>) -> Result<(), Failure> {
+        self.picture(frames.map(|frames| frames.first)).check()?;
+        self.stats.as_ref().map_or(Ok(()), Output::check)
+    }
+
+    /// Where a picture goes: one of a sequence by its number, unless all are one file.
+    fn picture(&self, number: Option<u32>) -> Output {
+        match number {
+            Some(number) if self.format != Format::Gif => {
+                Output::new(&sequence::numbered(&self.path, number))
+            }
+            Some(_) | None => Output::new(&self.path),
+        }
+    }
+}
+
+fn options(args: &Render) -> PictureOptions {
+    PictureOptions {
         size: args.size,
         method: args.march.clone(),
         backend: match args.backend {
@@ -53,35 +96,158 @@ fn draw(scene: &sdfc::Scene, args: &Render, console: &Console) -> Result<sdfc::P
             Backend::Gpu => sdfc::Backend::Gpu,
             Backend::Cpu => sdfc::Backend::Cpu,
         },
-        repetitions: if args.stats.is_some() { TIMED_FRAMES } else { 1 },
+        samples: args.samples,
         ..PictureOptions::default()
-    };
-    let progress = console.progress("drawing");
-    let picture = scene.render(&options, &mut |part| {
-        progress.set(part.done, part.total);
-        ControlFlow::Continue(())
-    });
-    picture.map_err(|e| super::lowering(&e, console))
+    }
 }
 
-/// One line about where it was drawn if not where one might think, one about where the picture is.
-fn tell(picture: &sdfc::Picture, output: &Output, console: &Console) {
-    if let Some(note) = &picture.note {
-        console.note(note);
+/// The frame that the options ask for.
+fn values(scene: &Scene, args: &Render) -> Result<FrameValues, Failure> {
+    let mut values = FrameValues::defaults(scene.params());
+    for set in &args.set {
+        let done = scene.set_param(&mut values, &set.name, &set.value);
+        done.map_err(|error| Failure::Call(error.to_string()))?;
     }
-    let stats = &picture.stats;
-    let adapter = stats.adapter.as_deref().unwrap_or("the processor");
-    console.detail(|| {
-        let pixels = &stats.pixels;
-        format!(
-            "method {} on {adapter}: {:.1} ms a frame; {} pixels hit, {} miss, {} ran out of steps, {} not finite",
-            stats.method, stats.frame_ms.median, pixels.hit, pixels.miss, pixels.capped, pixels.nan
-        )
-    });
-    if let Output::File(path) = output {
-        let [width, height] = stats.size;
-        console.note(&format!("{}: {width}x{height}, drawn on {adapter}", path.display()));
+    values.time = args.time;
+    values.frame = (args.time * args.fps).round();
+    Ok(values)
+}
+
+/// All that drawing needs.
+struct Job<'a> {
+    args: &'a Render,
+    console: &'a Console,
+    interrupt: Interrupt,
+    painter: Painter<'a>,
+    values: FrameValues,
+}
+
+impl Job<'_> {
+    fn still(&self, outputs: &Outputs) -> Result<(), Failure> {
+        let repetitions = if outputs.stats.is_some() { TIMED_FRAMES } else { 1 };
+        let progress = self.console.progress("drawing");
+        let picture = self.paint(&self.values, repetitions, &progress, [0, 1])?;
+        drop(progress);
+        let output = outputs.picture(None);
+        output.write(&self.encode(&picture, outputs.format)?)?;
+        if let Some(stats_output) = &outputs.stats {
+            stats_output.write(&super::json(&picture.stats)?)?;
+        }
+        self.tell(&picture);
+        if let Output::File(path) = output {
+            self.tell_where(&picture, &path.display().to_string());
+        }
+        Ok(())
     }
+
+    /// One file a frame, each written as soon as it is drawn.
+    fn sequence(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
+        let progress = self.console.progress("drawing");
+        for (number, before) in frames.numbers().zip(0..) {
+            let place = [before, frames.count()];
+            let picture = self.frame(number, &progress, place)?;
+            outputs.picture(Some(number)).write(&self.encode(&picture, outputs.format)?)?;
+            if before == 0 {
+                self.tell(&picture);
+            }
+            if before + 1 == frames.count() {
+                let first = sequence::numbered(&outputs.path, frames.first);
+                let last = sequence::numbered(&outputs.path, number);
+                let names = format!("{} to {}", first.display(), last.display());
+                self.tell_where(&picture, &names);
+            }
+        }
+        Ok(())
+    }
+
+    /// All frames in one file, written when the last is drawn.
+    fn animation(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
+        let refused = |error: RenderError| super::lowering(&error.into(), self.console);
+        let progress = self.console.progress("drawing");
+        let mut file = Vec::new();
+        let mut animation = Animation::new(&mut file).map_err(refused)?;
+        let mut last = None;
+        for (number, before) in frames.numbers().zip(0..) {
+            let picture = self.frame(number, &progress, [before, frames.count()])?;
+            let shown = sequence::hundredths(number, self.args.fps);
+            animation.push(&picture.image, shown).map_err(refused)?;
+            last = Some(picture);
+        }
+        drop((animation, progress));
+        let output = outputs.picture(None);
+        output.write(&file)?;
+        if let Some(picture) = last {
+            self.tell(&picture);
+            if let Output::File(path) = output {
+                let name = format!("{}: {} frames", path.display(), frames.count());
+                self.tell_where(&picture, &name);
+            }
+        }
+        Ok(())
+    }
+
+    /// One frame of a sequence. `place` is how many come before it, and how many there are.
+    fn frame(&self, number: u32, progress: &Progress, place: [u32; 2]) -> Result<Picture, Failure> {
+        let time = sequence::time(number, self.args.fps);
+        let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
+        let picture = self.paint(&values, 1, progress, place);
+        picture.map_err(|failure| {
+            if !matches!(failure, Failure::Interrupted(_)) {
+                return failure;
+            }
+            let [before, all] = place;
+            Failure::Interrupted(format!("stopped after {before} of {all} frames"))
+        })
+    }
+
+    fn paint(
+        &self,
+        values: &FrameValues,
+        repetitions: u32,
+        progress: &Progress,
+        [before, all]: [u32; 2],
+    ) -> Result<Picture, Failure> {
+        let picture = self.painter.paint(values, repetitions, &mut |part| {
+            let total = part.total * u64::from(all);
+            progress.set(part.total * u64::from(before) + part.done, total);
+            self.interrupt.flow()
+        });
+        // Ctrl-C after the last tile counts too.
+        let picture = match self.interrupt.flow() {
+            ControlFlow::Continue(()) => picture,
+            ControlFlow::Break(()) => Err(RenderError::Cancelled.into()),
+        };
+        picture.map_err(|e| super::lowering(&e, self.console))
+    }
+
+    fn encode(&self, picture: &Picture, format: Format) -> Result<Vec<u8>, Failure> {
+        format.encode(&picture.image).map_err(|e| super::lowering(&e.into(), self.console))
+    }
+
+    /// Where it was drawn if not where one might think, and with `-v` what the rays met.
+    fn tell(&self, picture: &Picture) {
+        if let Some(note) = &picture.note {
+            self.console.note(note);
+        }
+        let stats = &picture.stats;
+        self.console.detail(|| {
+            let pixels = &stats.pixels;
+            format!(
+                "method {} on {}: {:.1} ms a frame; {} pixels hit, {} miss, {} ran out of steps, {} not finite",
+                stats.method, adapter(picture), stats.frame_ms.median, pixels.hit, pixels.miss,
+                pixels.capped, pixels.nan
+            )
+        });
+    }
+
+    fn tell_where(&self, picture: &Picture, name: &str) {
+        let [width, height] = picture.stats.size;
+        self.console.note(&format!("{name}: {width}x{height}, drawn on {}", adapter(picture)));
+    }
+}
+
+fn adapter(picture: &Picture) -> &str {
+    picture.stats.adapter.as_deref().unwrap_or("the processor")
 }
 
 /// `scenes/ball.sdf` is drawn to `ball.png` in the current folder.

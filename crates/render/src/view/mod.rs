@@ -52,7 +52,8 @@ pub struct View {
     pub right: DVec3,
     /// Half the height of the picture at distance 1.
     pub up: DVec3,
-    /// Unit vector into the picture.
+    /// Through the middle of the picture, at distance 1 from the eye along the camera's axis: a unit
+    /// vector unless [`Self::shifted`].
     pub forward: DVec3,
     /// Rays end here.
     pub t_max: f64,
@@ -169,6 +170,13 @@ impl View {
             ambient: color(settings.ambient, "the ambient light")?,
             background: color(settings.background, "the background colour")?,
         })
+    }
+
+    /// The view whose rays pass so many pixels to the right of the centres of pixels and below them.
+    pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
+        let [columns, rows] = self.size.map(|side| f64::from(side.max(1)));
+        let forward = self.forward + self.right * (2.0 * x / columns) - self.up * (2.0 * y / rows);
+        Self { forward, ..self.clone() }
     }
 
     /// Unit direction of the ray through the centre of a pixel; rows count downwards.
@@ -357,6 +365,15 @@ mod tests {
         // The centre of the topmost left pixel is 0.99 of the way to the corner.
         let expected = DVec3::new(-1.99, 0.99, -1.0).normalize();
         close(view.ray_direction(0, 0), expected.to_array());
+    }
+
+    #[test]
+    fn a_view_shifted_by_a_pixel_sees_what_the_next_pixel_saw() {
+        let fixture = Fixture::with_camera([1.0, 2.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0], 50.0);
+        let view = fixture.view(None, [20, 10]).unwrap();
+        close(view.shifted([1.0, 0.0]).ray_direction(4, 7), view.ray_direction(5, 7).to_array());
+        close(view.shifted([-2.0, 3.0]).ray_direction(4, 6), view.ray_direction(2, 9).to_array());
+        assert_eq!(view.shifted([0.0, 0.0]), view);
     }
 
     #[test]

@@ -1,11 +1,13 @@
 //! A finished picture in linear light, with what the rays met.
 
-use std::io::Cursor;
+mod file;
+mod samples;
 
-use image::ImageEncoder as _;
 use sdfc_march::PixelBlock;
 
 use crate::{RenderError, Tile};
+pub use file::Animation;
+pub use samples::{MAX_SAMPLES, sample_places};
 
 /// Longest side of a picture in pixels.
 pub const MAX_SIDE: u32 = 16_384;
@@ -121,20 +123,6 @@ impl Image {
         };
         self.pixels.iter().flat_map(channels).collect()
     }
-
-    /// The picture as a PNG file, sRGB, without alpha.
-    ///
-    /// # Errors
-    ///
-    /// [`RenderError::OutOfMemory`] where the encoder fails, which it does for no other reason.
-    pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
-        let [width, height] = self.size;
-        let mut file = Cursor::new(Vec::new());
-        image::codecs::png::PngEncoder::new(&mut file)
-            .write_image(&self.to_srgb8(), width, height, image::ExtendedColorType::Rgb8)
-            .map_err(|error| RenderError::OutOfMemory(format!("the PNG file: {error}")))?;
-        Ok(file.into_inner())
-    }
 }
 
 /// Refuses sizes outside the limits.
@@ -192,17 +180,6 @@ mod tests {
         image.pixels_mut()[3].depth = f32::NAN;
         image.pixels_mut()[4].color[1] = f32::INFINITY;
         assert_eq!(image.counts(), PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2 });
-    }
-
-    #[test]
-    fn a_png_reads_back() {
-        let mut image = Image::new([3, 2], 0.1).unwrap();
-        image.pixels_mut()[4].color = [1.0, 0.5, 0.0, 1.0];
-        let png = image.to_png().unwrap();
-        let back = image::load_from_memory(&png).unwrap().to_rgb8();
-        assert_eq!(back.dimensions(), (3, 2));
-        assert_eq!(back.get_pixel(1, 1).0, [255, 188, 0]);
-        assert_eq!(back.get_pixel(0, 0).0, [0, 0, 0]);
     }
 
     #[test]

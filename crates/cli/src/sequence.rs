@@ -1,0 +1,109 @@
+//! Sequences of frames: which, at what times, in which files.
+
+use std::path::{Path, PathBuf};
+
+/// Most frames of one call.
+const MAX_FRAMES: u32 = 1_000_000;
+/// Most frames a second.
+const MAX_RATE: f64 = 1000.0;
+
+/// Frames by their numbers: the first, and the one after the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frames {
+    /// The first.
+    pub first: u32,
+    /// The one after the last.
+    pub end: u32,
+}
+
+impl Frames {
+    /// How many.
+    pub fn count(&self) -> u32 {
+        self.end - self.first
+    }
+
+    /// Their numbers.
+    pub fn numbers(&self) -> std::ops::Range<u32> {
+        self.first..self.end
+    }
+}
+
+/// `0..60`: a number belongs to one range only when a sequence is cut at it.
+pub fn frames(text: &str) -> Result<Frames, String> {
+    let ends = text.split_once("..").map(|(a, b)| (a.parse::<u32>(), b.parse::<u32>()));
+    let Some((Ok(first), Ok(end))) = ends else {
+        return Err("write the first frame and the one after the last, such as 0..60".to_owned());
+    };
+    if first >= end {
+        return Err(format!("{text} has no frame: the second number is not drawn"));
+    }
+    if end - first > MAX_FRAMES {
+        return Err(format!("at most {MAX_FRAMES} frames are drawn in one call"));
+    }
+    Ok(Frames { first, end })
+}
+
+/// Frames a second.
+pub fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse::<f64>().ok().filter(|rate| *rate > 0.0 && *rate <= MAX_RATE);
+    rate.ok_or_else(|| format!("write a number above 0 and up to {MAX_RATE}"))
+}
+
+/// When a frame is, in seconds.
+pub fn time(number: u32, rate: f64) -> f64 {
+    f64::from(number) / rate
+}
+
+/// How long a frame is shown, in hundredths of a second: the rounding errors of a sequence do not add up.
+pub fn hundredths(number: u32, rate: f64) -> u32 {
+    let start = |number: f64| (100.0 * number / rate).round();
+    (start(f64::from(number) + 1.0) - start(f64::from(number))) as u32
+}
+
+/// `ball.png` and 7 as `ball.0007.png`.
+pub fn numbered(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{number:04}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_half_open() {
+        let range = frames("5..8").unwrap();
+        assert_eq!((range.count(), range.numbers()), (3, 5..8));
+        for wrong in ["", "5", "5..", "..5", "8..5", "5..5", "-1..5", "0..5..9", "0..99999999"] {
+            assert!(frames(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn rates_are_above_zero() {
+        assert_eq!((rate("29.97"), time(60, 30.0)), (Ok(29.97), 2.0));
+        for wrong in ["0", "-3", "nan", "inf", "1e9", "thirty"] {
+            assert!(rate(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_second_of_frames_lasts_a_second() {
+        for rate in [7.0, 24.0, 30.0, 50.0] {
+            let all: u32 = (0..rate as u32).map(|number| hundredths(number, rate)).sum();
+            assert_eq!(all, 100, "{rate}");
+        }
+    }
+
+    #[test]
+    fn files_are_numbered_before_their_ending() {
+        let name = |path: &str, number| numbered(Path::new(path), number);
+        assert_eq!(name("a/b.c/ball.png", 7), Path::new("a/b.c/ball.0007.png"));
+        assert_eq!(name("ball", 12345), Path::new("ball.12345"));
+    }
+}

@@ -1,0 +1,118 @@
+//! `sdfc render` and its options, on the processor.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::{folder, names, run, said};
+use tempfile::TempDir;
+
+const KNOBS: &str = "param r = 0.5 in 0.1..1\nparam tilt = 0deg in 0deg..90deg\nparam paint = #ff0000\n\
+                     box([3 * r, r, r]).rotate(z: tilt).translate(x: sin(time))\n  .color(paint)\n\
+                     camera(eye: [0, 0, 5], target: [0, 0, 0], fov: 45deg)\nambient(strength: 1)\n";
+
+fn knobs() -> TempDir {
+    folder(&[("knobs.sdf", KNOBS)])
+}
+
+/// The bytes of the picture that these options give, 24 by 16 pixels.
+fn drawn(folder: &TempDir, options: &str) -> Vec<u8> {
+    let args = format!("render knobs.sdf --backend cpu --size 24x16 -o out.png {options}");
+    let output = run(folder, &args);
+    assert_eq!(output.status.code(), Some(0), "{options}: {}", said(&output));
+    std::fs::read(folder.path().join("out.png")).unwrap()
+}
+
+fn refused(folder: &TempDir, options: &str, part: &str) {
+    let args = format!("render knobs.sdf --backend cpu --size 24x16 {options}");
+    let output = run(folder, &args);
+    assert_eq!(output.status.code(), Some(2), "{options}: {}", said(&output));
+    assert!(said(&output).contains(part), "{options}: {}", said(&output));
+}
+
+#[test]
+fn params_and_time_move_the_picture() {
+    let folder = knobs();
+    let plain = drawn(&folder, "");
+    for options in ["--set r=0.9", "--set tilt=45deg", "--set paint=#00f", "--time 1"] {
+        assert_ne!(drawn(&folder, options), plain, "{options}");
+    }
+    assert_eq!(drawn(&folder, "--set r=0.9 --set r=0.5 --set tilt=0 --time 0"), plain);
+}
+
+#[test]
+fn wrong_values_are_refused_by_name() {
+    let folder = knobs();
+    refused(&folder, "--set q=1", "it has r, tilt, paint");
+    refused(&folder, "--set r=2", "the param `r` takes 0.1..1; 2 is outside");
+    refused(&folder, "--set tilt=45", "an angle with its unit");
+    refused(&folder, "--set tilt=100deg", "0deg..90deg");
+    refused(&folder, "--set paint=red", "a colour");
+    refused(&folder, "--set r", "NAME=VALUE");
+    refused(&folder, "--time inf", "a number of seconds");
+    refused(&folder, "--time 1 --frames 0..2", "cannot be used with");
+    refused(&folder, "--frames 2..2", "has no frame");
+    refused(&folder, "--frames 0..2 -o -", "one picture");
+    refused(&folder, "--frames 0..2 --stats a.json", "cannot be used with");
+    refused(&folder, "--frames 0..2 --fps 100 -o a.gif", "50 frames a second");
+    refused(&folder, "--samples 0", "--samples");
+    refused(&folder, "-o out.jpg", ".png");
+    assert_eq!(names(folder.path()), ["knobs.sdf"]);
+}
+
+#[test]
+fn a_sequence_cut_into_ranges_gives_the_same_files() {
+    let (whole, cut) = (knobs(), knobs());
+    let draw = |folder: &TempDir, frames: &str| {
+        let args = "render knobs.sdf --backend cpu --size 24x16 -o f.png --fps 2 --frames";
+        let output = run(folder, &format!("{args} {frames}"));
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert!(said(&output).contains("f.000"), "it says where the pictures are");
+    };
+    draw(&whole, "0..4");
+    draw(&cut, "2..4");
+    assert_eq!(names(cut.path()), ["f.0002.png", "f.0003.png", "knobs.sdf"]);
+    draw(&cut, "0..2");
+    assert_eq!(names(whole.path()), names(cut.path()));
+    let read = |folder: &TempDir, n: u32| {
+        std::fs::read(folder.path().join(format!("f.{n:04}.png"))).unwrap()
+    };
+    for number in 0..4 {
+        assert_eq!(read(&whole, number), read(&cut, number), "{number}");
+    }
+    // Frame 2 at 2 frames a second is second 1.
+    assert_eq!(read(&whole, 2), drawn(&whole, "--time 1"));
+    assert_ne!(read(&whole, 2), read(&whole, 3));
+}
+
+#[test]
+fn an_animation_is_one_file() {
+    let folder = knobs();
+    let args = "render knobs.sdf --backend cpu --size 24x16 -o f.gif --frames 0..3";
+    let output = run(&folder, args);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(names(folder.path()), ["f.gif", "knobs.sdf"]);
+    let gif = std::fs::read(folder.path().join("f.gif")).unwrap();
+    // Signature and size; one graphic control extension a frame; the trailer.
+    assert_eq!(
+        (&gif[..6], &gif[6..10], gif.last()),
+        (&b"GIF89a"[..], &[24, 0, 16, 0][..], Some(&0x3b))
+    );
+    assert_eq!(gif.windows(3).filter(|bytes| *bytes == [0x21, 0xf9, 4]).count(), 3);
+}
+
+#[test]
+fn more_samples_soften_edges() {
+    let folder = knobs();
+    let shades = |png: &[u8]| {
+        let picture = image::load_from_memory(png).unwrap().to_rgb8();
+        picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len()
+    };
+    let (one, many) =
+        (drawn(&folder, "--set tilt=30deg"), drawn(&folder, "--set tilt=30deg --samples 9"));
+    assert!(shades(&many) > shades(&one) + 4, "{} and {}", shades(&many), shades(&one));
+    assert_eq!(drawn(&folder, "--samples 1"), drawn(&folder, ""));
+    assert_eq!(drawn(&folder, "--samples 9"), drawn(&folder, "--samples 9"));
+}

@@ -1,0 +1,95 @@
+//! Pictures as files.
+
+use std::io::Cursor;
+
+use image::ImageEncoder as _;
+use image::codecs::gif::{GifEncoder, Repeat};
+
+use crate::{Image, RenderError};
+
+impl Image {
+    /// The picture as a PNG file, sRGB, without alpha.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::OutOfMemory`] where the encoder fails, which it does for no other reason.
+    pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
+        let [width, height] = self.size;
+        let mut file = Cursor::new(Vec::new());
+        image::codecs::png::PngEncoder::new(&mut file)
+            .write_image(&self.to_srgb8(), width, height, image::ExtendedColorType::Rgb8)
+            .map_err(|error| RenderError::OutOfMemory(format!("the PNG file: {error}")))?;
+        Ok(file.into_inner())
+    }
+}
+
+/// A GIF file in the making, that repeats without end. Each frame has 256 colours of its own.
+pub struct Animation<'a> {
+    encoder: GifEncoder<&'a mut Vec<u8>>,
+}
+
+impl<'a> Animation<'a> {
+    /// Without frames; the file is whole when this is dropped.
+    ///
+    /// # Errors
+    ///
+    /// As [`Image::to_png`].
+    pub fn new(file: &'a mut Vec<u8>) -> Result<Self, RenderError> {
+        let mut encoder = GifEncoder::new(file);
+        encoder.set_repeat(Repeat::Infinite).map_err(refused)?;
+        Ok(Self { encoder })
+    }
+
+    /// Adds a frame that is shown for so many hundredths of a second; few viewers keep to less than 2.
+    ///
+    /// # Errors
+    ///
+    /// As [`Image::to_png`].
+    pub fn push(&mut self, image: &Image, hundredths: u32) -> Result<(), RenderError> {
+        let [width, height] = image.size;
+        let opaque = |rgb: &[u8]| [rgb[0], rgb[1], rgb[2], 255];
+        let bytes = image.to_srgb8().chunks_exact(3).flat_map(opaque).collect();
+        let pixels = image::RgbaImage::from_raw(width, height, bytes);
+        let pixels = pixels.ok_or(RenderError::Size(image.size))?;
+        let delay = image::Delay::from_numer_denom_ms(hundredths * 10, 1);
+        self.encoder.encode_frame(image::Frame::from_parts(pixels, 0, 0, delay)).map_err(refused)
+    }
+}
+
+fn refused(error: image::ImageError) -> RenderError {
+    RenderError::OutOfMemory(format!("the GIF file: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::AnimationDecoder as _;
+
+    #[test]
+    fn a_png_reads_back() {
+        let mut image = Image::new([3, 2], 0.1).unwrap();
+        image.pixels_mut()[4].color = [1.0, 0.5, 0.0, 1.0];
+        let png = image.to_png().unwrap();
+        let back = image::load_from_memory(&png).unwrap().to_rgb8();
+        assert_eq!(back.dimensions(), (3, 2));
+        assert_eq!(back.get_pixel(1, 1).0, [255, 188, 0]);
+        assert_eq!(back.get_pixel(0, 0).0, [0, 0, 0]);
+    }
+
+    #[test]
+    fn an_animation_reads_back() {
+        let mut file = Vec::new();
+        let mut animation = Animation::new(&mut file).unwrap();
+        for level in [0.0, 1.0] {
+            let mut image = Image::new([3, 2], 0.1).unwrap();
+            image.pixels_mut().iter_mut().for_each(|pixel| pixel.color = [level, 0.0, 0.0, 1.0]);
+            animation.push(&image, 3).unwrap();
+        }
+        drop(animation);
+        let decoder = image::codecs::gif::GifDecoder::new(Cursor::new(file)).unwrap();
+        let frames = decoder.into_frames().collect_frames().unwrap();
+        let red: Vec<u8> = frames.iter().map(|frame| frame.buffer().get_pixel(1, 1)[0]).collect();
+        assert_eq!(red, [0, 255]);
+        assert!(frames.iter().all(|frame| frame.delay().numer_denom_ms() == (30, 1)));
+    }
+}

@@ -1,0 +1,106 @@
+//! Several rays for each pixel, averaged.
+
+use crate::{Image, RenderError};
+
+/// Most rays from the eye for one pixel.
+pub const MAX_SAMPLES: u32 = 1024;
+
+/// The golden ratio less 1: of all numbers the one whose multiples, modulo 1, stay furthest apart.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Where in a pixel so many rays pass: in pixels to the right of its centre and below it. One passes
+/// through the centre; of several no two share a row or a column, so that edges along either have as
+/// many shades as there are rays. Their mean is the centre, and the first is the nearest to it.
+///
+/// The places are a lattice, `((i + 1/2) / n, i * golden)` modulo 1: the same at every pixel, in every
+/// frame, on every device.
+///
+/// # Errors
+///
+/// [`RenderError::Samples`] for none and for more than [`MAX_SAMPLES`].
+pub fn sample_places(count: u32) -> Result<Vec<[f64; 2]>, RenderError> {
+    if !(1..=MAX_SAMPLES).contains(&count) {
+        return Err(RenderError::Samples(count));
+    }
+    let total = f64::from(count);
+    let lattice = |index: u32| {
+        let index = f64::from(index);
+        [(index + 0.5) / total - 0.5, (index * GOLDEN).fract() - 0.5]
+    };
+    let mut places: Vec<[f64; 2]> = (0..count).map(lattice).collect();
+    let mean = places.iter().map(|place| place[1]).sum::<f64>() / total;
+    places.iter_mut().for_each(|place| place[1] -= mean);
+    places.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    Ok(places)
+}
+
+fn length([x, y]: &[f64; 2]) -> f64 {
+    x.hypot(*y)
+}
+
+impl Image {
+    /// Adds the colours and evaluations of another picture of the same size; depths and how rays ended
+    /// stay. A sum of `n` pictures is [divided](Self::divide) by `n` to be their mean in linear light.
+    pub fn add(&mut self, other: &Image) {
+        for (pixel, more) in self.pixels.iter_mut().zip(&other.pixels) {
+            for (channel, more) in pixel.color.iter_mut().zip(more.color) {
+                *channel += more;
+            }
+            pixel.evaluations = pixel.evaluations.saturating_add(more.evaluations);
+            pixel.primary_evaluations =
+                pixel.primary_evaluations.saturating_add(more.primary_evaluations);
+        }
+    }
+
+    /// Divides the colours.
+    pub fn divide(&mut self, by: f32) {
+        for pixel in &mut self.pixels {
+            pixel.color.iter_mut().for_each(|channel| *channel /= by);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_ray_passes_through_the_centre() {
+        assert_eq!(sample_places(1), Ok(vec![[0.0, 0.0]]));
+        for wrong in [0, MAX_SAMPLES + 1] {
+            assert_eq!(sample_places(wrong), Err(RenderError::Samples(wrong)));
+        }
+    }
+
+    #[test]
+    fn places_are_spread_about_the_centre() {
+        for count in [2, 3, 4, 8, 16, 64, MAX_SAMPLES] {
+            let places = sample_places(count).unwrap();
+            for axis in 0..2 {
+                let mut along: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+                let mean = along.iter().sum::<f64>() / f64::from(count);
+                assert!(mean.abs() < 1e-9, "{count}: {mean}");
+                along.sort_by(f64::total_cmp);
+                let apart = along.windows(2).all(|pair| pair[1] - pair[0] > 0.3 / f64::from(count));
+                assert!(apart, "{count}: {along:?}");
+                assert!(along.iter().all(|place| place.abs() < 0.75), "{count}: {along:?}");
+            }
+            assert!(places.iter().all(|place| length(place) >= length(&places[0])));
+        }
+    }
+
+    #[test]
+    fn a_mean_is_of_light_and_leaves_depths() {
+        let mut sum = Image::new([1, 1], 0.1).unwrap();
+        let mut other = sum.clone();
+        sum.pixels_mut()[0].depth = 3.0;
+        sum.pixels_mut()[0].color = [1.0, 0.5, 0.0, 1.0];
+        other.pixels_mut()[0].color = [0.0, 0.5, 0.5, 1.0];
+        other.pixels_mut()[0].evaluations = 7;
+        sum.add(&other);
+        sum.divide(2.0);
+        let pixel = sum.pixels()[0];
+        assert_eq!((pixel.color, pixel.depth), ([0.5, 0.5, 0.25, 1.0], 3.0));
+        assert_eq!(pixel.evaluations, 7);
+    }
+}

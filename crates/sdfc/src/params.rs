@@ -1,0 +1,227 @@
+//! Values of a scene's params for one frame, from text.
+
+use sdfc_diagnostics::{Sources, has_errors};
+use sdfc_graph::eval::FrameValues;
+use sdfc_graph::{Param, ParamKind};
+
+use crate::Scene;
+
+/// Why a param does not take a value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParamError {
+    /// The scene has no param of that name.
+    Unknown {
+        /// The name.
+        name: String,
+        /// Names of those that it has.
+        known: Vec<String>,
+    },
+    /// The text is no value for a param of that kind.
+    NotAValue {
+        /// The param.
+        name: String,
+        /// The text.
+        text: String,
+        /// What the param takes.
+        expected: String,
+    },
+    /// The value lies outside the param's range.
+    Outside {
+        /// The param.
+        name: String,
+        /// The text.
+        text: String,
+        /// The range as a scene writes it.
+        range: String,
+    },
+}
+
+impl std::fmt::Display for ParamError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Unknown { name, known } if known.is_empty() => {
+                write!(f, "the scene has no param `{name}`; it has none at all")
+            }
+            Self::Unknown { name, known } => {
+                write!(f, "the scene has no param `{name}`; it has {}", known.join(", "))
+            }
+            Self::NotAValue { name, text, expected } => {
+                write!(f, "the param `{name}` takes {expected}, not `{text}`")
+            }
+            Self::Outside { name, text, range } => {
+                write!(f, "the param `{name}` takes {range}; {text} is outside")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ParamError {}
+
+impl Scene {
+    /// Sets one param of a frame. The text is written as in a scene: `0.5`, `-2`, `90deg`, `true`,
+    /// `#d94f30`; a choice by its name.
+    ///
+    /// ```
+    /// let scene = sdfc::compile("a.sdf", "param r = 1 in 0..2\nsphere(r)").scene.expect("no errors");
+    /// let mut frame = sdfc::FrameValues::defaults(scene.params());
+    /// scene.set_param(&mut frame, "r", "0.5")?;
+    /// assert_eq!(frame.params[0][0], 0.5);
+    /// let error = scene.set_param(&mut frame, "r", "3").expect_err("outside");
+    /// assert_eq!(error.to_string(), "the param `r` takes 0..2; 3 is outside");
+    /// # Ok::<(), sdfc::ParamError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`ParamError`]; the frame is left as it was.
+    pub fn set_param(
+        &self,
+        frame: &mut FrameValues,
+        name: &str,
+        text: &str,
+    ) -> Result<(), ParamError> {
+        let found = self.params().iter().position(|param| param.name == name);
+        let known = || self.params().iter().map(|param| param.name.clone()).collect();
+        let Some((index, param)) = found.and_then(|i| Some((i, self.params().get(i)?))) else {
+            return Err(ParamError::Unknown { name: name.to_owned(), known: known() });
+        };
+        let value = value(param, text)?;
+        if frame.params.len() < self.params().len() {
+            frame.params = FrameValues::defaults(self.params()).params;
+        }
+        frame.params[index] = value;
+        Ok(())
+    }
+}
+
+/// The lanes of a param for a text.
+fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
+    let text = text.trim();
+    let refused = || ParamError::NotAValue {
+        name: param.name.clone(),
+        text: text.to_owned(),
+        expected: expected(param),
+    };
+    if param.kind == ParamKind::Choice {
+        let index = param.choices.iter().position(|choice| choice == text.trim_matches('"'));
+        return index.map(|index| [index as f64, 0.0, 0.0, 0.0]).ok_or_else(refused);
+    }
+    let (kind, lanes) = literal(text).ok_or_else(refused)?;
+    let [number, ..] = lanes;
+    let fits = match param.kind {
+        ParamKind::Int => kind == ParamKind::Number && number.fract() == 0.0,
+        // 0 needs no unit, as in a scene.
+        ParamKind::Angle => kind == ParamKind::Angle || kind == ParamKind::Number && number == 0.0,
+        ParamKind::Number | ParamKind::Bool | ParamKind::Color | ParamKind::Choice => {
+            kind == param.kind
+        }
+    };
+    if !fits {
+        return Err(refused());
+    }
+    match param.range {
+        Some([lo, hi]) if !(lo..=hi).contains(&number) => Err(ParamError::Outside {
+            name: param.name.clone(),
+            text: text.to_owned(),
+            range: range(param.kind, [lo, hi]),
+        }),
+        Some(_) | None => Ok(lanes),
+    }
+}
+
+/// Kind and lanes of a constant: it is read as the default of a param, so that a call writes values as
+/// a scene does.
+fn literal(text: &str) -> Option<(ParamKind, [f64; 4])> {
+    if text.contains(['\n', '\r']) {
+        return None;
+    }
+    let mut sources = Sources::new();
+    let file = sources.add("value", format!("param value = {text}\n"));
+    let (elaborated, found) = sdfc_lang::front(&mut sources, file);
+    let params = elaborated.filter(|_| !has_errors(&found))?.scene.params;
+    match &params[..] {
+        [param] if param.range.is_none() && param.choices.is_empty() => {
+            Some((param.kind, param.default))
+        }
+        _ => None,
+    }
+}
+
+fn expected(param: &Param) -> String {
+    match param.kind {
+        ParamKind::Number => "a number".to_owned(),
+        ParamKind::Int => "a whole number".to_owned(),
+        ParamKind::Angle => "an angle with its unit, such as 90deg".to_owned(),
+        ParamKind::Bool => "true or false".to_owned(),
+        ParamKind::Color => "a colour, such as #d94f30".to_owned(),
+        ParamKind::Choice => format!("one of {}", param.choices.join(", ")),
+    }
+}
+
+/// A range as a scene writes it.
+fn range(kind: ParamKind, ends: [f64; 2]) -> String {
+    let [lo, hi] = ends.map(|end| match kind {
+        // Radians are seldom round in degrees.
+        ParamKind::Angle => format!("{}deg", (end.to_degrees() * 1e9).round() / 1e9),
+        ParamKind::Number
+        | ParamKind::Int
+        | ParamKind::Bool
+        | ParamKind::Color
+        | ParamKind::Choice => end.to_string(),
+    });
+    format!("{lo}..{hi}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "param r = 1.5 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt = 10deg in \
+                         0deg..45deg\nparam lid = true\nparam wood = #8a5a34\nparam style = \
+                         \"round\" in [\"round\", \"flat\"]\nsphere(r)\n";
+
+    fn set(name: &str, text: &str) -> Result<[f64; 4], String> {
+        let compiled = crate::compile("a.sdf", SCENE);
+        let scene = compiled.scene.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
+        let mut frame = FrameValues::defaults(scene.params());
+        scene.set_param(&mut frame, name, text).map_err(|e| e.to_string())?;
+        let index = scene.params().iter().position(|param| param.name == name).unwrap();
+        Ok(frame.params[index])
+    }
+
+    #[test]
+    fn values_are_written_as_in_a_scene() {
+        assert_eq!(set("r", "0.5"), Ok([0.5, 0.0, 0.0, 0.0]));
+        assert_eq!(set("r", "2"), Ok([2.0, 0.0, 0.0, 0.0]));
+        assert_eq!(set("n", "9"), Ok([9.0, 0.0, 0.0, 0.0]));
+        let [tilt, ..] = set("tilt", "0.125turn").unwrap();
+        assert!((tilt - std::f64::consts::FRAC_PI_4).abs() < 1e-15);
+        assert_eq!(set("tilt", "0"), Ok([0.0; 4]));
+        assert_eq!(set("lid", "false"), Ok([0.0; 4]));
+        assert_eq!(set("wood", "#f00"), Ok([1.0, 0.0, 0.0, 1.0]));
+        assert_eq!(set("style", "flat"), Ok([1.0, 0.0, 0.0, 0.0]));
+        assert_eq!(set("style", "\"round\""), Ok([0.0; 4]));
+    }
+
+    #[test]
+    fn what_is_no_value_is_refused_with_what_would_be_one() {
+        for (name, text, part) in [
+            ("q", "1", "it has r, n, tilt, lid, wood, style"),
+            ("r", "2.5", "0.5..2; 2.5 is outside"),
+            ("r", "nan", "a number"),
+            ("r", "1 in 0..5", "a number"),
+            ("r", "1\nparam x = 2", "a number"),
+            ("r", "", "a number"),
+            ("r", "true", "a number"),
+            ("n", "2.5", "a whole number"),
+            ("tilt", "10", "its unit"),
+            ("tilt", "90deg", "0deg..45deg"),
+            ("lid", "1", "true or false"),
+            ("wood", "red", "#d94f30"),
+            ("style", "square", "round, flat"),
+        ] {
+            let message = set(name, text).unwrap_err();
+            assert!(message.contains(part), "{name}={text}: {message}");
+        }
+    }
+}
