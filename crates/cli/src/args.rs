@@ -127,7 +127,7 @@ pub enum Emit {
 pub struct Render {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Where the picture goes: a PNG, or a GIF by its ending; `-` is stdout, as a PNG [default: the
+    /// Where the picture goes: a PNG, or an EXR or GIF by its ending; `-` is stdout, as a PNG [default: the
     /// scene's name with .png, here]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
@@ -158,6 +158,10 @@ pub struct Render {
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: u32,
+    /// Where depths go, as an EXR: channel Z, the distance along each pixel's ray in scene units, infinite
+    /// where nothing is met
+    #[arg(long, value_name = "OUT.exr")]
+    pub depth: Option<PathBuf>,
     /// Where figures about the picture go, as JSON; `-` is stdout. The frame is drawn five times
     #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
     pub stats: Option<PathBuf>,

@@ -7,6 +7,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::{folder, names, run, said};
+use exr::prelude::traits::*;
 use tempfile::TempDir;
 
 const KNOBS: &str = "param r = 0.5 in 0.1..1\nparam tilt = 0deg in 0deg..90deg\nparam paint = #ff0000\n\
@@ -115,4 +116,44 @@ fn more_samples_soften_edges() {
     assert!(shades(&many) > shades(&one) + 4, "{} and {}", shades(&many), shades(&one));
     assert_eq!(drawn(&folder, "--samples 1"), drawn(&folder, ""));
     assert_eq!(drawn(&folder, "--samples 9"), drawn(&folder, "--samples 9"));
+}
+
+/// The samples of the first channel of an EXR.
+fn channel(folder: &TempDir, name: &str) -> (String, Vec<f32>) {
+    let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
+    let layer = read.first_valid_layer().all_attributes();
+    let image = layer.from_file(folder.path().join(name)).unwrap();
+    let channel = &image.layer_data.channel_data.list[0];
+    (channel.name.to_string(), channel.sample_data.values_as_f32().collect())
+}
+
+#[test]
+fn depths_are_along_the_ray() {
+    // A wall of depth 0.5 about the origin, seen from 5 in front of it: its face is 4.75 away.
+    let scene = "box([9, 9, 0.5])\ncamera(eye: [0, 0, 5], target: [0, 0, 0], fov: 90deg)\n";
+    let folder = folder(&[("wall.sdf", scene)]);
+    let args = "render wall.sdf --backend cpu --size 3x3 -o w.exr --depth z.exr";
+    let output = run(&folder, args);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let (name, depths) = channel(&folder, "z.exr");
+    assert_eq!((name.as_str(), depths.len()), ("Z", 9));
+    assert!((depths[4] - 4.75).abs() < 1e-3, "{depths:?}");
+    // The middle of the next pixel is 2/3 to the side of the axis at distance 1.
+    let slant = 4.75 * (1.0f32 + 4.0 / 9.0).sqrt();
+    assert!((depths[3] - slant).abs() < 1e-2, "{depths:?} {slant}");
+    let (name, blue) = channel(&folder, "w.exr");
+    assert_eq!((name.as_str(), blue.len()), ("B", 9));
+    assert!(blue[4] > 0.0);
+}
+
+#[test]
+fn depths_of_a_sequence_are_numbered() {
+    let folder = knobs();
+    let args = "render knobs.sdf --backend cpu --size 8x8 -o f.gif --depth z.exr --frames 1..3";
+    let output = run(&folder, args);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(names(folder.path()), ["f.gif", "knobs.sdf", "z.0001.exr", "z.0002.exr"]);
+    assert!(channel(&folder, "z.0001.exr").1.contains(&f32::INFINITY));
+    refused(&folder, "--depth z.png", "depths are written as .exr");
+    refused(&folder, "-o z.exr --depth z.exr", "two outputs");
 }

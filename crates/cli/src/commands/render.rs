@@ -49,6 +49,7 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
 struct Outputs {
     path: PathBuf,
     format: Format,
+    depth: Option<PathBuf>,
     stats: Option<Output>,
 }
 
@@ -57,22 +58,37 @@ impl Outputs {
         let path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
         let format = Format::of(&path)?;
         let paths: Vec<&Path> =
-            [Some(path.as_path()), args.stats.as_deref()].into_iter().flatten().collect();
+            [Some(path.as_path()), args.depth.as_deref(), args.stats.as_deref()]
+                .into_iter()
+                .flatten()
+                .collect();
         output::distinct(&args.file, &paths)?;
+        if let Some(depth) = &args.depth
+            && depth.as_os_str() != "-"
+            && Format::of(depth).ok() != Some(Format::Exr)
+        {
+            let message = format!("{}: depths are written as .exr", depth.display());
+            return Err(Failure::Call(message));
+        }
         if args.frames.is_some() && format == Format::Gif && args.fps > MAX_GIF_RATE {
             let message = format!("a GIF shows at most {MAX_GIF_RATE} frames a second");
             return Err(Failure::Call(message));
         }
-        if args.frames.is_some() && format != Format::Gif && path.as_os_str() == "-" {
-            let message = "stdout takes one picture; name a file with -o, or a .gif";
+        let is_stdout = |path: &Path| path.as_os_str() == "-";
+        let to_stdout = is_stdout(&path) || args.depth.as_deref().is_some_and(is_stdout);
+        if args.frames.is_some() && to_stdout {
+            let message = "stdout takes one picture; name a file";
             return Err(Failure::Call(message.to_owned()));
         }
-        Ok(Self { path, format, stats: args.stats.as_deref().map(Output::new) })
+        let stats = args.stats.as_deref().map(Output::new);
+        Ok(Self { path, format, depth: args.depth.clone(), stats })
     }
 
     /// Fails now where writing would fail after long work.
     fn check(&self, frames: Option<Frames>) -> Result<(), Failure> {
-        self.picture(frames.map(|frames| frames.first)).check()?;
+        let first = frames.map(|frames| frames.first);
+        self.picture(first).check()?;
+        self.depth(first).map_or(Ok(()), |depth| depth.check())?;
         self.stats.as_ref().map_or(Ok(()), Output::check)
     }
 
@@ -84,6 +100,13 @@ impl Outputs {
             }
             Some(_) | None => Output::new(&self.path),
         }
+    }
+
+    /// Where the depths of a picture go: those of a sequence by its number.
+    fn depth(&self, number: Option<u32>) -> Option<Output> {
+        let path = self.depth.as_deref()?;
+        let numbered = number.map(|number| sequence::numbered(path, number));
+        Some(Output::new(numbered.as_deref().unwrap_or(path)))
     }
 }
 
@@ -130,6 +153,7 @@ impl Job<'_> {
         drop(progress);
         let output = outputs.picture(None);
         output.write(&self.encode(&picture, outputs.format)?)?;
+        self.write_depth(&picture, outputs.depth(None))?;
         if let Some(stats_output) = &outputs.stats {
             stats_output.write(&super::json(&picture.stats)?)?;
         }
@@ -147,6 +171,7 @@ impl Job<'_> {
             let place = [before, frames.count()];
             let picture = self.frame(number, &progress, place)?;
             outputs.picture(Some(number)).write(&self.encode(&picture, outputs.format)?)?;
+            self.write_depth(&picture, outputs.depth(Some(number)))?;
             if before == 0 {
                 self.tell(&picture);
             }
@@ -171,6 +196,7 @@ impl Job<'_> {
             let picture = self.frame(number, &progress, [before, frames.count()])?;
             let shown = sequence::hundredths(number, self.args.fps);
             animation.push(&picture.image, shown).map_err(refused)?;
+            self.write_depth(&picture, outputs.depth(Some(number)))?;
             last = Some(picture);
         }
         drop((animation, progress));
@@ -222,6 +248,12 @@ impl Job<'_> {
 
     fn encode(&self, picture: &Picture, format: Format) -> Result<Vec<u8>, Failure> {
         format.encode(&picture.image).map_err(|e| super::lowering(&e.into(), self.console))
+    }
+
+    fn write_depth(&self, picture: &Picture, output: Option<Output>) -> Result<(), Failure> {
+        let Some(output) = output else { return Ok(()) };
+        let file = picture.image.depth_to_exr();
+        output.write(&file.map_err(|e| super::lowering(&e.into(), self.console))?)
     }
 
     /// Where it was drawn if not where one might think, and with `-v` what the rays met.

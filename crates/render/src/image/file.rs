@@ -5,7 +5,11 @@ use std::io::Cursor;
 use image::ImageEncoder as _;
 use image::codecs::gif::{GifEncoder, Repeat};
 
-use crate::{Image, RenderError};
+use exr::error::UnitResult;
+use exr::prelude::{SpecificChannels, Vec2, WritableImage as _};
+use sdfc_march::PixelBlock;
+
+use crate::{HIT, Image, RenderError};
 
 impl Image {
     /// The picture as a PNG file, sRGB, without alpha.
@@ -21,6 +25,54 @@ impl Image {
             .map_err(|error| RenderError::OutOfMemory(format!("the PNG file: {error}")))?;
         Ok(file.into_inner())
     }
+
+    /// The picture as an OpenEXR file: channels `R`, `G`, `B` in f32, linear light, not clamped.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::to_png`].
+    pub fn to_exr(&self) -> Result<Vec<u8>, RenderError> {
+        let color = |at| {
+            let [red, green, blue, _] = self.at(at).color;
+            (red, green, blue)
+        };
+        let layer = exr::image::Image::from_channels(self.sides(), SpecificChannels::rgb(color));
+        exr_file(|file| layer.write().non_parallel().to_buffered(file))
+    }
+
+    /// The depths as an OpenEXR file: one channel `Z` in f32, the distance from the eye to the surface
+    /// along the pixel's ray (not along the camera's axis) in scene units; infinite where no surface was
+    /// met.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::to_png`].
+    pub fn depth_to_exr(&self) -> Result<Vec<u8>, RenderError> {
+        let depth = |at| {
+            let pixel = self.at(at);
+            (if pixel.status == HIT { pixel.depth } else { f32::INFINITY },)
+        };
+        let channels = SpecificChannels::build().with_channel::<f32>("Z").with_pixel_fn(depth);
+        let layer = exr::image::Image::from_channels(self.sides(), channels);
+        exr_file(|file| layer.write().non_parallel().to_buffered(file))
+    }
+
+    fn sides(&self) -> (usize, usize) {
+        (self.size[0] as usize, self.size[1] as usize)
+    }
+
+    fn at(&self, Vec2(x, y): Vec2<usize>) -> PixelBlock {
+        self.pixel(x as u32, y as u32).copied().unwrap_or_default()
+    }
+}
+
+fn exr_file(
+    write: impl FnOnce(&mut Cursor<Vec<u8>>) -> UnitResult,
+) -> Result<Vec<u8>, RenderError> {
+    let mut file = Cursor::new(Vec::new());
+    let refused = |error| RenderError::OutOfMemory(format!("the EXR file: {error}"));
+    write(&mut file).map_err(refused)?;
+    Ok(file.into_inner())
 }
 
 /// A GIF file in the making, that repeats without end. Each frame has 256 colours of its own.
@@ -63,6 +115,7 @@ fn refused(error: image::ImageError) -> RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use exr::prelude::traits::*;
     use image::AnimationDecoder as _;
 
     #[test]
@@ -74,6 +127,34 @@ mod tests {
         assert_eq!(back.dimensions(), (3, 2));
         assert_eq!(back.get_pixel(1, 1).0, [255, 188, 0]);
         assert_eq!(back.get_pixel(0, 0).0, [0, 0, 0]);
+    }
+
+    #[test]
+    fn exr_files_read_back() {
+        let mut image = Image::new([3, 2], 0.1).unwrap();
+        image.pixels_mut()[4].color = [3.5, 0.5, -1.0, 1.0];
+        image.pixels_mut()[4].depth = 7.25;
+        image.pixels_mut()[4].status = HIT;
+        let channels = |file: Vec<u8>| {
+            let image = exr::prelude::read()
+                .no_deep_data()
+                .largest_resolution_level()
+                .all_channels()
+                .first_valid_layer()
+                .all_attributes()
+                .from_buffered(Cursor::new(file))
+                .unwrap();
+            let samples = |channel: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+                (channel.name.to_string(), channel.sample_data.values_as_f32().collect::<Vec<_>>())
+            };
+            image.layer_data.channel_data.list.iter().map(samples).collect::<Vec<_>>()
+        };
+        let colors = channels(image.to_exr().unwrap());
+        assert_eq!(colors[2], ("R".to_owned(), vec![0.0, 0.0, 0.0, 0.0, 3.5, 0.0]));
+        assert_eq!(colors[0], ("B".to_owned(), vec![0.0, 0.0, 0.0, 0.0, -1.0, 0.0]));
+        let none = f32::INFINITY;
+        let depths = channels(image.depth_to_exr().unwrap());
+        assert_eq!(depths, [("Z".to_owned(), vec![none, none, none, none, 7.25, none])]);
     }
 
     #[test]

@@ -11,6 +11,8 @@ use crate::failure::Failure;
 pub enum Format {
     /// 8 bits of sRGB a channel.
     Png,
+    /// 32 bits of linear light a channel.
+    Exr,
     /// 256 colours; frames that move.
     Gif,
 }
@@ -23,11 +25,11 @@ impl Format {
     /// The ending is that of another format: the call is wrong.
     pub fn of(path: &Path) -> Result<Self, Failure> {
         let Some(ending) = path.extension() else { return Ok(Self::Png) };
-        let formats = [("png", Self::Png), ("gif", Self::Gif)];
+        let formats = [("png", Self::Png), ("exr", Self::Exr), ("gif", Self::Gif)];
         let found = formats.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
         found.map(|(_, format)| *format).ok_or_else(|| {
             let path = path.display();
-            Failure::Call(format!("{path}: pictures are written as .png or .gif"))
+            Failure::Call(format!("{path}: pictures are written as .png, .exr or .gif"))
         })
     }
 
@@ -39,6 +41,7 @@ impl Format {
     pub fn encode(self, image: &Image) -> Result<Vec<u8>, RenderError> {
         match self {
             Self::Png => image.to_png(),
+            Self::Exr => image.to_exr(),
             Self::Gif => {
                 let mut file = Vec::new();
                 Animation::new(&mut file)?.push(image, 0)?;
@@ -56,6 +59,7 @@ mod tests {
     fn endings_decide() {
         let of = |path: &str| Format::of(Path::new(path)).ok();
         assert_eq!([of("-"), of("a"), of("a.PNG")], [Some(Format::Png); 3]);
-        assert_eq!((of("a.gif"), of("a.jpg")), (Some(Format::Gif), None));
+        assert_eq!((of("a.gif"), of("a.exr")), (Some(Format::Gif), Some(Format::Exr)));
+        assert_eq!(of("a.jpg"), None);
     }
 }

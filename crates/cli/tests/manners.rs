@@ -1,0 +1,231 @@
+//! Bad input and bad luck: a clear error, the right exit status, no panic, no partial output.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use std::path::Path;
+
+use common::{folder, names, run, run_with, said};
+
+const BALL: &str = "sphere(0.8)\nplane(y: -0.8)\n";
+
+/// Runs it, and checks status, words on stderr, and that it ended as it meant to.
+fn ends(folder: &Path, args: &str, stdin: &[u8], status: i32, words: &[&str]) {
+    let before = names(folder);
+    let output = run_with(folder, args, stdin);
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(status), "{args}: {said}");
+    assert!(!said.contains("panicked"), "{args}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{args}: no `{word}` in {said}");
+    }
+    if status != 0 {
+        assert!(output.stdout.is_empty(), "{args}: partial output");
+        assert_eq!(names(folder), before, "{args}: files left behind");
+    }
+}
+
+/// A scene with an error, by every command that takes one.
+fn wrong(scene: &str, words: &[&str]) {
+    let folder = folder(&[]);
+    for args in ["check -", "compile -", "render - -o out.png --backend cpu", "explain -"] {
+        ends(folder.path(), args, scene.as_bytes(), 1, words);
+    }
+}
+
+/// An input that is no scene, by every command that takes one.
+fn unreadable(folder: &Path, name: &str, words: &[&str]) {
+    for command in ["check", "compile", "render", "explain", "fmt"] {
+        ends(folder, &format!("{command} {name}"), b"", 2, words);
+    }
+}
+
+#[test]
+fn a_missing_file() {
+    unreadable(folder(&[]).path(), "none.sdf", &["cannot read none.sdf", "No such file"]);
+}
+
+#[test]
+fn a_folder() {
+    let folder = folder(&[]);
+    std::fs::create_dir(folder.path().join("scenes.sdf")).unwrap();
+    unreadable(folder.path(), "scenes.sdf", &["cannot read scenes.sdf"]);
+}
+
+#[test]
+fn binary_bytes() {
+    let folder = folder(&[]);
+    std::fs::write(folder.path().join("a.sdf"), b"sphere(1)\n\xff\xfe\x00").unwrap();
+    unreadable(folder.path(), "a.sdf", &["a.sdf is not UTF-8 text", "offset 10"]);
+    // These are UTF-8.
+    wrong("sphere(1)\n\0\x01\x02\n", &["2:1"]);
+}
+
+#[test]
+fn a_file_of_100_mb() {
+    let folder = folder(&[]);
+    std::fs::File::create(folder.path().join("a.sdf")).unwrap().set_len(100 << 20).unwrap();
+    unreadable(folder.path(), "a.sdf", &["a.sdf is larger than 64 MiB"]);
+    let long = format!("sphere(1)\n{}", "// so it goes\n".repeat(400_000));
+    wrong(&long, &["at most 4194304"]);
+}
+
+#[test]
+fn a_byte_order_mark_and_crlf() {
+    let folder = folder(&[]);
+    let scene = b"\xef\xbb\xbfsphere(1)\r\nplane(y: -1)\r\n";
+    ends(folder.path(), "check -", scene, 0, &[]);
+    ends(folder.path(), "render - -o out.png --backend cpu --size 8x8", scene, 0, &[]);
+    let scene = b"\xef\xbb\xbfsphere(1)\r\nspere(1)\r\n";
+    ends(folder.path(), "check -", scene, 1, &["2:1"]);
+}
+
+#[test]
+fn unclosed_brackets() {
+    wrong("sphere((1\n", &["E01"]);
+    wrong("union([sphere(1), box(1)\n", &["E01"]);
+    wrong(&"(".repeat(100_000), &["E01"]);
+    wrong(&format!("let a = {}1", "[".repeat(50_000)), &["E01"]);
+}
+
+#[test]
+fn unknown_names() {
+    wrong("spere(1)\n", &["E0201", "did you mean `sphere`?"]);
+    wrong("sphere(radius: 1)\n", &["radius"]);
+    wrong("import a from \"none.sdf\"\na\n", &["none.sdf"]);
+}
+
+#[test]
+fn wrong_types() {
+    wrong("sphere(\"big\")\n", &["E03"]);
+    wrong("sphere(1).rotate(x: 90)\n", &["E0304", "90deg"]);
+    wrong("sphere(1) + 1\n", &["E03"]);
+}
+
+#[test]
+fn numbers_that_are_not_finite() {
+    wrong("sphere(1e999)\n", &["too large"]);
+    wrong("sphere(nan)\n", &["unknown name"]);
+    wrong("sphere(sqrt(-1))\n", &["no shader can hold"]);
+    wrong("sphere(inf)\n", &["inf"]);
+    wrong("sphere(1).translate(inf)\n", &["inf"]);
+}
+
+#[test]
+fn division_by_a_constant_zero() {
+    wrong("sphere(1 / 0)\n", &["no shader can hold"]);
+    wrong("let a = 0\nsphere(1 % a)\n", &["no shader can hold"]);
+}
+
+#[test]
+fn values_that_make_no_shape() {
+    wrong("plane(normal: [0, 0, 0])\n", &["normal"]);
+    wrong("sphere(-1)\n", &["E0309", "`r` is -1"]);
+    wrong("sphere(1).scale(0)\n", &["E0"]);
+    // Cameras may move: whether one sees anything is known when a frame is drawn.
+    let blind = b"camera(eye: [0, 0, 0], target: [0, 0, 0])\nsphere(1)\n";
+    let args = "render - -o out.png --backend cpu";
+    ends(folder(&[]).path(), args, blind, 1, &["eye and target are one point"]);
+}
+
+#[test]
+fn sizes_of_pictures() {
+    let folder = folder(&[("a.sdf", BALL)]);
+    for (size, words) in [
+        ("0x4", "at least one pixel"),
+        ("4x0", "at least one pixel"),
+        ("99999999x1", "at most"),
+        ("16384x16384", "at most"),
+        ("99999999999999999999x1", "640x400"),
+        ("4", "640x400"),
+    ] {
+        ends(folder.path(), &format!("render a.sdf --size {size}"), b"", 2, &[words]);
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let folder = folder(&[("a.sdf", BALL)]);
+    std::fs::create_dir(folder.path().join("taken.png")).unwrap();
+    for args in [
+        "render a.sdf -o none/a.png",
+        "render a.sdf -o taken.png",
+        "render a.sdf -o none/a.png --frames 0..3",
+        "render a.sdf -o none/a.gif --frames 0..3",
+        "render a.sdf --depth none/z.exr",
+        "render a.sdf --stats none/a.json",
+        "compile a.sdf -o none/a.wgsl",
+        "compile a.sdf -o a.sdf/a.wgsl",
+    ] {
+        ends(folder.path(), args, b"", 3, &["cannot write"]);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk() {
+    let folder = folder(&[("a.sdf", BALL)]);
+    for args in [
+        "render a.sdf -o /dev/full --backend cpu --size 8x8",
+        "render a.sdf -o a.png --backend cpu --size 8x8 --stats /dev/full",
+        "compile a.sdf -o /dev/full",
+    ] {
+        let output = run(&folder, args);
+        assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
+        assert!(said(&output).contains("No space left"), "{args}: {}", said(&output));
+    }
+}
+
+/// Ctrl-C, once the first file of a sequence is there.
+#[test]
+#[cfg(unix)]
+fn ctrl_c_in_the_middle_of_a_sequence() {
+    use std::process::{Command, Stdio};
+    let folder = folder(&[("a.sdf", BALL)]);
+    let frames =
+        "render a.sdf -o a.png --depth z.exr --backend cpu --size 64x40 --frames 0..100000";
+    let child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
+        .args(frames.split(' '))
+        .current_dir(folder.path())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !folder.path().join("z.0001.exr").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(said(&output).contains("of 100000 frames"), "{}", said(&output));
+    let names = names(folder.path());
+    let pictures: Vec<_> = names.iter().filter(|name| name.starts_with("a.0")).collect();
+    assert_eq!(names.len(), 1 + 2 * pictures.len(), "{names:?}");
+    for name in pictures {
+        let file = std::fs::read(folder.path().join(name)).unwrap();
+        assert!(image::load_from_memory(&file).is_ok(), "{name} is not whole");
+    }
+}
+
+/// An animation that is stopped is no file at all.
+#[test]
+#[cfg(unix)]
+fn ctrl_c_before_an_animation_is_whole() {
+    use std::process::{Command, Stdio};
+    let folder = folder(&[("a.sdf", BALL)]);
+    let frames =
+        "render a.sdf -o a.gif --depth z.exr --backend cpu --size 64x40 --frames 0..100000";
+    let child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
+        .args(frames.split(' '))
+        .current_dir(folder.path())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !folder.path().join("z.0000.exr").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+    assert!(names(folder.path()).iter().all(|name| name == "a.sdf" || name.starts_with("z.0")));
+}
