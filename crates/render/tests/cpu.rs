@@ -109,11 +109,12 @@ fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
     let sky = frame.image.pixel(0, 0).unwrap();
     assert_eq!((sky.status, sky.color), (MISS, [0.0, 0.0, 1.0, 1.0]));
 
-    // Facing the head light: half of the red is matt, the lobe's peak is (s + 8) / 8 at s = 2 / 0.3^4 - 2.
+    // Facing the head light: half of it dielectric, half metal. At n = l = v = h the highlight is F D / 4
+    // with pi D = 1 / alpha^2, and 0.96 squared of the matt colour comes back.
     let frame = draw(&common::painted_sphere(), [33, 33], "sphere", TileSize::default());
     let middle = frame.image.pixel(16, 16).unwrap();
-    let peak = (2.0 / 0.3f64.powi(4) - 2.0 + 8.0) / 8.0;
-    let expected = [0.8, 0.1].map(|c| c * 0.5 + (0.04 + c) / 2.0 * peak);
+    let peak = 0.25 / 0.3f64.powi(4);
+    let expected = [0.8, 0.1].map(|c| c * 0.5 * 0.96 * 0.96 + (0.04 + c) / 2.0 * peak);
     for (channel, expected) in middle.color.iter().zip(expected) {
         assert!((f64::from(*channel) - expected).abs() < 1e-3 * peak, "{:?}", middle.color);
     }

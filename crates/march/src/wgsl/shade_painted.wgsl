@@ -1,5 +1,13 @@
-// A scene with materials: Lambert's law for the matt part, a normalised Blinn-Phong lobe for the
-// mirroring part. Units are such that a white matt surface facing a lamp shows the lamp's colour.
+// A scene with materials: metals and dielectrics of some roughness. The interface mirrors a part of the
+// light at microfacets; what passes through it, in and out again, is scattered evenly below, save in metals.
+// Units are such that white paper under a lamp shows the lamp's colour: reflectances are pi times the usual.
+//
+// Slopes of microfacets: T. S. Trowbridge, K. P. Reitz, Average irregularity representation of a rough surface
+// for ray reflection (J. Opt. Soc. Am. 65, 1975), which B. Walter et al. call GGX (EGSR 2007).
+// Facets that hide each other: E. Heitz, Understanding the masking-shadowing function in microfacet-based
+// BRDFs (JCGT 3, 2014), the height-correlated form of Smith's.
+// Fresnel: C. Schlick, An inexpensive BRDF model for physically-based rendering (Eurographics 1994).
+// Colour, metallic and alpha = roughness^2: B. Burley, Physically-based shading at Disney (SIGGRAPH 2012).
 
 // In the order of `MaterialField::ALL`.
 struct Material {
@@ -11,15 +19,19 @@ struct Material {
     occlusion: f32,
 }
 
-// Reflectance of a dielectric seen straight on.
+// Reflectance of a dielectric seen straight on: an index of refraction of 1.5.
 const DIELECTRIC: f32 = 0.04;
-// The lobe of a smoother surface would be thinner than pixels.
+// The highlight of a smoother surface would be thinner than pixels.
 const LEAST_ROUGHNESS: f32 = 0.1;
+// Cosines of directions along the surface, or below it where a normal is not quite right.
+const LEAST_COSINE: f32 = 1e-4;
 
 struct Surface {
     point: vec3f,
     normal: vec3f,
     toward_eye: vec3f,
+    // Cosine between the two.
+    facing: f32,
     material: Material,
 }
 
@@ -30,30 +42,73 @@ fn material(p: vec3f) -> Material {
 
 fn surface_at(ray: Ray, t: f32) -> Surface {
     let point = ray_point(ray, t);
+    let toward_eye = -ray.direction;
+    let normal = normal_at(point, toward_eye);
     var paint = material(point);
     paint.color = mix(UNPAINTED, paint.color, paint.coverage);
-    return Surface(point, normal_at(point, -ray.direction), -ray.direction, paint);
+    paint.roughness = clamp(paint.roughness, LEAST_ROUGHNESS, 1.0);
+    return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), LEAST_COSINE), paint);
+}
+
+// What is mirrored straight on.
+fn mirrored_color(paint: Material) -> vec3f {
+    return mix(vec3f(DIELECTRIC), paint.color, paint.metallic);
+}
+
+// What the layer below the interface scatters.
+fn matt_color(paint: Material) -> vec3f {
+    return (1.0 - paint.metallic) * paint.color;
+}
+
+// Schlick: F = F0 + (1 - F0) (1 - cosine)^5.
+fn fresnel(straight_on: vec3f, cosine: f32) -> vec3f {
+    let rest = 1.0 - cosine;
+    let square = rest * rest;
+    return mix(straight_on, vec3f(1.0), square * square * rest);
+}
+
+// pi D V, with D the density of microfacets along the halfway vector h and V their visibility over
+// 4 (n.l) (n.v). 1 - (n.h)^2 is |n x h|^2, which does not cancel at a highlight.
+fn highlight(surface: Surface, halfway: vec3f, incidence: f32) -> f32 {
+    let alpha = surface.material.roughness * surface.material.roughness;
+    let across = cross(surface.normal, halfway);
+    let along = alpha * dot(surface.normal, halfway);
+    let peak = alpha / (dot(across, across) + along * along);
+    let square = alpha * alpha;
+    let rest = 1.0 - square;
+    let lamp_side = surface.facing * sqrt(incidence * incidence * rest + square);
+    let eye_side = incidence * sqrt(surface.facing * surface.facing * rest + square);
+    return 0.5 * peak * peak / (lamp_side + eye_side);
+}
+
+// The part of light from everywhere that microfacets mirror towards the eye: a fit to its integral.
+// B. Karis, Physically based shading on mobile (Unreal Engine, 2014).
+fn mirrored_everywhere(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f {
+    let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
+    let a = min(r.x * r.x, exp2(-9.28 * facing)) * r.x + r.y;
+    return max(straight_on * (r.z - 1.04 * a) + (r.w + 1.04 * a), vec3f());
 }
 
 // Light that does not come from a lamp.
 fn ambient_part(surface: Surface) -> vec3f {
     let paint = surface.material;
-    return view.ambient * paint.color * paint.occlusion + paint.emission;
+    let mirrored = mirrored_everywhere(mirrored_color(paint), paint.roughness, surface.facing);
+    let lost = mirrored_everywhere(vec3f(DIELECTRIC), paint.roughness, surface.facing);
+    return view.ambient * paint.occlusion * (mirrored + (1.0 - lost) * matt_color(paint)) + paint.emission;
 }
 
-// What the surface returns of a lamp's light, with n, l, h the normal, the direction to the lamp and
-// halfway between lamp and eye:
-// (n.l) (color (1 - metallic) + F (s + 8) / 8 (n.h)^s), F = mix(0.04, color, metallic), s = 2 / roughness^4 - 2.
+// What the surface returns of a lamp's light: highlight and, past the interface twice, Lambert's law.
 fn light_part(surface: Surface, light: Light) -> vec3f {
-    let paint = surface.material;
-    let incidence = max(dot(surface.normal, light.direction), 0.0);
+    let incidence = dot(surface.normal, light.direction);
+    if incidence <= 0.0 {
+        return vec3f();
+    }
     let halfway = normalize(light.direction + surface.toward_eye);
-    let aligned = max(dot(surface.normal, halfway), 1e-4);
-    let roughness = clamp(paint.roughness, LEAST_ROUGHNESS, 1.0);
-    let alpha = roughness * roughness;
-    let shininess = 2.0 / (alpha * alpha) - 2.0;
-    let lobe = (shininess + 8.0) / 8.0 * pow(aligned, shininess);
-    let mirrored = mix(vec3f(DIELECTRIC), paint.color, paint.metallic);
-    let matt = paint.color * (1.0 - paint.metallic);
-    return light.color * incidence * (matt + mirrored * lobe);
+    let tilt = saturate(dot(light.direction, halfway));
+    let paint = surface.material;
+    let mirrored = fresnel(mirrored_color(paint), tilt) * highlight(surface, halfway, incidence);
+    let dielectric = vec3f(DIELECTRIC);
+    let let_in = 1.0 - fresnel(dielectric, incidence);
+    let let_out = 1.0 - fresnel(dielectric, surface.facing);
+    return light.color * incidence * (mirrored + let_in * let_out * matt_color(paint));
 }

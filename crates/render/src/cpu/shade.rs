@@ -1,4 +1,12 @@
-//! Light on surfaces, in f64: the formulas of the shader's shading, written a second time.
+//! Light on surfaces, in f64: what the shader's shading says, written a second time from the papers.
+//!
+//! Painted surfaces are an interface of microfacets over an evenly scattering layer. Angles are taken
+//! from the normal; `alpha` is the squared roughness.
+//!
+//! - Slopes of the facets: Trowbridge and Reitz 1975 (GGX).
+//! - Masking: Smith's, height-correlated, by the function Lambda of Heitz 2014.
+//! - Fresnel: Schlick 1994.
+//! - Light from everywhere: the fit of Karis 2014.
 
 use glam::DVec3;
 
@@ -8,8 +16,10 @@ use crate::ViewLight;
 const UNPAINTED: DVec3 = DVec3::splat(0.8);
 /// Reflectance of a dielectric seen straight on.
 const DIELECTRIC: f64 = 0.04;
-/// The lobe of a smoother surface would be thinner than a pixel.
+/// The highlight of a smoother surface would be thinner than a pixel.
 const LEAST_ROUGHNESS: f64 = 0.1;
+/// Cosines of directions along the surface, or below it where a normal is not quite right.
+const LEAST_COSINE: f64 = 1e-4;
 
 /// Where a ray met something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +51,7 @@ impl Paint {
         let [color, emission] = [color, emission].map(|[x, y, z, _]| DVec3::new(x, y, z));
         Some(Self {
             color: UNPAINTED + (color - UNPAINTED) * coverage[0],
-            roughness: roughness[0],
+            roughness: roughness[0].clamp(LEAST_ROUGHNESS, 1.0),
             metallic: metallic[0],
             emission,
             occlusion: occlusion[0],
@@ -60,33 +70,90 @@ impl Surface {
     /// What it gives off, and returns of the light from everywhere.
     pub(super) fn ambient(&self, ambient: DVec3) -> DVec3 {
         match self.paint {
-            Some(paint) => ambient * paint.color * paint.occlusion + paint.emission,
+            Some(paint) => {
+                let returned = paint.albedo_everywhere(self.facing());
+                ambient * returned * paint.occlusion + paint.emission
+            }
             None => ambient * UNPAINTED,
         }
     }
 
-    /// What it returns of a lamp's light: Lambert's law for the matt part and, where painted, a
-    /// normalised Blinn-Phong lobe of exponent `2 / roughness^4 - 2` for the mirroring part.
+    /// What it returns of a lamp's light: Lambert's law and, where painted, a highlight.
     pub(super) fn lit(&self, light: &ViewLight) -> DVec3 {
         let incidence = self.normal.dot(light.direction).max(0.0);
-        let albedo = match self.paint {
-            Some(paint) => paint.albedo(self, light),
+        if incidence == 0.0 {
+            return DVec3::ZERO;
+        }
+        let reflectance = match self.paint {
+            Some(paint) => paint.reflectance(self, light.direction),
             None => UNPAINTED,
         };
-        light.color * incidence * albedo
+        light.color * incidence * reflectance
+    }
+
+    /// Cosine between normal and eye.
+    fn facing(&self) -> f64 {
+        self.normal.dot(self.toward_eye).max(LEAST_COSINE)
     }
 }
 
 impl Paint {
-    fn albedo(&self, surface: &Surface, light: &ViewLight) -> DVec3 {
-        let halfway = (light.direction + surface.toward_eye).normalize_or_zero();
-        let aligned = surface.normal.dot(halfway).max(1e-4);
-        let exponent = 2.0 / self.roughness.clamp(LEAST_ROUGHNESS, 1.0).powi(4) - 2.0;
-        let lobe = (exponent + 8.0) / 8.0 * aligned.powf(exponent);
-        let dielectric = DVec3::splat(DIELECTRIC);
-        let mirrored = dielectric + (self.color - dielectric) * self.metallic;
-        self.color * (1.0 - self.metallic) + mirrored * lobe
+    /// The metal's and the dielectric's answer, mixed.
+    fn mixed(&self, answer: impl Fn(DVec3, DVec3) -> DVec3) -> DVec3 {
+        let dielectric = answer(DVec3::splat(DIELECTRIC), self.color);
+        let metal = answer(self.color, DVec3::ZERO);
+        dielectric + (metal - dielectric) * self.metallic
     }
+
+    /// Pi times the bidirectional reflectance: what leaves towards the eye of light that comes from a direction.
+    fn reflectance(&self, surface: &Surface, toward_light: DVec3) -> DVec3 {
+        let normal = surface.normal;
+        let halfway = (toward_light + surface.toward_eye).normalize_or_zero();
+        let [entering, leaving] = [normal.dot(toward_light), surface.facing()];
+        let alpha = self.roughness.powi(2);
+        let facets = density(alpha, normal.dot(halfway)) * visible(alpha, entering, leaving)
+            / (4.0 * entering * leaving);
+        let tilt = toward_light.dot(halfway).clamp(0.0, 1.0);
+        let passed = (1.0 - schlick(DIELECTRIC, entering)) * (1.0 - schlick(DIELECTRIC, leaving));
+        self.mixed(|mirrored, matt| {
+            mirrored.map(|straight_on| schlick(straight_on, tilt) * facets) + matt * passed
+        })
+    }
+
+    /// What leaves towards the eye of light that comes evenly from everywhere.
+    fn albedo_everywhere(&self, facing: f64) -> DVec3 {
+        let [scale, bias] = karis(self.roughness, facing);
+        let mirrored = |straight_on: f64| (straight_on * scale + bias).max(0.0);
+        self.mixed(|color, matt| color.map(mirrored) + matt * (1.0 - mirrored(DIELECTRIC)))
+    }
+}
+
+/// Fresnel reflectance at an angle, from that straight on.
+fn schlick(straight_on: f64, cosine: f64) -> f64 {
+    straight_on + (1.0 - straight_on) * (1.0 - cosine).powi(5)
+}
+
+/// Pi times the density of facets that face a direction.
+fn density(alpha: f64, cosine: f64) -> f64 {
+    let square = alpha * alpha;
+    square / (cosine * cosine * (square - 1.0) + 1.0).powi(2)
+}
+
+/// The part of facets that both lamp and eye see.
+fn visible(alpha: f64, entering: f64, leaving: f64) -> f64 {
+    let lambda = |cosine: f64| {
+        let tangent_squared = (1.0 - cosine * cosine).max(0.0) / (cosine * cosine);
+        ((1.0 + alpha * alpha * tangent_squared).sqrt() - 1.0) / 2.0
+    };
+    1.0 / (1.0 + lambda(entering) + lambda(leaving))
+}
+
+/// Scale and bias of the straight-on reflectance that make the part mirrored of light from everywhere.
+fn karis(roughness: f64, facing: f64) -> [f64; 2] {
+    let narrow = 1.0 - roughness;
+    let low = 0.0425 - 0.0275 * roughness;
+    let edge = low + narrow * (narrow * narrow).min((-9.28 * facing).exp2());
+    [1.04 - 0.572 * roughness - 1.04 * edge, 0.022 * roughness - 0.04 + 1.04 * edge]
 }
 
 #[cfg(test)]
@@ -120,11 +187,93 @@ mod tests {
         let fields = [color, one(1.0), one(1.0), one(0.0), [0.0, 0.0, 0.25, 0.0], one(0.5)];
         let paint = Paint::of_fields(&fields).unwrap();
         let surface = Surface::new(DVec3::Z, DVec3::Z, Some(paint));
-        // Exponent 0: the lobe is 1, so matt colour plus 0.04, times a light of 2.
-        let expected = DVec3::new(2.08, 1.08, 0.08);
+        // Facets face everywhere and hide nothing, so 0.04 / 4 is mirrored; 0.96 squared of the colour
+        // comes back through the interface; the light is 2.
+        let expected = (color_vector(color) * 0.96 * 0.96 + 0.01) * 2.0;
         assert!((surface.lit(&lamp(DVec3::Z)) - expected).length() < 1e-12);
-        let ambient = surface.ambient(DVec3::ONE);
-        assert!((ambient - DVec3::new(0.5, 0.25, 0.25)).length() < 1e-12);
+        // Occlusion halves the light from everywhere, not the emission.
+        let [bright, dark] = [DVec3::ONE, DVec3::ZERO].map(|light| surface.ambient(light));
+        assert_eq!(dark, DVec3::new(0.0, 0.0, 0.25));
+        assert!((bright - dark - color_vector(color) / 2.0).abs().max_element() < 0.02);
+    }
+
+    fn color_vector([x, y, z, _]: [f64; 4]) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    fn paint(color: f64, roughness: f64, metallic: f64) -> Paint {
+        let one = |value: f64| [value; 4];
+        let fields = [one(color), one(1.0), one(roughness), one(metallic), [0.0; 4], one(1.0)];
+        Paint::of_fields(&fields).unwrap()
+    }
+
+    #[test]
+    fn fresnel_is_the_given_value_straight_on_and_all_along_the_surface() {
+        assert_eq!(schlick(0.04, 1.0), 0.04);
+        assert_eq!(schlick(0.04, 0.0), 1.0);
+        assert!(schlick(0.04, 0.4) > schlick(0.04, 0.5));
+    }
+
+    /// The part of even light that leaves towards an eye at a cosine: the reflectance summed over
+    /// directions of equal weight, taken over halfway vectors, where a highlight is not narrow.
+    fn furnace(paint: &Paint, facing: f64) -> f64 {
+        let toward_eye = DVec3::new((1.0 - facing * facing).sqrt(), 0.0, facing);
+        let surface = Surface { normal: DVec3::Z, toward_eye, paint: Some(*paint) };
+        let alpha = paint.roughness.powi(2);
+        const STEPS: usize = 200;
+        let middle = |i: usize| (i as f64 + 0.5) / STEPS as f64;
+        let mut sum = 0.0;
+        for (u, v) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (middle(i), middle(j)))) {
+            // Half the samples by facets (Walter et al. 2007), half by Lambert's law, each weighed by
+            // the sum of both densities.
+            let turn = |cosine: f64| {
+                let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                let (y, x) = (std::f64::consts::TAU * v).sin_cos();
+                DVec3::new(sine * x, sine * y, cosine)
+            };
+            let facet = turn(((1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u)).sqrt());
+            for light in [facet * 2.0 * facet.dot(toward_eye) - toward_eye, turn(u.sqrt())] {
+                let halfway = (light + toward_eye).normalize();
+                if light.z <= 0.0 {
+                    continue;
+                }
+                let by_facet = density(alpha, halfway.z) * halfway.z
+                    / (4.0 * halfway.dot(toward_eye)).max(1e-12);
+                sum += surface.lit(&lamp(light)).x / 2.0 / (by_facet + light.z);
+            }
+        }
+        sum / (STEPS * STEPS) as f64
+    }
+
+    #[test]
+    fn no_material_returns_more_than_it_receives() {
+        for roughness in [0.1, 0.3, 0.5, 0.7, 1.0] {
+            for facing in [0.05, 0.2, 0.5, 0.8, 1.0] {
+                let [metal, plastic, black] = [(1.0, 1.0), (1.0, 0.0), (0.0, 0.0)]
+                    .map(|(color, metallic)| furnace(&paint(color, roughness, metallic), facing));
+                let place = format!("roughness {roughness}, cosine {facing}");
+                assert!(metal <= 1.005 && plastic <= 1.005, "{place}: {metal}, {plastic}");
+                assert!(black < plastic && black > 0.0, "{place}: {black}");
+                // A perfect mirror of facets loses only what is caught between them.
+                assert!(roughness > 0.3 || metal > 0.9, "{place}: {metal}");
+            }
+        }
+    }
+
+    #[test]
+    fn light_from_everywhere_is_the_sum_of_light_from_each_direction() {
+        for roughness in [0.1, 0.3, 0.5, 0.7, 1.0] {
+            for facing in [0.3, 0.6, 1.0] {
+                for (color, metallic) in [(1.0, 1.0), (0.5, 1.0), (0.8, 0.0), (0.0, 0.0)] {
+                    let paint = paint(color, roughness, metallic);
+                    let summed = furnace(&paint, facing);
+                    let fitted = paint.albedo_everywhere(facing).x;
+                    let place = format!("{color} {metallic} {roughness} {facing}");
+                    assert!((summed - fitted).abs() < 0.2, "{place}: {summed}, {fitted}");
+                    assert!(fitted <= 1.0, "{place}: {fitted}");
+                }
+            }
+        }
     }
 
     #[test]
