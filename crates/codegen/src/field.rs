@@ -75,7 +75,7 @@ pub fn field_module(program: &Program, options: &FieldOptions) -> Result<Shader,
         let function = struct_function(program, &inputs, types, &name, &fields, structure)?;
         add(&mut module, Role::Material, function);
     }
-    Shader::new(module, parts, Features { shadows: false, materials: material.is_some() })
+    Shader::new(module, parts, Features { materials: material.is_some(), ..Features::default() })
 }
 
 /// Letters, digits and `_`, no digit first, no `__`: what naga and WGSL both leave as it is.

@@ -21,7 +21,7 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row.
 ///
 /// Shadows are linked where a light of the settings casts one, soft ones as hard ones; materials where
-/// the program has them.
+/// the program has them; reflections where the settings want at least one.
 ///
 /// # Errors
 ///
@@ -71,7 +71,8 @@ fn features(program: &Program) -> Features {
         Shadow::Off => false,
         Shadow::Hard | Shadow::Soft(_) => true,
     });
-    Features { shadows, materials: program.material.is_some() }
+    let reflections = program.settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
+    Features { shadows, materials: program.material.is_some(), reflections }
 }
 
 /// Positions in `Program::uniforms` of those that the functions read.

@@ -6,7 +6,7 @@ mod common;
 
 use std::mem::{offset_of, size_of};
 
-use common::{blend, chain, lit, number_param, painted, program, sphere, twisted};
+use common::{blend, chain, lit, mirrored, number_param, painted, program, sphere, twisted};
 use sdfc_codegen::{Error, FieldOptions, Role, field_module, render_module};
 use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
 use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
@@ -21,6 +21,8 @@ fn scenes() -> Vec<Program> {
     let k = both.graph.frame_input(FrameInput::Time, Type::Scalar);
     both.distance = both.distance.map(|distance| both.graph.add(distance, k));
     both.uniforms = vec![k];
+    scenes.push(mirrored(both.clone()));
+    scenes.push(mirrored(sphere()));
     scenes.push(both);
     scenes
 }
@@ -73,7 +75,8 @@ fn blocks_have_the_layout_of_the_shader() {
     assert_eq!(
         layout(module, "View"),
         block!(ViewBlock: eye pixel_radius right t_max up epsilon forward steps size tile_origin
-            tile_size light_count fixed_step ambient pad0 background pad1 lights)
+            tile_size light_count fixed_step ambient reflections background reflection_strength
+            lights)
     );
     assert_eq!(layout(module, "Light"), block!(LightBlock: direction shadow color pad));
     assert_eq!(

@@ -4,9 +4,10 @@
 
 mod common;
 
-use common::{blend, lit, painted, sphere, twisted};
+use common::{blend, lit, mirrored, painted, sphere, twisted};
 use sdfc_codegen::{FieldOptions, Shader, field_module, render_module};
 use sdfc_graph::{Program, Shadow};
+use sdfc_march::METHODS;
 
 fn field(program: &Program) -> String {
     let options = FieldOptions::default();
@@ -63,4 +64,21 @@ fn a_shadow_links_the_shadow_ray_alone() {
 fn a_material_links_its_shading() {
     let shader = render_module(&painted(), "fixed").expect("links");
     insta::assert_snapshot!(outline(&shader));
+}
+
+#[test]
+fn a_mirror_links_the_mirrored_ray_and_no_shadow() {
+    let shader = render_module(&mirrored(sphere()), "auto").expect("links");
+    insta::assert_snapshot!(outline(&shader));
+}
+
+#[test]
+fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
+    let all = mirrored(lit(painted(), Shadow::Hard));
+    for method in METHODS {
+        let shader = render_module(&all, method.name).expect("links");
+        let text = shader.wgsl().expect("is written");
+        let calls = |name: &str| text.matches(&format!("= {name}(")).count();
+        assert_eq!((calls("field"), calls("trace")), (1, 1), "{}", method.name);
+    }
 }

@@ -49,6 +49,8 @@ pub struct Settings {
     pub ambient: Option<NodeId>,
     /// Linear colour behind everything.
     pub background: Option<NodeId>,
+    /// Mirror reflections; none: surfaces show lamps alone.
+    pub reflections: Option<Reflections>,
     /// How rays are marched.
     pub march: March,
 }
@@ -57,7 +59,7 @@ impl Settings {
     /// All nodes that the settings are made of.
     pub fn nodes(&self) -> Vec<NodeId> {
         // Taken apart so that a new setting does not compile until it is thought of here.
-        let Self { camera, lights, ambient, background, march: _ } = self;
+        let Self { camera, lights, ambient, background, reflections, march: _ } = self;
         let camera = camera.iter().flat_map(|camera| {
             let Camera { eye, target, up, fov } = *camera;
             [eye, target, up, fov]
@@ -70,7 +72,8 @@ impl Settings {
             };
             [Some(direction), Some(color), sharpness].into_iter().flatten()
         });
-        camera.chain(lights).chain(*ambient).chain(*background).collect()
+        let strength = reflections.as_ref().map(|Reflections { count: _, strength }| *strength);
+        camera.chain(lights).chain(*ambient).chain(*background).chain(strength).collect()
     }
 }
 
@@ -96,6 +99,15 @@ pub struct Light {
     pub color: NodeId,
     /// Its shadow.
     pub shadow: Shadow,
+}
+
+/// What surfaces mirror of each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reflections {
+    /// A ray from the eye is mirrored at most so often.
+    pub count: u32,
+    /// What is seen after n mirrors counts by the n-th power of this number.
+    pub strength: NodeId,
 }
 
 /// How a light's shadow is computed.

@@ -43,7 +43,8 @@ shows! {
     too_many_rounds: "sphere(iterate(5000, 1, fn(s) = s))\n";
     an_infinite_radius: "let r = inf\nsphere(r)\n";
     a_list_too_short: "solid it() = min([for x in [1] if x > 2: x])\nit()\n";
-    settings_of_a_later_version: "sphere(1)\nreflections(count: 2)\nsun(shadow: soft(8))\n";
+    settings_of_a_later_version: "sphere(1)\nfog(density: 0.1)\nsun(shadow: soft(8))\n";
+    reflections_out_of_range: "sphere(1)\nreflections(count: 9, strength: 1.5)\n";
     settings_out_of_range: "sphere(1)\nmarch(steps: 0, method: \"spere\")\n";
 }
 

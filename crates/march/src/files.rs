@@ -42,6 +42,8 @@ pub struct Features {
     pub shadows: bool,
     /// Something is painted.
     pub materials: bool,
+    /// Surfaces mirror each other.
+    pub reflections: bool,
 }
 
 /// Text of a picture's shader: whole files, joined.
@@ -51,22 +53,25 @@ pub fn source(method: &Method, features: Features) -> String {
     } else {
         include_str!("wgsl/shade_plain.wgsl")
     };
-    let picture = if features.shadows {
-        include_str!("wgsl/picture_shadowed.wgsl")
-    } else {
-        include_str!("wgsl/picture_plain.wgsl")
+    let picture = match (features.reflections, features.shadows) {
+        (false, false) => include_str!("wgsl/picture_plain.wgsl"),
+        (false, true) => include_str!("wgsl/picture_shadowed.wgsl"),
+        (true, false) => include_str!("wgsl/picture_reflected.wgsl"),
+        (true, true) => include_str!("wgsl/picture_reflected_shadowed.wgsl"),
     };
-    [
+    let mut files = vec![
         include_str!("wgsl/view.wgsl"),
         include_str!("wgsl/field.wgsl"),
         include_str!("wgsl/ray.wgsl"),
         method.source,
         include_str!("wgsl/shade.wgsl"),
         shade,
-        picture,
-        include_str!("wgsl/main.wgsl"),
-    ]
-    .join("\n")
+    ];
+    if features.shadows || features.reflections {
+        files.push(include_str!("wgsl/secondary.wgsl"));
+    }
+    files.extend([picture, include_str!("wgsl/main.wgsl")]);
+    files.join("\n")
 }
 
 /// Names of the functions that a scene supplies, and of what they speak of.

@@ -31,6 +31,9 @@ pub const UNPAINTED: [f32; 3] = [0.8; 3];
 /// At most so many lights in one scene.
 pub const MAX_LIGHTS: usize = 8;
 
+/// A ray from the eye is mirrored at most so often.
+pub const MAX_REFLECTIONS: u32 = 8;
+
 /// Shadow kind of a [`LightBlock`]: none.
 pub const SHADOW_OFF: u32 = 0;
 /// Shadow kind of a [`LightBlock`]: hard.
@@ -85,12 +88,12 @@ pub struct ViewBlock {
     pub fixed_step: f32,
     /// Linear colour of light from everywhere.
     pub ambient: [f32; 3],
-    /// Unused.
-    pub pad0: f32,
+    /// How often a ray from the eye is mirrored.
+    pub reflections: u32,
     /// Linear colour behind everything.
     pub background: [f32; 3],
-    /// Unused.
-    pub pad1: f32,
+    /// What is seen in a mirror counts by this factor, once more for each mirror.
+    pub reflection_strength: f32,
     /// The lights.
     pub lights: [LightBlock; MAX_LIGHTS],
 }
@@ -105,7 +108,7 @@ pub struct PixelBlock {
     pub depth: f32,
     /// 0 miss, 1 hit, 2 capped (ran out of steps).
     pub status: u32,
-    /// Evaluations of the field for this pixel, shadows included.
+    /// Evaluations of the field for this pixel, shadows and reflections included.
     pub evaluations: u32,
     /// Evaluations of the field for the primary ray.
     pub primary_evaluations: u32,

@@ -49,9 +49,9 @@ pub(crate) fn view_bytes(block: &ViewBlock) -> Vec<u8> {
         light_count,
         fixed_step,
         ambient,
-        pad0,
+        reflections,
         background,
-        pad1,
+        reflection_strength,
         lights,
     } = block;
     let mut bytes = Bytes::default();
@@ -61,8 +61,8 @@ pub(crate) fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     bytes.floats(forward).words(&[*steps]);
     bytes.words(size).words(tile_origin).words(tile_size);
     bytes.words(&[*light_count]).floats(&[*fixed_step]);
-    bytes.floats(ambient).floats(&[*pad0]);
-    bytes.floats(background).floats(&[*pad1]);
+    bytes.floats(ambient).words(&[*reflections]);
+    bytes.floats(background).floats(&[*reflection_strength]);
     for light in lights {
         bytes.light(light);
     }

@@ -104,6 +104,45 @@ fn a_lamp_overhead_throws_the_spheres_shadow_on_the_floor() {
 }
 
 #[test]
+fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
+    let program = common::mirrors();
+    let view = common::view(&program, [96, 64]);
+    let plain = draw(&common::sphere_above_floor(), [96, 64], "auto", TileSize::default()).image;
+    let mirrored = draw(&program, [96, 64], "auto", TileSize::default()).image;
+    let center = glam::DVec3::new(0.0, 0.5, 0.0);
+    let (mut spheres, mut skies) = (0, 0);
+    for (index, (with, without)) in mirrored.pixels().iter().zip(plain.pixels()).enumerate() {
+        let direction = view.ray_direction(index as u32 % 96, index as u32 / 96);
+        let point = view.eye + direction * f64::from(with.depth);
+        if with.status != HIT || (point.y + 1.0).abs() > 1e-3 {
+            continue;
+        }
+        // Mirrored at the floor, from there to the nearest place on its line to the sphere's centre.
+        let up = direction * glam::DVec3::new(1.0, -1.0, 1.0);
+        let along = (center - point).dot(up);
+        let apart = (point + up * along - center).length();
+        let added = std::array::from_fn::<f64, 3, _>(|channel| {
+            f64::from(with.color[channel] - without.color[channel])
+        });
+        // The mirrored ray starts off the floor by part of a pixel.
+        let expected = if apart > 1.08 || along < 0.0 {
+            skies += 1;
+            [0.0, 0.0, 0.5]
+        } else if apart < 0.92 {
+            spheres += 1;
+            let met = point + up * (along - (1.0 - apart * apart).sqrt());
+            let light = (met - center).y.max(0.0);
+            [1.0, 0.5, 0.25].map(|lamp| 0.5 * 0.8 * (0.1 + lamp * light))
+        } else {
+            continue;
+        };
+        let off = added.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 0.05, "{point}: {added:?} is not {expected:?}");
+    }
+    assert!(spheres > 100 && skies > 100, "{spheres} of the sphere, {skies} of the sky");
+}
+
+#[test]
 fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
     let frame = draw(&common::sphere_above_floor(), [16, 16], "sphere", TileSize::default());
     let sky = frame.image.pixel(0, 0).unwrap();

@@ -66,6 +66,7 @@ fn gpu_and_cpu_agree() -> Outcome {
         common::sphere_above_floor(),
         common::painted_sphere(),
         common::steep_sphere(),
+        common::mirrors(),
     ] {
         let view = common::view(&program, size);
         let scene = CpuScene::new(&program)?;

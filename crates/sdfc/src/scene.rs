@@ -75,8 +75,12 @@ impl Scene {
         let options = FieldOptions { gradient: false, material: false, ..FieldOptions::default() };
         let costs = self.field_shader(&options)?.instructions()?;
         let field = costs.iter().find(|cost| cost.role == Role::Distance);
-        let shadows = self.picture_shader(self.method())?.features().shadows;
-        let features = [("material", material), ("shadow", shadows)];
+        let linked = self.picture_shader(self.method())?.features();
+        let features = [
+            ("material", material),
+            ("shadow", linked.shadows),
+            ("reflection", linked.reflections),
+        ];
         let report = &self.report;
         Ok(Explanation {
             leaves: report.leaves,

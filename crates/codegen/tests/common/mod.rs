@@ -6,8 +6,8 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use sdfc_graph::{
-    Dim, FrameInput, Graph, Light, MaterialField, NodeId, Param, ParamKind, Program, Shadow,
-    Ternary, Type, Unary,
+    Dim, FrameInput, Graph, Light, MaterialField, NodeId, Param, ParamKind, Program, Reflections,
+    Shadow, Ternary, Type, Unary,
 };
 
 pub fn point(graph: &mut Graph) -> NodeId {
@@ -183,6 +183,12 @@ pub fn lit(mut program: Program, shadow: Shadow) -> Program {
     let direction = graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]);
     let color = graph.constant(Type::Vec3, &[1.0; 3]);
     program.settings.lights.push(Light { direction, color, shadow });
+    program
+}
+
+pub fn mirrored(mut program: Program) -> Program {
+    let strength = program.graph.number(0.3);
+    program.settings.reflections = Some(Reflections { count: 2, strength });
     program
 }
 

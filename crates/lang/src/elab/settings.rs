@@ -1,7 +1,7 @@
 //! Settings: camera, lights, background, method.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Camera, Light, March, NodeId, Settings, Shadow, Type};
+use sdfc_graph::{Camera, Light, March, NodeId, Reflections, Settings, Shadow, Type};
 
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
@@ -13,6 +13,12 @@ const DEFAULT_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
 const DEFAULT_AMBIENT: f64 = 0.2;
 /// Towards a `sun()` without direction.
 const DEFAULT_SUN: [f64; 3] = [1.0, 2.0, 1.0];
+/// How often `reflections()` mirrors.
+const DEFAULT_MIRRORS: u32 = 1;
+/// What the first mirror of `reflections()` counts.
+const DEFAULT_REFLECTION: f64 = 0.3;
+/// As `march` has it: each mirror repeats the whole of the work.
+const MAX_MIRRORS: f64 = 8.0;
 /// Ray methods of this version.
 const METHODS: [&str; 3] = ["auto", "fixed", "sphere"];
 /// Most steps of a ray: some drivers end a loop silently at 65,535 rounds.
@@ -47,9 +53,7 @@ impl<'p> Elaborator<'p> {
             SettingKind::AmbientOcclusion => {
                 return Err(self.setting_not_yet(setting.span, "ambient_occlusion"));
             }
-            SettingKind::Reflections => {
-                return Err(self.setting_not_yet(setting.span, "reflections"));
-            }
+            SettingKind::Reflections => out.reflections = Some(self.reflections(setting)?),
             SettingKind::Antialias => {
                 return Err(self.setting_not_yet(setting.span, "antialias"));
             }
@@ -129,6 +133,26 @@ impl<'p> Elaborator<'p> {
         };
         let strength = strength?.unwrap_or_else(|| self.graph.number(default_strength));
         Ok(self.graph.mul(color, strength))
+    }
+
+    fn reflections(&mut self, setting: &'p Setting) -> Outcome<Reflections> {
+        let count = self.argument(setting, 0);
+        let count = count.map(|expr| self.number_within(expr, "`count`", [0.0, MAX_MIRRORS]));
+        let strength = self.argument(setting, 1).map(|expr| {
+            let node = self.number(&mut Env::new(self.program.locals), expr)?;
+            // What moves is looked at when its frame is drawn.
+            match self.graph.as_number(node) {
+                Some(_) => self.number_within(expr, "`strength`", [0.0, 1.0]).map(|_| node),
+                None => Ok(node),
+            }
+        });
+        Ok(Reflections {
+            count: count.transpose()?.map_or(DEFAULT_MIRRORS, |count| count as u32),
+            strength: match strength.transpose()? {
+                Some(strength) => strength,
+                None => self.graph.number(DEFAULT_REFLECTION),
+            },
+        })
     }
 
     fn march(&mut self, setting: &'p Setting) -> Outcome<March> {

@@ -1,14 +1,6 @@
 // Colour of a pixel with hard shadows. The ray from the eye and the rays to the lamps pass through one
 // call of `trace`: drivers inline the field wherever it is called, and their compile time grows with it.
 
-// From a surface to a lamp. It starts off the surface, further than what counts as a hit there, than half
-// a pixel and than rounding, so that it does not meet the surface that it leaves.
-fn shadow_ray(surface: Surface, seen: Ray, t: f32, direction: vec3f) -> Ray {
-    let near = max(tolerance(seen, t), rounding(seen, t));
-    let lift = max(3.0 * near, footprint(seen, t));
-    return Ray(surface.point + lift * surface.normal, direction, view.t_max, 0.5 * lift, 0.0);
-}
-
 fn picture(pixel: vec2u) -> Pixel {
     let eye_ray = camera_ray(pixel);
     var ray = eye_ray;

@@ -2,6 +2,7 @@
 // those of `ViewBlock`, `LightBlock` and `PixelBlock`.
 
 const MAX_LIGHTS: u32 = 8;
+const MAX_REFLECTIONS: u32 = 8;
 
 const SHADOW_OFF: u32 = 0;
 
@@ -31,9 +32,9 @@ struct View {
     light_count: u32,
     fixed_step: f32,
     ambient: vec3f,
-    pad0: f32,
+    reflections: u32,
     background: vec3f,
-    pad1: f32,
+    reflection_strength: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 

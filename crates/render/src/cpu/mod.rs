@@ -2,7 +2,8 @@
 //!
 //! A second implementation of `sphere` and `auto` and of the shading, on purpose: it shares the
 //! scene's formula with the shader and nothing else. It works in waves: all rays of a group of
-//! pixels from the eye, then normals and materials of all hits, then all rays to a lamp.
+//! pixels from the eye, then normals and materials of all hits, then all rays to a lamp; and the
+//! same again for all rays from a mirror.
 
 mod shade;
 mod trace;
@@ -165,39 +166,74 @@ struct Wave<'a, T> {
 }
 
 /// A pixel in the making.
+#[derive(Clone, Copy)]
 struct Shade {
     color: DVec3,
     evaluations: u32,
 }
 
-/// A ray from the eye that met something.
-struct Meeting<T> {
+/// A ray along which the eye sees, from it or from a mirror.
+#[derive(Clone, Copy)]
+struct Sight<T> {
     /// Position in the group.
     pixel: usize,
     ray: Ray<T>,
+    /// What is seen along it counts by this factor.
+    weight: f64,
+}
+
+/// Where a sight met something.
+struct Meeting<T> {
+    sight: Sight<T>,
     t: T,
     surface: Surface,
 }
 
 impl<T: Real> Wave<'_, T> {
     fn pixels(&mut self, places: &[[u32; 2]]) -> Vec<PixelBlock> {
-        let rays: Vec<Ray<T>> = places.iter().map(|place| self.camera_ray(*place)).collect();
-        let traces = trace(&mut self.field, &rays, &self.limits);
-        let mut shades: Vec<Shade> = traces.iter().map(|trace| self.unlit(trace)).collect();
-        let meetings = self.meetings(&rays, &traces);
-        for meeting in &meetings {
-            shades[meeting.pixel].color = meeting.surface.ambient(self.view.ambient);
+        let eyes = places.iter().enumerate();
+        let mut sights: Vec<Sight<T>> = eyes
+            .map(|(pixel, place)| Sight { pixel, ray: self.camera_ray(*place), weight: 1.0 })
+            .collect();
+        let mut shades = vec![Shade { color: DVec3::ZERO, evaluations: 0 }; places.len()];
+        let seen = self.traced(&sights, &mut shades);
+        let mut meetings = self.lit_meetings(&sights, &seen, &mut shades);
+        for _ in 0..self.view.reflections {
+            sights = meetings.iter().map(|meeting| self.mirrored(meeting)).collect();
+            let traces = self.traced(&sights, &mut shades);
+            meetings = self.lit_meetings(&sights, &traces, &mut shades);
         }
-        for light in &self.view.lights {
-            self.light(light, &meetings, &mut shades);
-        }
-        let pixels = traces.iter().zip(shades);
+        let pixels = seen.iter().zip(shades);
         pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
     }
 
-    /// What a pixel is before its surface is lit.
-    fn unlit(&self, trace: &Trace<T>) -> Shade {
-        Shade { color: self.view.background, evaluations: trace.evaluations }
+    fn traced(&mut self, sights: &[Sight<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
+        let rays: Vec<Ray<T>> = sights.iter().map(|sight| sight.ray).collect();
+        let traces = trace(&mut self.field, &rays, &self.limits);
+        for (sight, trace) in sights.iter().zip(&traces) {
+            shades[sight.pixel].evaluations += trace.evaluations;
+        }
+        traces
+    }
+
+    /// Adds the background where sights met nothing, and what lights what they met.
+    fn lit_meetings(
+        &mut self,
+        sights: &[Sight<T>],
+        traces: &[Trace<T>],
+        shades: &mut [Shade],
+    ) -> Vec<Meeting<T>> {
+        for (sight, _) in sights.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
+            shades[sight.pixel].color += self.view.background * sight.weight;
+        }
+        let meetings = self.meetings(sights, traces);
+        for Meeting { sight, surface, .. } in &meetings {
+            shades[sight.pixel].color += surface.ambient(self.view.ambient) * sight.weight;
+        }
+        for light in &self.view.lights {
+            self.light(light, &meetings, shades);
+        }
+        meetings
     }
 
     fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
@@ -212,38 +248,39 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// Normals and materials where rays met something.
-    fn meetings(&mut self, rays: &[Ray<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
+    /// Normals and materials where sights met something.
+    fn meetings(&mut self, sights: &[Sight<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
         let Some(gradient) = &mut self.gradient else { return Vec::new() };
-        let hits: Vec<usize> = (0..traces.len()).filter(|i| traces[*i].status == HIT).collect();
-        let points: Vec<[T; 3]> = hits.iter().map(|i| rays[*i].at(traces[*i].t)).collect();
+        let met = sights.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
+        let hits: Vec<(Sight<T>, T)> = met.map(|(sight, trace)| (*sight, trace.t)).collect();
+        let points: Vec<[T; 3]> = hits.iter().map(|(sight, t)| sight.ray.at(*t)).collect();
         let gradients = values_at(gradient, &points);
         let materials = self.material.as_mut().map(|material| values_at(material, &points));
-        let meeting = |(index, pixel): (usize, usize)| {
+        let meeting = |(index, (sight, t)): (usize, (Sight<T>, T))| {
             let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
             let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
-            let ray = rays[pixel];
-            let toward_eye = -vector(ray.direction);
+            let toward_eye = -vector(sight.ray.direction);
             let surface = Surface::new(DVec3::new(x, y, z), toward_eye, paint);
-            Meeting { pixel, ray, t: traces[pixel].t, surface }
+            Meeting { sight, t, surface }
         };
         hits.into_iter().enumerate().map(meeting).collect()
     }
 
     /// Adds what a lamp lights, and the evaluations that it takes to know what shades it.
     fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
-        let lit = meetings.iter().map(|meeting| (meeting, meeting.surface.lit(light)));
+        let lit = |meeting: &Meeting<T>| meeting.surface.lit(light) * meeting.sight.weight;
+        let lit = meetings.iter().map(|meeting| (meeting, lit(meeting)));
         // A surface that returns nothing needs no ray to the lamp.
         let (asked, sure): (Vec<_>, Vec<_>) =
             lit.partition(|(_, lit)| light.shadow && !lit.cmple(DVec3::ZERO).all());
         for (meeting, lit) in sure {
-            shades[meeting.pixel].color += lit;
+            shades[meeting.sight.pixel].color += lit;
         }
         let rays: Vec<Ray<T>> =
             asked.iter().map(|(meeting, _)| self.lamp_ray(meeting, light)).collect();
         let traces = trace(&mut self.field, &rays, &self.limits);
         for ((meeting, lit), trace) in asked.into_iter().zip(traces) {
-            let shade = &mut shades[meeting.pixel];
+            let shade = &mut shades[meeting.sight.pixel];
             shade.evaluations += trace.evaluations;
             if trace.status != HIT {
                 shade.color += lit;
@@ -251,20 +288,47 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// From a surface towards a lamp, lifted off the surface by more than its hit's tolerance.
+    /// How far along the ray a hit may be off.
+    fn near(&self, Meeting { sight, t, .. }: &Meeting<T>) -> T {
+        self.limits.tolerance(&sight.ray, *t).max(sight.ray.rounding(*t))
+    }
+
+    /// Where a ray starts that leaves the surface: so far above it, and a little before the hit, since
+    /// in a crease one surface's normal does not lead out of the other.
+    fn lifted(&self, meeting: &Meeting<T>, lift: T) -> [T; 3] {
+        let back = T::constant(0.25) * self.near(meeting);
+        let point = meeting.sight.ray.at(meeting.t - back);
+        let normal = meeting.surface.normal.to_array().map(T::constant);
+        std::array::from_fn(|axis| point[axis] + lift * normal[axis])
+    }
+
+    /// From a surface towards a lamp.
     fn lamp_ray(&self, meeting: &Meeting<T>, light: &ViewLight) -> Ray<T> {
-        let Meeting { ray, t, surface, .. } = meeting;
-        let near = self.limits.tolerance(ray, *t).max(ray.rounding(*t));
-        let lift = (T::constant(3.0) * near).max(ray.footprint(*t));
-        let point = ray.at(*t);
-        let normal = surface.normal.to_array().map(T::constant);
+        let half_pixel = meeting.sight.ray.footprint(meeting.t);
+        let lift = (T::constant(3.0) * self.near(meeting)).max(half_pixel);
         Ray {
-            origin: std::array::from_fn(|axis| point[axis] + lift * normal[axis]),
+            origin: self.lifted(meeting, lift),
             direction: light.direction.to_array().map(T::constant),
             t_max: T::constant(self.view.t_max),
             radius: T::constant(0.5) * lift,
             spread: T::constant(0.0),
         }
+    }
+
+    /// From a surface to what it mirrors.
+    fn mirrored(&self, meeting: &Meeting<T>) -> Sight<T> {
+        let Meeting { sight, t, surface } = meeting;
+        let inward = -surface.toward_eye;
+        let direction = inward - 2.0 * inward.dot(surface.normal) * surface.normal;
+        let ray = Ray {
+            origin: self.lifted(meeting, T::constant(1.5) * self.near(meeting)),
+            direction: direction.to_array().map(T::constant),
+            t_max: T::constant(self.view.t_max),
+            radius: sight.ray.footprint(*t),
+            spread: sight.ray.spread,
+        };
+        let weight = sight.weight * self.view.reflection_strength;
+        Sight { pixel: sight.pixel, ray, weight }
     }
 
     fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {

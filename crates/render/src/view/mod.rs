@@ -12,7 +12,7 @@ use sdfc_graph::{
     Light, March, NodeId, Program, Settings, Shadow,
     eval::{FrameValues, evaluate_frame},
 };
-use sdfc_march::{LightBlock, MAX_LIGHTS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
+use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
 
 use crate::tiles::Tile;
 use pose::Pose;
@@ -69,6 +69,10 @@ pub struct View {
     pub ambient: DVec3,
     /// Linear colour behind everything.
     pub background: DVec3,
+    /// A ray from the eye is mirrored at most so often, at most [`MAX_REFLECTIONS`] times.
+    pub reflections: u32,
+    /// What is seen in a mirror counts by this factor, 0..1, once more for each mirror.
+    pub reflection_strength: f64,
 }
 
 /// A setting whose values make no picture. The values are those of this frame.
@@ -82,6 +86,8 @@ pub enum ViewError {
     NotFinite(&'static str),
     /// A number that must be above 0 is not; which, and its value.
     NotPositive(&'static str, f64),
+    /// The strength of reflections is not within 0..1.
+    ReflectionStrength(f64),
     /// The direction of a light has no length.
     LightDirection,
     /// More lights than [`MAX_LIGHTS`].
@@ -103,6 +109,9 @@ impl fmt::Display for ViewError {
             ),
             Self::NotFinite(what) => write!(f, "{what} is not a finite number"),
             Self::NotPositive(what, value) => write!(f, "{what} is {value}; it must be above 0"),
+            Self::ReflectionStrength(value) => {
+                write!(f, "the strength of reflections is {value}; it must lie between 0 and 1")
+            }
             Self::LightDirection => f.write_str("a light's direction is [0, 0, 0]"),
             Self::TooManyLights(count) => {
                 write!(f, "the scene has {count} lights; at most {MAX_LIGHTS} are drawn")
@@ -153,6 +162,12 @@ impl View {
         let [right, up, forward] = pose.basis();
         let half_height = (pose.fov / 2.0).tan();
         let limits = Limits::new(&settings.march, &pose, bounds)?;
+        let (reflections, reflection_strength) = match &settings.reflections {
+            Some(mirrors) => {
+                (mirrors.count.min(MAX_REFLECTIONS), strength(value(mirrors.strength))?)
+            }
+            None => (0, 0.0),
+        };
         let color = |node: Option<NodeId>, what| {
             node.map_or(Ok(DVec3::ZERO), |node| finite(value(node), what))
         };
@@ -169,6 +184,8 @@ impl View {
             lights: lights(&settings.lights, forward, value)?,
             ambient: color(settings.ambient, "the ambient light")?,
             background: color(settings.background, "the background colour")?,
+            reflections,
+            reflection_strength,
         })
     }
 
@@ -217,9 +234,9 @@ impl View {
             light_count: self.lights.len().min(MAX_LIGHTS) as u32,
             fixed_step: self.fixed_step as f32,
             ambient: self.ambient.as_vec3().to_array(),
-            pad0: 0.0,
+            reflections: self.reflections,
             background: self.background.as_vec3().to_array(),
-            pad1: 0.0,
+            reflection_strength: self.reflection_strength as f32,
             lights,
         }
     }
@@ -298,6 +315,12 @@ fn view_light(light: &Light, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<ViewL
     })
 }
 
+/// Of reflections.
+fn strength([strength, ..]: [f64; 4]) -> Result<f64, ViewError> {
+    let within = (0.0..=1.0).contains(&strength);
+    if within { Ok(strength) } else { Err(ViewError::ReflectionStrength(strength)) }
+}
+
 fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError> {
     let vector = DVec3::new(x, y, z);
     if vector.is_finite() { Ok(vector) } else { Err(ViewError::NotFinite(what)) }
@@ -305,7 +328,7 @@ fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError
 
 #[cfg(test)]
 mod tests {
-    use sdfc_graph::Camera;
+    use sdfc_graph::{Camera, Reflections};
 
     use super::*;
 
@@ -446,6 +469,11 @@ mod tests {
         let mut fixture = Fixture::new();
         (0..=MAX_LIGHTS).for_each(|_| fixture.light([0.0, 1.0, 0.0], Shadow::Off));
         assert_eq!(error(&fixture), ViewError::TooManyLights(MAX_LIGHTS + 1));
+
+        let mut fixture = Fixture::new();
+        let strength = fixture.0.graph.number(1.5);
+        fixture.0.settings.reflections = Some(Reflections { count: 1, strength });
+        assert_eq!(error(&fixture), ViewError::ReflectionStrength(1.5));
 
         let mut fixture = Fixture::new();
         fixture.0.settings.march.distance = Some(-3.0);

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use sdfc_graph::{
-    Camera, Dim, FrameInput, Graph, Light, NodeId, Param, ParamKind, Program, Shadow, Type, Unary,
-    eval::FrameValues,
+    Camera, Dim, FrameInput, Graph, Light, NodeId, Param, ParamKind, Program, Reflections, Shadow,
+    Type, Unary, eval::FrameValues,
 };
 use sdfc_render::{Bounds, View};
 
@@ -68,6 +68,14 @@ pub fn sphere_above_floor() -> Program {
     program.settings.ambient = Some(graph.constant(Type::Vec3, &[0.1; 3]));
     program.settings.background = Some(graph.constant(Type::Vec3, &[0.0, 0.0, 1.0]));
     program.settings.lights.push(light);
+    program
+}
+
+/// The same, every surface a mirror of half the light.
+pub fn mirrors() -> Program {
+    let mut program = sphere_above_floor();
+    let strength = program.graph.number(0.5);
+    program.settings.reflections = Some(Reflections { count: 1, strength });
     program
 }
 
