@@ -8,6 +8,9 @@ use sdfc::compile;
 /// Runs of each scene; the first is left out.
 const RUNS: usize = 21;
 
+/// Leaves that are turned too.
+const TURNED: &str = "box([0.2, 0.3, 0.1]).rotate(x: i * 1deg, y: i * 2deg, z: i * 3deg).round(";
+
 fn main() {
     // `cargo test --benches` passes no `--bench`: then there is nothing to measure.
     if !std::env::args().any(|argument| argument == "--bench") {
@@ -19,6 +22,7 @@ fn main() {
         ("100 hard", many(100, "min")),
         ("1000 hard", many(1000, "min")),
         ("1000 smooth", many(1000, "smooth(0.05)")),
+        ("1000 turned", many(1000, "smooth(0.05)").replace("sphere(", TURNED)),
     ];
     let mut table =
         String::from("scene           front  analyze    lower  validate    total  (ms, median)\n");
