@@ -102,6 +102,18 @@ pub struct Compile {
     /// Which part to write
     #[arg(long, value_enum, default_value_t)]
     pub emit: Emit,
+    /// Start of every name
+    #[arg(long, value_name = "NAME", default_value = "sdf_")]
+    pub prefix: String,
+    /// Bind group of the uniform buffer
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub group: u32,
+    /// Its binding
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub binding: u32,
+    /// Where names, layouts and what is known of the field go, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub reflect: Option<PathBuf>,
 }
 
 /// Languages that shaders are written in.
@@ -110,6 +122,29 @@ pub enum Target {
     /// WebGPU's
     #[default]
     Wgsl,
+    /// GLSL 4.50
+    Glsl,
+    /// GLSL ES 3.00, that of WebGL 2
+    GlslEs,
+    /// DirectX, shader model 5.1
+    Hlsl,
+    /// Metal 2.1
+    Msl,
+    /// SPIR-V 1.3 for Vulkan
+    Spirv,
+}
+
+impl From<Target> for sdfc::Target {
+    fn from(target: Target) -> Self {
+        match target {
+            Target::Wgsl => Self::Wgsl,
+            Target::Glsl => Self::Glsl,
+            Target::GlslEs => Self::GlslEs,
+            Target::Hlsl => Self::Hlsl,
+            Target::Msl => Self::Msl,
+            Target::Spirv => Self::Spirv,
+        }
+    }
 }
 
 /// Parts of the shader, and what it is made from.
@@ -120,6 +155,15 @@ pub enum Emit {
     Field,
     /// The whole shader that draws pictures
     Render,
+}
+
+impl From<Emit> for sdfc::Emit {
+    fn from(emit: Emit) -> Self {
+        match emit {
+            Emit::Field => Self::Field,
+            Emit::Render => Self::Render,
+        }
+    }
 }
 
 /// Arguments of `render`.

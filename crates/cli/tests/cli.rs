@@ -120,6 +120,10 @@ fn wrong_calls_are_status_2() {
         &["render", "scene.sdf", "--march", "magic"],
         &["render", "scene.sdf", "--backend", "abacus"],
         &["compile", "scene.sdf", "--target", "cobol"],
+        &["compile", "scene.sdf", "--target", "glsl-es", "--emit", "render"],
+        &["compile", "scene.sdf", "--prefix", "9x"],
+        &["compile", "scene.sdf", "--reflect", "-", "-o", "-"],
+        &["compile", "scene.sdf", "--binding", "-1"],
         &["check", "-q", "-v", "scene.sdf"],
         &["render", "scene.sdf", "-o", "scene.sdf"],
         &["render", "scene.sdf", "-o", "-", "--stats", "-"],
@@ -147,6 +151,25 @@ fn colour_is_given_when_asked_for() {
 }
 
 #[test]
+fn a_reflection_goes_beside_its_shader() {
+    let folder = folder();
+    let args = ["compile", "scene.sdf", "--target", "spirv", "-o", "a.spv", "--reflect", "a.json"];
+    let output = run(&folder, &args);
+    assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    let reflection = std::fs::read(folder.path().join("a.json")).unwrap();
+    let reflection: Value = serde_json::from_slice(&reflection).unwrap();
+    for key in "sdfc source_hash prefix target functions params uniform certificate".split(' ') {
+        assert!(reflection.get(key).is_some(), "{key}");
+    }
+    let words = std::fs::read(folder.path().join("a.spv")).unwrap();
+    assert_eq!(words[..4], 0x0723_0203_u32.to_le_bytes(), "SPIR-V's first word");
+
+    let args = ["compile", "scene.sdf", "-o", "b.wgsl", "--reflect", "none/b.json"];
+    assert_eq!(status(&run(&folder, &args)), 3);
+    assert_eq!(names(folder.path()), ["a.json", "a.spv", "scene.sdf", "wrong.sdf"]);
+}
+
+#[test]
 fn shaders_go_to_stdout_or_whole_into_a_file() {
     let folder = folder();
     let streamed = run(&folder, &["compile", "scene.sdf"]);
@@ -156,6 +179,7 @@ fn shaders_go_to_stdout_or_whole_into_a_file() {
     assert_eq!(status(&written), 0);
     assert!(written.stdout.is_empty());
     assert_eq!(std::fs::read(folder.path().join("scene.wgsl")).unwrap(), streamed.stdout);
+    assert!(text(&streamed.stdout).starts_with("// sdfc "));
     assert_eq!(names(folder.path()), ["scene.sdf", "scene.wgsl", "wrong.sdf"]);
 }
 

@@ -4,6 +4,8 @@ use std::fmt;
 
 use sdfc_graph::NodeId;
 
+use crate::Target;
+
 /// Why a program cannot become a shader.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -36,8 +38,44 @@ pub enum Error {
     BadLane(NodeId),
     /// Constant limits whose lanes are not in the same order.
     MixedLimits(NodeId),
+    /// A target's language has no such thing.
+    Unsupported {
+        /// The target.
+        target: Target,
+        /// What it lacks.
+        what: &'static str,
+    },
+    /// A bind group or a binding beyond what a target's numbers can say.
+    BindingTooLarge {
+        /// The target.
+        target: Target,
+        /// The number.
+        number: u32,
+    },
     /// The shader does not validate, or a writer refused it; naga's own words.
     Naga(String),
+}
+
+impl Error {
+    /// Whether what was asked for is the cause, not the scene.
+    pub fn is_call(&self) -> bool {
+        match self {
+            Self::UnknownMethod(_)
+            | Self::BadPrefix(_)
+            | Self::Unsupported { .. }
+            | Self::BindingTooLarge { .. } => true,
+            Self::NothingDrawn
+            | Self::MissingRoot(_)
+            | Self::NotFinite { .. }
+            | Self::NotFolded(_)
+            | Self::NotFlat(_)
+            | Self::UnboundInput(_)
+            | Self::IllTyped(_)
+            | Self::BadLane(_)
+            | Self::MixedLimits(_)
+            | Self::Naga(_) => false,
+        }
+    }
 }
 
 impl fmt::Display for Error {
@@ -72,6 +110,12 @@ impl fmt::Display for Error {
             }
             Self::MixedLimits(node) => {
                 write!(f, "node {} has limits that ascend in some lanes only", node.index())
+            }
+            Self::Unsupported { target, what } => {
+                write!(f, "{} has no {what}", target.name())
+            }
+            Self::BindingTooLarge { target, number } => {
+                write!(f, "{} counts groups and bindings up to 255, not {number}", target.name())
             }
             Self::Naga(text) => write!(f, "the shader was refused: {text}"),
         }

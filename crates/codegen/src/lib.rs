@@ -8,7 +8,8 @@
 //! - [`render_module`]: the compute shader of a picture; the same functions fill the stubs of a ray
 //!   method and of shading, which are the `.wgsl` files of `sdfc-march`.
 //!
-//! Both yield a [`Shader`]: a validated module, written as WGSL or SPIR-V, or handed over as it is.
+//! Both yield a [`Shader`]: a validated module, written in the language of a [`Target`], or handed over
+//! as it is.
 //!
 //! ```
 //! use sdfc_codegen::{FieldOptions, field_module};
@@ -47,6 +48,7 @@ mod lower;
 mod picture;
 mod reflect;
 mod shader;
+mod target;
 mod types;
 
 pub use error::Error;
@@ -55,4 +57,5 @@ pub use instructions::FunctionCost;
 pub use picture::render_module;
 pub use reflect::{FunctionInfo, Member, Reflection, Role, Uniform};
 pub use sdfc_march::Features;
-pub use shader::Shader;
+pub use shader::{Shader, Written};
+pub use target::{Code, Target};

@@ -4,6 +4,8 @@ use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
 use naga::{FastHashMap, GlobalVariable, Handle, Module};
 use sdfc_graph::{FrameInput, Type};
 
+use crate::target::{Code, Written};
+
 /// What a function computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
@@ -22,7 +24,8 @@ pub struct FunctionInfo {
     pub role: Role,
     /// Its name in the written text.
     pub name: String,
-    /// How WGSL declares it, such as `fn sdf_distance(p: vec3<f32>) -> f32`.
+    /// How the text declares it, such as `fn sdf_distance(p: vec3<f32>) -> f32`; as WGSL would for
+    /// SPIR-V.
     pub signature: String,
 }
 
@@ -54,6 +57,8 @@ pub struct Uniform {
     pub binding: u32,
     /// Size in bytes.
     pub size: u32,
+    /// In GLSL, the name of its block.
+    pub block: Option<String>,
 }
 
 /// What a shader offers. Names are those of the written text.
@@ -106,9 +111,46 @@ pub(crate) fn reflect(module: &Module, parts: &Parts) -> Reflection {
             group: binding.group,
             binding: binding.binding,
             size: module.types[variable.ty].inner.size(module.to_ctx()),
+            block: None,
         });
     }
     reflection
+}
+
+/// Reads the names off what a writer gave.
+pub(crate) fn reflect_written(module: &Module, parts: &Parts, written: &Written) -> Reflection {
+    let mut reflection = reflect(module, parts);
+    if let Code::Text(text) = &written.code {
+        for function in &mut reflection.functions {
+            if let Some((name, signature)) = declaration(text, &function.name) {
+                *function = FunctionInfo { role: function.role, name, signature };
+            }
+        }
+    }
+    if let Some(uniform) = &mut reflection.uniform {
+        let mut blocks = written.blocks.iter();
+        let block = blocks.find(|(handle, _)| Some(*handle) == parts.uniform);
+        uniform.block = block.map(|(_, name)| name.clone());
+    }
+    reflection
+}
+
+/// Name and head of the function of that name in the text, on one line. naga adds `_` to names that the
+/// language has itself. Heads stand at the start of a line, calls do not.
+fn declaration(text: &str, name: &str) -> Option<(String, String)> {
+    [name.to_owned(), format!("{name}_")].into_iter().find_map(|name| {
+        let call = format!(" {name}(");
+        let mut places = text.match_indices(&call).map(|(place, _)| place);
+        places.find_map(|place| {
+            let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
+            let rest = &text[start..];
+            let head = &rest[..rest.find('{')?];
+            let is_head = !head.starts_with(char::is_whitespace) && !head.contains([';', '=']);
+            let words: Vec<_> = head.split_whitespace().collect();
+            let signature = words.join(" ").replace("( ", "(").replace(" )", ")");
+            is_head.then(|| (name.clone(), signature))
+        })
+    })
 }
 
 /// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.

@@ -2,13 +2,23 @@
 
 use std::time::{Duration, Instant};
 
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Module, back};
+use naga::Module;
+use naga::valid::ModuleInfo;
 use sdfc_march::Features;
 
 use crate::Error;
 use crate::instructions::{FunctionCost, count};
-use crate::reflect::{Parts, Reflection, reflect};
+use crate::reflect::{Parts, Reflection, reflect, reflect_written};
+use crate::target::{self, Code, Target};
+
+/// A shader in a target's language, and what it offers by the names that it has there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Text or words.
+    pub code: Code,
+    /// Functions, uniforms and their names.
+    pub reflection: Reflection,
+}
 
 /// A validated module.
 #[derive(Debug)]
@@ -23,9 +33,7 @@ pub struct Shader {
 impl Shader {
     pub(crate) fn new(module: Module, parts: Parts, features: Features) -> Result<Self, Error> {
         let start = Instant::now();
-        let info = Validator::new(ValidationFlags::all(), Capabilities::default())
-            .validate(&module)
-            .map_err(|error| Error::Naga(error.emit_to_string("")))?;
+        let info = target::validate(&module)?;
         Ok(Self { module, info, parts, features, validation: start.elapsed() })
     }
 
@@ -54,15 +62,30 @@ impl Shader {
         reflect(&self.module, &self.parts)
     }
 
+    /// The shader in a target's language. A text begins with `comment`, which is one line (in GLSL its
+    /// second line, after the version).
+    ///
+    /// GLSL holds one stage in a text. Of a module without entry points, GLSL has all functions and an
+    /// empty fragment stage; of one with several, the last. Its bindings keep their number and lose
+    /// their group, as do Metal's; in ES 3.00 they have none and go by [`crate::Uniform::block`].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`] where the language cannot hold it, [`Error::BindingTooLarge`],
+    /// [`Error::Naga`] where naga's writer refuses the module.
+    pub fn write(&self, target: Target, comment: &str) -> Result<Written, Error> {
+        let written = target::write(target, &self.module, &self.info, comment)?;
+        let reflection = reflect_written(&self.module, &self.parts, &written);
+        Ok(Written { code: written.code, reflection })
+    }
+
     /// The text in WGSL, without a comment.
     ///
     /// # Errors
     ///
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn wgsl(&self) -> Result<String, Error> {
-        let flags = back::wgsl::WriterFlags::empty();
-        back::wgsl::write_string(&self.module, &self.info, flags)
-            .map_err(|error| Error::Naga(error.to_string()))
+        target::wgsl(&self.module, &self.info)
     }
 
     /// The words of the module in SPIR-V 1.3 for Vulkan, with names. A module without an entry point
@@ -72,13 +95,7 @@ impl Shader {
     ///
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn spirv(&self) -> Result<Vec<u32>, Error> {
-        let options = back::spv::Options {
-            lang_version: (1, 3),
-            flags: back::spv::WriterFlags::DEBUG | back::spv::WriterFlags::LABEL_VARYINGS,
-            ..Default::default()
-        };
-        back::spv::write_vec(&self.module, &self.info, &options, None)
-            .map_err(|error| Error::Naga(error.to_string()))
+        target::spirv(&self.module, &self.info)
     }
 
     /// What each function of the point costs in SPIR-V as naga writes it, before any optimiser.

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{blend, lit, mirrored, painted, sphere, twisted};
-use sdfc_codegen::{FieldOptions, Shader, field_module, render_module};
+use sdfc_codegen::{Code, Error, FieldOptions, Shader, Target, field_module, render_module};
 use sdfc_graph::{Program, Shadow};
 use sdfc_march::METHODS;
 
@@ -81,4 +81,46 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();
         assert_eq!((calls("field"), calls("trace")), (1, 1), "{}", method.name);
     }
+}
+
+/// The painted sphere with a param, and what the reflection says of it.
+#[test]
+fn a_small_scene_in_every_text() {
+    let options = FieldOptions { binding: 3, ..FieldOptions::default() };
+    let shader = field_module(&blend(), &options).expect("lowers");
+    for target in Target::ALL {
+        let written = shader.write(target, "a\nb\\").expect("is written");
+        let Code::Text(text) = written.code else { continue };
+        let reflection = written.reflection;
+        insta::assert_snapshot!(
+            format!("a_blend_as_{}", target.name()),
+            format!("{text}\n{:#?}\n{:#?}", reflection.functions, reflection.uniform)
+        );
+    }
+}
+
+#[test]
+fn names_that_a_language_has_itself_are_reported_as_they_are_written() {
+    let options = FieldOptions { prefix: String::new(), ..FieldOptions::default() };
+    let shader = field_module(&sphere(), &options).expect("lowers");
+    let written = shader.write(Target::Glsl, "").expect("is written");
+    let distance = &written.reflection.functions[0];
+    assert_eq!(distance.name, "distance_");
+    assert_eq!(distance.signature, "float distance_(vec3 p)");
+}
+
+#[test]
+fn what_a_language_cannot_hold_is_refused() {
+    let picture = render_module(&sphere(), "auto").expect("links");
+    let target = Target::GlslEs;
+    let refused = Error::Unsupported { target, what: "compute stage" };
+    assert_eq!(picture.write(target, ""), Err(refused));
+
+    let options = FieldOptions { binding: 256, ..FieldOptions::default() };
+    let shader = field_module(&blend(), &options).expect("lowers");
+    for target in [Target::Glsl, Target::Msl] {
+        let refused = Error::BindingTooLarge { target, number: 256 };
+        assert_eq!(shader.write(target, ""), Err(refused));
+    }
+    assert!(shader.write(Target::Wgsl, "").is_ok());
 }

@@ -9,6 +9,7 @@ use sdfc_graph::{Param, Program};
 use sdfc_lang::{Elaborated, NoFiles, Resolver, Site};
 
 use crate::scene::DerivedBounds;
+use crate::shader::Origin;
 
 /// What compiling a source gave: findings, and the scene if none of them is an error.
 #[derive(Debug)]
@@ -51,6 +52,7 @@ pub struct Scene {
     /// Derived when first asked for; a shader needs none.
     pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
     pub(crate) times: FrontTimes,
+    pub(crate) origin: Origin,
 }
 
 impl Scene {
@@ -112,7 +114,9 @@ pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> 
     let file = sources.add(name, text);
     let (elaborated, mut diagnostics) = sdfc_lang::front_with_imports(&mut sources, file, resolver);
     let front = milliseconds(start);
-    let scene = elaborated.and_then(|elaborated| finish(elaborated, front, file, &mut diagnostics));
+    let origin = Origin::new(&sources, file);
+    let scene =
+        elaborated.and_then(|elaborated| finish(elaborated, origin, front, file, &mut diagnostics));
     Compiled { sources, diagnostics, scene }
 }
 
@@ -133,6 +137,7 @@ pub fn format(name: &str, text: &str, color: bool) -> Result<String, String> {
 
 fn finish(
     elaborated: Elaborated,
+    origin: Origin,
     front: f64,
     file: FileId,
     diagnostics: &mut Vec<Diagnostic>,
@@ -142,7 +147,7 @@ fn finish(
         Ok(prepared) => {
             let times = FrontTimes { front, analyze: milliseconds(start) };
             let (program, report) = (prepared.program, prepared.report);
-            Some(Scene { elaborated, program, report, bounds: OnceLock::new(), times })
+            Some(Scene { elaborated, program, report, bounds: OnceLock::new(), times, origin })
         }
         Err(error) => {
             let span = Span::new(file, 0, 0);

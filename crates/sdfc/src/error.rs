@@ -26,6 +26,17 @@ impl Error {
             Self::NothingDrawn | Self::Codegen(_) | Self::Evaluate(_) | Self::View(_) => false,
         }
     }
+
+    /// Whether the call is the cause, not the scene or the machine.
+    pub fn is_call(&self) -> bool {
+        match self {
+            Self::Codegen(error) => error.is_call(),
+            Self::Render(error) => {
+                matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
+            }
+            Self::NothingDrawn | Self::Evaluate(_) | Self::View(_) => false,
+        }
+    }
 }
 
 impl std::fmt::Display for Error {

@@ -34,15 +34,19 @@ mod error;
 mod explain;
 mod params;
 mod picture;
+mod reflection;
 mod scene;
+mod shader;
 
 pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use params::ParamError;
 pub use picture::{Backend, Painter, Picture, PictureOptions};
+pub use reflection::{Certificate, FunctionRow, ParamRow, ShaderReflection, Sides, UniformRow};
+pub use shader::{Emit, ShaderOptions};
 
-pub use sdfc_codegen::{FieldOptions, Shader};
+pub use sdfc_codegen::{Code, FieldOptions, Shader, Target, Written};
 pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;
 pub use sdfc_graph::eval::FrameValues;

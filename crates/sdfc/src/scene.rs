@@ -100,7 +100,7 @@ impl Scene {
         })
     }
 
-    fn finite_bounds(&self) -> Bounds {
+    pub(crate) fn finite_bounds(&self) -> Bounds {
         let frame = FrameValues::defaults(self.params());
         let finite = |corner: [f64; 3]| corner.map(|value| value.is_finite().then_some(value));
         match self.bounds_at(&frame) {
@@ -144,7 +144,7 @@ impl Scene {
     }
 
     /// One row for each call in the scene's own files whose shape is drawn.
-    fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
+    pub(crate) fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
         let mut rows: Vec<QualityRow> = Vec::new();
         for site in self.sites() {
             let Some(shape) = self.report.shapes.iter().find(|s| s.shape == site.shape) else {

@@ -35,7 +35,7 @@ fn lowering(error: &Error, console: &Console) -> Failure {
     if matches!(error, Error::Render(RenderError::Cancelled)) {
         return Failure::Interrupted("stopped; no picture is written".to_owned());
     }
-    if matches!(error, Error::Render(RenderError::Size(_) | RenderError::MethodNotOnCpu(_))) {
+    if error.is_call() {
         return Failure::Call(message);
     }
     console.error(&message);

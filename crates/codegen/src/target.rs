@@ -1,0 +1,262 @@
+//! The languages that shaders are written in.
+
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{
+    EntryPoint, Expression, Function, Module, ResourceBinding, ShaderStage, Span, Statement, back,
+};
+
+use crate::Error;
+
+/// A language that shaders are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// WebGPU's.
+    Wgsl,
+    /// GLSL 4.50, one stage in a text.
+    Glsl,
+    /// GLSL ES 3.00, WebGL 2's, one stage in a text; it has no compute stage.
+    GlslEs,
+    /// Shader model 5.1.
+    Hlsl,
+    /// Metal 2.1.
+    Msl,
+    /// SPIR-V 1.3 for Vulkan, with names.
+    Spirv,
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Wgsl, Self::Glsl, Self::GlslEs, Self::Hlsl, Self::Msl, Self::Spirv];
+
+    /// What the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wgsl => "wgsl",
+            Self::Glsl => "glsl",
+            Self::GlslEs => "glsl-es",
+            Self::Hlsl => "hlsl",
+            Self::Msl => "msl",
+            Self::Spirv => "spirv",
+        }
+    }
+}
+
+/// A shader in a target's language.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Code {
+    /// The text.
+    Text(String),
+    /// The words of SPIR-V.
+    Words(Vec<u32>),
+}
+
+impl Code {
+    /// As a file holds it: UTF-8, or words of four bytes, the lowest first.
+    pub fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Self::Text(text) => text.into_bytes(),
+            Self::Words(words) => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+        }
+    }
+}
+
+/// What a writer gives.
+pub(crate) struct Written {
+    pub(crate) code: Code,
+    /// Name of the block of each uniform variable, where the language has such names.
+    pub(crate) blocks: Vec<(naga::Handle<naga::GlobalVariable>, String)>,
+}
+
+impl Written {
+    fn text(text: String) -> Self {
+        Self { code: Code::Text(text), blocks: Vec::new() }
+    }
+}
+
+/// Writes a validated module; `comment` is one line for the head of a text.
+pub(crate) fn write(
+    target: Target,
+    module: &Module,
+    info: &ModuleInfo,
+    comment: &str,
+) -> Result<Written, Error> {
+    let head = |text: String| Written::text(format!("// {}\n\n{text}", one_line(comment)));
+    match target {
+        Target::Wgsl => wgsl(module, info).map(head),
+        Target::Glsl => glsl(target, back::glsl::Version::Desktop(450), module, info, comment),
+        Target::GlslEs => glsl(target, back::glsl::Version::new_gles(300), module, info, comment),
+        Target::Hlsl => hlsl(module, info).map(head),
+        Target::Msl => msl(module, info).map(head),
+        Target::Spirv => {
+            let words = spirv(module, info)?;
+            Ok(Written { code: Code::Words(words), blocks: Vec::new() })
+        }
+    }
+}
+
+/// A comment that ends where its line does, in every language: `\` at the end of a line continues it.
+fn one_line(comment: &str) -> String {
+    comment.chars().map(|c| if c.is_control() || c == '\\' { '?' } else { c }).collect()
+}
+
+pub(crate) fn wgsl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
+    let flags = back::wgsl::WriterFlags::empty();
+    back::wgsl::write_string(module, info, flags).map_err(refused)
+}
+
+pub(crate) fn spirv(module: &Module, info: &ModuleInfo) -> Result<Vec<u32>, Error> {
+    let options = back::spv::Options {
+        lang_version: (1, 3),
+        flags: back::spv::WriterFlags::DEBUG | back::spv::WriterFlags::LABEL_VARYINGS,
+        ..Default::default()
+    };
+    back::spv::write_vec(module, info, &options, None).map_err(refused)
+}
+
+/// Without an entry point, all functions and an empty fragment stage; else the last entry point.
+fn glsl(
+    target: Target,
+    version: back::glsl::Version,
+    module: &Module,
+    info: &ModuleInfo,
+    comment: &str,
+) -> Result<Written, Error> {
+    let Some(entry) = module.entry_points.last() else {
+        let module = with_empty_stage(module);
+        let info = validate(&module)?;
+        let flags = back::glsl::WriterFlags::INCLUDE_UNUSED_ITEMS;
+        return glsl_stage(target, version, flags, &module, &info, comment);
+    };
+    if target == Target::GlslEs && entry.stage == ShaderStage::Compute {
+        return Err(Error::Unsupported { target, what: "compute stage" });
+    }
+    glsl_stage(target, version, back::glsl::WriterFlags::empty(), module, info, comment)
+}
+
+/// The last entry point.
+fn glsl_stage(
+    target: Target,
+    version: back::glsl::Version,
+    writer_flags: back::glsl::WriterFlags,
+    module: &Module,
+    info: &ModuleInfo,
+    comment: &str,
+) -> Result<Written, Error> {
+    let entry = module.entry_points.last();
+    let entry = entry.ok_or(Error::Unsupported { target, what: "text without a stage" })?;
+    let options = back::glsl::Options {
+        version,
+        writer_flags,
+        binding_map: bindings(module)
+            .map(|binding| Ok((binding, slot(target, binding.binding)?)))
+            .collect::<Result<_, Error>>()?,
+        zero_initialize_workgroup_memory: true,
+    };
+    let stage = back::glsl::PipelineOptions {
+        shader_stage: entry.stage,
+        entry_point: entry.name.clone(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    let policies = naga::proc::BoundsCheckPolicies::default();
+    let reflected = back::glsl::Writer::new(&mut text, module, info, &options, &stage, policies)
+        .and_then(|mut writer| writer.write())
+        .map_err(refused)?;
+    let mut blocks: Vec<_> = reflected.uniforms.into_iter().collect();
+    blocks.sort_unstable();
+    // Nothing may stand before the version.
+    let (version, rest) = text.split_once('\n').unwrap_or((&text, ""));
+    let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));
+    Ok(Written { code, blocks })
+}
+
+/// The module and a fragment stage that does nothing but load the buffers, so that they count as used:
+/// GLSL is written a stage at a time.
+fn with_empty_stage(module: &Module) -> Module {
+    let mut module = module.clone();
+    let mut function = Function::default();
+    for (variable, _) in module.global_variables.iter().filter(|(_, v)| v.binding.is_some()) {
+        let pointer = Expression::GlobalVariable(variable);
+        let pointer = function.expressions.append(pointer, Span::UNDEFINED);
+        let before = function.expressions.len();
+        function.expressions.append(Expression::Load { pointer }, Span::UNDEFINED);
+        let loaded = function.expressions.range_from(before);
+        function.body.push(Statement::Emit(loaded), Span::UNDEFINED);
+    }
+    module.entry_points.push(EntryPoint {
+        name: "main".to_owned(),
+        stage: ShaderStage::Fragment,
+        early_depth_test: None,
+        workgroup_size: [0; 3],
+        workgroup_size_overrides: None,
+        function,
+        mesh_info: None,
+        task_payload: None,
+        incoming_ray_payload: None,
+    });
+    module
+}
+
+fn hlsl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
+    let mut binding_map = back::hlsl::BindingMap::new();
+    for binding in bindings(module) {
+        let space = slot(Target::Hlsl, binding.group)?;
+        let place =
+            back::hlsl::BindTarget { space, register: binding.binding, ..Default::default() };
+        binding_map.insert(binding, place);
+    }
+    let options = back::hlsl::Options {
+        shader_model: back::hlsl::ShaderModel::V5_1,
+        binding_map,
+        // Every loop of a ray method ends by its own counter.
+        force_loop_bounding: false,
+        ..Default::default()
+    };
+    let mut text = String::new();
+    let stages = back::hlsl::PipelineOptions::default();
+    let mut writer = back::hlsl::Writer::new(&mut text, &options, &stages);
+    writer.write(module, info, None).map_err(refused)?;
+    Ok(text)
+}
+
+fn msl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
+    let mut resources = back::msl::EntryPointResources::default();
+    for binding in bindings(module) {
+        let buffer = Some(slot(Target::Msl, binding.binding)?);
+        let place = back::msl::BindTarget { buffer, mutable: true, ..Default::default() };
+        resources.resources.insert(binding, place);
+    }
+    let last = bindings(module).map(|binding| binding.binding).max().unwrap_or(0);
+    resources.sizes_buffer = Some(slot(Target::Msl, last.saturating_add(1))?);
+    let entries = module.entry_points.iter().map(|entry| (entry.name.clone(), resources.clone()));
+    let options = back::msl::Options {
+        lang_version: (2, 1),
+        per_entry_point_map: entries.collect(),
+        force_loop_bounding: false,
+        ..Default::default()
+    };
+    let stages = back::msl::PipelineOptions::default();
+    let (text, _) = back::msl::write_string(module, info, &options, &stages).map_err(refused)?;
+    Ok(text)
+}
+
+/// Places of the buffers.
+fn bindings(module: &Module) -> impl Iterator<Item = ResourceBinding> {
+    module.global_variables.iter().filter_map(|(_, variable)| variable.binding)
+}
+
+/// Numbers that a target has 256 of.
+fn slot(target: Target, number: u32) -> Result<u8, Error> {
+    u8::try_from(number).map_err(|_| Error::BindingTooLarge { target, number })
+}
+
+pub(crate) fn validate(module: &Module) -> Result<ModuleInfo, Error> {
+    Validator::new(ValidationFlags::all(), Capabilities::default())
+        .validate(module)
+        .map_err(|error| Error::Naga(error.emit_to_string("")))
+}
+
+fn refused(error: impl std::fmt::Display) -> Error {
+    Error::Naga(error.to_string())
+}

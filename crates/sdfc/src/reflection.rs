@@ -1,0 +1,285 @@
+//! What a written shader offers, and what is known of its field, for programs.
+
+use sdfc_analyze::{Promise, Sides as ShapeSides};
+use sdfc_codegen::{Member, Role, Written};
+use sdfc_diagnostics::Sources;
+use sdfc_graph::{FrameInput, Param, ParamKind, Type};
+use serde::Serialize;
+
+use crate::{Bounds, QualityRow, Scene, ShaderOptions};
+
+/// The reflection of a written shader. The keys are a promise to other tools: some may be added, none
+/// renamed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShaderReflection {
+    /// Version of sdfc.
+    pub sdfc: &'static str,
+    /// As [`Scene::source_hash`].
+    pub source_hash: String,
+    /// Start of every name.
+    pub prefix: String,
+    /// The language.
+    pub target: &'static str,
+    /// Functions of the point.
+    pub functions: Vec<FunctionRow>,
+    /// Members of the uniform structure, in its order.
+    pub params: Vec<ParamRow>,
+    /// The uniform buffer; null where nothing is known per frame only.
+    pub uniform: Option<UniformRow>,
+    /// What is known of the field.
+    pub certificate: Certificate,
+}
+
+/// A function of the point.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FunctionRow {
+    /// `distance`, `gradient` or `material`.
+    pub role: &'static str,
+    /// Its name in the text.
+    pub name: String,
+    /// How the text declares it; as WGSL would for SPIR-V.
+    pub signature: String,
+}
+
+/// A member of the uniform structure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParamRow {
+    /// Its name in WGSL.
+    pub name: String,
+    /// Its name in the scene, `time` or `frame`.
+    pub param: String,
+    /// `number`, `int`, `angle` (radians), `bool` (0 or 1, of 32 bits), `color` (linear red, green,
+    /// blue, alpha) or `choice` (its index, as a float).
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Bytes from the start of the structure.
+    pub offset: u32,
+    /// Bytes.
+    pub size: u32,
+    /// Its default, one number for each lane.
+    pub default: Vec<f64>,
+    /// Least value; null without a range.
+    pub min: Option<f64>,
+    /// Greatest value; null without a range.
+    pub max: Option<f64>,
+    /// Names of the choices, in the order of their indices.
+    pub choices: Vec<String>,
+}
+
+/// The uniform buffer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UniformRow {
+    /// Name of its structure in WGSL; null for an array of values computed per frame.
+    #[serde(rename = "struct")]
+    pub structure: Option<String>,
+    /// Bind group.
+    pub group: u32,
+    /// Binding in the group.
+    pub binding: u32,
+    /// Bytes.
+    pub size: u32,
+    /// In GLSL, the name of its block; else null.
+    pub block: Option<String>,
+}
+
+/// What is known of the emitted field, at the params' defaults.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Whether every part has a Lipschitz constant: then the field never exceeds the distance.
+    pub certified: bool,
+    /// Where the scene lies; null where infinite.
+    pub bounds: Bounds,
+    /// Constant of the emitted field, which is divided where it must be: 1, or null where not known.
+    pub lipschitz: Sides<Option<f64>>,
+    /// `exact`, `bound` or `none`.
+    pub promise: Sides<String>,
+    /// By what the distance is multiplied to be a safe step.
+    pub step_scale: f64,
+    /// The calls of the scene that made shapes, in order of place.
+    pub parts: Vec<QualityRow>,
+}
+
+/// A property outside and inside the surface.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Sides<T> {
+    /// Where the field is positive.
+    pub outside: T,
+    /// Where it is negative.
+    pub inside: T,
+}
+
+impl Scene {
+    /// What a shader that was written with these options offers. `sources` are those of the compilation.
+    pub fn reflect(
+        &self,
+        sources: &Sources,
+        options: &ShaderOptions,
+        written: &Written,
+    ) -> ShaderReflection {
+        let found = &written.reflection;
+        let functions = found.functions.iter().map(|function| FunctionRow {
+            role: role_name(function.role),
+            name: function.name.clone(),
+            signature: function.signature.clone(),
+        });
+        let uniform = found.uniform.as_ref().map(|uniform| UniformRow {
+            structure: uniform.structure.clone(),
+            group: uniform.group,
+            binding: uniform.binding,
+            size: uniform.size,
+            block: uniform.block.clone(),
+        });
+        ShaderReflection {
+            sdfc: env!("CARGO_PKG_VERSION"),
+            source_hash: self.source_hash(),
+            prefix: options.prefix.clone(),
+            target: options.target.name(),
+            functions: functions.collect(),
+            params: found.members.iter().map(|member| self.param_row(member)).collect(),
+            uniform,
+            certificate: self.certificate(sources),
+        }
+    }
+
+    fn param_row(&self, member: &Member) -> ParamRow {
+        let row = |param: &str, kind| ParamRow {
+            name: member.name.clone(),
+            param: param.to_owned(),
+            kind,
+            offset: member.offset,
+            size: member.size,
+            default: vec![0.0; lanes(member.ty)],
+            min: None,
+            max: None,
+            choices: Vec::new(),
+        };
+        let param = match member.input {
+            FrameInput::Param(index) => self.params().get(index as usize),
+            FrameInput::Time => return row("time", "number"),
+            FrameInput::Frame => return row("frame", "int"),
+        };
+        let Some(Param { name, kind, default, range, choices, .. }) = param else {
+            return row(&member.name, "number");
+        };
+        ParamRow {
+            default: default[..lanes(member.ty)].to_vec(),
+            min: range.map(|range| range[0]).filter(|end| end.is_finite()),
+            max: range.map(|range| range[1]).filter(|end| end.is_finite()),
+            choices: choices.clone(),
+            ..row(name, kind_name(*kind))
+        }
+    }
+
+    fn certificate(&self, sources: &Sources) -> Certificate {
+        let certified = self.report.uncertified.is_empty();
+        let root = self.graph().root;
+        let root = self.report.shapes.iter().find(|shape| Some(shape.shape) == root);
+        // What is 1-Lipschitz and 0 on the surface never exceeds the distance to it.
+        let least = if certified { Promise::Bound } else { Promise::None };
+        let promise = |side: fn(&ShapeSides) -> Promise| {
+            root.map_or(Promise::None, |shape| side(&shape.sides)).max(least).to_string()
+        };
+        let constant = certified.then_some(1.0);
+        Certificate {
+            certified,
+            bounds: self.finite_bounds(),
+            lipschitz: Sides { outside: constant, inside: constant },
+            promise: Sides { outside: promise(|s| s.outside), inside: promise(|s| s.inside) },
+            step_scale: 1.0,
+            parts: self.quality_rows(sources),
+        }
+    }
+}
+
+fn role_name(role: Role) -> &'static str {
+    match role {
+        Role::Distance => "distance",
+        Role::Gradient => "gradient",
+        Role::Material => "material",
+    }
+}
+
+fn kind_name(kind: ParamKind) -> &'static str {
+    match kind {
+        ParamKind::Number => "number",
+        ParamKind::Int => "int",
+        ParamKind::Angle => "angle",
+        ParamKind::Bool => "bool",
+        ParamKind::Color => "color",
+        ParamKind::Choice => "choice",
+    }
+}
+
+fn lanes(ty: Type) -> usize {
+    match ty {
+        Type::Bool | Type::Scalar => 1,
+        Type::Vec2 => 2,
+        Type::Vec3 => 3,
+        Type::Vec4 => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{ShaderOptions, Target, compile};
+
+    fn reflection(text: &str, target: Target) -> serde_json::Value {
+        let compiled = compile("a.sdf", text);
+        let scene = compiled.scene.unwrap();
+        let options = ShaderOptions { target, group: 1, binding: 2, ..Default::default() };
+        let written = scene.write_shader(&options).unwrap();
+        serde_json::to_value(scene.reflect(&compiled.sources, &options, &written)).unwrap()
+    }
+
+    const SCENE: &str = "param r = 0.5 in 0.1..1\nparam tint = #ff0000\n\
+                         (sphere(r) | plane(y: -1)).color(tint)\nsphere(0.2).translate(x: time)";
+
+    #[test]
+    fn the_keys_are_those_that_other_tools_rely_on() {
+        let found = reflection(SCENE, Target::Wgsl);
+        assert_eq!(found["sdfc"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(found["source_hash"].as_str().unwrap().len(), 16);
+        assert_eq!((&found["prefix"], &found["target"]), (&"sdf_".into(), &"wgsl".into()));
+        assert_eq!(found["functions"][0]["role"], "distance");
+        assert_eq!(found["functions"][0]["signature"], "fn sdf_distance(p: vec3<f32>) -> f32");
+        assert_eq!(found["functions"][2]["name"], "sdf_material");
+        let [r, tint, time] = [0, 1, 2].map(|index| &found["params"][index]);
+        assert_eq!(
+            (&r["name"], &r["type"], &r["offset"]),
+            (&"r".into(), &"number".into(), &0.into())
+        );
+        assert_eq!((r["default"][0].as_f64(), r["min"].as_f64()), (Some(0.5), Some(0.1)));
+        assert_eq!((&tint["type"], &tint["offset"]), (&"color".into(), &16.into()));
+        assert_eq!((&tint["size"], &tint["max"]), (&16.into(), &serde_json::Value::Null));
+        assert_eq!((&time["name"], &time["offset"]), (&"time".into(), &32.into()));
+        let uniform = &found["uniform"];
+        assert_eq!((&uniform["struct"], &uniform["size"]), (&"sdf_Params".into(), &48.into()));
+        assert_eq!((&uniform["group"], &uniform["binding"]), (&1.into(), &2.into()));
+    }
+
+    #[test]
+    fn the_certificate_says_what_the_analysis_found() {
+        let found = reflection(SCENE, Target::Msl);
+        let certificate = &found["certificate"];
+        assert_eq!(
+            (&certificate["certified"], &certificate["step_scale"]),
+            (&true.into(), &1.0.into())
+        );
+        assert!(certificate["bounds"]["max"][0].is_null(), "the plane is without end");
+        assert!((certificate["bounds"]["max"][1].as_f64().unwrap() - 0.5).abs() < 1e-6);
+        assert_eq!(certificate["lipschitz"]["outside"], 1.0);
+        assert_eq!(certificate["promise"]["outside"], "exact");
+        assert_eq!(certificate["promise"]["inside"], "bound");
+        assert!(certificate["parts"][0]["line"].as_u64().is_some());
+    }
+
+    #[test]
+    fn without_a_constant_nothing_is_certified() {
+        let found = reflection("solid s() = p.x * p.x + p.y * p.y - 1\ns()", Target::Glsl);
+        let certificate = &found["certificate"];
+        assert_eq!(certificate["certified"], false);
+        assert!(certificate["lipschitz"]["outside"].is_null());
+        assert_eq!(certificate["promise"]["outside"], "none");
+        assert!(found["uniform"].is_null());
+    }
+}

@@ -1,0 +1,121 @@
+//! A scene's shader in the language of choice.
+
+use sdfc_codegen::{FieldOptions, Shader, Target, Written};
+use sdfc_diagnostics::{FileId, Sources};
+
+use crate::{Error, Scene};
+
+/// Which part of a shader is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Emit {
+    /// The functions for distance, gradient and material.
+    #[default]
+    Field,
+    /// The whole shader that draws pictures.
+    Render,
+}
+
+/// How a shader is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShaderOptions {
+    /// The language.
+    pub target: Target,
+    /// The part.
+    pub emit: Emit,
+    /// Start of every name of a field.
+    pub prefix: String,
+    /// Bind group of its buffers.
+    pub group: u32,
+    /// Binding of the first of them.
+    pub binding: u32,
+}
+
+impl Default for ShaderOptions {
+    /// A field in WGSL, its names beginning with `sdf_`, its buffer at 0, 0.
+    fn default() -> Self {
+        let FieldOptions { prefix, group, binding, .. } = FieldOptions::default();
+        Self { target: Target::Wgsl, emit: Emit::Field, prefix, group, binding }
+    }
+}
+
+/// What a scene was compiled from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Origin {
+    /// Name of its file, without the folder: the same scene gives the same bytes wherever it lies.
+    name: String,
+    hash: u64,
+}
+
+impl Origin {
+    pub(crate) fn new(sources: &Sources, scene: FileId) -> Self {
+        let name = sources.name(scene);
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
+        let texts = (0..sources.len()).map(|file| sources.text(FileId(file as u32)));
+        Self { name, hash: texts.fold(FNV_OFFSET, fnv) }
+    }
+}
+
+const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
+
+/// FNV-1a of 64 bits over a text and the 0 that ends it.
+fn fnv(hash: u64, text: &str) -> u64 {
+    let bytes = text.bytes().chain([0]);
+    bytes.fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(FNV_PRIME))
+}
+
+impl Scene {
+    /// A hash of all that the scene was compiled from, the library and imported files included: 16
+    /// hexadecimal digits (FNV-1a).
+    pub fn source_hash(&self) -> String {
+        format!("{:016x}", self.origin.hash)
+    }
+
+    /// The shader in a target's language. A text says at its head what wrote it and from what; the same
+    /// source gives the same bytes.
+    ///
+    /// ```
+    /// use sdfc::{Code, ShaderOptions, Target, compile};
+    ///
+    /// let scene = compile("ball.sdf", "sphere(0.5)").scene.expect("no errors");
+    /// let options = ShaderOptions { target: Target::Hlsl, ..ShaderOptions::default() };
+    /// let Code::Text(text) = scene.write_shader(&options)?.code else { unreachable!() };
+    /// assert!(text.contains("float sdf_distance(float3 p)"));
+    /// # Ok::<(), sdfc::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Codegen`].
+    pub fn write_shader(&self, options: &ShaderOptions) -> Result<Written, Error> {
+        let shader = self.shader(options)?;
+        let (version, name) = (env!("CARGO_PKG_VERSION"), &self.origin.name);
+        let comment = format!("sdfc {version}, {name}, source {}", self.source_hash());
+        Ok(shader.write(options.target, &comment)?)
+    }
+
+    fn shader(&self, options: &ShaderOptions) -> Result<Shader, Error> {
+        match options.emit {
+            Emit::Field => {
+                let ShaderOptions { prefix, group, binding, .. } = options.clone();
+                let defaults = FieldOptions::default();
+                self.field_shader(&FieldOptions { prefix, group, binding, ..defaults })
+            }
+            Emit::Render => self.picture_shader(self.method()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_fnv() {
+        // Published vector of FNV-1a: "foobar" gives 85944171f73967e8.
+        let bytes = "foobar".bytes();
+        let hash = bytes.fold(FNV_OFFSET, |h, b| (h ^ u64::from(b)).wrapping_mul(FNV_PRIME));
+        assert_eq!(hash, 0x8594_4171_f739_67e8);
+        assert_ne!(fnv(fnv(FNV_OFFSET, "a"), "b"), fnv(fnv(FNV_OFFSET, "ab"), ""));
+    }
+}

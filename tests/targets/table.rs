@@ -1,0 +1,49 @@
+//! The table in `docs/targets.md`.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use libtest_mimic::Failed;
+use sdfc::Target;
+
+use crate::{EMITS, examples, write};
+
+const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
+const END: &str = "<!-- End of the table. -->\n";
+
+/// One row for each example: the parts that can be written.
+fn table() -> Result<String, Failed> {
+    let names = Target::ALL.map(Target::name);
+    let mut text =
+        format!("| example | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
+    for (name, scene) in examples()? {
+        write!(text, "| {name} |")?;
+        for target in Target::ALL {
+            let written = EMITS.iter().filter(|part| write(&scene, target, part.0).is_ok());
+            let parts: Vec<_> = written.map(|part| part.1).collect();
+            write!(text, " {} |", parts.join(" "))?;
+        }
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+pub fn is_current() -> Result<(), Failed> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/targets.md");
+    let page = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
+    let parts = page.split_once(BEGIN).and_then(|(head, rest)| {
+        let (found, tail) = rest.split_once(END)?;
+        Some((head, found, tail))
+    });
+    let (head, found, tail) =
+        parts.ok_or("docs/targets.md has lost the comments around its table")?;
+    let table = table()?;
+    if found == table {
+        return Ok(());
+    }
+    if std::env::var_os("TARGETS_UPDATE").is_some() {
+        std::fs::write(&path, format!("{head}{BEGIN}{table}{END}{tail}"))?;
+        return Ok(());
+    }
+    Err("docs/targets.md is out of date; write its table anew with TARGETS_UPDATE=1".into())
+}

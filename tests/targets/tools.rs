@@ -1,0 +1,93 @@
+//! Validators that others wrote.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use sdfc::{Code, Emit, Target};
+
+/// A validator and the target that it judges.
+pub struct Tool {
+    pub program: &'static str,
+    pub target: Target,
+    /// An argument on which it says its version.
+    version: &'static str,
+    /// Arguments for a part, before the file.
+    arguments: fn(Emit) -> &'static [&'static str],
+}
+
+pub const TOOLS: &[Tool] = &[
+    Tool { program: "naga", target: Target::Wgsl, version: "", arguments: |_| &[] },
+    Tool {
+        program: "tint",
+        target: Target::Wgsl,
+        version: "--help",
+        arguments: |_| &["--format", "wgsl", "-o", "/dev/null"],
+    },
+    Tool {
+        program: "glslangValidator",
+        target: Target::Glsl,
+        version: "--version",
+        arguments: |emit| match emit {
+            Emit::Field => &["-S", "frag"],
+            Emit::Render => &["-S", "comp"],
+        },
+    },
+    Tool {
+        program: "glslangValidator",
+        target: Target::GlslEs,
+        version: "--version",
+        arguments: |_| &["-S", "frag"],
+    },
+    Tool {
+        program: "spirv-val",
+        target: Target::Spirv,
+        version: "--version",
+        // A field alone is for linking, which Vulkan does not know.
+        arguments: |emit| match emit {
+            Emit::Field => &["--target-env", "spv1.3"],
+            Emit::Render => &["--target-env", "vulkan1.1"],
+        },
+    },
+];
+
+impl Tool {
+    /// naga is a library.
+    fn is_library(&self) -> bool {
+        self.version.is_empty()
+    }
+
+    pub fn is_installed(&self) -> bool {
+        let mut command = Command::new(self.program);
+        command.arg(self.version).stdout(Stdio::null()).stderr(Stdio::null());
+        self.is_library() || command.status().is_ok()
+    }
+
+    /// What it has against the code, as an error.
+    pub fn check(&self, emit: Emit, code: &Code) -> Result<(), String> {
+        if self.is_library() {
+            return check_with_naga(code);
+        }
+        let name = format!("{}.{}", self.program, self.target.name());
+        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&file, code.clone().into_bytes()).map_err(|e| e.to_string())?;
+        let mut command = Command::new(self.program);
+        command.args((self.arguments)(emit)).arg(&file).stdin(Stdio::null());
+        let output = command.output().map_err(|e| e.to_string())?;
+        if output.status.success() {
+            return Ok(());
+        }
+        let said = [output.stdout, output.stderr].concat();
+        Err(String::from_utf8_lossy(&said).into_owned())
+    }
+}
+
+/// Reads the text again.
+fn check_with_naga(code: &Code) -> Result<(), String> {
+    let Code::Text(text) = code else { return Err("no text".to_owned()) };
+    let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;
+    let flags = naga::valid::ValidationFlags::all();
+    naga::valid::Validator::new(flags, naga::valid::Capabilities::default())
+        .validate(&module)
+        .map_err(|e| e.emit_to_string(text))?;
+    Ok(())
+}
