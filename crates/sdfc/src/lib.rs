@@ -29,6 +29,8 @@
 //! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
 //! them in, see [`compile_with_imports`].
 
+pub mod baseline;
+mod bench;
 mod compile;
 mod error;
 mod explain;
@@ -36,12 +38,14 @@ mod params;
 mod picture;
 mod scene;
 
+pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use params::ParamError;
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 
+pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{FieldOptions, Shader};
 pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;
