@@ -45,7 +45,14 @@ carve(box(1), sphere(0.65))",
 ];
 
 /// What the stack machine holds and units do not.
-const TAPE_ALONE: [(&str, &str, &str); 4] = [
+const TAPE_ALONE: [(&str, &str, &str); 5] = [
+    (
+        "conditions",
+        "solid steps() lipschitz 1 = if p.x > 0.1 || p.y < 0 { max(p.y, length(p) - 0.8) } \
+         else { if p.z <= 0 { length(p) - 0.7 } else { length(p) - 0.6 } }
+steps()",
+        "`steps` is not a plane, sphere, box",
+    ),
     ("torus", "torus(major: 0.8, minor: 0.2)", "`torus` is not a plane, sphere, box"),
     (
         "nested",

@@ -54,7 +54,6 @@ enum Operation {
     Point,
     Constant,
     Load,
-    Store,
     Lane,
     Abs,
     Floor,
@@ -62,6 +61,8 @@ enum Operation {
     Sin,
     Cos,
     Length,
+    Store,
+    Test,
     Add,
     Sub,
     Mul,
@@ -71,7 +72,7 @@ enum Operation {
     Dot,
     Less,
     Insert,
-    Select,
+    Choose,
 }
 
 impl Operation {
@@ -79,7 +80,7 @@ impl Operation {
     fn traffic(self) -> (usize, usize) {
         match self {
             Self::Point | Self::Constant | Self::Load => (0, 1),
-            Self::Store => (1, 0),
+            Self::Store | Self::Test => (1, 0),
             Self::Lane
             | Self::Abs
             | Self::Floor
@@ -95,8 +96,8 @@ impl Operation {
             | Self::Max
             | Self::Dot
             | Self::Less
-            | Self::Insert => (2, 1),
-            Self::Select => (3, 1),
+            | Self::Insert
+            | Self::Choose => (2, 1),
         }
     }
 }
@@ -337,6 +338,7 @@ fn is_symmetric(op: Binary) -> bool {
 fn unary(op: Unary, a: NodeId, width: usize) -> Result<Vec<Step>, Inexpressible> {
     use Step::{Do, Number, Value};
     let one = |operation| vec![Value(a), Do(operation, 0)];
+    let of_number = |operation| if width == 1 { Ok(one(operation)) } else { Err(lacks(&op)) };
     Ok(match op {
         Unary::Neg => vec![Value(a), Number(-1.0), Do(Operation::Mul, 0)],
         Unary::Abs => one(Operation::Abs),
@@ -344,12 +346,12 @@ fn unary(op: Unary, a: NodeId, width: usize) -> Result<Vec<Step>, Inexpressible>
         Unary::Fract => {
             vec![Value(a), Value(a), Do(Operation::Floor, 0), Do(Operation::Sub, 0)]
         }
-        Unary::Sqrt => one(Operation::Sqrt),
-        Unary::InverseSqrt => {
+        Unary::Sqrt => of_number(Operation::Sqrt)?,
+        Unary::InverseSqrt if width == 1 => {
             vec![Number(1.0), Value(a), Do(Operation::Sqrt, 0), Do(Operation::Div, 0)]
         }
-        Unary::Sin => one(Operation::Sin),
-        Unary::Cos => one(Operation::Cos),
+        Unary::Sin => of_number(Operation::Sin)?,
+        Unary::Cos => of_number(Operation::Cos)?,
         Unary::Saturate => {
             vec![Value(a), Number(0.0), Do(Operation::Max, 0), Number(1.0), Do(Operation::Min, 0)]
         }
@@ -363,7 +365,8 @@ fn unary(op: Unary, a: NodeId, width: usize) -> Result<Vec<Step>, Inexpressible>
             Do(Operation::Div, 0),
         ],
         Unary::Not => vec![Number(1.0), Value(a), Do(Operation::Sub, 0)],
-        Unary::Sign
+        Unary::InverseSqrt
+        | Unary::Sign
         | Unary::Ceil
         | Unary::Round
         | Unary::Trunc
@@ -425,7 +428,10 @@ fn ternary(op: Ternary, [a, b, c]: [NodeId; 3]) -> Result<Vec<Step>, Inexpressib
             let (max, min) = (Do(Operation::Max, 0), Do(Operation::Min, 0));
             vec![Value(a), Value(b), max, Value(c), min]
         }
-        Ternary::Select => vec![Value(a), Value(b), Value(c), Do(Operation::Select, 0)],
+        Ternary::Select => {
+            let (test, choose) = (Do(Operation::Test, 0), Do(Operation::Choose, 0));
+            vec![Value(b), Value(c), Value(a), test, choose]
+        }
         Ternary::Smoothstep => return Err(lacks(&op)),
     })
 }

@@ -1,35 +1,37 @@
 // A stack machine: one instruction after the other from a buffer, for any formula of its operations. Values
 // are four lanes wide; a number is the same in all of them, a vector's unused lanes hold anything.
-// The topmost value is kept apart from the stack, and a binary operation may have its second operand in the
-// instruction: both spare traffic with the stack.
+// The topmost value is kept apart from the stack, a binary operation may have its second operand in the
+// instruction, and stack and locals are one array, so that an instruction reads and writes it once: such an array
+// is memory, and costs more than arithmetic.
 
 // Push a value: the point, the instruction's constant, a local.
 const POINT: u32 = 0;
 const CONSTANT: u32 = 1;
 const LOAD: u32 = 2;
-// From the topmost value.
-const STORE: u32 = 3;
-const LANE: u32 = 4;
-const ABS: u32 = 5;
-const FLOOR: u32 = 6;
-const SQRT: u32 = 7;
-const SIN: u32 = 8;
-const COS: u32 = 9;
-const LENGTH: u32 = 10;
+// From the topmost value. SQRT, SIN and COS are of numbers. STORE and TEST take it off the stack; TEST keeps
+// whether it is not 0, for the next CHOOSE.
+const LANE: u32 = 3;
+const ABS: u32 = 4;
+const FLOOR: u32 = 5;
+const SQRT: u32 = 6;
+const SIN: u32 = 7;
+const COS: u32 = 8;
+const LENGTH: u32 = 9;
+const STORE: u32 = 10;
+const TEST: u32 = 11;
 // From the topmost value b and the one below it, a.
-const ADD: u32 = 11;
-const SUB: u32 = 12;
-const MUL: u32 = 13;
-const DIV: u32 = 14;
-const MIN: u32 = 15;
-const MAX: u32 = 16;
-const DOT: u32 = 17;
-const LESS: u32 = 18;
-const INSERT: u32 = 19;
-// From three values: what to take where the lowest is not 0, and where it is.
-const SELECT: u32 = 20;
+const ADD: u32 = 12;
+const SUB: u32 = 13;
+const MUL: u32 = 14;
+const DIV: u32 = 15;
+const MIN: u32 = 16;
+const MAX: u32 = 17;
+const DOT: u32 = 18;
+const LESS: u32 = 19;
+const INSERT: u32 = 20;
+const CHOOSE: u32 = 21;
 
-// The encoder keeps within both.
+// The encoder keeps within both. A stack that is full has its topmost value elsewhere, and one place to spare.
 const STACK_SIZE: u32 = 16;
 const LOCAL_COUNT: u32 = 16;
 
@@ -47,9 +49,8 @@ struct Instruction {
 
 @group(0) @binding(3) var<storage, read> tape: array<Instruction>;
 
-// Private, so that they are cleared once for each invocation and not at each evaluation.
-var<private> stack: array<vec4f, STACK_SIZE>;
-var<private> locals: array<vec4f, LOCAL_COUNT>;
+// The stack, then the locals. Private, so that it is cleared once for each invocation and not at each evaluation.
+var<private> memory: array<vec4f, STACK_SIZE + 1 + LOCAL_COUNT>;
 
 fn first_lanes(value: vec4f, count: u32) -> vec4f {
     return select(vec4f(), value, LANES < vec4u(count));
@@ -59,17 +60,21 @@ fn field(p: vec3f) -> f32 {
     // How many values lie below the topmost.
     var depth = 0u;
     var top = vec4f();
+    var chosen = false;
     for (var i = 0u; i < arrayLength(&tape); i++) {
         let instruction = tape[i];
         let operation = instruction.operation;
+        let local = STACK_SIZE + 1u + instruction.index;
+        // Harmless where nothing is pushed or stored: there is nothing above the stack.
+        memory[select(depth, local, operation == STORE)] = top;
+        let below = memory[select(max(depth, 1u) - 1u, local, operation == LOAD)];
         var a = top;
         var b = instruction.constant;
         if operation <= LOAD {
-            stack[depth] = top;
             depth++;
-        } else if operation >= ADD && instruction.immediate == 0u {
+        } else if operation >= STORE && instruction.immediate == 0u {
             depth--;
-            a = stack[depth];
+            a = below;
             b = top;
         }
         switch operation {
@@ -80,14 +85,7 @@ fn field(p: vec3f) -> f32 {
                 top = b;
             }
             case LOAD: {
-                top = locals[instruction.index];
-            }
-            case STORE: {
-                locals[instruction.index] = a;
-                if instruction.immediate == 0u {
-                    depth--;
-                    top = stack[depth];
-                }
+                top = below;
             }
             case LANE: {
                 top = vec4f(a[instruction.index]);
@@ -99,16 +97,23 @@ fn field(p: vec3f) -> f32 {
                 top = floor(a);
             }
             case SQRT: {
-                top = sqrt(a);
+                top = vec4f(sqrt(a.x));
             }
             case SIN: {
-                top = sin(a);
+                top = vec4f(sin(a.x));
             }
             case COS: {
-                top = cos(a);
+                top = vec4f(cos(a.x));
             }
             case LENGTH: {
                 top = vec4f(length(first_lanes(a, instruction.index)));
+            }
+            case STORE: {
+                top = a;
+            }
+            case TEST: {
+                chosen = top.x != 0.0;
+                top = a;
             }
             case ADD: {
                 top = a + b;
@@ -138,9 +143,8 @@ fn field(p: vec3f) -> f32 {
             case INSERT: {
                 top = select(a, b, LANES == vec4u(instruction.index));
             }
-            case SELECT: {
-                depth--;
-                top = select(b, a, stack[depth] != vec4f());
+            case CHOOSE: {
+                top = select(b, a, chosen);
             }
             default: {
             }
