@@ -1,7 +1,7 @@
 //! What the interpreting baselines read: scenes as rows of tables, for shaders that look up at every
 //! evaluation what a specialised shader has been compiled from.
 //!
-//! [`units()`] knows a scene by the library's names, the only code outside the library that does; [`tape`] knows
+//! [`units()`] knows a scene by the library's names, the only code outside the library that does; [`tape()`] knows
 //! it by its flat math.
 
 mod tape;

@@ -9,7 +9,12 @@ const SEED: u64 = 7;
 
 /// Names and texts of the suite's scenes.
 pub fn suite() -> Vec<(String, String)> {
-    let course = [("course/blend.sdf", include_str!("../../../../examples/course/blend.sdf"))];
+    let course = [
+        ("course/union.sdf", include_str!("../../../../examples/course/union.sdf")),
+        ("course/subtraction.sdf", include_str!("../../../../examples/course/subtraction.sdf")),
+        ("course/intersection.sdf", include_str!("../../../../examples/course/intersection.sdf")),
+        ("course/blend.sdf", include_str!("../../../../examples/course/blend.sdf")),
+    ];
     let course = course.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let generated = LEAVES.map(|leaves| (format!("generated {leaves}"), generated(leaves)));
     course.into_iter().chain(generated).collect()
