@@ -64,6 +64,8 @@ pub enum Command {
     Render(Render),
     /// Say what was modelled and why
     Explain(Explain),
+    /// Time the specialised shader against shaders that interpret the scene
+    Bench(Bench),
 }
 
 /// Arguments of `check`.
@@ -240,6 +242,23 @@ pub struct Explain {
     /// Write it to stdout as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `bench`.
+#[derive(clap::Args, Debug)]
+pub struct Bench {
+    /// The scene; `-` is stdin
+    #[arg(required_unless_present = "suite")]
+    pub file: Option<PathBuf>,
+    /// Also measure the suite: scenes of the course, and generated ones of 3, 33 and 100 leaves
+    #[arg(long)]
+    pub suite: bool,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = size)]
+    pub size: [u32; 2],
+    /// Where the figures go, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
 }
 
 fn methods() -> PossibleValuesParser {

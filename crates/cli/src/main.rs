@@ -39,5 +39,6 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
         Command::Explain(args) => commands::explain::run(args, console),
+        Command::Bench(args) => commands::bench::run(args, console),
     }
 }

@@ -3,7 +3,7 @@
 use naga::ResourceBinding;
 use rustc_hash::FxHashSet;
 use sdfc_graph::{NodeId, Program, Shadow, reachable_where};
-use sdfc_march::{Features, Method, method, source, stubs};
+use sdfc_march::{Features, FieldSource, Method, method, source, source_over, stubs};
 
 use crate::inputs::declare_slots;
 use crate::lower::{struct_function, value_function};
@@ -32,11 +32,49 @@ pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Err
     link_picture(program, method)
 }
 
+/// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an
+/// interpreter, and without materials: what pictures have in common that are compared for speed.
+///
+/// An interpreter reads its program from storage buffers at the bindings that [`FieldSource`] tells, and
+/// nothing at binding 1.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn measured_module(
+    program: &Program,
+    method_name: &str,
+    field: FieldSource,
+) -> Result<Shader, Error> {
+    let method = method(method_name).ok_or_else(|| Error::UnknownMethod(method_name.to_owned()))?;
+    let distance = match field {
+        FieldSource::Scene => return link_picture(program, method),
+        FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
+        FieldSource::Units | FieldSource::Tape => None,
+    };
+    let features = Features { materials: false, ..features(program) };
+    let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
+    let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
+    let mut module = link::skeleton(&source_over(field, method, features), unused)?;
+    let (inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    if let Some(load_frame) = load_frame {
+        link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
+    }
+    if let Some(distance) = distance {
+        let types = &mut module.types;
+        let function = value_function(program, &inputs, types, stubs::FIELD, distance)?;
+        link::fill(&mut module, stubs::FIELD, function)?;
+    }
+    Shader::new(module, Parts::default(), features)
+}
+
 fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
     let features = features(program);
-    let used = used_slots(program, distance, gradient);
+    let mut roots = vec![distance, gradient];
+    roots.extend(program.material.into_iter().flatten());
+    let used = used_slots(program, roots);
     let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
     let mut module = link::skeleton(&source(method, features), unused)?;
 
@@ -75,10 +113,8 @@ fn features(program: &Program) -> Features {
     Features { shadows, materials: program.material.is_some(), reflections }
 }
 
-/// Positions in `Program::uniforms` of those that the functions read.
-fn used_slots(program: &Program, distance: NodeId, gradient: NodeId) -> Vec<usize> {
-    let mut roots = vec![distance, gradient];
-    roots.extend(program.material.into_iter().flatten());
+/// Positions in `Program::uniforms` of those that the roots read.
+fn used_slots(program: &Program, roots: Vec<NodeId>) -> Vec<usize> {
     let slots: FxHashSet<_> = program.uniforms.iter().copied().collect();
     let needed = reachable_where(&program.graph, &roots, |node| !slots.contains(&node));
     // In ascending order, so that a search finds them.

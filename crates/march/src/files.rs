@@ -46,8 +46,40 @@ pub struct Features {
     pub reflections: bool,
 }
 
+/// Where a picture's distance and gradient come from. Pictures that are compared for speed differ in nothing
+/// else: all but [`FieldSource::Scene`] take the gradient by the same four evaluations of the field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FieldSource {
+    /// The scene supplies both.
+    #[default]
+    Scene,
+    /// The scene supplies the distance.
+    Distance,
+    /// An interpreter of operations on two primitives each, from buffers at bindings 3 to 6.
+    Units,
+    /// A stack machine, from a buffer at binding 3.
+    Tape,
+}
+
+impl FieldSource {
+    fn files(self) -> &'static [&'static str] {
+        const DIFFERENCES: &str = include_str!("wgsl/baseline/differences.wgsl");
+        match self {
+            Self::Scene => &[include_str!("wgsl/field.wgsl")],
+            Self::Distance => &[include_str!("wgsl/baseline/distance.wgsl"), DIFFERENCES],
+            Self::Units => &[include_str!("wgsl/baseline/units.wgsl"), DIFFERENCES],
+            Self::Tape => &[include_str!("wgsl/baseline/tape.wgsl"), DIFFERENCES],
+        }
+    }
+}
+
 /// Text of a picture's shader: whole files, joined.
 pub fn source(method: &Method, features: Features) -> String {
+    source_over(FieldSource::Scene, method, features)
+}
+
+/// As [`source`], with the distance and the gradient from elsewhere.
+pub fn source_over(field: FieldSource, method: &Method, features: Features) -> String {
     let shade = if features.materials {
         include_str!("wgsl/shade_painted.wgsl")
     } else {
@@ -59,14 +91,14 @@ pub fn source(method: &Method, features: Features) -> String {
         (true, false) => include_str!("wgsl/picture_reflected.wgsl"),
         (true, true) => include_str!("wgsl/picture_reflected_shadowed.wgsl"),
     };
-    let mut files = vec![
-        include_str!("wgsl/view.wgsl"),
-        include_str!("wgsl/field.wgsl"),
+    let mut files = vec![include_str!("wgsl/view.wgsl")];
+    files.extend(field.files());
+    files.extend([
         include_str!("wgsl/ray.wgsl"),
         method.source,
         include_str!("wgsl/shade.wgsl"),
         shade,
-    ];
+    ]);
     if features.shadows || features.reflections {
         files.push(include_str!("wgsl/secondary.wgsl"));
     }

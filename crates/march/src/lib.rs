@@ -23,7 +23,7 @@
 
 mod files;
 
-pub use files::{Features, METHODS, Method, method, source, stubs};
+pub use files::{Features, FieldSource, METHODS, Method, method, source, source_over, stubs};
 
 /// Linear colour of surfaces that nothing paints, `UNPAINTED` of `shade.wgsl`.
 pub const UNPAINTED: [f32; 3] = [0.8; 3];

@@ -20,6 +20,8 @@ const WORKGROUP: u32 = 8;
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 /// A tile that takes longer is given up.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// Binding of the first table.
+const FIRST_TABLE: u32 = 3;
 /// Bytes of the two timestamps about a pass.
 const TIMESTAMP_BYTES: u64 = 16;
 
@@ -30,6 +32,7 @@ pub struct Pipeline {
     pipeline: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     uniform_count: usize,
+    tables: Vec<wgpu::Buffer>,
     milliseconds: f64,
 }
 
@@ -45,7 +48,22 @@ impl Pipeline {
         uniform_count: usize,
     ) -> Result<Self, RenderError> {
         let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
-        Self::of_source(gpu, source, uniform_count)
+        Self::of_source(gpu, source, uniform_count, &[])
+    }
+
+    /// Of a shader that reads storage buffers at bindings 3, 4, ... of group 0, with what they hold.
+    ///
+    /// # Errors
+    ///
+    /// As [`Pipeline::new`]; a table that is empty is refused by the device.
+    pub fn with_tables(
+        gpu: &Gpu,
+        shader: sdfc_codegen::Shader,
+        uniform_count: usize,
+        tables: &[Vec<u8>],
+    ) -> Result<Self, RenderError> {
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
+        Self::of_source(gpu, source, uniform_count, tables)
     }
 
     /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform
@@ -56,25 +74,29 @@ impl Pipeline {
     ///
     /// [`RenderError::Validation`] if the device refuses it, [`RenderError::Uniforms`].
     pub fn from_wgsl(gpu: &Gpu, text: &str, uniform_count: usize) -> Result<Self, RenderError> {
-        Self::of_source(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count)
+        Self::of_source(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count, &[])
     }
 
     fn of_source(
         gpu: &Gpu,
         source: wgpu::ShaderSource<'_>,
         uniform_count: usize,
+        tables: &[Vec<u8>],
     ) -> Result<Self, RenderError> {
         let limit = gpu.device.limits().max_uniform_buffer_binding_size as usize / UNIFORM_BYTES;
         if uniform_count > limit {
             return Err(RenderError::Uniforms { count: uniform_count, limit });
         }
         let start = Instant::now();
+        let tables = gpu.scoped("the shader's tables", || {
+            tables.iter().map(|bytes| table(gpu, bytes)).collect::<Vec<_>>()
+        })?;
         let (pipeline, layout) = gpu.scoped("the shader", || {
-            let layout = bind_group_layout(&gpu.device, uniform_count);
+            let layout = bind_group_layout(&gpu.device, uniform_count, tables.len());
             (compute_pipeline(&gpu.device, source, &layout), layout)
         })?;
         let mut ready =
-            Self { gpu: gpu.clone(), pipeline, layout, uniform_count, milliseconds: 0.0 };
+            Self { gpu: gpu.clone(), pipeline, layout, uniform_count, tables, milliseconds: 0.0 };
         ready.dispatch_once()?;
         ready.milliseconds = milliseconds_since(start);
         Ok(ready)
@@ -212,8 +234,10 @@ impl<'a> Run<'a> {
 
     fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
         let buffers = [(0, Some(&self.view)), (1, self.uniforms.as_ref()), (2, Some(storage))];
+        let tables = (FIRST_TABLE..).zip(self.pipeline.tables.iter().map(Some));
         let entries: Vec<_> = buffers
             .into_iter()
+            .chain(tables)
             .filter_map(|(binding, buffer)| {
                 Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
             })
@@ -326,7 +350,11 @@ impl Timestamps {
     }
 }
 
-fn bind_group_layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout {
+fn bind_group_layout(
+    device: &wgpu::Device,
+    uniform_count: usize,
+    table_count: usize,
+) -> wgpu::BindGroupLayout {
     let entry = |binding, kind, bytes: usize| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
@@ -343,6 +371,9 @@ fn bind_group_layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindG
         entries.push(entry(1, uniform, uniform_count * UNIFORM_BYTES));
     }
     entries.push(entry(2, wgpu::BufferBindingType::Storage { read_only: false }, PIXEL_BYTES));
+    let table = wgpu::BufferBindingType::Storage { read_only: true };
+    // The device compares what the shader reads with what is bound.
+    entries.extend((FIRST_TABLE..).take(table_count).map(|binding| entry(binding, table, 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("tile"),
         entries: &entries,
@@ -369,6 +400,13 @@ fn compute_pipeline(
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     })
+}
+
+fn table(gpu: &Gpu, bytes: &[u8]) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let table = buffer(gpu, "table", bytes.len() as u64, usage);
+    gpu.queue.write_buffer(&table, 0, bytes);
+    table
 }
 
 fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -29,6 +29,8 @@
 //! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
 //! them in, see [`compile_with_imports`].
 
+pub mod baseline;
+mod bench;
 mod compile;
 mod error;
 mod explain;
@@ -38,6 +40,7 @@ mod reflection;
 mod scene;
 mod shader;
 
+pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
@@ -46,6 +49,7 @@ pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{Certificate, FunctionRow, ParamRow, ShaderReflection, Sides, UniformRow};
 pub use shader::{Emit, ShaderOptions};
 
+pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Target, Written};
 pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;

@@ -80,7 +80,7 @@ impl Tape {
     ///
     /// # Errors
     /// Where an input has no meaning, which none is.
-    pub(crate) fn of_operator(
+    pub fn of_operator(
         graph: &Graph,
         root: NodeId,
         samples: &[NodeId],

@@ -1,0 +1,102 @@
+//! `sdfc bench`: the specialised shader against the interpreting baselines.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use sdfc::render::Gpu;
+use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, suite};
+
+use crate::args::Bench;
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::output::{self, Output};
+
+/// Measures the scenes, shows a table and writes the figures.
+///
+/// # Errors
+///
+/// A scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write the figures.
+pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
+    let scene = args.file.as_deref().map(|file| named(file, console)).transpose()?;
+    let json = args.json.as_deref().map(Output::new);
+    if let (Some(file), Some(json)) = (&args.file, &args.json) {
+        output::distinct(file, &[json])?;
+    }
+    json.as_ref().map_or(Ok(()), Output::check)?;
+
+    let mut scenes: Vec<_> = scene.into_iter().collect();
+    if args.suite {
+        scenes.extend(suite_scenes()?);
+    }
+    let failed = |error: sdfc::Error| super::lowering(&error, console);
+    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
+    let options = BenchOptions { size: args.size, ..BenchOptions::default() };
+    let mut rows = Vec::new();
+    for (name, scene) in &scenes {
+        let progress = console.progress(name);
+        let row = scene.bench(name, &gpu, &options, &mut |part| {
+            progress.set(part.done, part.total);
+            ControlFlow::Continue(())
+        });
+        rows.push(row.map_err(failed)?);
+    }
+    let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
+    let report = BenchReport { adapter, driver, rows };
+    if json != Some(Output::Stdout) {
+        output::to_stdout(table(&report).as_bytes())?;
+    }
+    json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
+}
+
+fn named(file: &Path, console: &Console) -> Result<(String, Scene), Failure> {
+    let scene = super::scene(file, console)?;
+    if !scene.draws() {
+        return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
+    }
+    Ok((file.display().to_string(), scene))
+}
+
+fn suite_scenes() -> Result<Vec<(String, Scene)>, Failure> {
+    let scenes = suite().into_iter().map(|(name, text)| {
+        let compiled = sdfc::compile(&name, &text);
+        // The suite's own scenes: that one of them has errors is a fault of this program.
+        let fault = || Failure::Machine(format!("the suite's scene `{name}` does not compile"));
+        compiled.scene.ok_or_else(fault).map(|scene| (name.clone(), scene))
+    });
+    scenes.collect()
+}
+
+/// The report for people: times in milliseconds, and how many times that of the specialised shader.
+fn table(report: &BenchReport) -> String {
+    let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
+    for row in &report.rows {
+        let BenchRow { scene, leaves, size: [width, height], method, variants } = row;
+        text += &format!("\n{scene}: {leaves} leaves, {width}x{height}, method {method}\n");
+        text += "  variant             frame ms    times  evals/px  lower ms  pipeline ms  first picture ms\n";
+        variants.iter().for_each(|variant| text += &line(variant));
+    }
+    text
+}
+
+fn line(variant: &BenchVariant) -> String {
+    let name = variant.name;
+    let (Some(frame), Some(evals)) = (variant.frame_ms, variant.evals_per_pixel) else {
+        let why = variant.why.get("frame_ms").map_or("", String::as_str);
+        return format!("  {name:<18}  {:>8}  {why}\n", "-");
+    };
+    let number = |value: Option<f64>, width: usize, decimals: usize| match value {
+        Some(value) => format!("{value:>width$.decimals$}"),
+        None => format!("{:>width$}", "-"),
+    };
+    let compile = variant.compile_ms.as_ref();
+    [
+        format!("  {name:<18}"),
+        number(Some(frame.median), 8, 1),
+        number(variant.times_specialized, 7, 2),
+        number(Some(evals.mean), 8, 1),
+        number(compile.and_then(|times| times.lower), 8, 1),
+        number(compile.and_then(|times| times.pipeline), 11, 1),
+        number(variant.first_picture_ms, 16, 1) + "\n",
+    ]
+    .join("  ")
+}
