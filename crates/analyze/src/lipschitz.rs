@@ -38,7 +38,7 @@ impl std::fmt::Display for Reason {
             Self::Within(name) => {
                 write!(
                     f,
-                    "the constant of `{name}` holds within its bounds, and a blend reaches past them"
+                    "the constant of `{name}` holds within its bounds, and this looks past them"
                 )
             }
         }
@@ -100,7 +100,13 @@ impl Slopes {
         let Some(linear) = self.linear.get(&q) else { return false };
         let Some(stretch) = affine::similarity(graph, linear) else { return false };
         let product = graph.mul(stretch, factor);
-        graph.as_number(product).is_some_and(|value| (value.abs() - 1.0).abs() < 1e-12)
+        if let Some(value) = graph.as_number(product) {
+            return (value.abs() - 1.0).abs() < 1e-12;
+        }
+        // A factor that follows a param: equal values are one node.
+        let one = graph.number(1.0);
+        let inverse = graph.div(one, factor);
+        stretch == inverse || stretch == graph.abs(inverse)
     }
 
     /// The derived constant, or the one that the node's function states if that is better.
@@ -142,7 +148,11 @@ impl Slopes {
                 Ok(graph.mul(factor, inner))
             }
             Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()], level),
-            Node::Swizzle(_, a, _) => self.constant(a),
+            Node::Swizzle(ty, a, lanes) => {
+                let inner = self.constant(a)?;
+                let factor = graph.number(repeats(&lanes[..ty.width()]).sqrt());
+                Ok(graph.mul(factor, inner))
+            }
             Node::Transform(columns, v) => self.transform(graph, columns, v),
             Node::Sample(shape, q) => {
                 if graph.shape(shape).level > level {
@@ -291,6 +301,12 @@ impl Slopes {
         let inner = self.constant(v)?;
         Ok(graph.mul(factor, inner))
     }
+}
+
+/// How often the commonest lane is taken: `v.xxy` changes by up to sqrt(2) times as much as v.
+fn repeats(lanes: &[u8]) -> f64 {
+    let count = |lane: &u8| lanes.iter().filter(|other| *other == lane).count();
+    lanes.iter().map(count).max().unwrap_or(1) as f64
 }
 
 fn is_zero(graph: &Graph, node: NodeId) -> bool {

@@ -10,6 +10,9 @@ const MAX_TERMS: usize = 256;
 /// Deeper coefficients than three turns in a row make are taken as atoms.
 const MAX_DEPTH: u32 = 32;
 
+/// Coefficients of three turns have some dozens of nodes; shared ones count each time they are met.
+const MAX_VISITS: u32 = 1024;
+
 /// What a polynomial is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Atom {
@@ -49,17 +52,18 @@ impl Polynomial {
 
     /// The polynomial of a scalar node known before the point is; `None` if it grows too large.
     pub(crate) fn of(graph: &Graph, node: NodeId) -> Option<Self> {
-        Self::of_within(graph, node, MAX_DEPTH)
+        Self::of_within(graph, node, MAX_DEPTH, &mut { MAX_VISITS })
     }
 
-    fn of_within(graph: &Graph, node: NodeId, depth: u32) -> Option<Self> {
+    fn of_within(graph: &Graph, node: NodeId, depth: u32, visits: &mut u32) -> Option<Self> {
+        *visits = visits.checked_sub(1)?;
         if graph.stage(node) == Stage::Point {
             return None;
         }
         if depth == 0 {
             return Some(Self::atom(Atom::Other(node)));
         }
-        let of = |id| Self::of_within(graph, id, depth - 1);
+        let mut of = |id| Self::of_within(graph, id, depth - 1, visits);
         match graph.node(node) {
             Node::Const(value) => Some(Self::number(value.scalar()?)),
             Node::Unary(Unary::Neg, a) => Some(of(a)?.times_number(-1.0)),
@@ -152,6 +156,17 @@ fn reduced(monomial: Monomial, coefficient: f64) -> Option<Polynomial> {
 mod tests {
     use super::*;
     use sdfc_graph::{FrameInput, Type};
+
+    #[test]
+    fn coefficients_that_share_nodes_without_end_are_given_up() {
+        let mut graph = Graph::new();
+        let input = |graph: &mut Graph, i| graph.frame_input(FrameInput::Param(i), Type::Scalar);
+        let (mut a, mut b) = (input(&mut graph, 0), input(&mut graph, 1));
+        for _ in 0..64 {
+            (a, b) = (graph.add(a, b), graph.sub(a, b));
+        }
+        assert!(Polynomial::of(&graph, a).is_none());
+    }
 
     #[test]
     fn a_turn_by_a_param_has_rows_of_length_one() {

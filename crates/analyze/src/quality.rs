@@ -151,7 +151,7 @@ impl Qualities {
                     if finite { Ok(node) } else { Err(Reason::Infinite) }
                 });
                 let confirmed = children_everywhere && at_most(graph, &derived, &stated);
-                (stated, confirmed || contract.bounds.is_none())
+                (stated, confirmed || (children_everywhere && contract.bounds.is_none()))
             }
             None => (derived, children_everywhere),
         };
@@ -214,11 +214,15 @@ impl Qualities {
                 let outside = if of(a).is_exact() { Promise::Exact } else { Promise::None };
                 Sides { outside, inside: Promise::None }
             }
-            // A scaled copy: s * a(p / s).
+            // A scaled copy: s * a(p / s); a negative factor turns it inside out.
             Node::Binary(Binary::Mul, a, b) => scaled_sample(graph, a, b)
                 .filter(|(factor, _, q)| slopes.is_similarity(graph, *q, *factor))
-                .and_then(|(_, child, _)| self.get(child))
-                .map_or(Sides::NONE, |quality| quality.sides),
+                .and_then(|(factor, child, _)| Some((factor, self.get(child)?.sides)))
+                .map_or(Sides::NONE, |(factor, sides)| match graph.as_number(factor) {
+                    Some(factor) if factor >= 0.0 => sides,
+                    Some(_) => sides.swapped(),
+                    None => sides.weaker(sides.swapped()),
+                }),
             Node::Ternary(Ternary::Select, [condition, a, b])
                 if graph.stage(condition) < Stage::Point =>
             {

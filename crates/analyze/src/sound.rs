@@ -87,6 +87,10 @@ impl Pass<'_> {
         let mut points = outer[..level].to_vec();
         points.push(point);
         let contract = self.graph.shape(shape).contract;
+        if constant.is_ok() && contract.lipschitz.is_some() && !everywhere {
+            // A stated constant trusts that the children's hold wherever the formula samples them.
+            self.trust_children(shape, self.graph.shape(shape).formula);
+        }
         let value = match (constant, contract.lipschitz, contract.bounds) {
             (Ok(constant), Some(_), Some(bounds)) if !everywhere => {
                 self.drawn_into(shape, constant, bounds, &points)?
@@ -233,10 +237,7 @@ impl Pass<'_> {
         if self.graph.stage(node) < Stage::Point {
             return Ok(value);
         }
-        if let Some(child) = self.child_within_bounds(node) {
-            let name = self.graph.shape(child).definition.clone();
-            self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
-        }
+        self.trust_children(shape, node);
         match slopes.constant(node) {
             Ok(constant) => {
                 let constant = self.expander.node(self.graph, constant, points)?;
@@ -257,6 +258,14 @@ impl Pass<'_> {
             self.divided.push(shape);
         }
         self.graph.div(value, constant)
+    }
+
+    /// Tells if `node` rests on a child whose constant holds only within bounds.
+    fn trust_children(&mut self, shape: ShapeId, node: NodeId) {
+        if let Some(child) = self.child_within_bounds(node) {
+            let name = self.graph.shape(child).definition.clone();
+            self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
+        }
     }
 
     /// A sampled child whose constant holds only within its bounds.
