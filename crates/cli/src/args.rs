@@ -102,6 +102,10 @@ pub struct Compile {
     /// Which part to write
     #[arg(long, value_enum, default_value_t)]
     pub emit: Emit,
+    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
+    /// recompile
+    #[arg(long)]
+    pub slots: bool,
 }
 
 /// Languages that shaders are written in.
@@ -143,6 +147,10 @@ pub struct Render {
     /// Give a param a value, written as in a scene: 0.5, 90deg, true, #d94f30, or a choice's name
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
+    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
+    /// recompile
+    #[arg(long)]
+    pub slots: bool,
     /// The time, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite, conflicts_with = "frames")]

@@ -36,7 +36,9 @@ mod params;
 mod picture;
 mod scene;
 
-pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
+pub use compile::{
+    Compiled, FrontTimes, Scene, compile, compile_with, compile_with_imports, format,
+};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use params::ParamError;

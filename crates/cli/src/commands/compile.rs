@@ -1,6 +1,7 @@
 //! `sdfc compile`: the shader of a scene as text.
 
 use sdfc::FieldOptions;
+use sdfc::lang::Options;
 
 use crate::args::{Compile, Emit, Target};
 use crate::console::Console;
@@ -14,7 +15,7 @@ use crate::output::{self, Output};
 /// The scene cannot be read, has errors or draws nothing; the output is not writable.
 pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     output::distinct(&args.file, &[&args.output])?;
-    let scene = super::scene(&args.file, console)?;
+    let scene = super::scene(&args.file, Options { slots: args.slots }, console)?;
     let shader = match args.emit {
         Emit::Field => scene.field_shader(&FieldOptions::default()),
         Emit::Render => scene.picture_shader(scene.method()),
