@@ -116,6 +116,10 @@ pub struct Compile {
     /// Where names, layouts and what is known of the field go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub reflect: Option<PathBuf>,
+    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
+    /// recompile
+    #[arg(long)]
+    pub slots: bool,
 }
 
 /// Languages that shaders are written in.
@@ -189,6 +193,10 @@ pub struct Render {
     /// Give a param a value, written as in a scene: 0.5, 90deg, true, #d94f30, or a choice's name
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
+    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
+    /// recompile
+    #[arg(long)]
+    pub slots: bool,
     /// The time, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite, conflicts_with = "frames")]

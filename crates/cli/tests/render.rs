@@ -157,3 +157,13 @@ fn depths_of_a_sequence_are_numbered() {
     refused(&folder, "--depth z.png", "depths are written as .exr");
     refused(&folder, "-o z.exr --depth z.exr", "two outputs");
 }
+
+#[test]
+fn numbers_move_where_asked_for() {
+    let folder = knobs();
+    let plain = drawn(&folder, "");
+    assert_eq!(drawn(&folder, "--slots"), plain);
+
+    refused(&folder, "--set at_6_20=9", "no param `at_6_20`");
+    assert_ne!(drawn(&folder, "--slots --set at_6_20=9"), plain, "the camera is further away");
+}

@@ -37,6 +37,7 @@ pub mod hir;
 pub mod import;
 pub mod library;
 pub mod settings;
+pub mod slots;
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
 
@@ -58,6 +59,23 @@ pub fn front_with_imports(
     file: FileId,
     resolver: &dyn Resolver,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
+    front_with(sources, file, resolver, Options::default())
+}
+
+/// How a scene is elaborated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Numbers written in the scene become params, see [`slots`].
+    pub slots: bool,
+}
+
+/// As [`front_with_imports`], with options.
+pub fn front_with(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+    options: Options,
+) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let (scene, mut found) = sdfc_syntax::parse(sources, file);
     // The library comes before the imports, so that its places are the same in every scene.
     library::with_parsed(sources, |_| ());
@@ -71,7 +89,11 @@ pub fn front_with_imports(
     if has_errors(&found) {
         return (None, found);
     }
-    let (elaborated, of_elaboration) = elab::elaborate(&program);
+    let (elaborated, of_elaboration) = if options.slots {
+        slots::elaborate(&program, sources, file)
+    } else {
+        elab::elaborate(&program)
+    };
     found.extend(of_elaboration);
     (elaborated, found)
 }

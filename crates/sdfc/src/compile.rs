@@ -6,7 +6,8 @@ use std::time::Instant;
 use sdfc_analyze::{Report, prepare};
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Located, Sources, Span, locate, render};
 use sdfc_graph::{Param, Program};
-use sdfc_lang::{Elaborated, NoFiles, Resolver, Site};
+use sdfc_lang::slots::Slot;
+use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
 
 use crate::scene::DerivedBounds;
 use crate::shader::Origin;
@@ -81,6 +82,11 @@ impl Scene {
         &self.program.params
     }
 
+    /// Numbers of the scene that have become params; none unless compiled so.
+    pub fn slots(&self) -> &[Slot] {
+        &self.elaborated.slots
+    }
+
     /// Whether the scene draws anything.
     pub fn draws(&self) -> bool {
         self.program.distance.is_some()
@@ -109,10 +115,30 @@ pub fn compile(name: &str, text: &str) -> Compiled {
 
 /// As [`compile`], for scenes that import files: the resolver gives their texts.
 pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> Compiled {
+    compile_with(name, text, resolver, Options::default())
+}
+
+/// As [`compile_with_imports`], with options.
+///
+/// ```
+/// use sdfc::lang::{NoFiles, Options};
+///
+/// let options = Options { slots: true };
+/// let compiled = sdfc::compile_with("ball.sdf", "sphere(0.5)", &NoFiles, options);
+/// let scene = compiled.scene.expect("no errors");
+/// let [slot] = scene.slots() else { panic!("one number is written") };
+/// assert_eq!((slot.value, compiled.sources.slice(slot.span)), (0.5, "0.5"));
+///
+/// // The number is a param now, and moves as one.
+/// let mut frame = sdfc::FrameValues::defaults(scene.params());
+/// scene.set_param(&mut frame, &scene.params()[slot.param].name, "0.25").expect("in range");
+/// ```
+pub fn compile_with(name: &str, text: &str, resolver: &dyn Resolver, options: Options) -> Compiled {
     let start = Instant::now();
     let mut sources = Sources::new();
     let file = sources.add(name, text);
-    let (elaborated, mut diagnostics) = sdfc_lang::front_with_imports(&mut sources, file, resolver);
+    let (elaborated, mut diagnostics) =
+        sdfc_lang::front_with(&mut sources, file, resolver, options);
     let front = milliseconds(start);
     let origin = Origin::new(&sources, file);
     let scene =

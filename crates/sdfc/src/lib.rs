@@ -41,7 +41,9 @@ mod scene;
 mod shader;
 
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
-pub use compile::{Compiled, FrontTimes, Scene, compile, compile_with_imports, format};
+pub use compile::{
+    Compiled, FrontTimes, Scene, compile, compile_with, compile_with_imports, format,
+};
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use params::ParamError;

@@ -49,7 +49,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
 }
 
 fn named(file: &Path, console: &Console) -> Result<(String, Scene), Failure> {
-    let scene = super::scene(file, console)?;
+    let scene = super::scene(file, sdfc::lang::Options::default(), console)?;
     if !scene.draws() {
         return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
     }

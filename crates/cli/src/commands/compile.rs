@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use sdfc::ShaderOptions;
+use sdfc::lang::Options;
 
 use crate::args::Compile;
 use crate::console::Console;
@@ -19,7 +20,7 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let paths: Vec<&Path> =
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
-    let mut compiled = super::compiled(&args.file)?;
+    let mut compiled = super::compiled_with(&args.file, Options { slots: args.slots })?;
     super::show(&mut compiled, console);
     let scene = compiled.scene.ok_or(Failure::Scene)?;
     let options = ShaderOptions {

@@ -10,6 +10,7 @@ pub mod render;
 use std::path::{Path, PathBuf};
 
 use sdfc::Error;
+use sdfc::lang::Options;
 use sdfc::render::RenderError;
 
 use crate::console::Console;
@@ -21,8 +22,8 @@ use crate::input;
 /// # Errors
 ///
 /// The scene cannot be read, or has errors.
-fn scene(path: &Path, console: &Console) -> Result<sdfc::Scene, Failure> {
-    let mut compiled = compiled(path)?;
+fn scene(path: &Path, options: Options, console: &Console) -> Result<sdfc::Scene, Failure> {
+    let mut compiled = compiled_with(path, options)?;
     show(&mut compiled, console);
     compiled.scene.ok_or(Failure::Scene)
 }
@@ -44,8 +45,12 @@ fn lowering(error: &Error, console: &Console) -> Failure {
 }
 
 fn compiled(path: &Path) -> Result<sdfc::Compiled, Failure> {
+    compiled_with(path, Options::default())
+}
+
+fn compiled_with(path: &Path, options: Options) -> Result<sdfc::Compiled, Failure> {
     let input = input::read(path)?;
-    Ok(sdfc::compile_with_imports(&input.name, &input.text, &input::Folder::of(path)))
+    Ok(sdfc::compile_with(&input.name, &input.text, &input::Folder::of(path), options))
 }
 
 /// Does the same to every file, also after one that fails.

@@ -5,6 +5,7 @@ mod format;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use sdfc::lang::Options;
 use sdfc::render::{Animation, RenderError};
 use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene};
 
@@ -29,7 +30,7 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// or an output and the scene, are one file; the machine cannot draw or write it; ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
-    let scene = super::scene(&args.file, console)?;
+    let scene = super::scene(&args.file, Options { slots: args.slots }, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }

@@ -40,6 +40,7 @@ impl<'p> Elaborator<'p> {
                 let Value::Node(holds) = holds else {
                     return Err(self.unexpected(span, "a condition", &holds));
                 };
+                self.decides(holds);
                 running = Some(self.both(running, holds));
             }
             let mut active = running;
@@ -80,6 +81,7 @@ impl<'p> Elaborator<'p> {
             return Ok(Rounds { items, limit: None });
         }
         let count = self.number(env, over)?;
+        self.decides(count);
         let (cap, limit) = match self.graph.as_number(count) {
             Some(count) => (count, None),
             None => (self.highest(count, over.span)?, Some(count)),

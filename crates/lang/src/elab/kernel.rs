@@ -133,6 +133,10 @@ impl<'p> Elaborator<'p> {
         swapped: Swapped,
     ) -> Outcome<Value<'p>> {
         let [a, b] = self.numbers(env, at.args)?;
+        if op == Binary::Pow {
+            // A power with a moving exponent has no value below 0.
+            self.decides(b);
+        }
         let result = match swapped {
             Swapped::No => self.graph.binary(op, a, b),
             Swapped::Yes => self.graph.binary(op, b, a),
@@ -210,6 +214,7 @@ impl<'p> Elaborator<'p> {
             Some(value) if value == deciding => Ok(Value::Node(a)),
             Some(_) => Ok(Value::Node(self.number(env, b)?)),
             None => {
+                self.decides(a);
                 let b = self.number(env, b)?;
                 Ok(Value::Node(self.graph.binary(op, a, b)))
             }

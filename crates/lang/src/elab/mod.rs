@@ -24,6 +24,7 @@ mod scene;
 mod sequence;
 mod settings;
 mod shape;
+mod slots;
 mod special;
 mod value;
 
@@ -33,6 +34,7 @@ use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
 
 use crate::hir;
 use report::Frame;
+use slots::Offer;
 use value::{ClosureKey, Value};
 
 /// Graph nodes of one scene.
@@ -54,6 +56,8 @@ pub struct Elaborated {
     /// Which calls built which shapes, in order of elaboration. Equal shapes share an instance,
     /// so one instance may have several sites.
     pub sites: Vec<Site>,
+    /// Literals that move: none unless asked for.
+    pub slots: Vec<crate::slots::Slot>,
 }
 
 /// A place in the scene's own files that built a shape.
@@ -70,12 +74,22 @@ pub struct Site {
 /// Elaborates a checked scene. Without a scene there is at least one error; with one there may
 /// still be warnings.
 pub fn elaborate(program: &hir::Program) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let mut elaborator = Elaborator::new(program);
+    let (elaborated, diagnostics, _) = elaborate_with(program, program.params.len());
+    (elaborated, diagnostics)
+}
+
+/// As [`elaborate`], for a scene whose params from a position on stand for literals, with what was found
+/// out about these.
+pub(crate) fn elaborate_with(
+    program: &hir::Program,
+    first_literal: usize,
+) -> (Option<Elaborated>, Vec<Diagnostic>, Offer) {
+    let mut elaborator = Elaborator::new(program, first_literal);
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
-    let elaborated = Elaborated { scene, sites: elaborator.sites };
-    ((!failed).then_some(elaborated), elaborator.diagnostics)
+    let elaborated = Elaborated { scene, sites: elaborator.sites, slots: Vec::new() };
+    ((!failed).then_some(elaborated), elaborator.diagnostics, elaborator.offer)
 }
 
 /// An error was reported; what depends on the value stays silent.
@@ -137,10 +151,12 @@ struct Elaborator<'p> {
     missing: Option<Span>,
     /// Within a clause, where infinite values mean "not known".
     in_clause: bool,
+    /// Params that stand for literals.
+    offer: Offer,
 }
 
 impl<'p> Elaborator<'p> {
-    fn new(program: &'p hir::Program) -> Self {
+    fn new(program: &'p hir::Program, first_literal: usize) -> Self {
         Self {
             program,
             graph: Graph::new(),
@@ -159,6 +175,7 @@ impl<'p> Elaborator<'p> {
             stopped: false,
             missing: None,
             in_clause: false,
+            offer: Offer::new(first_literal),
         }
     }
 }

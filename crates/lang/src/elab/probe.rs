@@ -77,7 +77,7 @@ impl Elaborator<'_> {
     }
 
     /// The per-frame inputs that a node depends on, in order.
-    fn inputs(&self, root: NodeId) -> Vec<FrameInput> {
+    pub(super) fn inputs(&self, root: NodeId) -> Vec<FrameInput> {
         let mut seen = rustc_hash::FxHashSet::default();
         let mut found = Vec::new();
         let mut stack = vec![root];

@@ -186,6 +186,7 @@ impl<'p> Elaborator<'p> {
             Some(condition) => self.number(env, condition)?,
             None => self.graph.boolean(true),
         };
+        self.binds(condition);
         if !self.is_early(condition) || self.as_bool(condition) == Some(false) {
             return Ok(());
         }

@@ -100,6 +100,7 @@ impl<'p> Elaborator<'p> {
         for arg in at.args {
             let node = self.number(env, arg)?;
             let Some((lanes, width)) = self.as_lanes(node) else {
+                self.decides(node);
                 let what = format!("`{}` of a value that is not constant", name(at.op));
                 return Err(self.not_yet(arg.span, &what));
             };

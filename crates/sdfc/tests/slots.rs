@@ -1,0 +1,102 @@
+//! Numbers of a scene as params: the same scene until one is moved.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use sdfc::graph::eval::sample_field;
+use sdfc::lang::{NoFiles, Options};
+use sdfc::{
+    Backend, Compiled, FrameValues, PictureOptions, Scene, compile, compile_with, unwatched,
+};
+
+fn slotted(text: &str) -> (Compiled, Scene) {
+    let mut compiled = compile_with("a.sdf", text, &NoFiles, Options { slots: true });
+    let scene = compiled.scene.take();
+    let scene = scene.unwrap_or_else(|| panic!("{}", compiled.diagnostics_text(false)));
+    (compiled, scene)
+}
+
+/// The numbers that move, as they are written.
+fn offered(text: &str) -> Vec<String> {
+    let (compiled, scene) = slotted(text);
+    let written = |slot: &sdfc::lang::slots::Slot| compiled.sources.slice(slot.span).to_owned();
+    let mut slots = scene.slots().to_vec();
+    slots.sort_by_key(|slot| slot.span);
+    slots.iter().map(written).collect()
+}
+
+fn distances(scene: &Scene, frame: &FrameValues) -> Vec<f64> {
+    let points: Vec<[f64; 3]> = (0..200)
+        .map(|i| [0.0, 1.0, 2.0].map(|axis| 5.0 * (f64::from(i) * (1.7 + axis)).sin()))
+        .collect();
+    let samples = sample_field(scene.program(), frame, &points).unwrap();
+    samples.iter().map(|sample| sample.distance).collect()
+}
+
+#[test]
+fn every_example_is_the_same_scene_with_slots() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder)
+        .unwrap()
+        .chain(std::fs::read_dir(format!("{folder}/course")).unwrap())
+    {
+        let path = entry.unwrap().path();
+        let Some(text) = path
+            .extension()
+            .filter(|e| *e == "sdf")
+            .map(|_| std::fs::read_to_string(&path).unwrap())
+        else {
+            continue;
+        };
+        let Some(plain) = compile("a.sdf", &text).scene.filter(Scene::draws) else { continue };
+        let (_, slots) = slotted(&text);
+        assert!(!slots.slots().is_empty(), "{path:?} has no number that moves");
+        assert_eq!(plain.report().uncertified.len(), slots.report().uncertified.len(), "{path:?}");
+        let frame = |scene: &Scene| FrameValues::defaults(scene.params());
+        let pairs =
+            distances(&plain, &frame(&plain)).into_iter().zip(distances(&slots, &frame(&slots)));
+        for (a, b) in pairs {
+            assert!((a - b).abs() <= 1e-9 * (1.0 + a.abs()), "{path:?}: {a} and {b}");
+        }
+        let options =
+            PictureOptions { size: [24, 15], backend: Backend::Cpu, ..Default::default() };
+        let [a, b] = [&plain, &slots]
+            .map(|scene| scene.render(&options, &mut unwatched).unwrap().image.to_srgb8());
+        let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+        assert!(differing <= 24, "{path:?}: {differing} channels differ");
+        seen += 1;
+    }
+    assert!(seen > 10, "{seen}");
+}
+
+#[test]
+fn a_moved_number_is_the_scene_with_that_number() {
+    let (_, scene) = slotted("sphere(0.5).translate(y: 2)\n");
+    let mut frame = FrameValues::defaults(scene.params());
+    scene.set_param(&mut frame, "at_1_8", "0.75").unwrap();
+    scene.set_param(&mut frame, "at_1_26", "-1").unwrap();
+    let (_, other) = slotted("sphere(0.75).translate(y: -1)\n");
+    let expected = distances(&other, &FrameValues::defaults(other.params()));
+    assert_eq!(distances(&scene, &frame), expected);
+    // The radius keeps the range of the library's parameter.
+    let error = scene.set_param(&mut frame, "at_1_8", "-0.1").unwrap_err().to_string();
+    assert!(error.contains("0..inf"), "{error}");
+}
+
+#[test]
+fn numbers_that_decide_what_is_built_stay() {
+    let none: [&str; 0] = [];
+    assert_eq!(offered("sphere(0.5)\n"), ["0.5"]);
+    assert_eq!(
+        offered("let n = 3\nlet r = if n > 2 { 0.5 } else { 0.7 }\nsphere(r)\n"),
+        ["0.5", "0.7"]
+    );
+    assert_eq!(offered("union(for i in 0..3: sphere(0.5).translate(x: 2 * i))\n"), ["0.5", "2"]);
+    assert_eq!(offered("let a = [0.5, 0.6]\nsphere(a[1])\n"), ["0.5", "0.6"]);
+    assert_eq!(offered("solid s() = pow(length(p), 2) - 1\ns()\n"), ["1"]);
+    assert_eq!(offered("solid s(a, b) require a < b, \"a < b\" = length(p) - b\ns(1, 2)\n"), none);
+    assert_eq!(offered("solid s(a) exact if a > 1 = length(p) - a\ns(2)\n"), none);
+    // What a range limits moves alone, not within a formula.
+    assert_eq!(offered("sphere(0.5 / 2)\n"), none);
+    assert_eq!(offered("sphere(pi)\n"), none);
+}
