@@ -46,6 +46,9 @@ impl Search {
 
     /// A box within the given one that holds all that it holds of the zone; `lo > hi` if nothing.
     pub(super) fn run(&self, start: Region) -> Region {
+        if start.iter().any(|[lo, hi]| lo > hi) {
+            return [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        }
         let budget =
             (OPERATIONS / self.tape.operations().max(1)).clamp(LEAST_EVALUATIONS, MOST_EVALUATIONS);
         let evaluator = self.tape.prepare_in(&self.frame);
@@ -196,5 +199,6 @@ impl Work<'_> {
 /// The middle of a side; of an open one some place in it.
 fn middle([lo, hi]: [f64; 2]) -> [f64; 2] {
     let place = if lo.is_finite() && hi.is_finite() { f64::midpoint(lo, hi) } else { 0.0 };
-    [place.clamp(lo, hi); 2]
+    // Not `clamp`, which panics where `lo` is above `hi`.
+    [place.max(lo).min(hi); 2]
 }
