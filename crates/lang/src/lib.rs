@@ -3,8 +3,8 @@
 //! # What
 //!
 //! [`front`] takes a scene from text to graph: parsed, checked against the library, elaborated to
-//! shape instances and the math that they are made of. [`library::entries`] says what the library
-//! has.
+//! shape instances and the math that they are made of. [`reference::entries`] says what a scene
+//! can name.
 //!
 //! # How
 //!
@@ -36,8 +36,10 @@ pub mod elab;
 pub mod hir;
 pub mod import;
 pub mod library;
+pub mod reference;
 pub mod settings;
 pub mod slots;
+mod spelling;
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
 

@@ -55,13 +55,16 @@ fn parse(sources: &Sources, ids: &[FileId]) -> (Parsed, Vec<Diagnostic>) {
     (ids.iter().map(parse).collect(), diagnostics)
 }
 
-/// What the library says of one of its public declarations.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// What the reference says of one name: a public declaration of the library, or something that the
+/// compiler itself knows.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// Its name; a shape declared for solids and for regions has two entries.
     pub name: String,
-    /// `fn`, `solid`, `region` or `shape`.
+    /// `fn`, `solid`, `region` or `shape`; beyond the library `kernel`, `setting` or `type`.
     pub kind: &'static str,
+    /// What it belongs to: for the library the name of its file, without folder and ending.
+    pub topic: &'static str,
     /// Name, parameters and result as written, on one line.
     pub signature: String,
     /// The first line.
@@ -76,10 +79,8 @@ pub struct Entry {
     pub source: String,
     /// An expression that uses it.
     pub example: String,
-    /// Name of the file.
-    pub file: &'static str,
-    /// Line of the declaration, from 1.
-    pub line: u32,
+    /// Name of the file that declares it, and the line, from 1; only of the library.
+    pub place: Option<(&'static str, u32)>,
 }
 
 /// All public declarations of the library, in the order of files and lines.
@@ -107,15 +108,11 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
             DeclKind::Region => "region",
             DeclKind::Shape => "shape",
         },
+        topic: topic(file),
         signature: signature(sources, decl),
-        summary: String::new(),
-        details: String::new(),
-        parameters: Vec::new(),
         contract: contract(sources, decl),
-        source: String::new(),
-        example: String::new(),
-        file,
-        line: sources.line_column(decl.span.file, decl.span.start).line,
+        place: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
+        ..Entry::default()
     };
     let mut lines = decl.docs.lines.iter();
     entry.summary = lines.next().cloned().unwrap_or_default();
@@ -123,6 +120,12 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
         describe(&mut entry, decl, line);
     }
     entry
+}
+
+/// `std/solids.sdf` is about `solids`.
+fn topic(file: &'static str) -> &'static str {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.strip_suffix(".sdf").unwrap_or(name)
 }
 
 /// Sorts one line of documentation by its key: `source:`, `example:`, a parameter's name, or prose.

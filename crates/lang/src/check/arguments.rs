@@ -7,8 +7,9 @@ use super::call::{Callee, Given, Value, count, is_lambda};
 use super::coerce::Role;
 use super::decl::Slot;
 use super::types::{self, show};
-use super::{Checker, names, poison};
+use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
+use crate::spelling::nearest;
 
 impl<'a> Checker<'a> {
     /// The arguments in the order of the parameters; `None` where the default is taken.
@@ -88,7 +89,7 @@ impl<'a> Checker<'a> {
         let Some(place) = slots.iter().position(|slot| slot.name == name.text) else {
             let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
             let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
-            let near = names::nearest(&name.text, slots.iter().map(|slot| slot.name));
+            let near = nearest(&name.text, slots.iter().map(|slot| slot.name));
             let found = match near {
                 Some(near) => found.help(format!("did you mean `{near}`?")),
                 None => found.help(signature(callee.name, slots)),

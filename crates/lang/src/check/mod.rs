@@ -24,7 +24,7 @@ mod coerce;
 mod decl;
 mod expr;
 mod iterate;
-mod kernel;
+pub(crate) mod kernel;
 mod lambda;
 mod list;
 mod math;
@@ -33,7 +33,7 @@ mod operators;
 mod order;
 mod overload;
 mod top;
-mod types;
+pub(crate) mod types;
 mod value;
 
 use std::rc::Rc;

@@ -10,6 +10,7 @@ use super::body::LocalIndex;
 use super::kernel::{self, Builtin};
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
 use crate::settings::SettingRow;
+use crate::spelling::nearest;
 
 /// What a name at top level of a file means there.
 #[derive(Clone, Debug)]
@@ -249,7 +250,7 @@ impl<'a> Checker<'a> {
             .chain(file.map(|(name, _)| *name))
             .chain(module.imports.keys().copied())
             .chain(self.library.keys().copied())
-            .chain(kernel::NAMES.iter().copied())
+            .chain(kernel::ROWS.iter().map(|row| row.name))
             .chain(self.settings.iter().map(|row: &SettingRow| row.name));
         nearest(name, names).map(str::to_owned)
     }
@@ -282,61 +283,4 @@ pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
         }
     }
     of(decl.signature.parms.first()?.ty.as_ref()?)
-}
-
-/// The name that is fewest edits away, if that is near enough to be a slip of the pen;
-/// among equals the first in alphabetical order.
-pub(super) fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
-    let limit = (name.chars().count() / 3).clamp(1, 3);
-    names
-        .filter(|other| *other != name)
-        .map(|other| (edits(name, other), other))
-        .filter(|(distance, other)| *distance <= limit && *distance < other.chars().count())
-        .min()
-        .map(|(_, other)| other)
-}
-
-/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`
-/// (optimal string alignment). Names longer than 64 characters are never near.
-fn edits(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) =
-        (a.chars().take(65).collect(), b.chars().take(65).collect());
-    if a.len() > 64 || b.len() > 64 || a.len().abs_diff(b.len()) > 3 {
-        return usize::MAX;
-    }
-    let mut rows = [vec![0; b.len() + 1], (0..=b.len()).collect(), vec![0; b.len() + 1]];
-    for i in 1..=a.len() {
-        let [before, last, next] = &mut rows;
-        next[0] = i;
-        for j in 1..=b.len() {
-            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            next[j] = replaced.min(last[j] + 1).min(next[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                next[j] = next[j].min(before[j - 2] + 1);
-            }
-        }
-        rows.rotate_left(1);
-    }
-    rows[1][b.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn edits_count_swaps_once() {
-        assert_eq!(edits("spere", "sphere"), 1);
-        assert_eq!(edits("shpere", "sphere"), 1);
-        assert_eq!(edits("", "abc"), 3);
-        assert_eq!(edits("kitten", "sitting"), 3);
-    }
-
-    #[test]
-    fn a_suggestion_is_near_or_absent() {
-        let names = ["sphere", "plane", "box"];
-        assert_eq!(nearest("spere", names.into_iter()), Some("sphere"));
-        assert_eq!(nearest("teapot", names.into_iter()), None);
-        assert_eq!(nearest("a", ["b"].into_iter()), None);
-    }
 }

@@ -8,11 +8,12 @@ use super::body::Body;
 use super::call::{Callee, Given};
 use super::coerce::region_for_solid;
 use super::decl::{Slot, Target};
-use super::names::{Entry, Found, ImportedName, is_private, nearest};
+use super::names::{Entry, Found, ImportedName, is_private};
 use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
 use crate::hir::{Setting, SettingKind, Type};
 use crate::import;
+use crate::spelling::nearest;
 
 /// What is evaluated at top level.
 enum TopLevel<'a> {

@@ -4,14 +4,47 @@ use sdfc_diagnostics::{Code, Diagnostic};
 use sdfc_graph::Dim;
 use sdfc_syntax::ast::{DeclKind, Signature, TypeExpr, TypeExprKind};
 
-use super::{Checker, names, poison};
+use super::{Checker, poison};
 use crate::hir::{Expr, Type};
+use crate::spelling::nearest;
+
+/// A word that names a type, and what it is for.
+pub(crate) struct Word {
+    /// The word.
+    pub name: &'static str,
+    /// What its values are, in a sentence or two.
+    pub summary: &'static str,
+    /// A declaration that uses it.
+    pub example: &'static str,
+}
+
+macro_rules! words {
+    ($($name:literal $summary:literal $example:literal;)*) => {
+        &[$(Word { name: $name, summary: $summary, example: $example }),*]
+    };
+}
 
 /// The words that name a type.
-const TYPE_WORDS: &[&str] = &[
-    "number", "length", "int", "angle", "bool", "string", "vec2", "vec3", "vec4", "color", "range",
-    "solid", "region", "shape", "point", "material", "blend", "pattern",
-];
+pub(crate) const WORDS: &[Word] = words! {
+    "number" "A number; what a parameter takes that says nothing else." "fn twice(x: number) = 2 * x";
+    "length" "A number again, by the name that readers and sliders want for scene units." "fn half(h: length) = h / 2";
+    "int" "A number known to be whole: a whole literal, what `for`, `len` and `floor` give, and sums and products of those." "fn last(n: int) = n - 1";
+    "angle" "Radians that came from a unit: `90deg`, `0.25turn`, `1.57rad`, `x * 1rad`. A plain number other than 0 is refused where an angle is wanted." "fn back(t: angle) = -t";
+    "bool" "`true` or `false`: comparisons, `&&`, `||`, `!`." "fn pick(big: bool) = if big { 2 } else { 1 }";
+    "string" "Text between double quotes: choices of a param, messages." "param style: string = \"round\" in [\"round\", \"flat\"]";
+    "vec2" "Two numbers, `[x, y]`. A number where a vector is wanted fills it." "fn turned(v: vec2) = [-v.y, v.x]";
+    "vec3" "Three numbers, `[x, y, z]`, picked and reordered by letters: `v.xz`." "fn flat(v: vec3) = v.xz";
+    "vec4" "Four numbers, `[x, y, z, w]`." "fn first(v: vec4) = v.xyz";
+    "color" "Linear red, green, blue and alpha. Literals like `#d94f30` are sRGB and converted at once." "fn dark(c: color) = c * 0.5";
+    "range" "`lo..hi`. `for` and slices leave the upper end out, `in` includes it. It has `.lo` and `.hi`." "fn middle(r: range) = (r.lo + r.hi) / 2";
+    "solid" "A shape in space: its signed distance at a point is had by calling it." "fn pair(a: solid) = a | a.translate(x: 2)";
+    "region" "A shape in the plane." "fn plate(a: region) = a.extrude(0.1)";
+    "shape" "A solid or a region, one of them per call of the declaration." "shape skin(a: shape, wall: length = 0.1) = abs(a(p)) - wall / 2";
+    "point" "What a shape is asked at: vec3 for a solid, vec2 for a region." "solid moved(a: solid, by: fn(point) -> vec3) = a(p - by(p))";
+    "material" "Colour, roughness, metallic, emission and occlusion." "fn shiny(m: material) = m.with(roughness: 0.1)";
+    "blend" "How two distances join: `fn(length, length) -> length`." "fn steep(k: number) -> blend = fn(a, b) = min(a, k * b)";
+    "pattern" "A colour at each point: `fn(vec3) -> color`. A colour is one too." "fn striped() -> pattern = fn(q) = if fract(q.y) < 0.5 { #fff } else { #222 }";
+};
 
 /// The type of `blend`: two distances to one.
 pub(super) fn blend() -> Type {
@@ -40,7 +73,7 @@ pub(super) fn shape_word(dim: Dim) -> &'static str {
 }
 
 /// The type as the language writes it.
-pub(super) fn show(ty: &Type) -> String {
+pub(crate) fn show(ty: &Type) -> String {
     match ty {
         Type::Number => "number".into(),
         Type::Int => "int".into(),
@@ -315,9 +348,12 @@ impl Checker<'_> {
     fn unknown_word(&mut self, word: &str, ty: &TypeExpr) -> Type {
         let found =
             Diagnostic::error(Code::UNKNOWN_NAME, ty.span, format!("there is no type `{word}`"));
-        let found = match names::nearest(word, TYPE_WORDS.iter().copied()) {
+        let found = match nearest(word, WORDS.iter().map(|word| word.name)) {
             Some(near) => found.help(format!("did you mean `{near}`?")),
-            None => found.help("types are number, int, angle, length, bool, string, vec2, vec3, vec4, color, range, [T], fn(A) -> R, solid, region, shape, point, material, blend, pattern"),
+            None => {
+                let words: Vec<&str> = WORDS.iter().map(|word| word.name).collect();
+                found.help(format!("types are {}, [T], fn(A) -> R", words.join(", ")))
+            }
         };
         self.report(found);
         Type::Error

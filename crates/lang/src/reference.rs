@@ -1,0 +1,61 @@
+//! Everything that a scene can name without declaring it: the library, the kernel, the settings, the types.
+//!
+//! Nothing is described here: the library's entries say what they are in their own files, the rest in
+//! the tables that the checker looks names up in.
+
+use crate::check::kernel::ROWS;
+use crate::check::types::{WORDS, show};
+use crate::library::{self, Entry};
+use crate::settings::{self, SettingRow};
+use crate::spelling::nearest;
+
+/// All entries, topic by topic.
+pub fn entries() -> Vec<Entry> {
+    let mut entries = library::entries();
+    entries.extend(ROWS.iter().map(|row| Entry {
+        name: row.name.to_owned(),
+        kind: "kernel",
+        topic: row.topic,
+        signature: row.signature.to_owned(),
+        summary: row.summary.to_owned(),
+        example: row.example.to_owned(),
+        ..Entry::default()
+    }));
+    entries.extend(settings::table().iter().map(setting));
+    entries.extend(WORDS.iter().map(|word| Entry {
+        name: word.name.to_owned(),
+        kind: "type",
+        topic: "types",
+        signature: word.name.to_owned(),
+        summary: word.summary.to_owned(),
+        example: word.example.to_owned(),
+        ..Entry::default()
+    }));
+    entries
+}
+
+fn setting(row: &SettingRow) -> Entry {
+    let written = row.parameters.iter().map(|parameter| {
+        let optional = if parameter.optional { "?" } else { "" };
+        format!("{}{optional}: {}", parameter.name, show(&parameter.ty))
+    });
+    let written: Vec<String> = written.collect();
+    let about = row.parameters.iter().map(|it| (it.name.to_owned(), it.about.to_owned()));
+    Entry {
+        name: row.name.to_owned(),
+        kind: "setting",
+        topic: "settings",
+        signature: format!("{}({})", row.name, written.join(", ")),
+        summary: row.summary.to_owned(),
+        details: if row.once { "It stands at most once." } else { "Any number may stand." }
+            .to_owned(),
+        parameters: about.collect(),
+        example: row.example.to_owned(),
+        ..Entry::default()
+    }
+}
+
+/// The name that was probably meant.
+pub fn near<'e>(entries: &'e [Entry], name: &str) -> Option<&'e str> {
+    nearest(name, entries.iter().map(|entry| entry.name.as_str()))
+}

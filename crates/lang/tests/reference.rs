@@ -1,0 +1,64 @@
+//! What the reference says is true: its examples compile, and nothing in it is blank.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod support;
+
+use sdfc_diagnostics::Code;
+use sdfc_lang::{library, reference, settings};
+use support::front;
+
+/// A scene around an example, by the kind of its entry.
+fn scene(entry: &library::Entry) -> String {
+    match entry.kind {
+        "kernel" => format!("let it = {}\nsphere(1)", entry.example),
+        "setting" | "type" => format!("sphere(1)\n{}", entry.example),
+        _ => entry.example.clone(),
+    }
+}
+
+#[test]
+fn every_example_compiles() {
+    for entry in reference::entries() {
+        let text = scene(&entry);
+        let (sources, _, found) = front(&text);
+        // What this version does not have is refused with a code of its own.
+        let wrong: Vec<_> = found.into_iter().filter(|it| it.code != Code::NOT_YET).collect();
+        let shown = sdfc_diagnostics::render(&sources, &wrong, false);
+        assert!(wrong.is_empty(), "{}: {text}\n{shown}", entry.name);
+    }
+}
+
+#[test]
+fn every_example_uses_its_entry() {
+    for entry in reference::entries() {
+        assert!(entry.example.contains(&entry.name), "{}: {}", entry.name, entry.example);
+    }
+}
+
+#[test]
+fn every_summary_is_a_sentence() {
+    for entry in reference::entries() {
+        assert!(entry.summary.ends_with('.'), "{}: {}", entry.name, entry.summary);
+        assert!(!entry.signature.is_empty() && !entry.topic.is_empty(), "{}", entry.name);
+    }
+}
+
+#[test]
+fn every_setting_is_there_with_its_parameters() {
+    let entries = reference::entries();
+    for row in settings::table() {
+        let entry = entries.iter().find(|it| it.kind == "setting" && it.name == row.name);
+        let entry = entry.expect("every row has an entry");
+        assert_eq!(entry.parameters.len(), row.parameters.len(), "{}", row.name);
+    }
+}
+
+#[test]
+fn a_misspelt_name_has_a_near_one() {
+    let entries = reference::entries();
+    assert_eq!(reference::near(&entries, "spere"), Some("sphere"));
+    assert_eq!(reference::near(&entries, "smoothstp"), Some("smoothstep"));
+    assert_eq!(reference::near(&entries, "camra"), Some("camera"));
+    assert_eq!(reference::near(&entries, "teapot"), None);
+}
