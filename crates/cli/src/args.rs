@@ -66,6 +66,8 @@ pub enum Command {
     Explain(Explain),
     /// Time the specialised shader against shaders that interpret the scene
     Bench(Bench),
+    /// Say what a scene can name: shapes, operators, functions, settings, types
+    Doc(Doc),
 }
 
 /// Arguments of `check`.
@@ -267,6 +269,16 @@ pub struct Bench {
     /// Where the figures go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
+}
+
+/// Arguments of `doc`.
+#[derive(clap::Args, Debug)]
+pub struct Doc {
+    /// A name, a topic, or a word that descriptions mention; everything if not given
+    pub name: Option<String>,
+    /// Write it to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 fn methods() -> PossibleValuesParser {

@@ -1,6 +1,6 @@
 //! What is said on stderr: errors, warnings, notes and progress.
 
-use std::io::{IsTerminal, Write, stderr};
+use std::io::{IsTerminal, Write, stderr, stdout};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -12,6 +12,7 @@ use crate::failure::Failure;
 pub struct Console {
     /// Whether diagnostics and errors are coloured.
     pub color: bool,
+    choice: ColorChoice,
     quiet: bool,
     verbose: bool,
 }
@@ -19,15 +20,13 @@ pub struct Console {
 impl Console {
     /// As the global options ask. `auto` is colour on a terminal unless `NO_COLOR` is set.
     pub fn new(global: &Global) -> Self {
-        let color = match global.color {
-            ColorChoice::Always => true,
-            ColorChoice::Never => false,
-            ColorChoice::Auto => {
-                let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-                stderr().is_terminal() && !refused
-            }
-        };
-        Self { color, quiet: global.quiet, verbose: global.verbose }
+        let color = colored(global.color, &stderr());
+        Self { color, choice: global.color, quiet: global.quiet, verbose: global.verbose }
+    }
+
+    /// Whether what goes to stdout for people is coloured.
+    pub fn output_color(&self) -> bool {
+        colored(self.choice, &stdout())
     }
 
     /// Why the command ends. Diagnostics of a scene have been shown already and need no further line.
@@ -78,6 +77,17 @@ impl Console {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(what.to_owned());
         Progress { bar, shown }
+    }
+}
+
+fn colored(choice: ColorChoice, stream: &impl IsTerminal) -> bool {
+    match choice {
+        ColorChoice::Always => true,
+        ColorChoice::Never => false,
+        ColorChoice::Auto => {
+            let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+            stream.is_terminal() && !refused
+        }
     }
 }
 

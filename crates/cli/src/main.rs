@@ -40,5 +40,6 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Render(args) => commands::render::run(args, console),
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),
+        Command::Doc(args) => commands::doc::run(args, console),
     }
 }

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod check;
 pub mod compile;
+pub mod doc;
 pub mod explain;
 pub mod format;
 pub mod render;

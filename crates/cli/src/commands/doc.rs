@@ -1,0 +1,116 @@
+//! `sdfc doc`: the reference, from what the entries say of themselves.
+
+mod page;
+
+use sdfc::lang::library::Entry;
+use sdfc::lang::reference;
+use serde::Serialize;
+
+use crate::args::Doc;
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::output;
+
+use page::Page;
+
+/// An entry for programs. The keys are a promise to other tools: some may be added, none renamed.
+#[derive(Serialize)]
+struct Row<'e> {
+    name: &'e str,
+    kind: &'e str,
+    topic: &'e str,
+    signature: &'e str,
+    summary: &'e str,
+    details: &'e str,
+    parameters: Vec<Parameter<'e>>,
+    contract: &'e str,
+    source: &'e str,
+    example: &'e str,
+    file: Option<&'e str>,
+    line: Option<u32>,
+}
+
+#[derive(Serialize)]
+struct Parameter<'e> {
+    name: &'e str,
+    about: &'e str,
+}
+
+/// Writes to stdout what there is, or what is asked for: a name, a topic, or a word that entries mention.
+///
+/// # Errors
+///
+/// Nothing has that name nor mentions it.
+pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
+    let entries = reference::entries();
+    let found = match &args.name {
+        None => Found { full: Vec::new(), listed: entries.iter().collect() },
+        Some(name) => find(&entries, name, console)?,
+    };
+    if args.json {
+        let rows: Vec<Row> =
+            found.full.iter().chain(&found.listed).map(|entry| row(entry)).collect();
+        return output::to_stdout(&super::json(&rows)?);
+    }
+    let mut page = Page::new(console.output_color());
+    page.full(&found.full);
+    page.list(&found.listed);
+    if args.name.is_none() {
+        page.closing("`sdfc doc NAME` says all about one of them.");
+    }
+    output::to_stdout(page.text().as_bytes())
+}
+
+/// What is shown of the reference.
+struct Found<'e> {
+    /// Entries to show in full.
+    full: Vec<&'e Entry>,
+    /// Entries to list.
+    listed: Vec<&'e Entry>,
+}
+
+fn find<'e>(entries: &'e [Entry], name: &str, console: &Console) -> Result<Found<'e>, Failure> {
+    let those = |wanted: &dyn Fn(&Entry) -> bool| -> Vec<&'e Entry> {
+        entries.iter().filter(|entry| wanted(entry)).collect()
+    };
+    let full = those(&|entry| entry.name == name);
+    let listed = those(&|entry| entry.topic == name);
+    if !full.is_empty() || !listed.is_empty() {
+        return Ok(Found { full, listed });
+    }
+    let near = reference::near(entries, name);
+    let meant = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let missing = format!("nothing is called `{name}`{meant}");
+    let listed = those(&|entry| mentions(entry, name));
+    if near.is_some() || listed.is_empty() {
+        return Err(Failure::Call(missing));
+    }
+    console.note(&format!("{missing}; these mention it:"));
+    Ok(Found { full, listed })
+}
+
+/// Whether a word stands in an entry's name or in what it says of itself.
+fn mentions(entry: &Entry, word: &str) -> bool {
+    let word = word.to_lowercase();
+    let texts = [&entry.name, &entry.summary, &entry.details];
+    texts.iter().any(|text| text.to_lowercase().contains(&word))
+}
+
+fn row(entry: &Entry) -> Row<'_> {
+    let parameters =
+        entry.parameters.iter().map(|(name, about)| Parameter { name, about }).collect();
+    Row {
+        name: &entry.name,
+        kind: entry.kind,
+        topic: entry.topic,
+        signature: &entry.signature,
+        summary: &entry.summary,
+        details: &entry.details,
+        parameters,
+        contract: &entry.contract,
+        source: &entry.source,
+        example: &entry.example,
+        file: entry.place.map(|(file, _)| file),
+        line: entry.place.map(|(_, line)| line),
+    }
+}
