@@ -258,11 +258,14 @@ pub struct Explain {
 #[derive(clap::Args, Debug)]
 pub struct Bench {
     /// The scene; `-` is stdin
-    #[arg(required_unless_present = "suite")]
+    #[arg(required_unless_present_any = ["suite", "faults"])]
     pub file: Option<PathBuf>,
     /// Also measure the suite: scenes of the course, and generated ones of 3, 33 and 100 leaves
     #[arg(long)]
     pub suite: bool,
+    /// Count wrong pixels instead: scenes at which a classroom practical's march fails
+    #[arg(long, conflicts_with_all = ["file", "suite"])]
+    pub faults: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = size)]
     pub size: [u32; 2],

@@ -72,7 +72,11 @@ fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
     let features = features(program);
-    let mut roots = vec![distance, gradient];
+    let mut filled = vec![(Role::Distance, stubs::FIELD, distance)];
+    if method.gradient.is_none() {
+        filled.push((Role::Gradient, stubs::GRADIENT, gradient));
+    }
+    let mut roots: Vec<_> = filled.iter().map(|&(.., root)| root).collect();
     roots.extend(program.material.into_iter().flatten());
     let used = used_slots(program, roots);
     let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
@@ -83,9 +87,7 @@ fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
     }
     let mut parts = Parts { uniform: inputs.buffer(), ..Default::default() };
-    for (role, stub, root) in
-        [(Role::Distance, stubs::FIELD, distance), (Role::Gradient, stubs::GRADIENT, gradient)]
-    {
+    for (role, stub, root) in filled {
         let function = value_function(program, &inputs, &mut module.types, stub, root)?;
         link::fill(&mut module, stub, function)?;
         parts.functions.extend(link::find_function(&module, stub).map(|f| (role, f)));

@@ -9,24 +9,35 @@ pub struct Method {
     pub summary: &'static str,
     /// Text of its file.
     pub source: &'static str,
+    /// Text of a file with a gradient that belongs to it; none: any will do.
+    pub gradient: Option<&'static str>,
 }
 
 /// All ray methods, the default first.
-pub const METHODS: [Method; 3] = [
+pub const METHODS: [Method; 4] = [
     Method {
         name: "auto",
         summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
         source: include_str!("wgsl/auto.wgsl"),
+        gradient: None,
     },
     Method {
         name: "sphere",
         summary: "Sphere tracing to an absolute distance.",
         source: include_str!("wgsl/sphere.wgsl"),
+        gradient: None,
     },
     Method {
         name: "fixed",
         summary: "Constant steps, halved once the sign changes.",
         source: include_str!("wgsl/fixed.wgsl"),
+        gradient: None,
+    },
+    Method {
+        name: "practical",
+        summary: "A classroom practical's march and normals, faults and all: to compare with.",
+        source: include_str!("wgsl/baseline/practical.wgsl"),
+        gradient: Some(include_str!("wgsl/baseline/central.wgsl")),
     },
 ];
 
@@ -47,7 +58,8 @@ pub struct Features {
 }
 
 /// Where a picture's distance and gradient come from. Pictures that are compared for speed differ in nothing
-/// else: all but [`FieldSource::Scene`] take the gradient by the same four evaluations of the field.
+/// else: all but [`FieldSource::Scene`] take the gradient by the same four evaluations of the field. A method's
+/// own gradient goes before any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FieldSource {
     /// The scene supplies both.
@@ -62,13 +74,16 @@ pub enum FieldSource {
 }
 
 impl FieldSource {
-    fn files(self) -> &'static [&'static str] {
+    /// The files of `field` and of `field_gradient`.
+    fn files(self) -> [&'static str; 2] {
+        const SCENE: &str = include_str!("wgsl/field.wgsl");
+        const DERIVATIVE: &str = include_str!("wgsl/gradient.wgsl");
         const DIFFERENCES: &str = include_str!("wgsl/baseline/differences.wgsl");
         match self {
-            Self::Scene => &[include_str!("wgsl/field.wgsl")],
-            Self::Distance => &[include_str!("wgsl/baseline/distance.wgsl"), DIFFERENCES],
-            Self::Units => &[include_str!("wgsl/baseline/units.wgsl"), DIFFERENCES],
-            Self::Tape => &[include_str!("wgsl/baseline/tape.wgsl"), DIFFERENCES],
+            Self::Scene => [SCENE, DERIVATIVE],
+            Self::Distance => [SCENE, DIFFERENCES],
+            Self::Units => [include_str!("wgsl/baseline/units.wgsl"), DIFFERENCES],
+            Self::Tape => [include_str!("wgsl/baseline/tape.wgsl"), DIFFERENCES],
         }
     }
 }
@@ -91,14 +106,17 @@ pub fn source_over(field: FieldSource, method: &Method, features: Features) -> S
         (true, false) => include_str!("wgsl/picture_reflected.wgsl"),
         (true, true) => include_str!("wgsl/picture_reflected_shadowed.wgsl"),
     };
-    let mut files = vec![include_str!("wgsl/view.wgsl")];
-    files.extend(field.files());
-    files.extend([
+    let [field, gradient] = field.files();
+    let mut files = vec![
+        include_str!("wgsl/view.wgsl"),
+        field,
+        method.gradient.unwrap_or(gradient),
+        include_str!("wgsl/frame.wgsl"),
         include_str!("wgsl/ray.wgsl"),
         method.source,
         include_str!("wgsl/shade.wgsl"),
         shade,
-    ]);
+    ];
     if features.shadows || features.reflections {
         files.push(include_str!("wgsl/secondary.wgsl"));
     }
@@ -110,7 +128,7 @@ pub fn source_over(field: FieldSource, method: &Method, features: Features) -> S
 pub mod stubs {
     /// `fn field(p: vec3f) -> f32`, signed distance.
     pub const FIELD: &str = "field";
-    /// `fn field_gradient(p: vec3f) -> vec3f`, its spatial derivative.
+    /// `fn field_gradient(p: vec3f) -> vec3f`, its spatial derivative, unless the method has its own.
     pub const GRADIENT: &str = "field_gradient";
     /// `fn material(p: vec3f) -> Material`, where [`super::Features::materials`] is set.
     pub const MATERIAL: &str = "material";

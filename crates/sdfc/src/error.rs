@@ -14,6 +14,8 @@ pub enum Error {
     Evaluate(TapeError),
     /// The settings make no picture.
     View(ViewError),
+    /// A baseline cannot hold the scene; why.
+    Inexpressible(String),
     /// The machine cannot draw it.
     Render(RenderError),
 }
@@ -23,7 +25,11 @@ impl Error {
     pub fn is_machine(&self) -> bool {
         match self {
             Self::Render(error) => error.is_machine(),
-            Self::NothingDrawn | Self::Codegen(_) | Self::Evaluate(_) | Self::View(_) => false,
+            Self::NothingDrawn
+            | Self::Codegen(_)
+            | Self::Evaluate(_)
+            | Self::View(_)
+            | Self::Inexpressible(_) => false,
         }
     }
 
@@ -34,7 +40,9 @@ impl Error {
             Self::Render(error) => {
                 matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
             }
-            Self::NothingDrawn | Self::Evaluate(_) | Self::View(_) => false,
+            Self::NothingDrawn | Self::Evaluate(_) | Self::View(_) | Self::Inexpressible(_) => {
+                false
+            }
         }
     }
 }
@@ -48,6 +56,7 @@ impl std::fmt::Display for Error {
             Self::Codegen(error) => error.fmt(f),
             Self::Evaluate(error) => error.fmt(f),
             Self::View(error) => error.fmt(f),
+            Self::Inexpressible(why) => f.write_str(why),
             Self::Render(error) => error.fmt(f),
         }
     }

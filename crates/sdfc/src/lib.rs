@@ -34,6 +34,7 @@ mod bench;
 mod compile;
 mod error;
 mod explain;
+mod faults;
 mod params;
 mod picture;
 mod reflection;
@@ -46,6 +47,7 @@ pub use compile::{
 };
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
+pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
 pub use params::ParamError;
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{Certificate, FunctionRow, ParamRow, ShaderReflection, Sides, UniformRow};

@@ -23,6 +23,9 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         output::distinct(file, &[json])?;
     }
     json.as_ref().map_or(Ok(()), Output::check)?;
+    if args.faults {
+        return super::faults::run(args.size, json, console);
+    }
 
     let mut scenes: Vec<_> = scene.into_iter().collect();
     if args.suite {

@@ -5,6 +5,7 @@ pub mod check;
 pub mod compile;
 pub mod doc;
 pub mod explain;
+mod faults;
 pub mod format;
 pub mod render;
 

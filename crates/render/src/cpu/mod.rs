@@ -59,7 +59,7 @@ impl CpuScene {
         })
     }
 
-    /// Draws a frame in f32. The methods are `sphere` and `auto`.
+    /// Draws a frame in f32, as the shader does. The methods are `sphere` and `auto`.
     ///
     /// # Errors
     ///
@@ -73,11 +73,27 @@ impl CpuScene {
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
+        self.render_in::<f32>(view, frame, method, options, progress)
+    }
+
+    /// Draws a frame, marched in `T`: in f64, what a shader's picture is measured against.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::render`].
+    pub fn render_in<T: Real>(
+        &self,
+        view: &View,
+        frame: &FrameValues,
+        method: &str,
+        options: &RenderOptions,
+        progress: &mut OnProgress<'_>,
+    ) -> Result<Frame, RenderError> {
         if self.gradient.is_none() {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
         let method = Method::of_name(method)?;
-        self.draw(view, options, progress, &self.wave::<f32>(view, frame, method, true))
+        self.draw(view, options, progress, &self.wave::<T>(view, frame, method, true))
     }
 
     /// Depth, status and evaluations of the rays from the eye, without colours, marched in `T`.

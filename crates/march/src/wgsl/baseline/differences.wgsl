@@ -5,10 +5,6 @@
 // Shorter, and rounding shows; longer, and creases do.
 const TAP: f32 = 5e-4;
 
-// What is known per frame is copied here where the scene's own field reads it.
-fn load_frame() {
-}
-
 fn field_gradient(p: vec3f) -> vec3f {
     var sum = vec3f();
     // One call in a loop: drivers inline the field wherever it is called.
