@@ -64,7 +64,7 @@ impl Slopes {
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Self {
         let mut slopes = Self { constants: FxHashMap::default(), linear: FxHashMap::default() };
-        for node in reachable(graph, roots) {
+        for node in with_claimed_arguments(graph, roots) {
             let lookup = |id: NodeId| slopes.linear.get(&id).copied();
             let linear = affine::linear_part(graph, node, level, &lookup);
             let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
@@ -300,6 +300,24 @@ impl Slopes {
         let factor = hypotenuse(graph, &lengths);
         let inner = self.constant(v)?;
         Ok(graph.mul(factor, inner))
+    }
+}
+
+/// All that the roots reach, and the arguments that claims there speak of: simplification may have taken an
+/// argument apart.
+fn with_claimed_arguments(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
+    let mut roots = roots.to_vec();
+    loop {
+        let order = reachable(graph, &roots);
+        let claims = order.iter().filter_map(|&node| graph.claim_of(node));
+        let missing: Vec<NodeId> = claims
+            .flat_map(|claim| claim.arguments.iter().copied())
+            .filter(|argument| order.binary_search(argument).is_err())
+            .collect();
+        if missing.is_empty() {
+            return order;
+        }
+        roots.extend(missing);
     }
 }
 

@@ -204,9 +204,64 @@ impl Graph {
         })
     }
 
-    /// Records what is stated of a node; the first claim stays.
-    pub fn claim(&mut self, node: NodeId, claim: Claim) {
-        self.claims.entry(node).or_insert(claim);
+    /// Records what is stated of a node, and what follows for the part of it that varies: simplification
+    /// moves signs, offsets and factors out of a node, and would leave the claim behind. The first claim stays.
+    pub fn claim(&mut self, node: NodeId, mut claim: Claim) {
+        for argument in &mut claim.arguments {
+            *argument = self.unshifted(*argument);
+        }
+        let mut part = node;
+        while !claim.arguments.contains(&part) {
+            self.claims.entry(part).or_insert_with(|| claim.clone());
+            let Some((inner, factor)) = self.varying_part(part) else { return };
+            if factor != 1.0 {
+                let inverse = self.number(1.0 / factor);
+                claim.lipschitz = self.mul(claim.lipschitz, inverse);
+            }
+            part = inner;
+        }
+    }
+
+    /// What is stated of a node holds of another that equals its negative.
+    pub(crate) fn carry_claim(&mut self, node: NodeId, negative: NodeId) {
+        if let Some(claim) = self.claims.get(&node).cloned() {
+            self.claim(negative, claim);
+        }
+    }
+
+    /// A node without its sign and offsets: it changes as fast.
+    fn unshifted(&self, mut node: NodeId) -> NodeId {
+        while let Some((inner, 1.0)) = self.varying_part(node) {
+            node = inner;
+        }
+        node
+    }
+
+    /// The part of `-x`, `x + c`, `x - c`, `c - x`, `x * c` that depends on the point, and by how much the whole
+    /// changes faster than it.
+    fn varying_part(&self, node: NodeId) -> Option<(NodeId, f64)> {
+        let fixed = |id: NodeId| self.stage(id) < Stage::Point;
+        match self.node(node) {
+            Node::Unary(Unary::Neg, x) => Some((x, 1.0)),
+            Node::Binary(Binary::Add | Binary::Sub, x, c) if fixed(c) => Some((x, 1.0)),
+            Node::Binary(Binary::Add | Binary::Sub, c, x) if fixed(c) => Some((x, 1.0)),
+            Node::Binary(Binary::Mul, x, c) => {
+                let factor = self.as_uniform(c)?.abs();
+                (factor > 0.0).then_some((x, factor))
+            }
+            Node::Const(_)
+            | Node::Point(..)
+            | Node::Frame(..)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Ternary(..)
+            | Node::Splat(..)
+            | Node::Compose(..)
+            | Node::Swizzle(..)
+            | Node::Transform(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => None,
+        }
     }
 
     /// What is stated of a node.

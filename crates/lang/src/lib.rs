@@ -44,7 +44,7 @@ mod spelling;
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
 
 pub use check::{check, check_library, check_with_imports};
-pub use elab::{Elaborated, Site};
+pub use elab::{Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
 
 /// Parses, checks and elaborates a scene. The library's files are added to `sources`, since

@@ -43,6 +43,14 @@ const SCENES: &[(&str, &str)] = &[
         "blend of scaled fields",
         "union(sphere(0.5), box(1).translate(x: 0.6), blend: smooth(0.3)).scale(2)",
     ),
+    // The claim of the blend is about a value that the negation around it takes apart.
+    ("smooth intersection", "intersection(sphere(0.7), box(1.1), torus(), blend: smooth(0.2))"),
+    ("smooth difference", "difference(box(1), sphere(0.6), sphere(0.4), blend: smooth(0.1))"),
+    (
+        "claim behind an offset and a sign",
+        "fn hill(x, y) lipschitz 1 = 0.5 - sin(x) * sin(y)\n\
+         solid land(a: solid) = a(p) - 0.25 * (0.1 - hill(1 - p.x, p.y + 2))\nland(sphere(1))",
+    ),
 ];
 
 #[test]

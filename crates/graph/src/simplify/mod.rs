@@ -27,7 +27,11 @@ impl Graph {
         if let Some(value) = self.folded(&node) {
             return self.intern(Node::Const(value));
         }
-        self.simplified(&node).unwrap_or_else(|| self.intern(node))
+        let made = self.simplified(&node).unwrap_or_else(|| self.intern(node));
+        if let Node::Unary(Unary::Neg, a) = node {
+            self.carry_claim(a, made);
+        }
+        made
     }
 
     /// Whether a node is an operation on constants without a finite result, such as `1 / 0`.

@@ -1,6 +1,7 @@
 //! Calls of the kernel.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph as graph;
 
 use super::call::{Callee, Given, count};
 use super::decl::Slot;
@@ -9,11 +10,6 @@ use super::operators::as_type;
 use super::types::{self, describe, is_scalar, lanes};
 use super::{Checker, poison};
 use crate::hir::{Expr, ExprKind, Kernel, MaterialField, Type};
-
-/// What a material is where nothing else is said: a light, matt, non-metallic grey that gives
-/// off no light and is not occluded.
-const DEFAULT_COLOR: [f64; 4] = [0.6, 0.6, 0.6, 1.0];
-const DEFAULT_ROUGHNESS: f64 = 0.5;
 
 /// The fields of a material by name.
 const FIELDS: [(&str, MaterialField, Type); 5] = [
@@ -40,6 +36,24 @@ fn color(value: [f64; 4], span: Span) -> Expr {
 
 fn number(value: f64, span: Span) -> Expr {
     Expr { kind: ExprKind::Number(value), ty: Type::Number, span }
+}
+
+/// What a field of a material is where nothing is said of it: the same as where nothing is painted.
+fn default_of(field: MaterialField, span: Span) -> Expr {
+    let [x, y, z, _] = match field {
+        MaterialField::Color => graph::MaterialField::Color,
+        MaterialField::Roughness => graph::MaterialField::Roughness,
+        MaterialField::Metallic => graph::MaterialField::Metallic,
+        MaterialField::Emission => graph::MaterialField::Emission,
+        MaterialField::Occlusion => graph::MaterialField::Occlusion,
+    }
+    .unpainted();
+    match field {
+        MaterialField::Color | MaterialField::Emission => color([x, y, z, 1.0], span),
+        MaterialField::Roughness | MaterialField::Metallic | MaterialField::Occlusion => {
+            number(x, span)
+        }
+    }
 }
 
 impl<'a> Checker<'a> {
@@ -269,13 +283,7 @@ impl<'a> Checker<'a> {
         let span = callee.span;
         let arguments = self.arguments(callee, &slots, given);
         let fields = arguments.into_iter().zip(FIELDS).map(|(value, (_, field, _))| {
-            value.unwrap_or_else(|| match field {
-                MaterialField::Color => color(DEFAULT_COLOR, span),
-                MaterialField::Roughness => number(DEFAULT_ROUGHNESS, span),
-                MaterialField::Metallic => number(0.0, span),
-                MaterialField::Emission => color([0.0, 0.0, 0.0, 1.0], span),
-                MaterialField::Occlusion => number(1.0, span),
-            })
+            value.unwrap_or_else(|| default_of(field, span))
         });
         kernel(Kernel::Material, fields.collect(), Type::Material, span)
     }

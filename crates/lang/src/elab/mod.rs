@@ -58,6 +58,34 @@ pub struct Elaborated {
     pub sites: Vec<Site>,
     /// Literals that move: none unless asked for.
     pub slots: Vec<crate::slots::Slot>,
+    /// The shapes that the scene and what it imports declare, with the places of their clauses.
+    pub declared: Vec<Declared>,
+}
+
+/// A declared shape and where its clauses stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Declared {
+    /// The name that its instances carry as their definition.
+    pub definition: String,
+    /// The promises that it states.
+    pub promises: Vec<DeclaredPromise>,
+    /// Where it states its Lipschitz constant.
+    pub lipschitz: Option<Span>,
+    /// Where it states its bounds.
+    pub bounds: Option<Span>,
+}
+
+/// `exact` or `bound`, and where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeclaredPromise {
+    /// Whether it is `exact`.
+    pub exact: bool,
+    /// Whether it speaks of the outside.
+    pub outside: bool,
+    /// Whether it speaks of the inside.
+    pub inside: bool,
+    /// Its place.
+    pub span: Span,
 }
 
 /// A place in the scene's own files that built a shape.
@@ -88,7 +116,8 @@ pub(crate) fn elaborate_with(
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
-    let elaborated = Elaborated { scene, sites: elaborator.sites, slots: Vec::new() };
+    let declared = shape::declared(program, &elaborator.definitions);
+    let elaborated = Elaborated { scene, sites: elaborator.sites, slots: Vec::new(), declared };
     ((!failed).then_some(elaborated), elaborator.diagnostics, elaborator.offer)
 }
 

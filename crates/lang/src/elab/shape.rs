@@ -8,7 +8,9 @@ use sdfc_graph::{
 
 use super::report::Frame;
 use super::value::{Value, highest};
-use super::{Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site};
+use super::{
+    Declared, DeclaredPromise, Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site,
+};
 use crate::hir::{self, Expr, Promise, ShapeDef, ShapeDefId};
 
 /// A name for each definition: its own, with a number where the program has several of that name
@@ -28,6 +30,24 @@ pub(super) fn definition_names(program: &hir::Program) -> Vec<String> {
         names.push(name);
     }
     names
+}
+
+/// The shapes that are not the library's; `names` are those of all definitions.
+pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared> {
+    let own = program.shapes.iter().zip(names).filter(|(s, _)| !program.library.contains(&s.file));
+    let promise = |stated: &Promise| DeclaredPromise {
+        exact: stated.exact,
+        outside: stated.outside,
+        inside: stated.inside,
+        span: stated.span,
+    };
+    own.map(|(shape, name)| Declared {
+        definition: name.clone(),
+        promises: shape.promises.iter().map(promise).collect(),
+        lipschitz: shape.lipschitz.as_ref().map(|stated| stated.span),
+        bounds: shape.bounds.as_ref().map(|stated| stated.span),
+    })
+    .collect()
 }
 
 impl<'p> Elaborator<'p> {

@@ -1,0 +1,55 @@
+//! Which material shows where.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod support;
+
+use sdfc_graph::eval::{FrameValues, Tape};
+use sdfc_graph::{Dim, Expander, MaterialField};
+use support::elaborated;
+
+const RED: [f64; 3] = [1.0, 0.0, 0.0];
+const BLUE: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// The base colour of what is drawn.
+fn color(text: &str, at: [f64; 3]) -> [f64; 3] {
+    let scene = elaborated(text).scene;
+    let mut graph = scene.graph.clone();
+    let point = graph.point(0, Dim::Three);
+    let root = scene.root.expect("the scene draws something");
+    let material = Expander::new().material(&mut graph, root, point).expect("it expands");
+    let tape = Tape::new(&graph, &material[..1]).expect("the material is flat");
+    let [r, g, b, _] = tape.prepare::<f64>(&FrameValues::defaults(&scene.params)).eval(at)[0];
+    [r, g, b]
+}
+
+fn unpainted() -> [f64; 3] {
+    let [r, g, b, _] = MaterialField::Color.unpainted();
+    [r, g, b]
+}
+
+#[test]
+fn a_material_of_which_nothing_is_said_looks_unpainted() {
+    assert_eq!(color("sphere(1).paint(material())", [1.0, 0.0, 0.0]), unpainted());
+}
+
+#[test]
+fn a_face_that_an_unpainted_shape_cuts_shows_the_body() {
+    for blend in ["", ", blend: smooth(0.1)"] {
+        // At x = 0.5 the ball, at x = 0.8 the box has the larger distance.
+        let cut = |a: &str, b: &str, x: f64| {
+            color(&format!("intersection({a}, {b}{blend})"), [x, 0.0, 0.0])
+        };
+        let (body, knife) = ("box(2)", "sphere(0.5)");
+        let (red, blue) = (format!("{body}.color(#f00)"), format!("{knife}.color(#00f)"));
+        assert_eq!(cut(&red, knife, 0.5), RED, "the cut face{blend}");
+        assert_eq!(cut(&red, &blue, 0.5), BLUE, "a painted knife{blend}");
+        assert_eq!(cut(body, &blue, 0.5), BLUE, "a painted knife and a bare body{blend}");
+        assert_eq!(cut(knife, &red, 0.5), unpainted(), "the first, bare{blend}");
+        assert_eq!(cut(knife, body, 0.5), unpainted(), "nothing painted{blend}");
+        let carved = format!("difference({red}, {knife}{blend})");
+        assert_eq!(color(&carved, [0.5, 0.0, 0.0]), RED, "a hole{blend}");
+        let lined = format!("difference({red}, {blue}{blend})");
+        assert_eq!(color(&lined, [0.5, 0.0, 0.0]), BLUE, "a lined hole{blend}");
+    }
+}
