@@ -4,7 +4,8 @@
 //!
 //! [`Qualities`] tells of every shape what its field promises outside and inside, and how fast it can
 //! change. [`prepare`] uses that to divide what must be divided, expands the scene to flat math over one
-//! point, folds its transforms, derives gradient and materials, and lists the uniform slots.
+//! point, folds its transforms, derives gradient and materials, and lists the uniform slots. [`refute`]
+//! holds what shapes state against samples.
 //!
 //! # How
 //!
@@ -22,10 +23,14 @@ mod lipschitz;
 mod polynomial;
 mod prepare;
 mod quality;
+mod refute;
 mod sound;
+mod uneven;
 
 pub use cost::{Cost, cost};
 pub use lipschitz::{Constant, Reason};
 pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare};
 pub use quality::{Promise, Qualities, Quality, Sides};
+pub use refute::{Clause, ParamEnd, Refuted, refute};
 pub use sound::Uncertified;
+pub use uneven::Uneven;

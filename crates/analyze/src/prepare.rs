@@ -9,6 +9,7 @@ use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::quality::{Qualities, Sides, shapes_below};
 use crate::sound::{Uncertified, sound_field};
+use crate::uneven::{Uneven, uneven};
 
 /// A scene ready for code generation, and what was found on the way.
 #[derive(Clone, Debug)]
@@ -32,6 +33,8 @@ pub struct Report {
     pub shapes: Vec<ShapeReport>,
     /// Parts that no Lipschitz constant covers; empty for a certified scene.
     pub uncertified: Vec<Uncertified>,
+    /// Operators that want an exact distance and have none.
+    pub uneven: Vec<Uneven>,
 }
 
 /// What is known of one shape.
@@ -104,6 +107,7 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
         gradient: cost(graph, program.gradient.as_slice()),
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
+        uneven: uneven(graph, &qualities, root),
     })
 }
 

@@ -60,7 +60,7 @@ impl Sides {
         Self { outside: self.outside.max(other.outside), inside: self.inside.max(other.inside) }
     }
 
-    fn is_exact(self) -> bool {
+    pub(crate) fn is_exact(self) -> bool {
         self == Self::EXACT
     }
 }
@@ -74,6 +74,23 @@ pub struct Quality {
     pub lipschitz: Constant,
     /// Whether the constant holds at every point, or only within the shape's bounds.
     pub everywhere: bool,
+}
+
+/// What a shape's own clauses say, its children's shortcomings counted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stated {
+    /// Where all children keep the same promise.
+    pub sides: Sides,
+    /// Times the largest of the children's, if these hold everywhere.
+    pub lipschitz: Option<NodeId>,
+    /// Whether it states bounds.
+    pub bounds: bool,
+}
+
+impl Stated {
+    pub(crate) fn says_nothing(&self) -> bool {
+        self.sides == Sides::NONE && self.lipschitz.is_none() && !self.bounds
+    }
 }
 
 /// Qualities of all shapes that were asked for and their children.
@@ -125,9 +142,22 @@ impl Qualities {
             .map_err(|_| Reason::Child(graph.shape(child).definition.clone()))
     }
 
-    fn derive(&self, graph: &mut Graph, shape: ShapeId) -> Quality {
+    /// What the clauses of a shape of the scene say.
+    pub(crate) fn stated(&self, graph: &mut Graph, shape: ShapeId) -> Stated {
         let contract = graph.shape(shape).contract;
         let children = graph.shape(shape).children.clone();
+        let everywhere =
+            children.iter().all(|child| self.get(*child).is_some_and(|q| q.everywhere));
+        let lipschitz = contract
+            .lipschitz
+            .filter(|_| everywhere)
+            .and_then(|constant| self.times_children(graph, constant, &children).ok());
+        let sides = self.stated_sides(graph, &contract, &children);
+        Stated { sides, lipschitz, bounds: contract.bounds.is_some() }
+    }
+
+    /// What the clauses say of the two sides, given what the children are.
+    fn stated_sides(&self, graph: &Graph, contract: &Contract, children: &[ShapeId]) -> Sides {
         let all_at_least = |promise: Promise| {
             children.iter().all(|child| {
                 self.get(*child)
@@ -135,7 +165,13 @@ impl Qualities {
             })
         };
         let (exact, bound) = (all_at_least(Promise::Exact), all_at_least(Promise::Bound));
-        let stated = stated_sides(graph, &contract, exact, bound);
+        stated_sides(graph, contract, exact, bound)
+    }
+
+    fn derive(&self, graph: &mut Graph, shape: ShapeId) -> Quality {
+        let contract = graph.shape(shape).contract;
+        let children = graph.shape(shape).children.clone();
+        let stated = self.stated_sides(graph, &contract, &children);
         if stated.is_exact() {
             return Quality { sides: stated, lipschitz: Ok(graph.number(1.0)), everywhere: true };
         }

@@ -117,12 +117,12 @@ codes! {
         "The specification has it, this version of the compiler does not; nothing is drawn in its place.";
 
     PROMISE_BROKEN "E0502" "A promise that sampling refutes"
-        "`exact`, `bound` and `lipschitz` are checked at sample points; the message gives one where it fails.";
+        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound.";
 
     NOT_EXACT "W0601" "An operator that wants an exact distance has only a bound"
-        "`shell`, `round` and soft shadows use the value of the distance, not only its sign; on a bound the result is uneven.";
+        "`round`, `shell` and every other formula `a(p) - r` or `abs(a(p)) - w` use the value of the distance, not only its sign; of a bound the result is a surface too, but at a distance that varies. The note says where the field stops being the distance: a smooth blend, an intersection (outside), a union (inside). Round the parts instead of the whole, or leave it as it is if it looks right.";
     UNCERTIFIED "W0602" "No Lipschitz constant could be derived"
-        "Rays may step through this part. State one with `lipschitz`, or use an operator whose constant is known.";
+        "Rays may step through this part. State a constant with `lipschitz`, on bounds if none holds everywhere, or use an operator whose constant is known. A shape bent or twisted without bounds (a plane) has none: cut it first.";
     UNUSED "W0603" "A private name, a local `let` or an import that nothing uses"
         "Remove it, or use it. Names with a leading `_` are private to their file.";
     NOTHING_DRAWN "W0604" "A file that draws nothing"

@@ -4,11 +4,14 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 use sdfc_analyze::{Report, prepare};
-use sdfc_diagnostics::{Code, Diagnostic, FileId, Located, Sources, Span, locate, render};
+use sdfc_diagnostics::{
+    Code, Diagnostic, FileId, Located, Sources, Span, has_errors, locate, render,
+};
 use sdfc_graph::{Param, Program};
 use sdfc_lang::slots::Slot;
 use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
 
+use crate::findings;
 use crate::scene::DerivedBounds;
 use crate::shader::Origin;
 
@@ -143,7 +146,32 @@ pub fn compile_with(name: &str, text: &str, resolver: &dyn Resolver, options: Op
     let origin = Origin::new(&sources, file);
     let scene =
         elaborated.and_then(|elaborated| finish(elaborated, origin, front, file, &mut diagnostics));
+    if let Some(scene) = &scene {
+        diagnostics.extend(findings::warnings(&scene.elaborated, &scene.report, &sources));
+    }
     Compiled { sources, diagnostics, scene }
+}
+
+/// As [`compile_with_imports`], and holds the clauses of the scene's own shapes against samples: one that is
+/// refuted is an error. That takes as long as some ten thousand evaluations of each such shape.
+///
+/// ```
+/// use sdfc::lang::NoFiles;
+///
+/// let text = "solid egg() exact = length(p * [1, 0.7, 1]) - 1\negg()";
+/// let checked = sdfc::check("egg.sdf", text, &NoFiles);
+/// assert!(checked.scene.is_none());
+/// assert!(checked.diagnostics_text(false).contains("this states `exact`, but at p = ["));
+/// ```
+pub fn check(name: &str, text: &str, resolver: &dyn Resolver) -> Compiled {
+    let mut compiled = compile_with_imports(name, text, resolver);
+    if let Some(scene) = &compiled.scene {
+        compiled.diagnostics.extend(findings::refutations(&scene.elaborated));
+        if has_errors(&compiled.diagnostics) {
+            compiled.scene = None;
+        }
+    }
+    compiled
 }
 
 /// The text of a scene in the one layout; formatting that again changes nothing.

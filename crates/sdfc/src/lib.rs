@@ -35,6 +35,7 @@ mod compile;
 mod error;
 mod explain;
 mod faults;
+mod findings;
 mod params;
 mod picture;
 mod reflection;
@@ -43,7 +44,7 @@ mod shader;
 
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use compile::{
-    Compiled, FrontTimes, Scene, compile, compile_with, compile_with_imports, format,
+    Compiled, FrontTimes, Scene, check, compile, compile_with, compile_with_imports, format,
 };
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};

@@ -282,9 +282,10 @@ impl<'a> Checker<'a> {
         let slots = FIELDS.map(|(name, _, ty)| slot(name, ty, true));
         let span = callee.span;
         let arguments = self.arguments(callee, &slots, given);
-        let fields = arguments.into_iter().zip(FIELDS).map(|(value, (_, field, _))| {
-            value.unwrap_or_else(|| default_of(field, span))
-        });
+        let fields = arguments
+            .into_iter()
+            .zip(FIELDS)
+            .map(|(value, (_, field, _))| value.unwrap_or_else(|| default_of(field, span)));
         kernel(Kernel::Material, fields.collect(), Type::Material, span)
     }
 

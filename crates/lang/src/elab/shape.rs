@@ -8,9 +8,7 @@ use sdfc_graph::{
 
 use super::report::Frame;
 use super::value::{Value, highest};
-use super::{
-    Declared, DeclaredPromise, Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site,
-};
+use super::{Declared, DeclaredPromise, Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site};
 use crate::hir::{self, Expr, Promise, ShapeDef, ShapeDefId};
 
 /// A name for each definition: its own, with a number where the program has several of that name

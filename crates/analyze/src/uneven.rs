@@ -1,0 +1,83 @@
+//! Operators that use the value of a distance, not only its sign.
+//!
+//! `a - r` is the surface at the distance r from that of `a`, `abs(a) - w` the two surfaces at the distance w, only
+//! where `a` is the distance. Of a mere bound they are surfaces too, but at a distance that varies.
+
+use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Unary};
+
+use crate::quality::{Promise, Qualities, shapes_below};
+
+/// An operator whose result is uneven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Uneven {
+    /// The operator's instance.
+    pub shape: ShapeId,
+    /// Where below it the field stops being the distance.
+    pub cause: ShapeId,
+}
+
+/// All such operators at and below `root`.
+pub(crate) fn uneven(graph: &Graph, qualities: &Qualities, root: ShapeId) -> Vec<Uneven> {
+    let shapes = shapes_below(graph, root).into_iter();
+    let found = shapes.filter_map(|shape| {
+        let cause = cause(graph, qualities, level_set(graph, shape)?)?;
+        Some(Uneven { shape, cause })
+    });
+    found.collect()
+}
+
+/// A child whose surface at some distance is wanted.
+struct LevelSet {
+    child: ShapeId,
+    outside: bool,
+    inside: bool,
+}
+
+/// What a formula `a ± r` or `abs(a) ± r` wants of `a`.
+fn level_set(graph: &Graph, shape: ShapeId) -> Option<LevelSet> {
+    let (value, offset, sign) = match graph.node(graph.shape(shape).formula) {
+        Node::Binary(Binary::Sub, a, r) if graph.stage(r) < Stage::Point => (a, r, 1.0),
+        Node::Binary(Binary::Add, a, r) if graph.stage(r) < Stage::Point => (a, r, -1.0),
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..)
+        | Node::Transform(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => return None,
+    };
+    let range = graph.range(offset);
+    let (out, within) = if sign > 0.0 { (range.hi, -range.lo) } else { (-range.lo, range.hi) };
+    let skin = folded(graph, value);
+    let child = sampled(graph, skin.unwrap_or(value))?;
+    let both = skin.is_some();
+    Some(LevelSet { child, outside: out > 0.0, inside: within > 0.0 || (both && out > 0.0) })
+}
+
+fn folded(graph: &Graph, node: NodeId) -> Option<NodeId> {
+    if let Node::Unary(Unary::Abs, inner) = graph.node(node) { Some(inner) } else { None }
+}
+
+fn sampled(graph: &Graph, node: NodeId) -> Option<ShapeId> {
+    if let Node::Sample(child, _) = graph.node(node) { Some(child) } else { None }
+}
+
+/// The lowest shape on the way down that is not exact although all below it is.
+fn cause(graph: &Graph, qualities: &Qualities, wanted: LevelSet) -> Option<ShapeId> {
+    let sides = qualities.get(wanted.child)?.sides;
+    let lacks = |wanted: bool, promise: Promise| wanted && promise != Promise::Exact;
+    if !lacks(wanted.outside, sides.outside) && !lacks(wanted.inside, sides.inside) {
+        return None;
+    }
+    let mut cause = wanted.child;
+    let is_exact = |shape: ShapeId| qualities.get(shape).is_some_and(|q| q.sides.is_exact());
+    while let Some(&below) = graph.shape(cause).children.iter().find(|&&child| !is_exact(child)) {
+        cause = below;
+    }
+    Some(cause)
+}

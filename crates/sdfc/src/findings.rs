@@ -1,0 +1,178 @@
+//! What the analyses find, told at the scene's own text.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use sdfc_analyze::{Clause, ParamEnd, Refuted, Report, refute};
+use sdfc_diagnostics::{Code, Diagnostic, Sources};
+use sdfc_graph::ShapeId;
+use sdfc_lang::{Declared, Elaborated, Site};
+
+/// Instances of one declaration whose clauses are sampled.
+const SAMPLED: usize = 8;
+
+/// Parts without a constant (W0602), and operators that want a distance and have a bound (W0601).
+pub(crate) fn warnings(
+    elaborated: &Elaborated,
+    report: &Report,
+    sources: &Sources,
+) -> Vec<Diagnostic> {
+    let places = Places::new(elaborated);
+    let mut seen = FxHashSet::default();
+    let mut found = Vec::new();
+    for part in &report.uncertified {
+        let Some(site) = places.of(part.shape) else { continue };
+        if seen.insert((Code::UNCERTIFIED, site.span)) {
+            let message = format!("`{}` is uncertified: {}", site.name, part.reason);
+            let warning = Diagnostic::warning(Code::UNCERTIFIED, site.span, message);
+            let help = "rays may step through it; state what holds with `lipschitz` and `bounds`";
+            found.push(warning.help(help));
+        }
+    }
+    for part in &report.uneven {
+        let Some(site) = places.own(part.shape) else { continue };
+        if seen.insert((Code::NOT_EXACT, site.span)) {
+            let message = format!(
+                "`{}` of a field that is only a bound: its distance from the surface will be uneven",
+                site.name
+            );
+            let mut warning = Diagnostic::warning(Code::NOT_EXACT, site.span, message);
+            if let Some(cause) = places.of(part.cause) {
+                let line = sources.line_column(cause.span.file, cause.span.start).line;
+                let note = format!("a bound since `{}` at line {line}", cause.name);
+                warning = warning.note_at(cause.span, note);
+            }
+            found.push(warning);
+        }
+    }
+    found
+}
+
+/// Clauses of the scene's own shapes that sampling refutes (E0502), at most one for each declaration.
+pub(crate) fn refutations(elaborated: &Elaborated) -> Vec<Diagnostic> {
+    let places = Places::new(elaborated);
+    let graph = &elaborated.scene.graph;
+    let mut found = Vec::new();
+    for declared in &elaborated.declared {
+        let is_instance = |&id: &ShapeId| graph.shape(id).definition == declared.definition;
+        let instances: Vec<ShapeId> = graph.shape_ids().filter(is_instance).take(SAMPLED).collect();
+        if let Some(refuted) = refute(&elaborated.scene, &instances).first()
+            && let Some(mut error) = refutation(declared, refuted)
+        {
+            match refuted.params {
+                ParamEnd::Default => {}
+                ParamEnd::Low => {
+                    error = error.note("with all params at the low ends of their ranges")
+                }
+                ParamEnd::High => {
+                    error = error.note("with all params at the high ends of their ranges");
+                }
+            }
+            if let Some(site) = places.of(refuted.shape) {
+                error = error.note_at(site.span, format!("in this `{}`", site.name));
+            }
+            found.push(error);
+        }
+    }
+    found
+}
+
+fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
+    let at = point(&refuted.at);
+    let field = number(refuted.field);
+    let error = |span, message| Diagnostic::error(Code::PROMISE_BROKEN, span, message);
+    match &refuted.clause {
+        Clause::Distance { exact, outside, distance } => {
+            // On a side on which both stand, `exact` is the one that says more.
+            let stated = declared.promises.iter().find(|promise| {
+                promise.exact >= *exact && (if *outside { promise.outside } else { promise.inside })
+            })?;
+            let word = if stated.exact { "exact" } else { "bound" };
+            let distance = if *outside { *distance } else { -distance };
+            let message = format!(
+                "this states `{word}`, but at p = {at} the field is {field} and the distance {}",
+                number(distance)
+            );
+            let help = if refuted.field.abs() < distance.abs() {
+                "`bound`, if the field nowhere exceeds the distance; or drop the clause"
+            } else {
+                "drop the clause, or state how steep the field is with `lipschitz`"
+            };
+            Some(error(stated.span, message).help(help))
+        }
+        Clause::Lipschitz { constant, slope, to } => {
+            let message = format!(
+                "this states `lipschitz {}`, but between p = {at} and {} the field changes {} times as \
+                 much as p",
+                number(*constant),
+                point(to),
+                number(*slope)
+            );
+            let help = "state the largest slope within the bounds, or drop the clause";
+            Some(error(declared.lipschitz?, message).help(help))
+        }
+        Clause::Bounds => {
+            let message = format!(
+                "this states bounds, but at p = {at}, which lies outside them, the field is {field}"
+            );
+            let help =
+                "bounds hold all of the inside; leave out what you do not know: `inf` is allowed";
+            Some(error(declared.bounds?, message).help(help))
+        }
+    }
+}
+
+/// Where the scene's text made which shape.
+struct Places<'e> {
+    own: FxHashMap<ShapeId, &'e Site>,
+    parents: FxHashMap<ShapeId, Vec<ShapeId>>,
+}
+
+impl<'e> Places<'e> {
+    fn new(elaborated: &'e Elaborated) -> Self {
+        let mut own = FxHashMap::default();
+        for site in &elaborated.sites {
+            own.entry(site.shape).or_insert(site);
+        }
+        let mut parents: FxHashMap<ShapeId, Vec<ShapeId>> = FxHashMap::default();
+        let graph = &elaborated.scene.graph;
+        for shape in graph.shape_ids() {
+            for &child in &graph.shape(shape).children {
+                parents.entry(child).or_default().push(shape);
+            }
+        }
+        Self { own, parents }
+    }
+
+    /// The first call that made the shape itself.
+    fn own(&self, shape: ShapeId) -> Option<&'e Site> {
+        self.own.get(&shape).copied()
+    }
+
+    /// That call, or of what the library built for itself, the call of the scene's that stands nearest above.
+    fn of(&self, shape: ShapeId) -> Option<&'e Site> {
+        let mut seen = FxHashSet::default();
+        let mut pending = std::collections::VecDeque::from([shape]);
+        while let Some(shape) = pending.pop_front() {
+            if let Some(site) = self.own(shape) {
+                return Some(site);
+            }
+            let above = self.parents.get(&shape).into_iter().flatten();
+            pending.extend(above.copied().filter(|&parent| seen.insert(parent)));
+        }
+        None
+    }
+}
+
+fn point(lanes: &[f64]) -> String {
+    let lanes: Vec<String> = lanes.iter().map(|&lane| number(lane)).collect();
+    format!("[{}]", lanes.join(", "))
+}
+
+/// A number with four digits, as scenes write it.
+fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 12);
+    let unit = 10f64.powi(digits);
+    format!("{}", (value * unit).round() / unit + 0.0)
+}

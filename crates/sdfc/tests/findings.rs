@@ -1,0 +1,90 @@
+//! What the analyses and sampling say of a scene, at its own text.
+
+#![allow(clippy::panic, reason = "a test stops where it fails")]
+
+use sdfc::lang::{NoFiles, library};
+use sdfc::{check, compile};
+
+/// Codes, the lines at which they stand, and messages.
+fn findings(text: &str) -> Vec<(&'static str, u32, String)> {
+    let found = check("scene.sdf", text, &NoFiles).located().into_iter();
+    found.map(|f| (f.code, f.start.line, f.message)).collect()
+}
+
+fn codes(text: &str) -> Vec<(&'static str, u32)> {
+    findings(text).into_iter().map(|(code, line, _)| (code, line)).collect()
+}
+
+#[test]
+fn a_clause_that_sampling_refutes_is_an_error_at_the_clause() {
+    let cases = [
+        // Too short outside, too long inside.
+        ("solid it()\n  exact\n  = length(p * [1, 0.7, 1]) - 1", 2),
+        ("solid it()\n  exact inside\n  lipschitz 1\n  = max(abs(p.x), abs(p.y), abs(p.z)) - 1", 0),
+        (
+            "solid it()\n  exact outside\n  lipschitz 1\n  = max(abs(p.x), abs(p.y), abs(p.z)) - 1",
+            2,
+        ),
+        ("solid it()\n  bound\n  = 1.02 * (length(p) - 1)", 2),
+        ("solid it()\n  bound inside\n  = if length(p) < 1 { length(p) - 1 } else { 3 }", 0),
+        ("solid it()\n  bounds -1..1\n  lipschitz 1.9\n  = 2 * (length(p) - 1)", 3),
+        ("solid it()\n  exact\n  bounds -0.95..0.95\n  = length(p) - 1", 3),
+        // The constant that is often given for a twist, where the field slopes along the axis and around it.
+        (
+            "solid it()\n  lipschitz sqrt(2)\n  bounds -1..1\n  = {\n    let q = spin(p.xz, p.y * 1rad)\n\
+             capsule([-0.9, 0, 0], [0.9, 0, 0], r: 0.1)([q.x, p.y, q.y])\n}",
+            2,
+        ),
+        // True of the default, false at an end of the range.
+        ("param k = 1 in 0.5..2\nsolid it()\n  exact\n  = k * (length(p) - 1)", 3),
+        // Kept by exact children alone.
+        ("solid it(a: solid = box(1))\n  exact outside\n  = a(p / 2)", 2),
+        // The clause is false, but its condition does not hold.
+        ("solid it(k: number = 1)\n  exact if k == 2\n  lipschitz 1\n  = 0.5 * (length(p) - k)", 0),
+    ];
+    for (text, line) in cases {
+        let mut found = codes(&format!("{text}\nit()"));
+        found.retain(|(code, _)| *code != "W0602");
+        let expected: &[_] = if line == 0 { &[] } else { &[("E0502", line)] };
+        assert_eq!(found, expected, "{text}");
+        assert!(compile("scene.sdf", text).diagnostics.iter().all(|found| !found.is_error()));
+    }
+}
+
+#[test]
+fn no_clause_of_the_library_is_refuted() {
+    for entry in library::entries() {
+        let compiled = compile(&entry.name, &entry.example);
+        let Some(scene) = compiled.scene else { panic!("{}", compiled.diagnostics_text(false)) };
+        let shapes: Vec<_> = scene.graph().graph.shape_ids().collect();
+        let refuted = sdfc_analyze::refute(scene.graph(), &shapes);
+        assert!(refuted.is_empty(), "{}: {refuted:?}", entry.name);
+    }
+}
+
+#[test]
+fn what_no_constant_covers_is_a_warning_with_its_reason() {
+    let found = findings("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
+    let reason =
+        "`odd` is uncertified: the slope of `*` depends on the point; state it with `lipschitz`";
+    assert_eq!(found, [("W0602", 3, reason.to_owned())]);
+    // What an entry of the library builds for itself is told at the scene's call of it.
+    assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);
+    assert_eq!(codes("box([0.6, 2, 0.6]).twist(20deg)\nsphere(1)"), []);
+}
+
+#[test]
+fn an_operator_that_wants_a_distance_warns_of_a_bound() {
+    let blend = "let a = union(sphere(1), box(1), blend: smooth(0.2))";
+    let found = findings(&format!("{blend}\na\n  .round(0.1)"));
+    let message =
+        "`round` of a field that is only a bound: its distance from the surface will be uneven";
+    assert_eq!(found, [("W0601", 2, message.to_owned())]);
+    // Outside a hard union is exact, an intersection inside.
+    assert_eq!(codes("union(sphere(1), box(1)).round(0.1)"), []);
+    assert_eq!(codes("(sphere(1) & box(1)).round(0.1)"), [("W0601", 1)]);
+    assert_eq!(codes("solid eroded(a: solid) = a(p) + 0.1\neroded(sphere(1) & box(1.5))"), []);
+    let skin = "solid skin(a: solid) = abs(a(p)) - 0.1\n";
+    assert_eq!(codes(&format!("{skin}skin(box(1))")), []);
+    assert_eq!(codes(&format!("{skin}skin(sphere(1) | box(1))")), [("W0601", 2)]);
+}
