@@ -1,4 +1,5 @@
-//! Bad input and bad luck: a clear error, the right exit status, no panic, no partial output.
+//! Bad input and bad luck: a clear error, the right exit status, no panic, no partial output. A device that is lost
+//! is in `device.rs`.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -29,14 +30,16 @@ fn ends(folder: &Path, args: &str, stdin: &[u8], status: i32, words: &[&str]) {
 /// A scene with an error, by every command that takes one.
 fn wrong(scene: &str, words: &[&str]) {
     let folder = folder(&[]);
-    for args in ["check -", "compile -", "render - -o out.png --backend cpu", "explain -"] {
+    for args in
+        ["check -", "compile -", "render - -o out.png --backend cpu", "explain -", "bench -"]
+    {
         ends(folder.path(), args, scene.as_bytes(), 1, words);
     }
 }
 
 /// An input that is no scene, by every command that takes one.
 fn unreadable(folder: &Path, name: &str, words: &[&str]) {
-    for command in ["check", "compile", "render", "explain", "fmt"] {
+    for command in ["check", "compile", "render", "explain", "fmt", "bench"] {
         ends(folder, &format!("{command} {name}"), b"", 2, words);
     }
 }
@@ -175,6 +178,46 @@ fn a_full_disk() {
         assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
         assert!(said(&output).contains("No space left"), "{args}: {}", said(&output));
     }
+    for args in ["compile a.sdf", "explain a.sdf --json", "render a.sdf -o - --backend cpu"] {
+        let output = shell(&folder, &format!("{args} > /dev/full"));
+        assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
+        assert!(said(&output).contains("cannot write to stdout: No space left"), "{args}");
+    }
+}
+
+/// A file that stops taking bytes when part of it is written.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_disk_that_fills_while_writing() {
+    let folder = folder(&[("a.sdf", BALL)]);
+    for args in [
+        "render a.sdf -o a.png --backend cpu --size 160x100",
+        "render a.sdf -o a.gif --backend cpu --size 160x100 --frames 0..3",
+        "render a.sdf -o a.png --depth z.exr --backend cpu --size 160x100",
+        "compile a.sdf -o a.wgsl --emit render",
+    ] {
+        // Files of this shell and what it starts hold at most one block of 512 bytes.
+        let output = shell_with(&folder, "trap '' XFSZ; ulimit -f 1", args);
+        assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
+        assert!(said(&output).contains("cannot write a."), "{args}: {}", said(&output));
+        assert_eq!(names(folder.path()), ["a.sdf"], "{args}");
+    }
+}
+
+/// Runs it by the shell, which splits the arguments and redirects.
+#[cfg(target_os = "linux")]
+fn shell(folder: &tempfile::TempDir, args: &str) -> std::process::Output {
+    shell_with(folder, ":", args)
+}
+
+#[cfg(target_os = "linux")]
+fn shell_with(folder: &tempfile::TempDir, before: &str, args: &str) -> std::process::Output {
+    let binary = env!("CARGO_BIN_EXE_sdfc");
+    std::process::Command::new("sh")
+        .args(["-c", &format!("{before}; exec '{binary}' {args}")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap()
 }
 
 /// Ctrl-C, once the first file of a sequence is there.

@@ -112,27 +112,31 @@ impl Gpu {
             pollster::block_on(internal.pop()),
         ];
         self.faults.check()?;
-        match errors.into_iter().flatten().next() {
-            Some(error) => Err(render_error(&error, what)),
-            None => Ok(value),
-        }
+        let Some(error) = errors.into_iter().flatten().next() else { return Ok(value) };
+        // A device that is lost refuses what it is asked, and says why only when it is polled.
+        let _ = self.poll(wgpu::PollType::Poll);
+        self.faults.check()?;
+        Err(render_error(&error, what))
     }
 
     /// Waits until the device has done all that was submitted, or the time is over.
     pub(crate) fn wait(&self, patience: Option<Duration>) -> Result<(), RenderError> {
-        let poll = wgpu::PollType::Wait { submission_index: None, timeout: patience };
-        // wgpu panics where the device is lost while it is waited for; nothing of this crate is
-        // left half-changed by that, since results are read only after the wait.
-        let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(poll)));
+        let polled = self.poll(wgpu::PollType::Wait { submission_index: None, timeout: patience });
         self.faults.check()?;
         match polled {
-            Ok(Ok(_)) => Ok(()),
-            Ok(Err(wgpu::PollError::Timeout)) => {
+            Some(Ok(_)) => Ok(()),
+            Some(Err(wgpu::PollError::Timeout)) => {
                 Err(RenderError::Stalled(patience.map_or(0, |time| time.as_secs())))
             }
-            Ok(Err(error)) => Err(RenderError::DeviceLost(error.to_string())),
-            Err(_) => Err(RenderError::DeviceLost("while waiting for it".to_owned())),
+            Some(Err(error)) => Err(RenderError::DeviceLost(error.to_string())),
+            None => Err(RenderError::DeviceLost("while waiting for it".to_owned())),
         }
+    }
+
+    /// `None` where wgpu panicked, as it does where the device is lost while it is waited for; nothing of
+    /// this crate is left half-changed by that, since results are read only after the wait.
+    fn poll(&self, poll: wgpu::PollType) -> Option<Result<wgpu::PollStatus, wgpu::PollError>> {
+        catch_unwind(AssertUnwindSafe(|| self.device.poll(poll))).ok()
     }
 }
 
@@ -140,7 +144,8 @@ impl Faults {
     fn listen(self: &Arc<Self>, device: &wgpu::Device) {
         let faults = Arc::clone(self);
         device.set_device_lost_callback(move |reason, message| {
-            lock(&faults.lost).get_or_insert_with(|| format!("{reason:?}: {message}"));
+            let said = format!("{reason:?}: {message}");
+            lock(&faults.lost).get_or_insert_with(|| said.trim_end_matches([':', ' ']).to_owned());
         });
         let faults = Arc::clone(self);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {

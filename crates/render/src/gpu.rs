@@ -11,6 +11,7 @@ use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
     image::check_size,
+    testing,
     tiles::Tiler,
 };
 
@@ -136,6 +137,7 @@ impl Pipeline {
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
+            testing::lose_if_asked(&self.gpu);
             let start = Instant::now();
             let gpu_time = run.draw(view, tile, &mut image)?;
             let elapsed = milliseconds_since(start);

@@ -18,8 +18,13 @@
 //!
 //! With `SDFC_REQUIRE_GPU=1` in the environment they run everywhere, and fail where
 //! [`Gpu::new`](crate::Gpu::new) does.
+//!
+//! A device can be lost on purpose: [`lose`] does it, and [`LOSE_DEVICE`] makes a program of a debug build do it.
 
-use std::sync::OnceLock;
+use std::sync::{
+    OnceLock,
+    atomic::{AtomicU32, Ordering},
+};
 
 use crate::Gpu;
 
@@ -32,6 +37,26 @@ pub fn without_gpu() -> bool {
     *WITHOUT.get_or_init(|| {
         ignored(std::env::var_os(REQUIRE_GPU).is_some_and(|v| v == "1"), || Gpu::new().is_ok())
     })
+}
+
+/// The environment variable that makes a build with debug assertions lose its device, as if the adapter had been
+/// unplugged: once it has drawn so many tiles.
+pub const LOSE_DEVICE: &str = "SDFC_LOSE_DEVICE_AFTER";
+
+/// Makes a device lost.
+pub fn lose(gpu: &Gpu) {
+    gpu.device.destroy();
+}
+
+/// Called before each tile: makes the device lost if [`LOSE_DEVICE`] asks for it there.
+pub(crate) fn lose_if_asked(gpu: &Gpu) {
+    static TILES: AtomicU32 = AtomicU32::new(0);
+    if cfg!(debug_assertions)
+        && let Some(after) = std::env::var_os(LOSE_DEVICE)
+        && *after == *TILES.fetch_add(1, Ordering::Relaxed).to_string()
+    {
+        lose(gpu);
+    }
 }
 
 fn ignored(required: bool, present: impl FnOnce() -> bool) -> bool {

@@ -30,6 +30,7 @@ fn main() {
         Trial::test("tiles_give_the_picture_of_one_tile", tiles_give_the_picture_of_one_tile),
         Trial::test("a_param_moves_the_surface", a_param_moves_the_surface),
         Trial::test("fields_that_are_no_numbers_are_counted", not_a_number_is_counted),
+        Trial::test("a_lost_device_is_an_error_and_stays_one", a_lost_device_stays_lost),
         Trial::test("progress_is_told_and_stops_the_frame", progress_is_told_and_stops_the_frame),
     ];
     let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
@@ -196,6 +197,31 @@ fn the_device_survives_an_error() -> Outcome {
     assert!(Pipeline::from_wgsl(&gpu, "fn other() {}", 0).is_err());
     let view = common::view(&common::sphere(), [9, 9]);
     assert_eq!(pattern(&gpu, &view, TileSize::default())?.image.counts().hit, 81);
+    Ok(())
+}
+
+fn a_lost_device_stays_lost() -> Outcome {
+    let gpu = Gpu::new()?;
+    let view = common::view(&common::sphere(), [64, 64]);
+    let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;
+    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
+    let mut tiles = 0;
+    let mut lose = |_: Progress| {
+        tiles += 1;
+        if tiles == 3 {
+            testing::lose(&gpu);
+        }
+        ControlFlow::Continue(())
+    };
+    let lost = pipeline.render(&view, &VALUES, &options, &mut lose).err();
+    assert!(matches!(lost, Some(RenderError::DeviceLost(_))), "{lost:?}");
+    assert_eq!(tiles, 3);
+    let again = pipeline.render(&view, &VALUES, &options, &mut unwatched).err();
+    assert!(matches!(again, Some(RenderError::DeviceLost(_))), "{again:?}");
+    let anew = Pipeline::from_wgsl(&gpu, PATTERN, 2).err();
+    assert!(matches!(anew, Some(RenderError::DeviceLost(_))), "{anew:?}");
+    // Another device of the same adapter draws.
+    assert_eq!(pattern(&Gpu::new()?, &view, TileSize::default())?.image.counts().hit, 64 * 64);
     Ok(())
 }
 

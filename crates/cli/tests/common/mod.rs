@@ -24,8 +24,14 @@ pub fn run(folder: &TempDir, args: &str) -> Output {
 
 /// Runs `sdfc` with arguments, split at spaces, and a text on stdin.
 pub fn run_with(folder: &Path, args: &str, stdin: &[u8]) -> Output {
+    run_in(folder, args, stdin, &[])
+}
+
+/// The same with environment variables.
+pub fn run_in(folder: &Path, args: &str, stdin: &[u8], variables: &[(&str, &str)]) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
         .args(args.split_whitespace())
+        .envs(variables.iter().copied())
         .current_dir(folder)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -1,0 +1,71 @@
+//! A device that is lost on the way: a clear error, status 3, no partial output. The program loses it on purpose, which
+//! it can only in a build with debug assertions; elsewhere, and without an adapter, these are reported as ignored.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod common;
+
+use common::{folder, names, run_in, said};
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::render::testing::{LOSE_DEVICE, without_gpu};
+
+const BALL: &str = "sphere(0.8)\nplane(y: -0.8)\n";
+
+fn main() {
+    let ignored = without_gpu() || !cfg!(debug_assertions);
+    let trials = vec![
+        Trial::test("before the first tile", || no_output("0")),
+        Trial::test("in the middle of a picture", || no_output("2")),
+        Trial::test("in the middle of a sequence", a_sequence_keeps_whole_frames),
+        Trial::test("while measuring", while_measuring),
+    ];
+    let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// Runs it with a device that is lost after so many tiles; names of the files that it leaves.
+fn lost(after: &str, args: &str) -> Result<(tempfile::TempDir, Vec<String>), Failed> {
+    let folder = folder(&[("a.sdf", BALL)]);
+    let output = run_in(folder.path(), args, b"", &[(LOSE_DEVICE, after)]);
+    let said = said(&output);
+    if output.status.code() != Some(3) || !output.stdout.is_empty() {
+        return Err(format!("{args}: {:?}, {said}", output.status).into());
+    }
+    if !said.contains("the device was lost") || said.contains("panicked") {
+        return Err(format!("{args}: {said}").into());
+    }
+    let names = names(folder.path());
+    Ok((folder, names))
+}
+
+fn no_output(after: &str) -> Result<(), Failed> {
+    for args in [
+        "render a.sdf -o a.png --depth z.exr --stats s.json --size 128x80",
+        "render a.sdf -o - --size 128x80 --backend gpu",
+        "render a.sdf -o a.gif --frames 0..3 --size 128x80 --backend gpu",
+    ] {
+        let (_, names) = lost(after, args)?;
+        if names != ["a.sdf"] {
+            return Err(format!("{args}: left {names:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A frame of 24x16 is six tiles of 64 pixels or fewer.
+fn a_sequence_keeps_whole_frames() -> Result<(), Failed> {
+    let (folder, names) = lost("20", "render a.sdf -o a.png --frames 0..100 --size 24x16")?;
+    let pictures: Vec<_> = names.iter().filter(|name| name.ends_with(".png")).collect();
+    if names.len() != pictures.len() + 1 || !(1..=20).contains(&pictures.len()) {
+        return Err(format!("left {names:?}").into());
+    }
+    for name in pictures {
+        image::load_from_memory(&std::fs::read(folder.path().join(name))?)?;
+    }
+    Ok(())
+}
+
+fn while_measuring() -> Result<(), Failed> {
+    let (_, names) = lost("3", "bench a.sdf --size 32x20 --json b.json")?;
+    if names != ["a.sdf"] { Err(format!("left {names:?}").into()) } else { Ok(()) }
+}
