@@ -73,14 +73,21 @@ pub struct Entry {
     pub details: String,
     /// Name and description of each parameter that has one.
     pub parameters: Vec<(String, String)>,
-    /// The clauses as written, one after the other, separated by `; `.
-    pub contract: String,
+    /// The clauses as written, each on one line.
+    pub clauses: Vec<String>,
     /// Where the formula is from.
     pub source: String,
     /// An expression that uses it.
     pub example: String,
     /// Name of the file that declares it, and the line, from 1; only of the library.
     pub place: Option<(&'static str, u32)>,
+}
+
+impl Entry {
+    /// The clauses, one after the other, separated by `; `.
+    pub fn contract(&self) -> String {
+        self.clauses.join("; ")
+    }
 }
 
 /// All public declarations of the library, in the order of files and lines.
@@ -110,7 +117,7 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
         },
         topic: topic(file),
         signature: signature(sources, decl),
-        contract: contract(sources, decl),
+        clauses: clauses(sources, decl),
         place: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
         ..Entry::default()
     };
@@ -151,10 +158,9 @@ fn signature(sources: &Sources, decl: &ast::Decl) -> String {
     one_line(sources, Span { end, ..decl.name.span })
 }
 
-fn contract(sources: &Sources, decl: &ast::Decl) -> String {
+fn clauses(sources: &Sources, decl: &ast::Decl) -> Vec<String> {
     let clauses = decl.signature.clauses.iter();
-    let texts: Vec<String> = clauses.map(|clause| one_line(sources, clause.span)).collect();
-    texts.join("; ")
+    clauses.map(|clause| one_line(sources, clause.span)).collect()
 }
 
 /// A span's text without comments, each run of white space one blank.

@@ -45,6 +45,13 @@ fn every_summary_is_a_sentence() {
 }
 
 #[test]
+fn every_entry_of_the_library_says_where_its_formula_is_from() {
+    for entry in library::entries() {
+        assert!(!entry.source.is_empty(), "{}", entry.name);
+    }
+}
+
+#[test]
 fn every_setting_is_there_with_its_parameters() {
     let entries = reference::entries();
     for row in settings::table() {

@@ -54,7 +54,7 @@ impl Page {
                 self.indented(&entry.details);
             }
             self.parameters(&entry.parameters);
-            self.line("contract", &entry.contract);
+            self.line("contract", &entry.contract());
             self.line("example", &entry.example);
             self.line("source", &entry.source);
             if let Some((file, line)) = entry.place {

@@ -1,0 +1,88 @@
+//! GPU, CPU in f32 and CPU in f64 see the same surface: at 64x64, depth outside edges within 1e-3, in small scenes
+//! within less, and far from the origin within what rounding does to coordinates.
+
+use libtest_mimic::Failed;
+use sdfc::render::{CpuScene, Difference, HIT, Image, View, compare};
+use sdfc::{Backend, FrameValues, PictureOptions, Scene, compile, unwatched};
+
+/// Width and height in pixels.
+const SIDE: u32 = 64;
+/// Largest difference of depth outside edges, in scene units, and in parts of the scene's scale.
+const DEPTH: f32 = 1e-3;
+const DEPTH_PART: f32 = 1e-4;
+/// Eight units in the last place of coordinates, in parts of the scale: what the shader allows itself.
+const ROUNDING: f32 = 1e-6;
+/// Largest difference of a colour channel outside edges, in steps of 1/255.
+const COLOR: u8 = 2;
+/// More edges than this share of the pixels, and the comparison says too little.
+const EDGES: f64 = 0.5;
+const METHOD: &str = "auto";
+
+/// The scene, or what is wrong with it.
+pub fn scene(name: &str, text: &str) -> Result<Scene, Failed> {
+    let compiled = compile(name, text);
+    let findings = compiled.diagnostics_text(false);
+    compiled.scene.ok_or_else(|| Failed::from(findings))
+}
+
+/// Compares the processor's two precisions; gives the pixels that are hit and the difference.
+pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
+    let Depths { single, double, limit } = Depths::of(scene)?;
+    let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
+    if hit == 0 {
+        return Err("nothing is seen".into());
+    }
+    Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
+}
+
+/// Compares the graphics adapter with the processor in f32, and its depth with f64.
+pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
+    let picture = |backend| {
+        let method = Some(METHOD.to_owned());
+        let options = PictureOptions { size: [SIDE; 2], method, backend, ..Default::default() };
+        scene.render(&options, &mut unwatched)
+    };
+    let (gpu, cpu) = (picture(Backend::Gpu)?.image, picture(Backend::Cpu)?.image);
+    let Depths { double, limit, .. } = Depths::of(scene)?;
+    let found = agree(&gpu, &cpu, "GPU and CPU in f32", limit, Some(COLOR))?;
+    agree(&gpu, &double, "GPU and CPU in f64", limit, None)?;
+    Ok(found)
+}
+
+/// The CPU's picture of depths in f32 and in f64, and how far depths may differ.
+struct Depths {
+    single: Image,
+    double: Image,
+    limit: f32,
+}
+
+impl Depths {
+    fn of(scene: &Scene) -> Result<Self, Failed> {
+        let frame = FrameValues::defaults(scene.params());
+        let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), [SIDE; 2])?;
+        let cpu = CpuScene::new(scene.program())?;
+        let double = cpu.depth_map::<f64>(&view, &frame, METHOD)?;
+        let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
+        let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
+        let limit = DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING);
+        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, METHOD)?, double, limit })
+    }
+}
+
+fn agree(
+    a: &Image,
+    b: &Image,
+    pair: &str,
+    depth: f32,
+    color: Option<u8>,
+) -> Result<Difference, Failed> {
+    let found = compare(a, b).ok_or("the sizes differ")?;
+    let edges = found.edges as f64 / f64::from(SIDE * SIDE);
+    if found.depth > depth || found.status > 0 || edges > EDGES {
+        return Err(format!("{pair}: {found:?}, {edges:.2} of the pixels are edges").into());
+    }
+    match color {
+        Some(limit) if found.color > limit => Err(format!("{pair}: {found:?}").into()),
+        Some(_) | None => Ok(found),
+    }
+}

@@ -1,0 +1,159 @@
+//! The contract of one entry, over its example and variants of it.
+
+use std::collections::BTreeMap;
+
+use sdfc::diagnostics::{Sources, has_errors};
+use sdfc::graph::{Scene, ShapeId};
+use sdfc::lang::{front, library::Entry};
+use sdfc_analyze::Qualities;
+
+use crate::claims::{Claims, PROMISES, SIDES, Stated, says};
+use crate::field::Field;
+use crate::geometry::Random;
+use crate::samples::Samples;
+use crate::{mutants, variants};
+
+/// So many scenes with other numbers are looked at at least; more, until every fault is seen; of so many that are
+/// tried.
+const VARIANTS: usize = 12;
+const TRIES: usize = 400;
+
+/// What came of it.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Scenes looked at, the example itself the first.
+    pub scenes: usize,
+    /// What is promised of the example, outside and inside.
+    pub sides: [String; 2],
+    /// The constant of the example, and the steepest slope found in it.
+    pub lipschitz: Option<f64>,
+    pub steepest: f64,
+    /// Whether bounds are stated.
+    pub bounds: bool,
+    /// Faults, and whether some scene showed each of them up.
+    pub mutants: BTreeMap<String, bool>,
+}
+
+/// Checks all that is claimed of the entry's shapes.
+///
+/// # Errors
+///
+/// A claim that samples refute, or a fault that they do not.
+pub fn check(entry: &Entry) -> Result<Outcome, String> {
+    let mut outcome = Outcome::default();
+    let scene = scene(&entry.example).ok_or("the example does not compile")?;
+    if !of_entry(&scene, entry).any(|_| true) {
+        return Err("its example lacks it".into());
+    }
+    // All shapes that the example builds; of the variants only those of the entry.
+    for id in scene.graph.shape_ids() {
+        one(entry, &scene, id, &entry.example, &mut outcome)?;
+    }
+    outcome.scenes = 1;
+    let mut random = Random(1);
+    for _ in 0..TRIES {
+        if outcome.scenes > VARIANTS && missing(entry, &outcome).is_none() {
+            break;
+        }
+        let text = variants::changed(&entry.example, &mut random);
+        let Some(scene) = self::scene(&text) else { continue };
+        for id in of_entry(&scene, entry) {
+            one(entry, &scene, id, &text, &mut outcome)?;
+        }
+        outcome.scenes += 1;
+    }
+    missing(entry, &outcome).map_or(Ok(outcome), Err)
+}
+
+/// What no scene has shown yet: a fault that is refuted, a condition that does not hold.
+fn missing(entry: &Entry, outcome: &Outcome) -> Option<String> {
+    let missed: Vec<&String> = outcome.mutants.iter().filter(|it| !it.1).map(|it| it.0).collect();
+    let missed = (!missed.is_empty()).then(|| format!("no sample refutes: {missed:?}"));
+    missed.or_else(|| condition_unseen(entry, outcome))
+}
+
+/// Checks all shapes of a scene that is no entry's example.
+///
+/// # Errors
+///
+/// A claim that samples refute.
+pub fn check_scene(text: &str) -> Result<(), String> {
+    let scene = scene(text).ok_or("it does not compile")?;
+    let entry = Entry::default();
+    for id in scene.graph.shape_ids() {
+        one(&entry, &scene, id, text, &mut Outcome::default())?;
+    }
+    Ok(())
+}
+
+/// The scene, if it is right.
+pub fn scene(text: &str) -> Option<Scene> {
+    let mut sources = Sources::new();
+    let file = sources.add("scene.sdf", text);
+    let (elaborated, found) = front(&mut sources, file);
+    elaborated.filter(|_| !has_errors(&found)).map(|it| it.scene)
+}
+
+fn of_entry<'s>(scene: &'s Scene, entry: &'s Entry) -> impl Iterator<Item = ShapeId> + 's {
+    scene.graph.shape_ids().filter(|&id| is_of(scene, entry, id))
+}
+
+fn is_of(scene: &Scene, entry: &Entry, id: ShapeId) -> bool {
+    let shape = scene.graph.shape(id);
+    let dim = if shape.dim == sdfc::graph::Dim::Two { "region" } else { "solid" };
+    let kind = entry.kind == "shape" || entry.kind == dim;
+    shape.definition == entry.name && kind && shape.level == 0
+}
+
+fn one(
+    entry: &Entry,
+    scene: &Scene,
+    id: ShapeId,
+    text: &str,
+    outcome: &mut Outcome,
+) -> Result<(), String> {
+    let shape = scene.graph.shape(id);
+    // What is built anew at each point promises nothing by itself.
+    if shape.level > 0 {
+        return Ok(());
+    }
+    let Some(field) = Field::new(scene, id) else { return Ok(()) };
+    let mut graph = scene.graph.clone();
+    let qualities = Qualities::of_scene(&mut graph, id);
+    let told = |what: String| format!("`{}` in {text}: {what}", shape.definition);
+    let samples = Samples::of(&field).map_err(&told)?;
+    let clauses = if is_of(scene, entry, id) { &*entry.clauses } else { &[] };
+    let stated = Stated::of(scene, &graph, &qualities, id, &field, clauses);
+    let derived = Claims::derived(&graph, &qualities, id, &field);
+    for claims in [&stated.claims(), &derived] {
+        if let Some(refuted) = claims.refuted_by(&samples) {
+            return Err(told(refuted));
+        }
+    }
+    if !is_of(scene, entry, id) {
+        return Ok(());
+    }
+    if outcome.scenes == 0 {
+        outcome.sides = derived.sides.map(|promise| promise.to_string());
+        outcome.lipschitz = derived.lipschitz;
+        outcome.steepest = outcome.steepest.max(samples.steepest.slope);
+        outcome.bounds = stated.bounds.is_some();
+    }
+    for mutant in mutants::of(&stated, &derived, field.axes) {
+        let caught = outcome.mutants.entry(mutant.label).or_default();
+        *caught |= mutant.claims.refuted_by(&samples).is_some();
+    }
+    Ok(())
+}
+
+/// A clause whose condition holds in all variants, so that dropping it is no fault.
+fn condition_unseen(entry: &Entry, outcome: &Outcome) -> Option<String> {
+    let conditional: Vec<String> =
+        entry.clauses.iter().filter(|clause| clause.contains(" if ")).cloned().collect();
+    let all = PROMISES.into_iter().flat_map(|promise| SIDES.map(|side| (promise, side)));
+    let mut labels = all
+        .filter(|(promise, side)| says(&conditional, *promise, side))
+        .map(|(promise, side)| mutants::without_condition(promise, side));
+    let unseen = labels.find(|label| !outcome.mutants.contains_key(label))?;
+    Some(format!("in no variant of the example it would be wrong to say `{unseen}`"))
+}

@@ -1,0 +1,241 @@
+//! A shape's field with the means to ask it, and the oracle: points of its surface.
+//!
+//! The oracle knows a surface by changes of sign alone. A field's values are never taken for distances;
+//! its slopes only say where to look next.
+
+use sdfc::graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
+use sdfc::graph::{Dim, Expander, Graph, Scene, ShapeId, bounds};
+
+use crate::geometry::{Point, Random, add, combine, distance, dot, length, mix, scaled, sub};
+
+/// How far a shape without bounds is looked at.
+const REACH: f64 = 1.5;
+/// Points among which changes of sign are looked for, and points of the surface that are found.
+const SEEDS: usize = 1500;
+const SURFACE: usize = 500;
+/// Halvings between two signs: more than the digits of f64 there are.
+const HALVINGS: usize = 60;
+/// Moves along the surface towards a point.
+const MOVES: usize = 40;
+/// The least turn of a direction that counts as a move.
+const STALL: f64 = 1e-12;
+/// How near a point that stands in for another is, in parts of the scale.
+const NEARBY: f64 = 1e-7;
+
+/// The field of a shape as a program, undivided.
+pub struct Field {
+    tape: Tape,
+    frame: FrameValues,
+    /// Axes that it has: 2 for a region.
+    pub axes: usize,
+    /// Stated or derived bounds.
+    pub bounds: [Point; 2],
+}
+
+impl Field {
+    /// `None` if the shape is nowhere or too large a program.
+    pub fn new(scene: &Scene, id: ShapeId) -> Option<Self> {
+        let mut graph: Graph = scene.graph.clone();
+        let dim = graph.shape(id).dim;
+        let frame = FrameValues::defaults(&scene.params);
+        let ends = bounds(&mut graph, id, &scene.params);
+        let ends = evaluate_frame(&graph, &ends, &frame);
+        let bounds = [0, 1].map(|end| [ends[end][0], ends[end][1], ends[end][2]]);
+        let axes = if dim == Dim::Two { 2 } else { 3 };
+        if (0..axes).any(|axis| bounds[0][axis] > bounds[1][axis]) {
+            return None;
+        }
+        let point = graph.point(0, Dim::Three);
+        let point = if axes == 2 { graph.swizzle(point, &[0, 1]) } else { point };
+        let distance = Expander::new().field(&mut graph, id, point).ok()?;
+        let tape = Tape::new(&graph, &[distance]).ok()?;
+        Some(Self { tape, frame, axes, bounds })
+    }
+
+    /// Ready to be asked.
+    pub fn asked(&self) -> Asked<'_> {
+        let value = self.tape.prepare(&self.frame);
+        let dual = self.tape.prepare(&self.frame);
+        Asked { field: self, value, dual }
+    }
+
+    /// The bounds, cut where they are infinite.
+    pub fn window(&self) -> [Point; 2] {
+        let cut = |end: f64, instead: f64| if end.is_finite() { end } else { instead };
+        let [lo, hi] = self.bounds;
+        let end = |from: Point, instead: f64| {
+            [0, 1, 2].map(|axis| if axis < self.axes { cut(from[axis], instead) } else { 0.0 })
+        };
+        // An end that is finite may lie beyond the reach of the other, which is not.
+        let lo = end(lo, -REACH);
+        let hi = end(hi, REACH);
+        [
+            combine(lo, hi, |lo, hi| lo.min(hi - REACH / 2.0).max(lo.min(hi))),
+            combine(lo, hi, f64::max),
+        ]
+    }
+
+    /// The window's longest edge.
+    pub fn scale(&self) -> f64 {
+        let [lo, hi] = self.window();
+        sub(hi, lo).into_iter().fold(1e-6, f64::max)
+    }
+}
+
+/// A field with its registers.
+pub struct Asked<'f> {
+    field: &'f Field,
+    value: Evaluator<'f, f64>,
+    dual: Evaluator<'f, Dual>,
+}
+
+impl Asked<'_> {
+    pub fn at(&mut self, p: Point) -> f64 {
+        self.value.scalar(p)
+    }
+
+    /// The gradient.
+    pub fn slope(&mut self, p: Point) -> Point {
+        let mut slope = self.dual.scalar(Dual::point(p)).partials;
+        // What a region's picture does with z is no business of its field.
+        slope[self.field.axes..].fill(0.0);
+        slope
+    }
+
+    /// A point of the window grown by so much, one coordinate in four on a face and one in eight in the middle:
+    /// edges, corners and axes are where formulas fail.
+    pub fn point(&self, random: &mut Random, grown: f64) -> Point {
+        let [lo, hi] = self.field.window();
+        [0, 1, 2].map(|axis| {
+            if axis >= self.field.axes {
+                return 0.0;
+            }
+            let (lo, hi) = (lo[axis] - grown, hi[axis] + grown);
+            match random.below(8) {
+                0 => lo,
+                1 => hi,
+                2 if lo < 0.0 && hi > 0.0 => 0.0,
+                _ => lo + (hi - lo) * random.unit(),
+            }
+        })
+    }
+
+    /// Points of the surface, between points of opposite sign.
+    pub fn surface(&mut self, random: &mut Random) -> Vec<Point> {
+        let margin = 0.1 * self.field.scale();
+        let seeds: Vec<Point> =
+            (0..SEEDS).map(|i| self.point(random, if i % 2 == 0 { 0.0 } else { margin })).collect();
+        let (inside, outside): (Vec<Point>, Vec<Point>) =
+            seeds.into_iter().partition(|&p| self.at(p) < 0.0);
+        if inside.is_empty() || outside.is_empty() {
+            return Vec::new();
+        }
+        (0..SURFACE)
+            .map(|i| {
+                let from = inside[i % inside.len()];
+                let to = outside[random.below(outside.len())];
+                self.between(from, to)
+            })
+            .collect()
+    }
+
+    /// The last point inside on the way from one inside to one outside, as halving finds it.
+    fn between(&mut self, mut inside: Point, mut outside: Point) -> Point {
+        for _ in 0..HALVINGS {
+            let middle = mix(inside, outside, 0.5);
+            if middle == inside || middle == outside {
+                break;
+            }
+            let end = if self.at(middle) < 0.0 { &mut inside } else { &mut outside };
+            *end = middle;
+        }
+        inside
+    }
+
+    /// The surface where a line crosses it within `reach` of `p`, if it does.
+    fn on_line(&mut self, p: Point, direction: Point, reach: f64) -> Option<Point> {
+        let is_inside = self.at(p) < 0.0;
+        for share in [0.05, 0.25, 1.0] {
+            for sign in [1.0, -1.0] {
+                let q = add(p, scaled(direction, sign * share * reach));
+                if (self.at(q) < 0.0) != is_inside {
+                    return Some(if is_inside { self.between(p, q) } else { self.between(q, p) });
+                }
+            }
+        }
+        None
+    }
+
+    /// From a point of the surface along it to where nothing near is nearer to the target.
+    pub fn towards(&mut self, target: Point, from: Point) -> Point {
+        let mut at = from;
+        let mut step = 1.0;
+        for _ in 0..MOVES {
+            let slope = self.slope(at);
+            let steep = length(slope);
+            if !(steep.is_finite() && steep > 0.0) {
+                break;
+            }
+            let normal = scaled(slope, 1.0 / steep);
+            let way = sub(target, at);
+            let along = sub(way, scaled(normal, dot(way, normal)));
+            if length(along) <= STALL * length(way) {
+                break;
+            }
+            let moved = add(at, scaled(along, step));
+            let found = self.on_line(moved, normal, length(along) * step);
+            match found.filter(|&found| distance(found, target) < distance(at, target)) {
+                Some(found) => {
+                    at = found;
+                    step = f64::min(1.0, step * 1.5);
+                }
+                None if step > 1e-6 => step *= 0.35,
+                None => break,
+            }
+        }
+        at
+    }
+
+    /// How far the surface is from `p` at most: to the nearest points found, moved along the surface, and to
+    /// the foot point that the field itself names, if the sign changes there. Infinite if nothing was found.
+    pub fn nearest(&mut self, p: Point, surface: &[Point], random: &mut Random) -> f64 {
+        let mut nearest: Vec<(f64, Point)> = surface.iter().map(|&s| (distance(p, s), s)).collect();
+        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut least = nearest.first().map_or(f64::INFINITY, |first| first.0);
+        for (_, start) in nearest.into_iter().take(2) {
+            let found = self.towards(p, start);
+            least = least.min(distance(p, found));
+        }
+        // Right above a face or on it a way down may run along the face: then one from nearby does not.
+        let near = NEARBY * self.field.scale();
+        let axes = self.field.axes;
+        for round in 0..5 {
+            let reach = if round == 0 { 0.0 } else { near };
+            let offset =
+                [0, 1, 2].map(|axis| if axis < axes { reach * random.signed() } else { 0.0 });
+            if let Some(foot) = self.foot(add(p, offset)) {
+                return least.min(foot + length(offset));
+            }
+        }
+        least
+    }
+
+    /// How far from `p` the surface is met straight down the slope, if it is where |f| says.
+    fn foot(&mut self, p: Point) -> Option<f64> {
+        let (f, slope) = (self.at(p), self.slope(p));
+        let steep = length(slope);
+        if !(steep.is_finite() && steep > 0.0 && f != 0.0) {
+            return None;
+        }
+        let down = scaled(slope, -f.signum() / steep);
+        let beyond = add(p, scaled(down, f.abs() * (1.0 + 1e-7) + 1e-9));
+        let before = add(p, scaled(down, f.abs() * (1.0 - 1e-4)));
+        // A zero within the inside is no surface: the sign changes there for good.
+        let past = add(p, scaled(down, f.abs() + 1e-4 * self.field.scale()));
+        let is_inside = f < 0.0;
+        let crossed = (self.at(beyond) <= 0.0) != is_inside || self.at(beyond) == 0.0;
+        let stays = (self.at(past) < 0.0) != is_inside;
+        let before = (self.at(before) < 0.0) == is_inside;
+        (crossed && stays && before).then(|| distance(p, beyond))
+    }
+}

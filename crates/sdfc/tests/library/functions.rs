@@ -1,0 +1,103 @@
+//! Functions that state how fast they change: blends, and functions of a point.
+
+use sdfc::graph::eval::{FrameValues, Tape};
+use sdfc::graph::{NodeId, Scene};
+use sdfc::lang::library::Entry;
+
+use crate::contract::{self, Outcome};
+use crate::geometry::{Random, mix};
+use crate::variants;
+
+const PAIRS: usize = 6000;
+const VARIANTS: usize = 8;
+const TRIES: usize = 80;
+/// Rounding of f64, in the values that are compared.
+const ROUNDING: f64 = 1e-12;
+const SMALLER: f64 = 0.9;
+
+/// Whether there is anything to check: a function that states a constant, or gives a blend.
+pub fn states_something(entry: &Entry) -> bool {
+    let states = entry.clauses.iter().any(|clause| clause.starts_with("lipschitz "));
+    entry.kind == "fn" && (is_blend(entry) || states)
+}
+
+fn is_blend(entry: &Entry) -> bool {
+    entry.signature.ends_with("-> blend")
+}
+
+/// Checks the stated constant.
+///
+/// # Errors
+///
+/// Two points between which the function changes faster, or a constant that is not tight.
+pub fn check(entry: &Entry) -> Result<Outcome, String> {
+    let call =
+        variants::call_of(&entry.name, &entry.example).ok_or("its example lacks a call of it")?;
+    let sides = ["none", "none"].map(str::to_owned);
+    let mut outcome = Outcome { sides, ..Outcome::default() };
+    let mut caught = false;
+    let mut random = Random(5);
+    let mut text = call.to_owned();
+    for _ in 0..TRIES {
+        if outcome.scenes >= VARIANTS {
+            break;
+        }
+        if let Some(scene) = contract::scene(&probe(entry, &text)) {
+            let (stated, steepest) = measured(&scene).ok_or("it states no constant")?;
+            if steepest > stated * (1.0 + 1e-9) {
+                return Err(format!("{text}: lipschitz {stated}, but {steepest}"));
+            }
+            caught |= steepest > SMALLER * stated;
+            outcome.lipschitz = outcome.lipschitz.or(Some(stated));
+            outcome.steepest = outcome.steepest.max(steepest);
+            outcome.scenes += 1;
+        }
+        text = variants::changed(call, &mut random);
+    }
+    outcome.mutants.insert("lipschitz made 10 % smaller".to_owned(), caught);
+    if outcome.scenes == 0 {
+        return Err("no probe of it compiles".into());
+    }
+    if caught { Ok(outcome) } else { Err("no sample refutes a constant 10 % smaller".into()) }
+}
+
+/// A scene whose formula is the function, of coordinates of the point.
+fn probe(entry: &Entry, call: &str) -> String {
+    if is_blend(entry) {
+        return format!("solid probe() = {{ let f = {call}\n  f(p.x, p.y) }}\nprobe()");
+    }
+    let name = &entry.name;
+    let parameters = entry.signature.split_once('(').map_or("", |(_, rest)| rest);
+    let argument = if parameters.contains(": vec2") { "p.xy" } else { "p" };
+    format!("solid probe() = {name}({argument})\nprobe()")
+}
+
+/// The stated constant, and the steepest of pairs, the way between them that of the argument that moves most.
+fn measured(scene: &Scene) -> Option<(f64, f64)> {
+    let graph = &scene.graph;
+    let id = graph.shape_ids().find(|&id| graph.shape(id).definition == "probe")?;
+    let formula = graph.shape(id).formula;
+    let claim = graph.claim_of(formula)?;
+    let stated = graph.as_number(claim.lipschitz)?;
+    let roots: Vec<NodeId> =
+        std::iter::once(formula).chain(claim.arguments.iter().copied()).collect();
+    let tape = Tape::new(graph, &roots).ok()?;
+    let mut field = tape.prepare::<f64>(&FrameValues::defaults(&scene.params));
+    let mut random = Random(11);
+    let mut steepest = 0.0f64;
+    for round in 0..PAIRS {
+        let p = [0; 3].map(|_| 2.0 * random.signed());
+        let q = mix(p, [0; 3].map(|_| 2.0 * random.signed()), [1.0, 1e-2, 1e-3][round % 3]);
+        let [at_p, at_q] = [p, q].map(|point| field.eval(point).to_vec());
+        let mut changes = at_p
+            .iter()
+            .zip(&at_q)
+            .map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt());
+        let rise = changes.next()? - ROUNDING;
+        let run = changes.fold(0.0, f64::max);
+        if run > 0.0 {
+            steepest = steepest.max(rise / run);
+        }
+    }
+    Some((stated, steepest))
+}

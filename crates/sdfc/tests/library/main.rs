@@ -1,0 +1,88 @@
+//! Every entry of the library against every check, without a list of entries here.
+//!
+//! - `drawn`: the example compiles, something is seen, and f32 and f64 agree on the processor.
+//! - `gpu`: the graphics adapter agrees with both.
+//! - `contract`: what is promised holds at samples of the example and of scenes like it with other numbers, against an
+//!   oracle that knows the surface by changes of sign alone; and every clause with one fault is refuted there.
+//!
+//! `cargo test -p sdfc-cli -p sdfc --test library -- --nocapture` prints the table of entries and checks at the end.
+
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test stops where it fails, and this one prints a table"
+)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod claims;
+mod contract;
+mod examples;
+mod field;
+mod functions;
+mod geometry;
+mod mutants;
+mod samples;
+mod table;
+mod variants;
+
+use std::sync::Arc;
+
+use common::agree;
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::lang::library::{self, Entry};
+use sdfc::render::testing;
+
+use table::{Column, Table};
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let entries: Vec<Arc<Entry>> = library::entries().into_iter().map(Arc::new).collect();
+    let table = Table::new(&entries);
+    let without_gpu = testing::without_gpu();
+    let mut trials = examples::trials();
+    for (row, entry) in entries.iter().enumerate() {
+        let trial = |column: Column, check: fn(&Entry) -> Result<String, Failed>| {
+            let (entry, table) = (Arc::clone(entry), table.clone());
+            let name = format!("{}/{} ({})", column.name(), entry.name, entry.kind);
+            Trial::test(name, move || {
+                let result = check(&entry);
+                table.set(row, column, result.as_ref().map_or("FAILED", |cell| cell));
+                result.map(drop)
+            })
+        };
+        trials.push(trial(Column::Drawn, drawn));
+        trials.push(trial(Column::Gpu, gpu).with_ignored_flag(without_gpu));
+        trials.push(trial(Column::Contract, kept));
+    }
+    let conclusion = libtest_mimic::run(&arguments, trials);
+    if arguments.nocapture {
+        println!("\n{table}");
+    }
+    conclusion.exit();
+}
+
+fn drawn(entry: &Entry) -> Result<String, Failed> {
+    let (hit, found) = agree::precisions(&agree::scene(&entry.name, &entry.example)?)?;
+    Ok(format!("{hit:>4} px {:.0e}", found.depth))
+}
+
+fn gpu(entry: &Entry) -> Result<String, Failed> {
+    let found = agree::devices(&agree::scene(&entry.name, &entry.example)?)?;
+    Ok(format!("{:.0e}, {}/255", found.depth, found.color))
+}
+
+fn kept(entry: &Entry) -> Result<String, Failed> {
+    if entry.kind != "fn" {
+        return Ok(contract::check(entry).map(|it| it.to_string())?);
+    }
+    if functions::states_something(entry) {
+        return Ok(functions::check(entry).map(|it| it.to_string())?);
+    }
+    // What it gives is drawn, and promised by whatever uses it.
+    let name = &entry.name;
+    contract::check_scene(&entry.example).map_err(|e| format!("{name}: {e}"))?;
+    Ok("states nothing; its example keeps what is derived".to_owned())
+}
