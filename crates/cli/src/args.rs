@@ -277,7 +277,7 @@ pub struct Bench {
 /// Arguments of `doc`.
 #[derive(clap::Args, Debug)]
 pub struct Doc {
-    /// A name, a topic, or a word that descriptions mention; everything if not given
+    /// A name, a topic, a code such as E0104, or a word that descriptions mention; everything if not given
     pub name: Option<String>,
     /// Write it to stdout as JSON
     #[arg(long)]

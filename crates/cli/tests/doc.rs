@@ -76,6 +76,16 @@ fn colour_comes_when_it_is_asked_for() {
 }
 
 #[test]
+fn a_code_is_explained() {
+    let (status, text) = doc("e0109");
+    assert!(
+        status == 0 && text.starts_with("E0109 Comparisons and ranges do not chain\n"),
+        "{text}"
+    );
+    assert!(text.contains("\n  help      join two comparisons with `&&`\n"), "{text}");
+}
+
+#[test]
 fn as_json_every_key_is_there() {
     let (status, text) = doc("--json");
     let rows: Value = serde_json::from_str(&text).unwrap();

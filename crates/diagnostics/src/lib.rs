@@ -68,7 +68,7 @@ pub struct Diagnostic {
     pub label: String,
     /// Other places that matter, in the order they should be read.
     pub notes: Vec<Note>,
-    /// Ways to mend it, best first.
+    /// Ways to mend it in this case, best first; see [`Self::ways_to_mend`].
     pub help: Vec<String>,
 }
 
@@ -110,6 +110,15 @@ impl Diagnostic {
     pub fn help(mut self, message: impl Into<String>) -> Self {
         self.help.push(message.into());
         self
+    }
+
+    /// Ways to mend it, best first: its own, or what its code has for all findings.
+    pub fn ways_to_mend(&self) -> Vec<&str> {
+        if !self.help.is_empty() {
+            return self.help.iter().map(String::as_str).collect();
+        }
+        let row = ALL_CODES.iter().find(|row| row.code == self.code);
+        row.map(|row| row.mend).into_iter().collect()
     }
 
     /// Whether it keeps the scene from compiling.

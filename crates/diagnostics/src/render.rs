@@ -35,7 +35,8 @@ fn report(diagnostic: &Diagnostic) -> Report<FileId> {
             None => report.notes.push(format!("note: {}", note.message)),
         }
     }
-    report.notes.extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
+    let ways = diagnostic.ways_to_mend();
+    report.notes.extend(ways.iter().map(|help| format!("help: {help}")));
     report.with_code(diagnostic.code.0).with_message(&diagnostic.message)
 }
 
@@ -71,7 +72,7 @@ pub fn locate(sources: &Sources, diagnostic: &Diagnostic) -> Located {
         file: sources.name(span.file).to_owned(),
         start: sources.line_column(span.file, span.start),
         end: sources.line_column(span.file, span.end),
-        help: diagnostic.help.join("\n"),
+        help: diagnostic.ways_to_mend().join("\n"),
     }
 }
 

@@ -41,7 +41,7 @@ pub mod settings;
 pub mod slots;
 mod spelling;
 
-use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 
 pub use check::{check, check_library, check_with_imports};
 pub use elab::{Declared, DeclaredPromise, Elaborated, Site};
@@ -79,6 +79,10 @@ pub fn front_with(
     options: Options,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let (scene, mut found) = sdfc_syntax::parse(sources, file);
+    // The parser gave up in the middle: the rest would seem to lack what it declares.
+    if found.iter().any(|it| matches!(it.code, Code::NESTING | Code::TOO_LARGE)) {
+        return (None, found);
+    }
     // The library comes before the imports, so that its places are the same in every scene.
     library::with_parsed(sources, |_| ());
     let (imports, of_imports) = import::load(sources, &scene, resolver);
@@ -87,7 +91,9 @@ pub fn front_with(
         check_with_imports(library, &imports, (file, &scene))
     });
     found.extend(of_library);
-    found.extend(of_check);
+    let parsed = !has_errors(&found);
+    // What could not be read may have used or drawn what seems to be idle.
+    found.extend(of_check.into_iter().filter(|it| parsed || it.is_error()));
     if has_errors(&found) {
         return (None, found);
     }

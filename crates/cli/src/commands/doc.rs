@@ -2,6 +2,7 @@
 
 mod page;
 
+use sdfc::diagnostics::{ALL_CODES, CodeInfo};
 use sdfc::lang::library::Entry;
 use sdfc::lang::reference;
 use serde::Serialize;
@@ -30,18 +31,31 @@ struct Row<'e> {
     line: Option<u32>,
 }
 
+/// The code of a diagnostic, for programs.
+#[derive(Serialize)]
+struct CodeRow<'e> {
+    code: &'e str,
+    title: &'e str,
+    meaning: &'e str,
+    help: &'e str,
+}
+
 #[derive(Serialize)]
 struct Parameter<'e> {
     name: &'e str,
     about: &'e str,
 }
 
-/// Writes to stdout what there is, or what is asked for: a name, a topic, or a word that entries mention.
+/// Writes to stdout what there is, or what is asked for: a name, a topic, a diagnostic's code, or a word that
+/// entries mention.
 ///
 /// # Errors
 ///
 /// Nothing has that name nor mentions it.
 pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
+    if let Some(code) = args.name.as_deref().and_then(code) {
+        return write_code(code, args.json, console);
+    }
     let entries = reference::entries();
     let found = match &args.name {
         None => Found { full: Vec::new(), listed: entries.iter().collect() },
@@ -58,6 +72,21 @@ pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
     if args.name.is_none() {
         page.closing("`sdfc doc NAME` says all about one of them.");
     }
+    output::to_stdout(page.text().as_bytes())
+}
+
+/// The code of a diagnostic with this name.
+fn code(name: &str) -> Option<&'static CodeInfo> {
+    ALL_CODES.iter().find(|row| row.code.0.eq_ignore_ascii_case(name))
+}
+
+fn write_code(row: &CodeInfo, as_json: bool, console: &Console) -> Result<(), Failure> {
+    if as_json {
+        let row = CodeRow { code: row.code.0, title: row.title, meaning: row.page, help: row.mend };
+        return output::to_stdout(&super::json(&[row])?);
+    }
+    let mut page = Page::new(console.output_color());
+    page.code(row);
     output::to_stdout(page.text().as_bytes())
 }
 

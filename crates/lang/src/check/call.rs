@@ -149,6 +149,7 @@ impl<'a> Checker<'a> {
                 let message = format!("{what} is {} and takes no arguments", describe(&other));
                 let at = called.map_or(function.span, |(callee, _)| callee.at);
                 let found = Diagnostic::error(Code::WRONG_CALL, at, message);
+                let found = found.help("write it without brackets");
                 let found = self.note_hidden(found, called);
                 self.report(found);
                 self.give_up(given, span)

@@ -79,7 +79,7 @@ impl Parser<'_> {
         if behind != opener.span {
             found = found.note_at(behind.after(), format!("a `{missing}` is missing up to here"));
         }
-        self.report(found);
+        self.report(found.help(format!("write `{missing}` there, or before")));
     }
 
     /// A closer of another kind: either it closes a bracket further out, or it is a slip.

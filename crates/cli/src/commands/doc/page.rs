@@ -1,5 +1,6 @@
 //! The reference as text for a terminal.
 
+use sdfc::diagnostics::CodeInfo;
 use sdfc::lang::library::Entry;
 
 /// Lines are broken before this column.
@@ -61,6 +62,17 @@ impl Page {
                 self.line("declared", &format!("{file}:{line}"));
             }
         }
+    }
+
+    /// What a code means.
+    pub fn code(&mut self, row: &CodeInfo) {
+        self.bold(row.code.0);
+        self.text.push(' ');
+        self.wrapped(row.title, row.code.0.len() + 1, 2);
+        self.text.push('\n');
+        self.indented(row.page);
+        self.text.push('\n');
+        self.line("help", row.mend);
     }
 
     /// A last line of its own.
