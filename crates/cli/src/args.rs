@@ -260,7 +260,7 @@ pub struct Bench {
     /// The scene; `-` is stdin
     #[arg(required_unless_present_any = ["suite", "faults"])]
     pub file: Option<PathBuf>,
-    /// Also measure the suite: scenes of the course, and generated ones of 3, 33 and 100 leaves
+    /// Also measure the suite: scenes of the course, a chain of 30 leaves, and generated ones of 3 to 300
     #[arg(long)]
     pub suite: bool,
     /// Count wrong pixels instead: scenes at which a classroom practical's march fails

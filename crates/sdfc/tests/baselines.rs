@@ -6,8 +6,9 @@
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::baseline::{Encoded, Inexpressible, tape, units};
 use sdfc::codegen::{FieldSource, measured_module};
+use sdfc::lang::{NoFiles, Options};
 use sdfc::render::{Gpu, Image, Pipeline, RenderOptions, View, compare, testing, uniform_values};
-use sdfc::{BenchOptions, FrameValues, Scene, compile, unwatched};
+use sdfc::{BenchOptions, FrameValues, Scene, compile, compile_with, suite, unwatched};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -78,7 +79,7 @@ fn main() {
         Trial::test("what units cannot hold", units_say_what_they_cannot_hold),
         Trial::test("what the tape cannot hold", the_tape_says_what_it_cannot_hold),
         Trial::test("tables by hand", tables_by_hand),
-        Trial::test("a long chain", a_long_chain_needs_few_places),
+        Trial::test("many leaves", many_leaves_need_few_places),
     ];
     let texts = BOTH.map(|(name, text)| (name, text, true));
     let alone = TAPE_ALONE.map(|(name, text, _)| (name, text, false));
@@ -188,30 +189,38 @@ fn tables_by_hand() -> Result<(), Failed> {
     Ok(())
 }
 
-fn a_long_chain_needs_few_places() -> Result<(), Failed> {
-    let text = include_str!("../../../examples/bench/thirty.sdf");
-    let encoded = on_tape(&scene(text)).map_err(|e| e.0)?;
-    if encoded.turns > 900 {
-        return Err(format!("{} turns", encoded.turns).into());
+/// However many leaves, joined one after the other or side by side.
+fn many_leaves_need_few_places() -> Result<(), Failed> {
+    for (name, text) in suite() {
+        let scene = scene(&text);
+        let encoded = on_tape(&scene).map_err(|e| format!("{name}: {}", e.0))?;
+        let most = 23 * scene.report().leaves;
+        if encoded.turns > most {
+            return Err(format!("{name}: {} turns, over {most}", encoded.turns).into());
+        }
     }
     Ok(())
 }
 
 fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     let options = BenchOptions { size: [32, 24], repetitions: 2, ..BenchOptions::default() };
-    let torus = scene("torus(major: 0.8, minor: 0.2)");
-    let row = torus.bench("torus", &Gpu::new()?, &options, &mut unwatched)?;
+    let text = format!("torus(major: 0.8, minor: 0.2){VIEW}");
+    let torus = scene(&text);
+    let moving = compile_with("test.sdf", &text, &NoFiles, Options { slots: true }).scene.unwrap();
+    let row = torus.bench(&moving, "torus", &Gpu::new()?, &options, &mut unwatched)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
     assert_eq!(names, ["units", "tape", "specialized", "specialized-slots"]);
     let [units, tape, specialized, slots] = &row.variants[..] else { unreachable!() };
-    for missing in [units, slots] {
-        assert!(missing.frame_ms.is_none() && missing.why.contains_key("frame_ms"));
-    }
-    for drawn in [tape, specialized] {
+    assert!(units.frame_ms.is_none() && units.why.contains_key("frame_ms"));
+    for drawn in [tape, specialized, slots] {
         assert_eq!(drawn.frame_ms.map(|times| times.n), Some(2), "{drawn:?}");
         assert_eq!(drawn.differing_pixels, Some(0));
         assert!(drawn.evals_per_pixel.unwrap().mean > 1.0);
     }
     assert_eq!(specialized.times_specialized, Some(1.0));
+    assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
+    // A scene none of whose numbers can move.
+    let row = torus.bench(&torus, "torus", &Gpu::new()?, &options, &mut unwatched)?;
+    assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);
     Ok(())
 }

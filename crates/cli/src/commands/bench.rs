@@ -3,13 +3,17 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use sdfc::lang::{NoFiles, Options};
 use sdfc::render::Gpu;
 use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, suite};
 
 use crate::args::Bench;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::input;
 use crate::output::{self, Output};
+
+const WITH_SLOTS: Options = Options { slots: true };
 
 /// Measures the scenes, shows a table and writes the figures.
 ///
@@ -17,7 +21,7 @@ use crate::output::{self, Output};
 ///
 /// A scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write the figures.
 pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
-    let scene = args.file.as_deref().map(|file| named(file, console)).transpose()?;
+    let scene = args.file.as_deref().map(|file| Entry::of_file(file, console)).transpose()?;
     let json = args.json.as_deref().map(Output::new);
     if let (Some(file), Some(json)) = (&args.file, &args.json) {
         output::distinct(file, &[json])?;
@@ -29,15 +33,17 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
 
     let mut scenes: Vec<_> = scene.into_iter().collect();
     if args.suite {
-        scenes.extend(suite_scenes()?);
+        for (name, text) in suite() {
+            scenes.push(Entry::of_suite(name, &text)?);
+        }
     }
     let failed = |error: sdfc::Error| super::lowering(&error, console);
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
     let options = BenchOptions { size: args.size, ..BenchOptions::default() };
     let mut rows = Vec::new();
-    for (name, scene) in &scenes {
+    for Entry { name, scene, slots } in &scenes {
         let progress = console.progress(name);
-        let row = scene.bench(name, &gpu, &options, &mut |part| {
+        let row = scene.bench(slots, name, &gpu, &options, &mut |part| {
             progress.set(part.done, part.total);
             ControlFlow::Continue(())
         });
@@ -51,31 +57,48 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
 }
 
-fn named(file: &Path, console: &Console) -> Result<(String, Scene), Failure> {
-    let scene = super::scene(file, sdfc::lang::Options::default(), console)?;
-    if !scene.draws() {
-        return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
+/// A scene to be measured.
+struct Entry {
+    name: String,
+    scene: Scene,
+    /// The same, its numbers as params.
+    slots: Scene,
+}
+
+impl Entry {
+    fn of_file(file: &Path, console: &Console) -> Result<Self, Failure> {
+        let input = input::read(file)?;
+        let folder = input::Folder::of(file);
+        let compile = |options| sdfc::compile_with(&input.name, &input.text, &folder, options);
+        let mut compiled = compile(Options::default());
+        super::show(&mut compiled, console);
+        let slots = compile(WITH_SLOTS).scene.ok_or(Failure::Scene)?;
+        let scene = compiled.scene.ok_or(Failure::Scene)?;
+        if !scene.draws() {
+            return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
+        }
+        Ok(Self { name: input.name, scene, slots })
     }
-    Ok((file.display().to_string(), scene))
+
+    fn of_suite(name: String, text: &str) -> Result<Self, Failure> {
+        let compile = |options| {
+            let compiled = sdfc::compile_with(&name, text, &NoFiles, options);
+            // The suite's own scenes: that one of them has errors is a fault of this program.
+            let fault = || Failure::Machine(format!("the suite's scene `{name}` does not compile"));
+            compiled.scene.ok_or_else(fault)
+        };
+        let (scene, slots) = (compile(Options::default())?, compile(WITH_SLOTS)?);
+        Ok(Self { name, scene, slots })
+    }
 }
 
-fn suite_scenes() -> Result<Vec<(String, Scene)>, Failure> {
-    let scenes = suite().into_iter().map(|(name, text)| {
-        let compiled = sdfc::compile(&name, &text);
-        // The suite's own scenes: that one of them has errors is a fault of this program.
-        let fault = || Failure::Machine(format!("the suite's scene `{name}` does not compile"));
-        compiled.scene.ok_or_else(fault).map(|scene| (name.clone(), scene))
-    });
-    scenes.collect()
-}
-
-/// The report for people: times in milliseconds, and how many times that of the specialised shader.
+/// The report for people: times in milliseconds, and each frame's in that of the specialised shader.
 fn table(report: &BenchReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {
         let BenchRow { scene, leaves, size: [width, height], method, variants } = row;
         text += &format!("\n{scene}: {leaves} leaves, {width}x{height}, method {method}\n");
-        text += "  variant             frame ms    times  evals/px  lower ms  pipeline ms  first picture ms\n";
+        text += "  variant             frame ms    ratio  evals/px  turns/eval  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }
     text
@@ -83,7 +106,7 @@ fn table(report: &BenchReport) -> String {
 
 fn line(variant: &BenchVariant) -> String {
     let name = variant.name;
-    let (Some(frame), Some(evals)) = (variant.frame_ms, variant.evals_per_pixel) else {
+    let Some(frame) = variant.frame_ms else {
         let why = variant.why.get("frame_ms").map_or("", String::as_str);
         return format!("  {name:<18}  {:>8}  {why}\n", "-");
     };
@@ -92,14 +115,24 @@ fn line(variant: &BenchVariant) -> String {
         None => format!("{:>width$}", "-"),
     };
     let compile = variant.compile_ms.as_ref();
+    let notes = [
+        variant.slots.map(|slots| format!("{slots} slots")),
+        variant.differing_pixels.filter(|count| *count > 0).map(|n| format!("{n} pixels differ")),
+    ];
+    let notes: Vec<String> = notes.into_iter().flatten().collect();
     [
         format!("  {name:<18}"),
         number(Some(frame.median), 8, 1),
         number(variant.times_specialized, 7, 2),
-        number(Some(evals.mean), 8, 1),
+        number(variant.evals_per_pixel.map(|evals| evals.mean), 8, 1),
+        number(variant.turns_per_eval.map(|turns| turns as f64), 10, 0),
         number(compile.and_then(|times| times.lower), 8, 1),
         number(compile.and_then(|times| times.pipeline), 11, 1),
-        number(variant.first_picture_ms, 16, 1) + "\n",
+        number(variant.first_picture_ms, 16, 1),
+        notes.join(", "),
     ]
     .join("  ")
+    .trim_end()
+    .to_owned()
+        + "\n"
 }

@@ -27,13 +27,16 @@ const TOLERANCES: f64 = 4.0;
 const MAX_DIFFERING: f64 = 1e-3;
 /// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver takes it for hung.
 const ONE_TILE: f64 = 1000.0;
+/// A frame that takes longer, in milliseconds, is timed once.
+const LONG: f64 = 10_000.0;
 
 /// How scenes are measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BenchOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// How many frames of each variant are timed, after one that is not; at least 1.
+    /// How many frames of each variant are timed, after one that is not; at least 1. One where frames take
+    /// longer than ten seconds.
     pub repetitions: u32,
     /// Ray method of all variants.
     pub method: String,
@@ -91,6 +94,9 @@ pub struct BenchVariant {
     pub leaf_evals_per_pixel: Option<LeafEvaluations>,
     /// Turns of the interpreter's loop at each evaluation; none in a shader without one.
     pub turns_per_eval: Option<usize>,
+    /// How many numbers of the scene are slots; of `specialized-slots` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slots: Option<usize>,
     /// Pixels that differ from those of `specialized`, edges left out.
     pub differing_pixels: Option<usize>,
     /// Why figures are null, by their keys.
@@ -98,26 +104,65 @@ pub struct BenchVariant {
     pub why: Why,
 }
 
+/// How a variant evaluates the field.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Units,
+    Tape,
+    Specialized,
+    Slots,
+}
+
+impl Kind {
+    /// In the order of a row.
+    const ALL: [Self; 4] = [Self::Units, Self::Tape, Self::Specialized, Self::Slots];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Units => "units",
+            Self::Tape => "tape",
+            Self::Specialized => REFERENCE,
+            Self::Slots => "specialized-slots",
+        }
+    }
+
+    fn field(self) -> FieldSource {
+        match self {
+            Self::Units => FieldSource::Units,
+            Self::Tape => FieldSource::Tape,
+            Self::Specialized | Self::Slots => FieldSource::Distance,
+        }
+    }
+}
+
 /// A variant that draws.
 struct Contestant {
-    name: &'static str,
+    kind: Kind,
     pipeline: Pipeline,
     uniforms: Vec<[f32; 4]>,
     compile: CompileTimes,
     first_picture: f64,
     options: RenderOptions,
+    /// How many frames are timed.
+    repetitions: u32,
     image: Image,
     leaves: usize,
     turns: Option<usize>,
     times: Vec<f64>,
 }
 
+/// What a variant reads beside the view.
+enum Data {
+    Encoded(Encoded),
+    Uniforms(Vec<[f32; 4]>),
+}
+
 /// What all variants of a row share.
 struct Heat<'a> {
     scene: &'a Scene,
+    slots: &'a Scene,
     gpu: &'a Gpu,
     options: &'a BenchOptions,
-    frame: FrameValues,
     view: View,
 }
 
@@ -125,11 +170,14 @@ impl Scene {
     /// Measures the scene at its params' defaults: after a first frame of every variant, which is not timed,
     /// one frame of each in turn, then the next of each. All are unpainted and take normals by differences.
     ///
+    /// `slots` is the same scene with its numbers as params ([`compile_with`](crate::compile_with)).
+    ///
     /// # Errors
     ///
     /// [`Error::NothingDrawn`], [`Error::View`], [`Error::Codegen`], [`Error::Render`].
     pub fn bench(
         &self,
+        slots: &Scene,
         name: &str,
         gpu: &Gpu,
         options: &BenchOptions,
@@ -140,34 +188,38 @@ impl Scene {
         }
         let frame = FrameValues::defaults(self.params());
         let view = View::new(self.program(), &frame, self.bounds_at(&frame), options.size)?;
-        let heat = Heat { scene: self, gpu, options, frame, view };
-        let units = baseline::units(self.graph(), &heat.frame);
-        let tape = baseline::tape(self.program(), self.report().leaves, &heat.frame);
-        let entries = [
-            ("units", FieldSource::Units, Some(units)),
-            ("tape", FieldSource::Tape, Some(tape)),
-            (REFERENCE, FieldSource::Distance, None),
-        ];
-        let frames = u64::from(options.repetitions.max(1) + 1) * entries.len() as u64;
+        let heat = Heat { scene: self, slots, gpu, options, view };
+        let rounds = options.repetitions.max(1);
+        let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
         let mut counted = Counted { frames, drawn: 0, progress };
-        let (mut contestants, mut missing) = (Vec::new(), Vec::new());
-        for (name, field, encoded) in entries {
-            match encoded.transpose() {
-                Ok(encoded) => contestants.push(heat.enter(name, field, encoded, &mut counted)?),
-                Err(Inexpressible(reason)) => missing.push(BenchVariant::missing(name, &reason)),
+        let reference = match heat.enter(Kind::Specialized, &mut counted)? {
+            Ok(contestant) => contestant,
+            Err(Inexpressible(_)) => return Err(Error::NothingDrawn),
+        };
+        let (mut contestants, mut variants) = (Vec::new(), Vec::new());
+        for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Specialized) {
+            match heat.enter(kind, &mut counted)? {
+                Ok(contestant) if heat.refusal(&contestant, &reference).is_none() => {
+                    contestants.push(contestant);
+                    continue;
+                }
+                Ok(contestant) => variants.push(heat.result(&contestant, &reference)),
+                Err(Inexpressible(why)) => variants.push(BenchVariant::missing(kind.name(), &why)),
             }
+            counted.frames -= u64::from(rounds);
         }
-        for _ in 0..options.repetitions.max(1) {
-            for contestant in &mut contestants {
+        contestants.push(reference);
+        for round in 0..rounds {
+            for contestant in contestants.iter_mut().filter(|entered| round < entered.repetitions) {
                 let frame = heat.draw(contestant, &mut counted)?;
                 contestant.times.push(frame.milliseconds);
             }
         }
-        let reason = "literals as slots are not built";
-        missing.push(BenchVariant::missing("specialized-slots", reason));
-        let mut variants = heat.results(contestants);
-        variants.extend(missing);
-        variants.sort_by_key(|variant| ORDER.iter().position(|name| *name == variant.name));
+        if let Some(reference) = contestants.last() {
+            variants.extend(contestants.iter().map(|entered| heat.result(entered, reference)));
+        }
+        let place = |name| Kind::ALL.iter().position(|kind| kind.name() == name);
+        variants.sort_by_key(|variant| place(variant.name));
         Ok(BenchRow {
             scene: name.to_owned(),
             leaves: self.report().leaves,
@@ -178,30 +230,29 @@ impl Scene {
     }
 }
 
-/// Names of the variants, in the order of a row.
-const ORDER: [&str; 4] = ["units", "tape", REFERENCE, "specialized-slots"];
-
 impl Heat<'_> {
-    /// Compiles a variant and draws its first frame.
+    /// Compiles a variant and draws its first frame, unless it cannot express the scene.
     fn enter(
         &self,
-        name: &'static str,
-        field: FieldSource,
-        encoded: Option<Encoded>,
+        kind: Kind,
         counted: &mut Counted<'_, '_>,
-    ) -> Result<Contestant, Error> {
+    ) -> Result<Result<Contestant, Inexpressible>, Error> {
+        let scene = if kind == Kind::Slots { self.slots } else { self.scene };
         let start = Instant::now();
-        let shader = measured_module(self.scene.program(), &self.options.method, field)?;
+        let data = match data(kind, scene) {
+            Ok(data) => data,
+            Err(inexpressible) => return Ok(Err(inexpressible)),
+        };
+        let shader = measured_module(scene.program(), &self.options.method, kind.field())?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds(start) - validate;
-        let uniforms = match encoded {
-            Some(_) => Vec::new(),
-            None => uniform_values(self.scene.program(), &self.frame),
+        let (tables, uniforms, turns) = match &data {
+            Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.turns)),
+            Data::Uniforms(uniforms) => (&[][..], uniforms.clone(), None),
         };
-        let tables = encoded.as_ref().map_or(&[][..], |encoded| &encoded.tables);
         let pipeline = Pipeline::with_tables(self.gpu, shader, uniforms.len(), tables)?;
-        let times = self.scene.times();
-        let compile = CompileTimes {
+        let times = scene.times();
+        let mut compile = CompileTimes {
             front: Some(times.front),
             analyze: Some(times.analyze),
             lower: Some(lower),
@@ -209,22 +260,31 @@ impl Heat<'_> {
             pipeline: Some(pipeline.milliseconds()),
             ..CompileTimes::default()
         };
+        if kind == Kind::Units {
+            compile.analyze = None;
+            compile.why.insert("analyze", "units are read off the shapes".to_owned());
+        }
         let options = RenderOptions::default();
         let first = counted.draw(&pipeline, &self.view, &uniforms, &options)?;
         let whole = TileSize::Fixed(self.options.size);
         let tile_size = if first.milliseconds < ONE_TILE { whole } else { options.tile_size };
-        Ok(Contestant {
-            name,
+        let once = first.milliseconds > LONG;
+        Ok(Ok(Contestant {
+            kind,
             pipeline,
             uniforms,
+            first_picture: times.front + compile.analyze.unwrap_or(0.0) + milliseconds(start),
             compile,
-            first_picture: times.front + times.analyze + milliseconds(start),
             options: RenderOptions { tile_size },
+            repetitions: if once { 1 } else { self.options.repetitions.max(1) },
             image: first.image,
-            leaves: encoded.as_ref().map_or(self.scene.report().leaves, |encoded| encoded.leaves),
-            turns: encoded.map(|encoded| encoded.turns),
+            leaves: match &data {
+                Data::Encoded(encoded) => encoded.leaves,
+                Data::Uniforms(_) => scene.report().leaves,
+            },
+            turns,
             times: Vec::new(),
-        })
+        }))
     }
 
     fn draw(&self, contestant: &Contestant, counted: &mut Counted<'_, '_>) -> Result<Frame, Error> {
@@ -232,43 +292,56 @@ impl Heat<'_> {
         counted.draw(pipeline, &self.view, uniforms, options)
     }
 
-    fn results(&self, contestants: Vec<Contestant>) -> Vec<BenchVariant> {
+    /// The figures of a contestant; those of another picture than the reference's are null.
+    fn result(&self, contestant: &Contestant, reference: &Contestant) -> BenchVariant {
         let clock = if self.gpu.has_timestamps() {
             sdfc_render::Clock::Gpu
         } else {
             sdfc_render::Clock::Wall
         };
-        let reference = contestants.iter().find(|contestant| contestant.name == REFERENCE);
-        let median = |contestant: &Contestant| FrameTimes::of(&contestant.times, clock);
-        let base = reference.and_then(median).map(|times| times.median);
-        let result = |contestant: &Contestant| {
-            let frame_ms = median(contestant);
-            let evals = EvaluationCounts::of(&contestant.image);
-            let ratio = frame_ms.and_then(|times| Some(times.median / base?));
-            let mut variant = BenchVariant {
-                name: contestant.name,
-                frame_ms,
-                times_specialized: ratio,
-                compile_ms: Some(contestant.compile.clone()),
-                first_picture_ms: Some(contestant.first_picture),
-                evals_per_pixel: Some(evals),
-                leaf_evals_per_pixel: Some(LeafEvaluations::of_all_leaves(
-                    evals,
-                    contestant.leaves,
-                )),
-                turns_per_eval: contestant.turns,
-                differing_pixels: reference
-                    .map(|other| self.differing(&contestant.image, &other.image)),
-                why: Why::new(),
-            };
-            variant.refuse_another_picture(self.options.size);
-            variant
+        let frame_ms = FrameTimes::of(&contestant.times, clock);
+        let base = FrameTimes::of(&reference.times, clock);
+        let ratio = frame_ms.zip(base).map(|(times, base)| times.median / base.median);
+        let evals = EvaluationCounts::of(&contestant.image);
+        let leaf_evals = LeafEvaluations::of_all_leaves(evals, contestant.leaves);
+        let mut variant = BenchVariant {
+            name: contestant.kind.name(),
+            frame_ms,
+            times_specialized: ratio,
+            compile_ms: Some(contestant.compile.clone()),
+            first_picture_ms: Some(contestant.first_picture),
+            evals_per_pixel: Some(evals),
+            leaf_evals_per_pixel: Some(leaf_evals),
+            turns_per_eval: contestant.turns,
+            slots: (contestant.kind == Kind::Slots).then(|| self.slots.slots().len()),
+            differing_pixels: Some(self.differing(contestant, reference)),
+            why: Why::new(),
         };
-        contestants.iter().map(result).collect()
+        if contestant.turns.is_none() {
+            variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
+        }
+        if let Some(reason) = self.refusal(contestant, reference) {
+            variant.refuse(&reason);
+        }
+        variant
+    }
+
+    /// Why the time of a contestant says nothing, if its picture is another than the reference's.
+    fn refusal(&self, contestant: &Contestant, reference: &Contestant) -> Option<String> {
+        let differing = self.differing(contestant, reference);
+        let pixels = contestant.image.pixels().len();
+        if differing as f64 <= MAX_DIFFERING * pixels as f64 {
+            return None;
+        }
+        Some(format!(
+            "another picture: {differing} of {pixels} pixels differ; software drivers end the loops of \
+             an invocation after a number of turns, Mesa 22.3 after 65,535"
+        ))
     }
 
     /// Pixels that are no edge in either picture and show different things.
-    fn differing(&self, a: &Image, b: &Image) -> usize {
+    fn differing(&self, contestant: &Contestant, reference: &Contestant) -> usize {
+        let (a, b) = (&contestant.image, &reference.image);
         let near = (TOLERANCES * self.view.epsilon) as f32;
         let edges = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b);
         let pairs = a.pixels().iter().zip(b.pixels()).zip(edges);
@@ -279,6 +352,23 @@ impl Heat<'_> {
             [true, true] | [true, false] | [false, true] => !edge,
         });
         differ.count()
+    }
+}
+
+/// What a variant reads of a scene at its params' defaults.
+fn data(kind: Kind, scene: &Scene) -> Result<Data, Inexpressible> {
+    let frame = FrameValues::defaults(scene.params());
+    let uniforms = || Data::Uniforms(uniform_values(scene.program(), &frame));
+    match kind {
+        Kind::Units => baseline::units(scene.graph(), &frame).map(Data::Encoded),
+        Kind::Tape => {
+            baseline::tape(scene.program(), scene.report().leaves, &frame).map(Data::Encoded)
+        }
+        Kind::Specialized => Ok(uniforms()),
+        Kind::Slots if scene.slots().is_empty() => {
+            Err(Inexpressible("no number of the scene can move".to_owned()))
+        }
+        Kind::Slots => Ok(uniforms()),
     }
 }
 
@@ -329,28 +419,16 @@ impl BenchVariant {
             evals_per_pixel: None,
             leaf_evals_per_pixel: None,
             turns_per_eval: None,
+            slots: None,
             differing_pixels: None,
             why: keys.map(|key| (key, reason.to_owned())).into(),
         }
     }
 
-    /// The time of another picture says nothing.
-    fn refuse_another_picture(&mut self, [width, height]: [u32; 2]) {
-        if self.turns_per_eval.is_none() {
-            self.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
-        }
-        let pixels = u64::from(width) * u64::from(height);
-        let differing = self.differing_pixels.unwrap_or(0);
-        if differing as f64 <= MAX_DIFFERING * pixels as f64 {
-            return;
-        }
-        let reason = format!(
-            "another picture: {differing} of {pixels} pixels differ from `{REFERENCE}`; software \
-             drivers end the loops of an invocation after a number of turns, Mesa 22.3 after 65,535"
-        );
-        let evaluations = &mut self.evals_per_pixel;
+    /// Takes back the figures that say nothing.
+    fn refuse(&mut self, reason: &str) {
         (self.frame_ms, self.times_specialized, self.first_picture_ms) = (None, None, None);
-        (*evaluations, self.leaf_evals_per_pixel) = (None, None);
+        (self.evals_per_pixel, self.leaf_evals_per_pixel) = (None, None);
         for key in [
             "frame_ms",
             "times_specialized",
@@ -358,7 +436,7 @@ impl BenchVariant {
             "evals_per_pixel",
             "leaf_evals_per_pixel",
         ] {
-            self.why.insert(key, reason.clone());
+            self.why.insert(key, reason.to_owned());
         }
     }
 }

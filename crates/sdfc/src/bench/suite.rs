@@ -1,23 +1,25 @@
-//! The scenes of `bench --suite`: the course's, and generated ones that every baseline can express.
+//! The scenes of `bench --suite`: the course's, a chain of thirty leaves, and generated ones that every baseline
+//! can express.
 
 use std::fmt::Write;
 
 /// Leaves of the generated scenes: a floor, then pairs, then one more if the number is even.
-const LEAVES: [usize; 3] = [3, 33, 100];
+const LEAVES: [usize; 4] = [3, 33, 100, 300];
 /// Where the generator of pseudo-random numbers starts.
 const SEED: u64 = 7;
 
 /// Names and texts of the suite's scenes.
 pub fn suite() -> Vec<(String, String)> {
-    let course = [
+    let files = [
         ("course/union.sdf", include_str!("../../../../examples/course/union.sdf")),
         ("course/subtraction.sdf", include_str!("../../../../examples/course/subtraction.sdf")),
         ("course/intersection.sdf", include_str!("../../../../examples/course/intersection.sdf")),
         ("course/blend.sdf", include_str!("../../../../examples/course/blend.sdf")),
+        ("bench/thirty.sdf", include_str!("../../../../examples/bench/thirty.sdf")),
     ];
-    let course = course.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let generated = LEAVES.map(|leaves| (format!("generated {leaves}"), generated(leaves)));
-    course.into_iter().chain(generated).collect()
+    files.into_iter().chain(generated).collect()
 }
 
 /// A floor with a square of pairs on it, each a ball and a block under one of four operations.

@@ -1,35 +1,39 @@
 // A stack machine: one instruction after the other from a buffer, for any formula of its operations. Values
 // are four lanes wide; a number is the same in all of them, a vector's unused lanes hold anything.
-// The topmost value is kept apart from the stack, a binary operation may have its second operand in the
-// instruction, and stack and locals are one array, so that an instruction reads and writes it once: such an array
+// The topmost value is kept apart from the stack, an instruction may have its second operand in itself or in a
+// local and its operands the wrong way round, and stack and locals are one array, so that an instruction reads and writes it once: such an array
 // is memory, and costs more than arithmetic.
 
-// Push a value: the point, the instruction's constant, a local.
+// Push the point, or the second operand.
 const POINT: u32 = 0;
+const PUSH: u32 = 1;
+// From the topmost value. SQRT, SIN and COS are of numbers. STORE copies it to the local.
+const LANE: u32 = 2;
+const ABS: u32 = 3;
+const FLOOR: u32 = 4;
+const SQRT: u32 = 5;
+const SIN: u32 = 6;
+const COS: u32 = 7;
+const LENGTH: u32 = 8;
+const STORE: u32 = 9;
+// Takes the topmost value off the stack and keeps whether it is not 0, for the next CHOOSE.
+const TEST: u32 = 10;
+// From two operands a and b.
+const ADD: u32 = 11;
+const SUB: u32 = 12;
+const MUL: u32 = 13;
+const DIV: u32 = 14;
+const MIN: u32 = 15;
+const MAX: u32 = 16;
+const DOT: u32 = 17;
+const LESS: u32 = 18;
+const INSERT: u32 = 19;
+const CHOOSE: u32 = 20;
+
+// Where the second operand is: on top of the stack, in the instruction, or in the first local or one after it.
+const ON_STACK: u32 = 0;
 const CONSTANT: u32 = 1;
-const LOAD: u32 = 2;
-// From the topmost value. SQRT, SIN and COS are of numbers. STORE and TEST take it off the stack; TEST keeps
-// whether it is not 0, for the next CHOOSE.
-const LANE: u32 = 3;
-const ABS: u32 = 4;
-const FLOOR: u32 = 5;
-const SQRT: u32 = 6;
-const SIN: u32 = 7;
-const COS: u32 = 8;
-const LENGTH: u32 = 9;
-const STORE: u32 = 10;
-const TEST: u32 = 11;
-// From the topmost value b and the one below it, a.
-const ADD: u32 = 12;
-const SUB: u32 = 13;
-const MUL: u32 = 14;
-const DIV: u32 = 15;
-const MIN: u32 = 16;
-const MAX: u32 = 17;
-const DOT: u32 = 18;
-const LESS: u32 = 19;
-const INSERT: u32 = 20;
-const CHOOSE: u32 = 21;
+const LOCAL: u32 = 2;
 
 // The encoder keeps within both. A stack that is full has its topmost value elsewhere, and one place to spare.
 const STACK_SIZE: u32 = 16;
@@ -39,11 +43,11 @@ const LANES = vec4u(0, 1, 2, 3);
 
 struct Instruction {
     operation: u32,
-    // Index of a local (LOAD, STORE) or of a lane (LANE, INSERT), or the number of lanes (LENGTH, DOT).
+    // Index of a lane (LANE, INSERT), or the number of lanes (LENGTH, DOT).
     index: u32,
-    // 1 where the second operand is the constant; of STORE, where the value also stays on the stack.
-    immediate: u32,
-    pad: u32,
+    second: u32,
+    // 1 where the second operand is a, the first b.
+    reversed: u32,
     constant: vec4f,
 }
 
@@ -64,28 +68,31 @@ fn field(p: vec3f) -> f32 {
     for (var i = 0u; i < arrayLength(&tape); i++) {
         let instruction = tape[i];
         let operation = instruction.operation;
-        let local = STACK_SIZE + 1u + instruction.index;
+        let second = instruction.second;
+        let local = STACK_SIZE + 1u + second - LOCAL;
         // Harmless where nothing is pushed or stored: there is nothing above the stack.
         memory[select(depth, local, operation == STORE)] = top;
-        let below = memory[select(max(depth, 1u) - 1u, local, operation == LOAD)];
+        let found = memory[select(max(depth, 1u) - 1u, local, second >= LOCAL)];
         var a = top;
-        var b = instruction.constant;
-        if operation <= LOAD {
+        var b = select(found, instruction.constant, second == CONSTANT);
+        if operation <= PUSH {
             depth++;
-        } else if operation >= STORE && instruction.immediate == 0u {
+        } else if operation >= TEST && second == ON_STACK {
             depth--;
-            a = below;
+            a = found;
             b = top;
+        }
+        if instruction.reversed != 0u {
+            let first = a;
+            a = b;
+            b = first;
         }
         switch operation {
             case POINT: {
                 top = vec4f(p, 0.0);
             }
-            case CONSTANT: {
+            case PUSH: {
                 top = b;
-            }
-            case LOAD: {
-                top = below;
             }
             case LANE: {
                 top = vec4f(a[instruction.index]);
@@ -107,9 +114,6 @@ fn field(p: vec3f) -> f32 {
             }
             case LENGTH: {
                 top = vec4f(length(first_lanes(a, instruction.index)));
-            }
-            case STORE: {
-                top = a;
             }
             case TEST: {
                 chosen = top.x != 0.0;
