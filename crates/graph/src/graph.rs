@@ -1,7 +1,8 @@
 //! The arena: interning, types, stages.
 
-use std::hash::{Hash, Hasher};
+use std::hash::{BuildHasher, BuildHasherDefault, Hash, Hasher};
 
+use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
 
 use crate::range::{Range, range_of};
@@ -32,7 +33,8 @@ pub struct Claim {
 pub struct Graph {
     nodes: Vec<Node>,
     facts: Vec<Facts>,
-    ids: FxHashMap<Node, NodeId>,
+    /// By the node's hash; the nodes themselves are looked up, which keeps the table small.
+    ids: HashTable<NodeId>,
     shapes: Vec<Shape>,
     shape_ids: FxHashMap<u64, Vec<ShapeId>>,
     claims: FxHashMap<NodeId, Claim>,
@@ -123,14 +125,15 @@ impl Graph {
 
     /// The id of a node exactly as given: no folding. Callers use the typed builders.
     pub(crate) fn intern(&mut self, node: Node) -> NodeId {
-        if let Some(&id) = self.ids.get(&node) {
+        let hash = hash_of(&node);
+        if let Some(&id) = self.ids.find(hash, |id| self.nodes[id.index()] == node) {
             return id;
         }
         let facts = self.facts_of(&node);
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.facts.push(facts);
-        self.ids.insert(node, id);
+        self.ids.insert_unique(hash, id, |id| hash_of(&self.nodes[id.index()]));
         id
     }
 
@@ -310,6 +313,10 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
         Node::Sample(..) => Type::Scalar,
         Node::MaterialAt(.., field) => field.ty(),
     }
+}
+
+fn hash_of(node: &Node) -> u64 {
+    BuildHasherDefault::<FxHasher>::default().hash_one(node)
 }
 
 fn shape_key(definition: &str, dim: crate::Dim, level: u16, args: &[Arg]) -> u64 {
