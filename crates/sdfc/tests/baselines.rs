@@ -207,7 +207,8 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     let text = format!("torus(major: 0.8, minor: 0.2){VIEW}");
     let torus = scene(&text);
     let moving = compile_with("test.sdf", &text, &NoFiles, Options { slots: true }).scene.unwrap();
-    let row = torus.bench(&moving, "torus", &Gpu::new()?, &options, &mut unwatched)?;
+    let gpu = Gpu::new()?;
+    let row = torus.bench(&moving, "torus", &gpu, &options, &mut unwatched)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
     assert_eq!(names, ["units", "tape", "specialized", "specialized-slots"]);
     let [units, tape, specialized, slots] = &row.variants[..] else { unreachable!() };
@@ -215,12 +216,13 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     for drawn in [tape, specialized, slots] {
         assert_eq!(drawn.frame_ms.map(|times| times.n), Some(2), "{drawn:?}");
         assert_eq!(drawn.differing_pixels, Some(0));
+        assert_eq!(drawn.cpu_ms.is_some(), gpu.info().software);
         assert!(drawn.evals_per_pixel.unwrap().mean > 1.0);
     }
     assert_eq!(specialized.times_specialized, Some(1.0));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
     // A scene none of whose numbers can move.
-    let row = torus.bench(&torus, "torus", &Gpu::new()?, &options, &mut unwatched)?;
+    let row = torus.bench(&torus, "torus", &gpu, &options, &mut unwatched)?;
     assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);
     Ok(())
 }

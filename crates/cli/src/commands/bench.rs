@@ -92,13 +92,14 @@ impl Entry {
     }
 }
 
-/// The report for people: times in milliseconds, and each frame's in that of the specialised shader.
+/// The report for people: times in milliseconds, and each frame's in that of the specialised shader. Time of the
+/// processor is told where it is the adapter.
 fn table(report: &BenchReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {
         let BenchRow { scene, leaves, size: [width, height], method, variants } = row;
         text += &format!("\n{scene}: {leaves} leaves, {width}x{height}, method {method}\n");
-        text += "  variant             frame ms    ratio  evals/px  turns/eval  lower ms  pipeline ms  first picture ms\n";
+        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }
     text
@@ -123,7 +124,9 @@ fn line(variant: &BenchVariant) -> String {
     [
         format!("  {name:<18}"),
         number(Some(frame.median), 8, 1),
-        number(variant.times_specialized, 7, 2),
+        number(variant.times_specialized, 6, 2),
+        number(variant.cpu_ms, 8, 1),
+        number(variant.cpu_times_specialized, 6, 2),
         number(variant.evals_per_pixel.map(|evals| evals.mean), 8, 1),
         number(variant.turns_per_eval.map(|turns| turns as f64), 10, 0),
         number(compile.and_then(|times| times.lower), 8, 1),

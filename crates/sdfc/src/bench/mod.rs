@@ -4,6 +4,7 @@ mod suite;
 
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use sdfc_codegen::{FieldSource, measured_module};
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
@@ -84,6 +85,13 @@ pub struct BenchVariant {
     pub frame_ms: Option<FrameTimes>,
     /// Median time of a frame in that of `specialized`.
     pub times_specialized: Option<f64>,
+    /// Median time of processor that the process took for one frame, where the adapter is one; other work on the
+    /// machine does not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_ms: Option<f64>,
+    /// That time in that of `specialized`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_times_specialized: Option<f64>,
     /// Stages of compilation; encoding the tables is part of `lower`.
     pub compile_ms: Option<CompileTimes>,
     /// From reading the scene to its first finished picture, in milliseconds.
@@ -149,6 +157,8 @@ struct Contestant {
     leaves: usize,
     turns: Option<usize>,
     times: Vec<f64>,
+    /// What the process took of the processor for each of them, on an adapter that is one.
+    cpu: Vec<f64>,
 }
 
 /// What a variant reads beside the view.
@@ -211,8 +221,11 @@ impl Scene {
         contestants.push(reference);
         for round in 0..rounds {
             for contestant in contestants.iter_mut().filter(|entered| round < entered.repetitions) {
+                let start = ProcessTime::try_now().ok().filter(|_| gpu.info().software);
                 let frame = heat.draw(contestant, &mut counted)?;
                 contestant.times.push(frame.milliseconds);
+                let cpu = start.and_then(|start| start.try_elapsed().ok());
+                contestant.cpu.extend(cpu.map(|time| time.as_secs_f64() * 1e3));
             }
         }
         if let Some(reference) = contestants.last() {
@@ -284,6 +297,7 @@ impl Heat<'_> {
             },
             turns,
             times: Vec::new(),
+            cpu: Vec::new(),
         }))
     }
 
@@ -300,14 +314,17 @@ impl Heat<'_> {
             sdfc_render::Clock::Wall
         };
         let frame_ms = FrameTimes::of(&contestant.times, clock);
-        let base = FrameTimes::of(&reference.times, clock);
-        let ratio = frame_ms.zip(base).map(|(times, base)| times.median / base.median);
+        let median = |times: &[f64]| FrameTimes::of(times, clock).map(|times| times.median);
+        let ratio =
+            |of: fn(&Contestant) -> &[f64]| Some(median(of(contestant))? / median(of(reference))?);
         let evals = EvaluationCounts::of(&contestant.image);
         let leaf_evals = LeafEvaluations::of_all_leaves(evals, contestant.leaves);
         let mut variant = BenchVariant {
             name: contestant.kind.name(),
             frame_ms,
-            times_specialized: ratio,
+            times_specialized: ratio(|entered| &entered.times),
+            cpu_ms: median(&contestant.cpu),
+            cpu_times_specialized: ratio(|entered| &entered.cpu),
             compile_ms: Some(contestant.compile.clone()),
             first_picture_ms: Some(contestant.first_picture),
             evals_per_pixel: Some(evals),
@@ -414,6 +431,8 @@ impl BenchVariant {
             name,
             frame_ms: None,
             times_specialized: None,
+            cpu_ms: None,
+            cpu_times_specialized: None,
             compile_ms: None,
             first_picture_ms: None,
             evals_per_pixel: None,
@@ -428,6 +447,7 @@ impl BenchVariant {
     /// Takes back the figures that say nothing.
     fn refuse(&mut self, reason: &str) {
         (self.frame_ms, self.times_specialized, self.first_picture_ms) = (None, None, None);
+        (self.cpu_ms, self.cpu_times_specialized) = (None, None);
         (self.evals_per_pixel, self.leaf_evals_per_pixel) = (None, None);
         for key in [
             "frame_ms",
