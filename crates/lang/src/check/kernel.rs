@@ -175,7 +175,7 @@ pub(crate) const ROWS: &[Row] = rows! {
     "materials and light" {
         "material" Builtin::Material, "material(color: #999, roughness: 0.5, metallic: 0, emission: #000, occlusion: 1)", "A material from its fields: roughness from 0 mirror to 1 matt, metallic from 0 to 1, emission light given off, occlusion from 0 dark to 1 open.", "material(color: #d4af37, roughness: 0.2, metallic: 1)";
         "with" Builtin::With, "m.with(color: c, ...)", "A material with some fields changed.", "material().with(roughness: 0.1)";
-        "rgb" Builtin::Color(K::Rgb), "rgb(r, g, b, a: 1)", "A colour from linear red, green and blue; `#rrggbb` is sRGB instead.", "rgb(1, 0.5, 0)";
+        "rgb" Builtin::Color(K::Rgb), "rgb(r, g, b, a: 1)", "A colour from red, green and blue of sRGB, each from 0 to 1.", "rgb(1, 0.5, 0)";
         "hsv" Builtin::Color(K::Hsv), "hsv(h, s, v, a: 1)", "A colour from hue in turns, saturation and value.", "hsv(0.3, 0.8, 1)";
         "oklch" Builtin::Color(K::Oklch), "oklch(l, c, h, a: 1)", "A colour from lightness, chroma and hue, even to the eye (Ottosson 2020); h is an angle.", "oklch(0.7, 0.15, 150deg)";
         "hard" Builtin::Hard, "hard", "A shadow without penumbra, for a light's `shadow`.", "hard";

@@ -67,7 +67,12 @@ pub fn trials() -> Vec<Trial> {
 /// The page on adding a shape shows one whose contract holds.
 fn documented() -> Result<(), libtest_mimic::Failed> {
     let page = include_str!("../../../../docs/adding-a-shape.md");
-    let entry = page.split("```").nth(1).ok_or("the page shows an entry")?.trim();
+    let entry = page
+        .split("```sdf")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .ok_or("the page shows an entry")?
+        .trim();
     let example = entry.lines().find_map(|line| line.strip_prefix("/// example:"));
     Ok(check_scene(&format!("{entry}\n{}", example.ok_or("the entry has an example")?))?)
 }

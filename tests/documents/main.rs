@@ -1,0 +1,178 @@
+//! What the documentation shows is true: every block of the language compiles, every block that is said to be wrong has
+//! the code that is named, every value in a table is what its expression gives, and every link leads somewhere.
+//!
+//! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
+//! - ```` ```sdf E0304 ```` is a scene with that code and no other.
+//! - A row of a table with the head `| expression | gives |` holds two expressions of one value.
+//! - In the tutorial a picture right behind a block shows what that block draws.
+//!
+//! The pages of `docs/reference` and `docs/errors` have tests of their own.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod pictures;
+
+use std::path::{Path, PathBuf};
+
+use sdfc::{check, lang::NoFiles};
+
+/// Two values are one if they differ by no more than this.
+const ROUNDING: f64 = 1e-6;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Name and text of every page that people read.
+fn pages() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![root().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "md") {
+                found.push(path);
+            }
+        }
+    }
+    found.push(root().join("README.md"));
+    found.sort();
+    let page = |path: PathBuf| {
+        let name = path.strip_prefix(root()).unwrap().display().to_string();
+        (name.replace('\\', "/"), std::fs::read_to_string(path).unwrap().replace("\r\n", "\n"))
+    };
+    found.into_iter().map(page).collect()
+}
+
+/// Those whose blocks are checked here.
+fn checked_pages() -> Vec<(String, String)> {
+    let elsewhere = ["docs/reference/", "docs/errors/"];
+    let is_here = |page: &(String, String)| !elsewhere.iter().any(|it| page.0.starts_with(it));
+    pages().into_iter().filter(is_here).collect()
+}
+
+/// The blocks of the language in a page: line, what stands behind ```` ```sdf ````, text.
+fn blocks(page: &str) -> Vec<(usize, String, String)> {
+    let mut found = Vec::new();
+    let mut open: Option<(usize, String, String)> = None;
+    for (number, line) in page.lines().enumerate() {
+        match (&mut open, line.strip_prefix("```")) {
+            (None, Some(info)) => open = Some((number + 1, info.trim().to_owned(), String::new())),
+            (Some(_), Some(_)) => found.extend(open.take()),
+            (Some((_, _, text)), None) => {
+                text.push_str(line);
+                text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    let of_language = |(line, info, text): (usize, String, String)| {
+        let rest = info.strip_prefix("sdf")?;
+        Some((line, rest.trim().to_owned(), text))
+    };
+    found.into_iter().filter_map(of_language).collect()
+}
+
+/// Rows of the tables of expressions: line, expression, value.
+fn values(page: &str) -> Vec<(usize, String, String)> {
+    let mut found = Vec::new();
+    let mut inside = false;
+    for (number, line) in page.lines().enumerate() {
+        inside = line == "| expression | gives |" || (inside && line.starts_with('|'));
+        let cells: Vec<&str> = line.split('`').collect();
+        if inside && cells.len() == 5 {
+            let unescaped = |cell: &str| cell.replace("\\|", "|");
+            found.push((number + 1, unescaped(cells[1]), unescaped(cells[3])));
+        }
+    }
+    found
+}
+
+#[test]
+fn every_block_compiles_or_has_the_code_that_is_named() {
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for (page, text) in checked_pages() {
+        for (line, expected, block) in blocks(&text) {
+            count += 1;
+            let compiled = check(&page, &block, &NoFiles);
+            let codes: Vec<&str> = compiled.diagnostics.iter().map(|it| it.code.0).collect();
+            // Declarations alone draw nothing, and need not.
+            let fits = match &*expected {
+                "" => codes.iter().all(|code| *code == "W0604"),
+                code => !codes.is_empty() && codes.iter().all(|it| *it == code),
+            };
+            if !fits {
+                wrong.push(format!("{page}:{line}\n{}", compiled.diagnostics_text(false)));
+            }
+        }
+    }
+    assert!(count > 15, "the blocks were not found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_expression_gives_what_is_said() {
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for (page, text) in checked_pages() {
+        for (line, expression, value) in values(&text) {
+            count += 1;
+            // The field at the origin is how far the two are apart.
+            let apart = match &*value {
+                "true" | "false" => format!("if ({expression}) == {value} {{ 0 }} else {{ 1 }}"),
+                _ => format!("distance({expression}, {value})"),
+            };
+            let scene = format!("let apart = {apart}\nsolid it() = length(p) + apart\nit()");
+            let compiled = check(&page, &scene, &NoFiles);
+            let apart = compiled.scene.as_ref().map(|it| it.distance([0.0; 3]).unwrap());
+            if apart.is_none_or(|apart| apart > ROUNDING) {
+                let said = compiled.diagnostics_text(false);
+                wrong
+                    .push(format!("{page}:{line}: {expression} is not {value}: {apart:?}\n{said}"));
+            }
+        }
+    }
+    assert!(count > 30, "the values were not found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_picture_of_the_tutorial_is_what_its_block_draws() {
+    let page = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let shown = pictures::shown(&page.replace("\r\n", "\n"));
+    assert!(shown.len() > 5, "the pictures were not found");
+    for (path, block) in shown {
+        let place = root().join("docs").join(&path);
+        let drawn = pictures::drawn(&block);
+        let is_same = || pictures::same(&std::fs::read(&place).unwrap_or_default(), &drawn);
+        if std::env::var_os("DOCUMENTS_UPDATE").is_some() && !is_same() {
+            std::fs::write(&place, &drawn).unwrap();
+        }
+        assert!(is_same(), "{path} is not what is drawn; write it anew with DOCUMENTS_UPDATE=1");
+    }
+}
+
+#[test]
+fn every_link_within_the_repository_leads_somewhere() {
+    let mut broken = Vec::new();
+    for (page, text) in pages() {
+        let folder = root().join(&page).parent().unwrap().to_owned();
+        let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        for target in targets.chain(pictures).filter(|target| !target.contains("://")) {
+            let path = target.split('#').next().unwrap_or_default();
+            if !path.is_empty() && !folder.join(path).exists() {
+                broken.push(format!("{page}: {target}"));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{broken:#?}");
+}
