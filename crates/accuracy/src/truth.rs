@@ -1,0 +1,142 @@
+//! The oracle's verdict on every pixel of a picture.
+
+use rayon::prelude::*;
+use sdfc_graph::eval::FrameValues;
+
+use crate::edges::edges;
+use crate::oracle::{Oracle, Prober, Ray, Verdict};
+
+/// Where the rays of a picture start and lead: one through the centre of each pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Where rays start.
+    pub eye: [f64; 3],
+    /// Through the middle of the picture, at distance 1 from the eye along the camera's axis.
+    pub forward: [f64; 3],
+    /// Half the width of the picture at distance 1.
+    pub right: [f64; 3],
+    /// Half the height of the picture at distance 1.
+    pub up: [f64; 3],
+    /// Rays end here.
+    pub t_max: f64,
+    /// Half the width of a pixel at distance 1.
+    pub pixel_radius: f64,
+}
+
+impl Camera {
+    /// The ray of a pixel; pixels count row by row, downwards.
+    pub fn ray(&self, pixel: usize) -> Ray {
+        let [width, height] = self.size.map(|side| side.max(1) as usize);
+        let place = |index: usize, side: usize| 2.0 * (index as f64 + 0.5) / side as f64 - 1.0;
+        let (x, y) = (place(pixel % width, width), place(pixel / width, height));
+        let toward: [f64; 3] = std::array::from_fn(|axis| {
+            self.forward[axis] + x * self.right[axis] - y * self.up[axis]
+        });
+        let length = toward.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let direction = toward.map(|part| part / length);
+        Ray { origin: self.eye, direction, t_max: self.t_max }
+    }
+
+    /// Width of a pixel at a distance.
+    pub fn pixel_width(&self, t: f64) -> f64 {
+        2.0 * self.pixel_radius * t
+    }
+
+    /// How many pixels.
+    pub fn pixels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
+/// What a pixel is, apart from what it shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Its ray and those of all its neighbours meet one surface, or nothing.
+    Plain,
+    /// Within a pixel of a silhouette.
+    Edge,
+    /// The oracle does not know.
+    Undecided,
+}
+
+/// The oracle's verdict on every pixel.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// The picture's camera.
+    pub camera: Camera,
+    /// Of each pixel, row by row.
+    pub verdicts: Vec<Verdict>,
+    /// Of each pixel.
+    pub kinds: Vec<Kind>,
+    /// Evaluations over intervals, in all.
+    pub evaluations: u64,
+}
+
+/// Pixels by verdict and kind. An edge or undecided pixel is one of them and nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Counts {
+    /// Meet the surface.
+    pub hit: u64,
+    /// Meet nothing.
+    pub miss: u64,
+    /// Within a pixel of a silhouette.
+    pub edge: u64,
+    /// Not known.
+    pub undecided: u64,
+}
+
+/// Pixels that one thread takes at a time.
+const GROUP: usize = 64;
+
+impl Truth {
+    /// Asks the oracle about every pixel, on all threads. `progress` is told after each group how many pixels it had, and is called from any thread.
+    pub fn find(
+        oracle: &Oracle,
+        frame: &FrameValues,
+        camera: Camera,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Self {
+        let mut found = vec![(Verdict::Miss, [0.0; 3], 0); camera.pixels()];
+        found.par_chunks_mut(GROUP).enumerate().for_each_init(
+            || oracle.prober(frame),
+            |prober, (group, pixels)| {
+                for (index, place) in pixels.iter_mut().enumerate() {
+                    *place = look(prober, &camera.ray(group * GROUP + index));
+                }
+                progress(pixels.len());
+            },
+        );
+        let verdicts: Vec<Verdict> = found.iter().map(|(verdict, ..)| *verdict).collect();
+        let gradients: Vec<[f64; 3]> = found.iter().map(|(_, gradient, _)| *gradient).collect();
+        let kinds = edges(&camera, &verdicts, &gradients);
+        let evaluations = found.iter().map(|(.., count)| u64::from(*count)).sum();
+        Self { camera, verdicts, kinds, evaluations }
+    }
+
+    /// How many pixels are what.
+    pub fn counts(&self) -> Counts {
+        let mut counts = Counts::default();
+        for (kind, verdict) in self.kinds.iter().zip(&self.verdicts) {
+            let place = match (kind, verdict) {
+                (Kind::Undecided, _) => &mut counts.undecided,
+                (Kind::Edge, _) => &mut counts.edge,
+                (Kind::Plain, Verdict::Hit(_)) => &mut counts.hit,
+                (Kind::Plain, _) => &mut counts.miss,
+            };
+            *place += 1;
+        }
+        counts
+    }
+}
+
+/// A verdict, the gradient where it is a hit, and what it took.
+fn look(prober: &mut Prober<'_>, ray: &Ray) -> (Verdict, [f64; 3], u32) {
+    let probe = prober.first_hit(ray);
+    let gradient = match probe.verdict {
+        Verdict::Hit(t) => prober.gradient(ray.at(t)),
+        Verdict::Miss | Verdict::Undecided(_) => [f64::NAN; 3],
+    };
+    (probe.verdict, gradient, probe.evaluations)
+}

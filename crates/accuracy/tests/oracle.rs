@@ -1,0 +1,114 @@
+//! The oracle against closed forms.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use proptest::prelude::*;
+use sdfc_accuracy::{Oracle, Probe, Ray, Verdict};
+use sdfc_graph::eval::FrameValues;
+use sdfc_graph::{Dim, Graph, NodeId, Program, Type, gradient};
+
+fn program(build: impl Fn(&mut Graph, NodeId) -> NodeId) -> Program {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let field = build(&mut graph, p);
+    let slope = gradient(&mut graph, field, p);
+    Program { graph, distance: Some(field), gradient: Some(slope), ..Program::default() }
+}
+
+fn ball(graph: &mut Graph, p: NodeId, center: [f64; 3], radius: f64) -> NodeId {
+    let center = graph.constant(Type::Vec3, &center);
+    let (offset, radius) = (graph.sub(p, center), graph.number(radius));
+    let length = graph.length(offset);
+    graph.sub(length, radius)
+}
+
+fn probe(program: &Program, ray: &Ray) -> Probe {
+    let oracle = Oracle::new(program).expect("it draws something");
+    oracle.prober(&FrameValues::default()).first_hit(ray)
+}
+
+/// First positive root of |o + t d - c| = r for an origin outside, and how far inside or outside the
+/// ray passes.
+fn meets(ray: &Ray, center: [f64; 3], radius: f64) -> (Option<f64>, f64) {
+    let offset: [f64; 3] = std::array::from_fn(|axis| ray.origin[axis] - center[axis]);
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let along = -dot(offset, ray.direction);
+    let square = dot(offset, offset) - along * along;
+    let inside = radius * radius - square;
+    let root = (inside > 0.0 && along > 0.0).then(|| along - inside.sqrt());
+    (root.filter(|t| *t < ray.t_max), radius - square.max(0.0).sqrt())
+}
+
+proptest! {
+    /// The nearest of two balls, for any ray that is not within 1e-6 of a touch.
+    #[test]
+    fn two_balls(
+        (x, y) in (-2.0..2.0f64, -2.0..2.0f64),
+        (dx, dy) in (-0.5..0.5f64, -0.5..0.5f64),
+        far in -6.0..-1.0f64,
+    ) {
+        let balls = [([0.3, 0.0, 0.0], 0.9), ([-0.4, 0.5, far], 1.1)];
+        let program = program(|graph, p| {
+            let [a, b] = balls.map(|(center, radius)| ball(graph, p, center, radius));
+            graph.min(a, b)
+        });
+        let length = (dx * dx + dy * dy + 1.0f64).sqrt();
+        let ray = Ray {
+            origin: [x, y, 4.0],
+            direction: [dx / length, dy / length, -1.0 / length],
+            t_max: 20.0,
+        };
+        let found = balls.map(|(center, radius)| meets(&ray, center, radius));
+        prop_assume!(found.iter().all(|(_, depth)| depth.abs() > 1e-6));
+        let nearest = found.iter().filter_map(|(t, _)| *t).reduce(f64::min);
+        match (probe(&program, &ray).verdict, nearest) {
+            (Verdict::Hit(t), Some(wanted)) => prop_assert!((t - wanted).abs() < 1e-9 * wanted),
+            (Verdict::Miss, None) => {}
+            (verdict, wanted) => prop_assert!(false, "{verdict:?}, not {wanted:?}"),
+        }
+    }
+}
+
+#[test]
+fn a_ray_that_starts_inside_is_there() {
+    let program = program(|graph, p| ball(graph, p, [0.0; 3], 1.0));
+    let ray = Ray { origin: [0.2, 0.0, 0.0], direction: [1.0, 0.0, 0.0], t_max: 5.0 };
+    assert_eq!(probe(&program, &ray).verdict, Verdict::Hit(0.0));
+}
+
+#[test]
+fn a_touch_is_undecided() {
+    let program = program(|graph, p| ball(graph, p, [0.0; 3], 1.0));
+    let ray = Ray { origin: [-3.0, 1.0, 0.0], direction: [1.0, 0.0, 0.0], t_max: 9.0 };
+    let Verdict::Undecided(t) = probe(&program, &ray).verdict else { panic!("it only touches") };
+    assert!((t - 3.0).abs() < 1e-3, "{t}");
+}
+
+/// A wall a millionth thick, which every march steps over that trusts a false distance.
+#[test]
+fn a_wall_is_found_however_thin() {
+    let program = program(|graph, p| {
+        let shell = ball(graph, p, [0.0; 3], 1.0);
+        let shell = graph.abs(shell);
+        let wall = graph.number(5e-7);
+        graph.sub(shell, wall)
+    });
+    let ray = Ray { origin: [0.1, 0.2, 5.0], direction: [0.0, 0.0, -1.0], t_max: 20.0 };
+    let wanted = 5.0 - ((1.0 + 5e-7f64).powi(2) - 0.05).sqrt();
+    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it meets the wall") };
+    assert!((t - wanted).abs() < 1e-9, "{t} is not {wanted}");
+}
+
+/// A field that exceeds the distance nine times over: no march is right on it, the oracle is.
+#[test]
+fn a_lie_about_the_distance_does_not_matter() {
+    let program = program(|graph, p| {
+        let field = ball(graph, p, [0.0; 3], 0.1);
+        let factor = graph.number(9.0);
+        graph.mul(field, factor)
+    });
+    let ray = Ray { origin: [0.05, 0.0, 3.0], direction: [0.0, 0.0, -1.0], t_max: 8.0 };
+    let wanted = 3.0 - 0.0075f64.sqrt();
+    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it meets the ball") };
+    assert!((t - wanted).abs() < 1e-9);
+}
