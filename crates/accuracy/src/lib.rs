@@ -40,6 +40,7 @@
 //! touches a surface without crossing it, to within 1e-9 of the distance. Both are counted and shown.
 //! A field with jumps is decided by rejection and signs alone; a jump through zero counts as surface.
 
+pub mod chart;
 mod edges;
 mod metrics;
 mod oracle;

@@ -68,6 +68,8 @@ pub enum Command {
     Bench(Bench),
     /// Say what a scene can name: shapes, operators, functions, settings, types
     Doc(Doc),
+    /// Compare every ray method with where rays really meet the scene
+    Chart(Chart),
 }
 
 /// Arguments of `check`.
@@ -282,6 +284,25 @@ pub struct Doc {
     /// Write it to stdout as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `chart`.
+#[derive(clap::Args, Debug)]
+pub struct Chart {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Where the chart goes, as a picture; `-` is stdout
+    #[arg(short, long, value_name = "OUT.svg")]
+    pub output: Option<PathBuf>,
+    /// Where the figures go, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = size)]
+    pub size: [u32; 2],
+    /// Ray methods, separated by commas; all unless given
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = methods())]
+    pub march: Vec<String>,
 }
 
 fn methods() -> PossibleValuesParser {

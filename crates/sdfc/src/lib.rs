@@ -29,6 +29,7 @@
 //! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
 //! them in, see [`compile_with_imports`].
 
+mod accuracy;
 pub mod baseline;
 mod bench;
 mod compile;
@@ -42,6 +43,7 @@ mod reflection;
 mod scene;
 mod shader;
 
+pub use accuracy::ChartOptions;
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use compile::{
     Compiled, FrontTimes, Scene, check, compile, compile_with, compile_with_imports, format,
@@ -54,6 +56,7 @@ pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{Certificate, FunctionRow, ParamRow, ShaderReflection, Sides, UniformRow};
 pub use shader::{Emit, ShaderOptions};
 
+pub use sdfc_accuracy as accuracy_data;
 pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Target, Written};
 pub use sdfc_diagnostics as diagnostics;

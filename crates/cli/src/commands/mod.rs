@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub mod bench;
+pub mod chart;
 pub mod check;
 pub mod compile;
 pub mod doc;

@@ -1,0 +1,200 @@
+//! The chart as a picture: operations per pixel to the right, error in depth upwards, both by powers of
+//! ten. A method is a line through its settings; a ring instead of a disc says that pixels are wrong.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Chart, Row};
+
+const SIZE: (u32, u32) = (960, 620);
+/// Errors below this lie on the axis: no eye and no f32 tells them apart.
+const LEAST_ERROR: f64 = 1e-5;
+const PAPER: RGBColor = RGBColor(252, 252, 250);
+const INK: RGBColor = RGBColor(40, 44, 52);
+const FAINT: RGBColor = RGBColor(214, 216, 220);
+/// Told apart by most eyes (Okabe and Ito, "Color universal design", 2008).
+const COLORS: [RGBColor; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(120, 94, 240),
+    RGBColor(90, 90, 90),
+];
+
+/// Why a chart could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DrawError(String);
+
+impl std::fmt::Display for DrawError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the chart cannot be drawn: {}", self.0)
+    }
+}
+
+impl std::error::Error for DrawError {}
+
+/// The chart as SVG, on a light ground of its own.
+///
+/// # Errors
+///
+/// [`DrawError`] if there is no row to draw.
+pub fn svg(chart: &Chart) -> Result<String, DrawError> {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        draw(chart, &root).map_err(|error| DrawError(error.to_string()))?;
+    }
+    Ok(text)
+}
+
+fn draw<B: DrawingBackend>(
+    chart: &Chart,
+    root: &DrawingArea<B, plotters::coord::Shift>,
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    root.fill(&PAPER)?;
+    let body = header(chart, root)?;
+    let (costs, errors) = (span(&chart.methods, cost), span(&chart.methods, error));
+    let mut plane = ChartBuilder::on(&body)
+        .margin(12)
+        .margin_right(24)
+        .x_label_area_size(44)
+        .y_label_area_size(72)
+        .build_cartesian_2d((costs[0]..costs[1]).log_scale(), (errors[0]..errors[1]).log_scale())?;
+    let label = |size| ("sans-serif", size).into_font().color(&INK);
+    plane
+        .configure_mesh()
+        .x_desc("operations of the field's formula per pixel")
+        .y_desc("error in depth, 99th of 100 pixels, in widths of a pixel")
+        .axis_style(INK)
+        .bold_line_style(FAINT)
+        .light_line_style(TRANSPARENT)
+        .label_style(label(13))
+        .axis_desc_style(label(14))
+        .x_label_formatter(&|value| plain(*value))
+        .y_label_formatter(&|value| plain(*value))
+        .draw()?;
+
+    let mut front: Vec<&Row> =
+        chart.methods.iter().filter(|row| row.pareto && row.wrong() == 0).collect();
+    front.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let line = front.iter().map(|row| place(row));
+    plane.draw_series(LineSeries::new(line, FAINT.stroke_width(9)))?;
+
+    for (index, name) in names(chart).into_iter().enumerate() {
+        let color = COLORS[index % COLORS.len()];
+        let rows: Vec<&Row> = chart.methods.iter().filter(|row| row.method == name).collect();
+        let line = rows.iter().map(|row| place(row));
+        plane
+            .draw_series(LineSeries::new(line, color.stroke_width(2)))?
+            .label(name)
+            .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+        plane.draw_series(rows.iter().map(|row| marker(row, color)))?;
+        plane.draw_series(rows.iter().filter(|row| row.wrong() > 0).map(|row| {
+            let style = TextStyle::from(("sans-serif", 12).into_font().color(&color));
+            let text = format!("{} wrong", row.wrong());
+            EmptyElement::at(place(row)) + Text::new(text, (10, 2), style)
+        }))?;
+    }
+    plane
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(PAPER.mix(0.85))
+        .border_style(FAINT)
+        .label_font(label(14))
+        .draw()?;
+    root.present()
+}
+
+/// What was measured on what, above the plane; gives what is left of the paper.
+fn header<B: DrawingBackend>(
+    chart: &Chart,
+    root: &DrawingArea<B, plotters::coord::Shift>,
+) -> Result<DrawingArea<B, plotters::coord::Shift>, DrawingAreaErrorKind<B::ErrorType>> {
+    let (head, body) = root.split_vertically(58);
+    let style = |size, color: &RGBColor| {
+        TextStyle::from(("sans-serif", size).into_font().color(color))
+            .pos(Pos::new(HPos::Left, VPos::Top))
+    };
+    let [width, height] = chart.size;
+    head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &INK)))?;
+    let counts = chart.oracle;
+    let line = format!(
+        "{} leaves, {width}x{height}, on {}, {}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
+         Disc: no wrong pixel. Large: the default. Grey: nothing is cheaper and better.",
+        chart.leaves,
+        chart.adapter,
+        chart.driver,
+        counts.hit,
+        counts.miss,
+        counts.edge,
+        counts.undecided
+    );
+    for (index, part) in wrapped(&line, 130).into_iter().enumerate() {
+        head.draw(&Text::new(
+            part,
+            (20, 34 + 14 * index as i32),
+            style(12, &RGBColor(96, 100, 108)),
+        ))?;
+    }
+    Ok(body)
+}
+
+/// A text in lines of at most so many characters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.len() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The methods' names in the order of their first rows.
+fn names(chart: &Chart) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for row in &chart.methods {
+        if !names.contains(&row.method.as_str()) {
+            names.push(&row.method);
+        }
+    }
+    names
+}
+
+fn marker(row: &Row, color: RGBColor) -> Circle<(f64, f64), i32> {
+    let radius = if row.default { 7 } else { 4 };
+    let style = if row.wrong() == 0 { color.filled() } else { color.stroke_width(2) };
+    Circle::new(place(row), radius, style)
+}
+
+fn place(row: &Row) -> (f64, f64) {
+    (cost(row), error(row))
+}
+
+fn cost(row: &Row) -> f64 {
+    row.ops_per_pixel.max(1.0)
+}
+
+fn error(row: &Row) -> f64 {
+    row.depth_px.p99.max(LEAST_ERROR)
+}
+
+/// From below the least value to above the greatest, with room for markers.
+fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
+    let values = || rows.iter().map(&value).filter(|value| value.is_finite());
+    let least = values().fold(f64::INFINITY, f64::min);
+    let greatest = values().fold(0.0, f64::max);
+    if least > greatest { [1.0, 10.0] } else { [least / 1.6, greatest * 2.0] }
+}
+
+/// 0.001, 20, 3000: as few digits as the axis needs.
+fn plain(value: f64) -> String {
+    if value >= 1.0 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) }
+}

@@ -1,0 +1,161 @@
+//! Cost against error: every method at several settings, on one scene.
+
+mod draw;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::metrics::{Metrics, Quantiles};
+use crate::truth::Counts;
+
+pub use draw::{DrawError, svg};
+
+/// What a chart shows, and what `chart --json` writes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chart {
+    /// Name of the scene.
+    pub scene: String,
+    /// Leaves of the scene.
+    pub leaves: usize,
+    /// Name of the adapter.
+    pub adapter: String,
+    /// Name and version of its driver.
+    pub driver: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What the oracle found.
+    pub oracle: Counts,
+    /// One for each method and setting, methods together, from coarse to fine.
+    pub methods: Vec<Row>,
+}
+
+/// One method at one setting.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the ray method.
+    pub method: String,
+    /// What was set, by name.
+    pub settings: BTreeMap<&'static str, f64>,
+    /// Whether the method is used with this setting unless told otherwise.
+    pub default: bool,
+    /// Whether no other row is as cheap and as good, see [`Chart::mark_front`].
+    pub pareto: bool,
+    /// Evaluations of the field for the ray from the eye.
+    pub evals_per_pixel: Evals,
+    /// Scalar and vector operations of the field's formula that these are.
+    pub ops_per_pixel: f64,
+    /// Time of a frame.
+    pub frame_ms: FrameMs,
+    /// Rays that led through a surface.
+    pub missed: u64,
+    /// Rays that ended where no surface is.
+    pub false_hits: u64,
+    /// Error in depth in widths of a pixel.
+    pub depth_px: Quantiles,
+    /// Rays out of steps.
+    pub capped: u64,
+    /// Rays that ended nowhere.
+    pub nan: u64,
+}
+
+/// Evaluations per pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Evals {
+    /// Of all pixels.
+    pub mean: f64,
+    /// 99 of 100 pixels take at most so many.
+    pub p99: u32,
+}
+
+/// Time of a frame without compilation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FrameMs {
+    /// Of the repetitions, in milliseconds.
+    pub median: f64,
+    /// `gpu` or `wall`.
+    pub clock: &'static str,
+}
+
+impl Row {
+    /// A row of what was measured.
+    pub fn new(
+        method: &str,
+        settings: BTreeMap<&'static str, f64>,
+        default: bool,
+        metrics: &Metrics,
+        operations: usize,
+        frame_ms: FrameMs,
+    ) -> Self {
+        let evaluations = metrics.evaluations;
+        Self {
+            method: method.to_owned(),
+            settings,
+            default,
+            pareto: false,
+            evals_per_pixel: Evals { mean: evaluations.mean, p99: evaluations.p99 },
+            ops_per_pixel: evaluations.mean * operations as f64,
+            frame_ms,
+            missed: metrics.missed,
+            false_hits: metrics.false_hits,
+            depth_px: metrics.depth.pixels,
+            capped: metrics.capped,
+            nan: metrics.nan,
+        }
+    }
+
+    /// Pixels that are plainly wrong.
+    pub fn wrong(&self) -> u64 {
+        self.missed + self.false_hits + self.nan
+    }
+
+    /// Whether it is at least as good in all that counts, and better in something.
+    fn beats(&self, other: &Self) -> bool {
+        let mine = [self.ops_per_pixel, self.wrong() as f64, self.depth_px.p99];
+        let others = [other.ops_per_pixel, other.wrong() as f64, other.depth_px.p99];
+        let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
+        no_worse && mine != others
+    }
+}
+
+impl Chart {
+    /// Marks the rows that no other beats in operations, in wrong pixels and in depth (99th of 100).
+    pub fn mark_front(&mut self) {
+        let beaten = |row: &Row| self.methods.iter().any(|other| other.beats(row));
+        let front: Vec<bool> = self.methods.iter().map(|row| !beaten(row)).collect();
+        for (row, pareto) in self.methods.iter_mut().zip(front) {
+            row.pareto = pareto;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(ops: f64, missed: u64, p99: f64) -> Row {
+        let frame_ms = FrameMs { median: 1.0, clock: "wall" };
+        let mut row = Row::new("m", BTreeMap::new(), false, &Metrics::default(), 1, frame_ms);
+        row.ops_per_pixel = ops;
+        row.missed = missed;
+        row.depth_px.p99 = p99;
+        row
+    }
+
+    #[test]
+    fn the_front_holds_what_nothing_beats() {
+        let rows = [row(10.0, 0, 1.0), row(20.0, 0, 0.1), row(21.0, 0, 0.1), row(5.0, 3, 0.01)];
+        let mut chart = Chart {
+            scene: String::new(),
+            leaves: 1,
+            adapter: String::new(),
+            driver: String::new(),
+            size: [1, 1],
+            oracle: Counts::default(),
+            methods: rows.to_vec(),
+        };
+        chart.mark_front();
+        let front: Vec<bool> = chart.methods.iter().map(|row| row.pareto).collect();
+        assert_eq!(front, [true, true, false, true]);
+    }
+}

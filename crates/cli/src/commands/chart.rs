@@ -1,0 +1,99 @@
+//! `sdfc chart`: every ray method against the oracle.
+
+use std::ops::ControlFlow;
+
+use sdfc::accuracy_data::chart::{Chart as Figures, Row, svg};
+use sdfc::render::Gpu;
+use sdfc::{ChartOptions, Error};
+
+use crate::args::Chart;
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::output::{self, Output};
+
+/// Charts the scene, shows a table and writes the picture and the figures.
+///
+/// # Errors
+///
+/// The scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write.
+pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
+    let scene = super::scene(&args.file, sdfc::lang::Options::default(), console)?;
+    let failed = |error: Error| super::lowering(&error, console);
+    let [picture, json] = [&args.output, &args.json].map(|path| path.as_deref().map(Output::new));
+    let paths: Vec<_> =
+        [&args.output, &args.json].into_iter().filter_map(|path| path.as_deref()).collect();
+    output::distinct(&args.file, &paths)?;
+    for output in picture.iter().chain(&json) {
+        output.check()?;
+    }
+
+    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
+    let options =
+        ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
+    let truth = console.progress("oracle");
+    let pictures = console.progress("methods");
+    let chart = scene.chart(
+        &args.file.display().to_string(),
+        &gpu,
+        &options,
+        &|part| truth.set(part.done, part.total),
+        &mut |part| {
+            pictures.set(part.done, part.total);
+            ControlFlow::Continue(())
+        },
+    );
+    drop((truth, pictures));
+    let chart = chart.map_err(failed)?;
+    if ![&picture, &json].contains(&&Some(Output::Stdout)) {
+        output::to_stdout(table(&chart).as_bytes())?;
+    }
+    if let Some(picture) = picture {
+        let text = svg(&chart).map_err(|error| Failure::Machine(error.to_string()))?;
+        picture.write(text.as_bytes())?;
+    }
+    json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
+}
+
+/// The chart for people who read figures.
+fn table(chart: &Figures) -> String {
+    let [width, height] = chart.size;
+    let counts = chart.oracle;
+    let mut text = format!(
+        "{}: {} leaves, {width}x{height}, on {}, {}\noracle: {} hit, {} miss, {} at edges, {} undecided\n\n",
+        chart.scene,
+        chart.leaves,
+        chart.adapter,
+        chart.driver,
+        counts.hit,
+        counts.miss,
+        counts.edge,
+        counts.undecided,
+    );
+    text += "  method         setting            evals/px   p99    ops/px  frame ms  missed  false   depth px p50      p99      max  capped  nan\n";
+    chart.methods.iter().for_each(|row| text += &line(row));
+    text += "\n*: the default; +: no other is cheaper and better.\n";
+    text
+}
+
+fn line(row: &Row) -> String {
+    let settings = row.settings.iter().map(|(name, value)| format!("{name} {value:.3e}"));
+    let depth = row.depth_px;
+    format!(
+        "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12.5}  {:>7.4}  {:>7.3}  {:>6}  {:>3}\n",
+        if row.default { '*' } else { ' ' },
+        if row.pareto { '+' } else { ' ' },
+        row.method,
+        settings.collect::<Vec<_>>().join(", "),
+        row.evals_per_pixel.mean,
+        row.evals_per_pixel.p99,
+        row.ops_per_pixel,
+        row.frame_ms.median,
+        row.missed,
+        row.false_hits,
+        depth.p50,
+        depth.p99,
+        depth.max,
+        row.capped,
+        row.nan,
+    )
+}
