@@ -7,8 +7,11 @@ use sdfc_graph::{Binary, Node, NodeId, Program, Stage, Ternary, Unary, reachable
 const FINEST: f64 = 1e-9;
 /// A proven root is closed in to this width, in parts of the distance.
 const CLOSE: f64 = 1e-13;
-/// Signs about an unproven root are looked for up to so many times the width of the finest stretch.
-const SEARCH: [f64; 5] = [1.0, 4.0, 16.0, 64.0, 256.0];
+/// Signs about an unproven stretch are looked for so many times its width away.
+const SEARCH: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
+/// A root counts although something before it is not proven, if that is nearer to it than this part of
+/// the distance: a ten-thousandth of a pixel.
+const DOUBT: f64 = 1e-7;
 
 /// A ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,27 +229,35 @@ impl Prober<'_> {
         }
         // Stretches that may hold the root, the nearest on top.
         let mut stretches = vec![(0.0, ray.t_max)];
+        // The first stretch too short to cut of which nothing is proven.
+        let mut doubt = None;
         while let Some((from, to)) = stretches.pop() {
             if self.evaluations > Self::BUDGET {
-                return Verdict::Undecided(from);
+                return Verdict::Undecided(doubt.unwrap_or(from));
             }
-            match self.look(ray, from, to) {
-                Found::Nothing => {}
-                Found::OneRoot => return Verdict::Hit(self.closed_in(ray, from, to)),
+            let root = match self.look(ray, from, to) {
+                Found::Nothing => continue,
+                Found::OneRoot => self.closed_in(ray, from, to),
                 Found::Maybe if to - from > FINEST * to => {
                     let middle = from + 0.5 * (to - from);
                     stretches.push((middle, to));
                     stretches.push((from, middle));
+                    continue;
                 }
-                Found::Maybe => match self.signs_about(ray, from, to) {
-                    About::Crossed(from, to) => {
-                        return Verdict::Hit(self.closed_in(ray, from, to));
+                Found::Maybe => match self.crossing_about(ray, from, to) {
+                    Some((from, to)) => self.closed_in(ray, from, to),
+                    None => {
+                        doubt.get_or_insert(from);
+                        continue;
                     }
-                    About::Unproven => return Verdict::Undecided(from),
                 },
-            }
+            };
+            return match doubt {
+                Some(from) if root - from > DOUBT * root => Verdict::Undecided(from),
+                Some(_) | None => Verdict::Hit(root),
+            };
         }
-        Verdict::Miss
+        doubt.map_or(Verdict::Miss, Verdict::Undecided)
     }
 
     /// What intervals say of a stretch.
@@ -287,21 +298,16 @@ impl Prober<'_> {
         from + 0.5 * (to - from)
     }
 
-    /// What the signs beside a stretch too short to cut say of it.
-    fn signs_about(&mut self, ray: &Ray, from: f64, to: f64) -> About {
+    /// Distances about a stretch too short to cut between which the field leads from outside to inside.
+    fn crossing_about(&mut self, ray: &Ray, from: f64, to: f64) -> Option<(f64, f64)> {
         let width = to - from;
-        let find = |prober: &mut Self, place: &dyn Fn(f64) -> f64| {
-            SEARCH
-                .iter()
-                .map(|times| place(times - 1.0))
-                .find_map(|t| sign(prober.over(ray, t, t)).map(|sign| (t, sign)))
+        let mut find = |place: &dyn Fn(f64) -> f64| {
+            let mut places = SEARCH.iter().map(|times| place(times * width));
+            places.find_map(|t| sign(self.over(ray, t, t)).map(|sign| (t, sign)))
         };
-        let before = find(self, &|times| (from - times * width).max(0.0));
-        let beyond = find(self, &|times| (to + times * width).min(ray.t_max));
-        match (before, beyond) {
-            (Some((from, Sign::Outside)), Some((to, Sign::Inside))) => About::Crossed(from, to),
-            _ => About::Unproven,
-        }
+        let (from, before) = find(&|away| (from - away).max(0.0))?;
+        let (to, beyond) = find(&|away| (to + away).min(ray.t_max))?;
+        (before == Sign::Outside && beyond == Sign::Inside).then_some((from, to))
     }
 
     /// All values of the field on a stretch.
@@ -326,15 +332,6 @@ enum Found {
     Nothing,
     OneRoot,
     Maybe,
-}
-
-/// What the signs beside a stretch say of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum About {
-    /// Outside at the first distance, inside at the second: a root is between.
-    Crossed(f64, f64),
-    /// It may only touch.
-    Unproven,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ mod common;
 use common::{each_node, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Interval, Number, Packet, Tape};
-use sdfc_graph::{Dim, Graph, NodeId};
+use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
 
 /// Coordinates of all sizes, whole and half ones among them.
 fn coordinate() -> impl Strategy<Value = f64> {
@@ -113,4 +113,25 @@ fn a_long_chain_needs_few_registers_and_no_deep_stack() {
     assert_eq!(tape.operations(), 40_000);
     assert!(tape.registers() <= 5, "{} registers", tape.registers());
     assert_eq!(tape.prepare::<f64>(&FrameValues::default()).scalar([1.0, 1.0, 0.0]), 20_001.0);
+}
+
+/// How far a point lies beyond a box is 0 within it, not nearly 0: a condition on it is decided.
+#[test]
+fn intervals_within_a_range_exceed_it_by_nothing() {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let [lo, hi] = [-1.0, 1.0].map(|end| graph.constant(Type::Vec3, &[end; 3]));
+    let clamped = graph.ternary(Ternary::Clamp, p, lo, hi);
+    let beyond = graph.sub(p, clamped);
+    let [least, greatest] = [graph.max(p, lo), graph.min(p, hi)];
+    let (below, above) = (graph.sub(p, least), graph.sub(p, greatest));
+    let tape = Tape::new(&graph, &[beyond, below, above]).expect("flat");
+    let mut ranges = tape.prepare::<Interval>(&FrameValues::default());
+    let inside = Interval::new(-0.9, 0.3);
+    let across = Interval::new(0.5, 1.5);
+    let zero = Interval::new(0.0, 0.0);
+    assert_eq!(ranges.eval([inside; 3]), [[zero, zero, zero, zero]; 3]);
+    let [beyond, below, above] = *ranges.eval([across; 3]) else { panic!("three roots") };
+    assert!(beyond[0].contains(0.0) && beyond[0].contains(0.5) && beyond[0].hi() < 0.51);
+    assert_eq!((below[0], above[0]), (zero, beyond[0]));
 }

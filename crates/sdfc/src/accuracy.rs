@@ -59,6 +59,15 @@ impl Scene {
         Ok(Truth::find(&self.oracle()?, frame, camera, &report))
     }
 
+    /// The view of a frame that a picture of that size has.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::View`].
+    pub fn view(&self, frame: &FrameValues, size: [u32; 2]) -> Result<View, Error> {
+        Ok(View::new(&self.program, frame, self.bounds_at(frame), size)?)
+    }
+
     /// The scene's field, to be asked where rays meet it.
     ///
     /// # Errors
@@ -88,7 +97,7 @@ impl Scene {
     ) -> Result<Chart, Error> {
         let frame = options.frame.clone();
         let frame = frame.unwrap_or_else(|| FrameValues::defaults(self.params()));
-        let view = View::new(&self.program, &frame, self.bounds_at(&frame), options.size)?;
+        let view = self.view(&frame, options.size)?;
         let truth = self.truth(&view, &frame, on_truth)?;
         let oracle = self.oracle()?;
 

@@ -110,6 +110,11 @@ pub trait Number: Copy {
         self.mul(y)
     }
 
+    /// `x - clamp(x, lo, hi)`: how far x lies above the range, or below it as a negative number
+    fn excess(self, lo: Self, hi: Self) -> Self {
+        self.sub(self.clamp(lo, hi))
+    }
+
     /// `clamp(x, 0, 1)`
     fn saturate(self) -> Self {
         self.clamp(Self::constant(0.0), Self::constant(1.0))

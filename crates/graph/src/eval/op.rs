@@ -89,5 +89,6 @@ operations! {
         Smoothstep = smoothstep,
         Select = select,
         Parabola = parabola,
+        Excess = excess,
     }
 }

@@ -48,5 +48,5 @@ lanewise! {
         sin cos tan asin acos atan sinh cosh tanh not saturate
     }
     binary { add sub mul div rem min max pow atan2 step direction lt le eq ne and or }
-    ternary { mix clamp smoothstep select parabola }
+    ternary { mix clamp smoothstep select parabola excess }
 }

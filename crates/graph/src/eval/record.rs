@@ -49,6 +49,24 @@ impl Recorder {
         None
     }
 
+    /// A difference of x and x clamped, on one side or both: intervals are tighter if told.
+    fn excess(&mut self, [x, clamped, _]: [u32; 3]) -> Option<(Op, [u32; 3])> {
+        let Definition::Apply(op, [a, b, c]) = self.definitions[clamped as usize] else {
+            return None;
+        };
+        let other = if a == x { Some(b) } else { (b == x).then_some(a) };
+        let range = if op == Op::Clamp && a == x {
+            [b, c]
+        } else if op == Op::Max {
+            [other?, self.constant(f64::INFINITY)]
+        } else if op == Op::Min {
+            [self.constant(f64::NEG_INFINITY), other?]
+        } else {
+            return None;
+        };
+        Some((Op::Excess, [x, range[0], range[1]]))
+    }
+
     /// Whether a is `1 - b`.
     fn is_complement(&self, a: u32, b: u32, one: u32) -> bool {
         matches!(self.definitions[a as usize], Definition::Apply(Op::Sub, [x, y, _]) if x == one && y == b)
@@ -68,8 +86,14 @@ impl Machine for Recorder {
     }
 
     fn apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
-        let parabola = if op == Op::Mul { self.parabola(arguments) } else { None };
-        let (op, arguments) = parabola.unwrap_or((op, arguments));
+        let told = if op == Op::Mul {
+            self.parabola(arguments)
+        } else if op == Op::Sub {
+            self.excess(arguments)
+        } else {
+            None
+        };
+        let (op, arguments) = told.unwrap_or((op, arguments));
         let varying = arguments.iter().take(op.arity()).any(|&a| self.varying[a as usize]);
         self.define(Definition::Apply(op, arguments), varying)
     }

@@ -13,7 +13,7 @@ impl Interval {
             return Self::ENTIRE;
         }
         let lo = if self.lo > 0.0 { lower(self.lo.sqrt()) } else { 0.0 };
-        Self { lo, hi: upper(self.hi.sqrt()) }
+        Self { lo, hi: if self.hi == 0.0 { 0.0 } else { upper(self.hi.sqrt()) } }
     }
 
     pub(super) fn inverse_root(self) -> Self {

@@ -150,7 +150,8 @@ impl Number for Interval {
     }
     fn square(self) -> Self {
         let Self { lo, hi } = self.abs();
-        Self { lo: lower(lo * lo).max(0.0), hi: upper(hi * hi) }
+        // The square of 0 is 0.
+        Self { lo: lower(lo * lo).max(0.0), hi: if hi == 0.0 { 0.0 } else { upper(hi * hi) } }
     }
     fn sqrt(self) -> Self {
         self.root()
@@ -267,6 +268,12 @@ impl Number for Interval {
         }
         let t = x.sub(self).div(width).saturate();
         t.increasing(|t| t * t * (3.0 - 2.0 * t)).grown(MARGIN)
+    }
+    fn excess(self, lo: Self, hi: Self) -> Self {
+        // x is compared with each end once, so within the range this is 0 and not nearly 0. Where the
+        // ends are out of order the upper one counts, as in `clamp`.
+        let below = Number::min(self.sub(lo), Self::new(0.0, 0.0));
+        Number::max(self.sub(hi), below)
     }
     fn parabola(self, y: Self, c: Self) -> Self {
         self.dip(y, c)
