@@ -13,7 +13,7 @@ use serde_json::Value;
 const MAX_LINES: usize = 800;
 
 /// What each crate may depend on of this workspace. A new crate needs a row.
-const MAY_KNOW: [(&str, &[&str]); 10] = [
+const MAY_KNOW: [(&str, &[&str]); 11] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
@@ -22,12 +22,26 @@ const MAY_KNOW: [(&str, &[&str]); 10] = [
     ("march", &[]),
     ("codegen", &["graph", "march"]),
     ("render", &["codegen", "graph", "march"]),
-    ("sdfc", &["analyze", "codegen", "diagnostics", "graph", "lang", "march", "render", "syntax"]),
+    ("accuracy", &["graph"]),
+    (
+        "sdfc",
+        &[
+            "accuracy",
+            "analyze",
+            "codegen",
+            "diagnostics",
+            "graph",
+            "lang",
+            "march",
+            "render",
+            "syntax",
+        ],
+    ),
     ("cli", &["sdfc"]),
 ];
 
 /// Dependencies that only these crates may have.
-const RESERVED: [(&str, &[&str]); 7] = [
+const RESERVED: [(&str, &[&str]); 8] = [
     ("naga", &["codegen"]),
     ("wgpu", &["render"]),
     ("logos", &["syntax"]),
@@ -35,10 +49,12 @@ const RESERVED: [(&str, &[&str]); 7] = [
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
     ("tempfile", &["cli"]),
+    ("plotters", &["accuracy"]),
 ];
 
 /// Crates that must not know what the library in `std/*.sdf` is called.
-const WITHOUT_SHAPES: [&str; 6] = ["syntax", "graph", "analyze", "march", "codegen", "render"];
+const WITHOUT_SHAPES: [&str; 7] =
+    ["syntax", "graph", "analyze", "march", "codegen", "render", "accuracy"];
 
 /// Library names that are also ray methods, and the crates that speak of ray methods.
 const ALSO_METHOD: (&str, [&str; 3]) = ("sphere", ["march", "codegen", "render"]);

@@ -29,6 +29,11 @@ impl Scene {
         samples.first().map(|sample| sample.distance).ok_or(Error::NothingDrawn)
     }
 
+    /// Whether the field is known nowhere to exceed the distance.
+    pub fn is_certified(&self) -> bool {
+        self.report.uncertified.is_empty()
+    }
+
     /// The field alone, as functions to embed.
     ///
     /// # Errors
@@ -93,7 +98,7 @@ impl Scene {
             features: features.iter().filter(|f| f.1).map(|f| f.0.to_owned()).collect(),
             method: self.method().to_owned(),
             step_scale: 1.0,
-            certified: report.uncertified.is_empty(),
+            certified: self.is_certified(),
             bounds: self.finite_bounds(),
             knobs: self.knobs(),
             quality: self.quality_rows(sources),

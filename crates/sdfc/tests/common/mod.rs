@@ -1,3 +1,6 @@
 //! What several test binaries share.
 
+#![allow(dead_code, reason = "each binary uses a part")]
+
 pub mod agree;
+pub mod examples;
