@@ -82,6 +82,7 @@ fn draw<B: DrawingBackend>(
     front.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let line = front.iter().map(|row| place(row));
     plane.draw_series(LineSeries::new(line, FAINT.stroke_width(9)))?;
+    plane.draw_series(front.iter().map(|row| Circle::new(place(row), 11, FAINT.filled())))?;
 
     for (index, name) in names(chart).into_iter().enumerate() {
         let color = COLORS[index % COLORS.len()];
@@ -93,7 +94,7 @@ fn draw<B: DrawingBackend>(
             .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
         plane.draw_series(rows.iter().map(|row| marker(row, color)))?;
         plane.draw_series(rows.iter().filter(|row| row.wrong() > 0).map(|row| {
-            let style = TextStyle::from(("sans-serif", 12).into_font().color(&color));
+            let style = ("sans-serif", 12).into_font().color(&color);
             let text = format!("{} wrong", row.wrong());
             EmptyElement::at(place(row)) + Text::new(text, (10, 2), style)
         }))?;
@@ -115,8 +116,7 @@ fn header<B: DrawingBackend>(
 ) -> Result<DrawingArea<B, plotters::coord::Shift>, DrawingAreaErrorKind<B::ErrorType>> {
     let (head, body) = root.split_vertically(58);
     let style = |size, color: &RGBColor| {
-        TextStyle::from(("sans-serif", size).into_font().color(color))
-            .pos(Pos::new(HPos::Left, VPos::Top))
+        ("sans-serif", size).into_font().color(color).pos(Pos::new(HPos::Left, VPos::Top))
     };
     let [width, height] = chart.size;
     head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &INK)))?;
