@@ -3,7 +3,7 @@
 use naga::ResourceBinding;
 use rustc_hash::FxHashSet;
 use sdfc_graph::{NodeId, Program, Shadow, reachable_where};
-use sdfc_march::{Features, FieldSource, Method, method, source, source_over, stubs};
+use sdfc_march::{Features, FieldSource, Form, Method, method, source, source_over, stubs};
 
 use crate::inputs::declare_slots;
 use crate::lower::{struct_function, value_function};
@@ -55,7 +55,7 @@ pub fn measured_module(
     let features = Features { materials: false, ..features(program) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
-    let mut module = link::skeleton(&source_over(field, method, features), unused)?;
+    let mut module = link::skeleton(&source_over(field, Form::Compute, method, features), unused)?;
     let (inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;

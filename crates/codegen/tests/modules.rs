@@ -75,7 +75,7 @@ fn blocks_have_the_layout_of_the_shader() {
     assert_eq!(
         layout(module, "View"),
         block!(ViewBlock: eye pixel_radius right t_max up epsilon forward steps size tile_origin
-            tile_size light_count fixed_step ambient reflections background reflection_strength
+            tile_size light_count pad ambient reflections background reflection_strength
             lights)
     );
     assert_eq!(layout(module, "Light"), block!(LightBlock: direction shadow color pad));

@@ -88,13 +88,37 @@ impl FieldSource {
     }
 }
 
-/// Text of a picture's shader: whole files, joined.
-pub fn source(method: &Method, features: Features) -> String {
-    source_over(FieldSource::Scene, method, features)
+/// How a picture's shader is called.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// A compute stage, one invocation for each pixel of a tile, into a buffer.
+    #[default]
+    Compute,
+    /// A triangle over the target and a fragment stage, the target's first row topmost.
+    Fragment,
+    /// As [`Form::Fragment`], the target's first row lowest.
+    FragmentUp,
 }
 
-/// As [`source`], with the distance and the gradient from elsewhere.
-pub fn source_over(field: FieldSource, method: &Method, features: Features) -> String {
+impl Form {
+    fn files(self) -> &'static [&'static str] {
+        const BUFFER: &str = include_str!("wgsl/view_buffer.wgsl");
+        const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
+        match self {
+            Self::Compute => &[BUFFER, include_str!("wgsl/compute.wgsl")],
+            Self::Fragment => &[BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
+            Self::FragmentUp => &[BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
+        }
+    }
+}
+
+/// Text of a picture's shader: whole files, joined.
+pub fn source(method: &Method, features: Features) -> String {
+    source_over(FieldSource::Scene, Form::Compute, method, features)
+}
+
+/// As [`source`], with the distance and the gradient from elsewhere, or called otherwise.
+pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Features) -> String {
     let shade = if features.materials {
         include_str!("wgsl/shade_painted.wgsl")
     } else {
@@ -112,7 +136,7 @@ pub fn source_over(field: FieldSource, method: &Method, features: Features) -> S
         field,
         method.gradient.unwrap_or(gradient),
         include_str!("wgsl/frame.wgsl"),
-        include_str!("wgsl/ray.wgsl"),
+        RAY,
         method.source,
         include_str!("wgsl/shade.wgsl"),
         shade,
@@ -120,11 +144,21 @@ pub fn source_over(field: FieldSource, method: &Method, features: Features) -> S
     if features.shadows || features.reflections {
         files.push(include_str!("wgsl/secondary.wgsl"));
     }
-    files.extend([picture, include_str!("wgsl/main.wgsl")]);
+    files.extend([include_str!("wgsl/pixel.wgsl"), picture]);
+    files.extend(form.files());
     files.join("\n")
 }
 
-/// Names of the functions that a scene supplies, and of what they speak of.
+/// Text of a ray method by itself, for a shader of someone else's. Its entry point is there only to
+/// reach `trace`.
+pub fn ray_source(method: &Method) -> String {
+    let [field, _] = FieldSource::Scene.files();
+    [field, RAY, method.source, include_str!("wgsl/anchor.wgsl")].join("\n")
+}
+
+const RAY: &str = include_str!("wgsl/ray.wgsl");
+
+/// Names of the functions that a scene supplies, and of those that a host calls.
 pub mod stubs {
     /// `fn field(p: vec3f) -> f32`, signed distance.
     pub const FIELD: &str = "field";
@@ -134,4 +168,6 @@ pub mod stubs {
     pub const MATERIAL: &str = "material";
     /// `fn load_frame()`; calls to it are dropped where nothing is known per frame.
     pub const LOAD_FRAME: &str = "load_frame";
+    /// `fn trace(ray: Ray) -> Trace`, which a method supplies and a host may call.
+    pub const TRACE: &str = "trace";
 }

@@ -16,14 +16,16 @@
 //!
 //! A ray method is `fn trace(ray: Ray) -> Trace` and `fn tolerance(ray: Ray, t: f32) -> f32`
 //! (`ray.wgsl`), in a file of its own and a row of [`METHODS`]. It calls `field` at one place, in a
-//! loop of at most `view.steps` turns; it takes a sign change for a hit, so that a field that leads
+//! loop of at most `ray.steps` turns; it takes a sign change for a hit, so that a field that leads
 //! through a surface does not walk away from it.
 //!
-//! The blocks below are what `view.wgsl` declares; their layout is WGSL's.
+//! The blocks below are what `view.wgsl` and `pixel.wgsl` declare; their layout is WGSL's.
 
 mod files;
 
-pub use files::{Features, FieldSource, METHODS, Method, method, source, source_over, stubs};
+pub use files::{
+    Features, FieldSource, Form, METHODS, Method, method, ray_source, source, source_over, stubs,
+};
 
 /// Linear colour of surfaces that nothing paints, `UNPAINTED` of `shade.wgsl`.
 pub const UNPAINTED: [f32; 3] = [0.8; 3];
@@ -84,8 +86,8 @@ pub struct ViewBlock {
     pub tile_size: [u32; 2],
     /// How many of `lights` are used.
     pub light_count: u32,
-    /// Length of one step (`fixed`).
-    pub fixed_step: f32,
+    /// Unused.
+    pub pad: f32,
     /// Linear colour of light from everywhere.
     pub ambient: [f32; 3],
     /// How often a ray from the eye is mirrored.

@@ -47,7 +47,7 @@ pub(crate) fn view_bytes(block: &ViewBlock) -> Vec<u8> {
         tile_origin,
         tile_size,
         light_count,
-        fixed_step,
+        pad,
         ambient,
         reflections,
         background,
@@ -60,7 +60,7 @@ pub(crate) fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     bytes.floats(up).floats(&[*epsilon]);
     bytes.floats(forward).words(&[*steps]);
     bytes.words(size).words(tile_origin).words(tile_size);
-    bytes.words(&[*light_count]).floats(&[*fixed_step]);
+    bytes.words(&[*light_count]).floats(&[*pad]);
     bytes.floats(ambient).words(&[*reflections]);
     bytes.floats(background).floats(&[*reflection_strength]);
     for light in lights {
@@ -108,7 +108,7 @@ mod tests {
             t_max: 9.0,
             steps: 77,
             tile_size: [5, 6],
-            fixed_step: 0.25,
+            reflection_strength: 0.25,
             background: [0.1, 0.2, 0.3],
             ..ViewBlock::default()
         };
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(word_at(&bytes, offset_of!(ViewBlock, t_max)), 9f32.to_bits());
         assert_eq!(word_at(&bytes, offset_of!(ViewBlock, steps)), 77);
         assert_eq!(word_at(&bytes, offset_of!(ViewBlock, tile_size) + 4), 6);
-        assert_eq!(word_at(&bytes, offset_of!(ViewBlock, fixed_step)), 0.25f32.to_bits());
+        assert_eq!(word_at(&bytes, offset_of!(ViewBlock, reflection_strength)), 0.25f32.to_bits());
         assert_eq!(word_at(&bytes, offset_of!(ViewBlock, background) + 8), 0.3f32.to_bits());
         let last = offset_of!(ViewBlock, lights)
             + 7 * size_of::<LightBlock>()

@@ -21,7 +21,7 @@ struct View {
     tile_origin: vec2u,
     tile_size: vec2u,
     light_count: u32,
-    fixed_step: f32,
+    pad: f32,
     ambient: vec3f,
     pad0: f32,
     background: vec3f,

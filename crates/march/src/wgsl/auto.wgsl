@@ -25,7 +25,7 @@ fn trace(ray: Ray) -> Trace {
     var inside = vec2f();
     var crossed = false;
     var t = 0.0;
-    for (var step = 0u; step < view.steps; step++) {
+    for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
         // A ray that starts inside is at its hit.
         if step == 0u && distance < 0.0 {
@@ -60,5 +60,5 @@ fn trace(ray: Ray) -> Trace {
             }
         }
     }
-    return Trace(t, CAPPED, view.steps);
+    return Trace(t, CAPPED, ray.steps);
 }

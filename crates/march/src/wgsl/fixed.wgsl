@@ -2,15 +2,15 @@
 // step may be stepped over.
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return view.epsilon;
+    return ray.epsilon;
 }
 
 fn trace(ray: Ray) -> Trace {
     let near = tolerance(ray, 0.0);
     var t = 0.0;
-    var stride = view.fixed_step;
+    var stride = ray.t_max / f32(ray.steps);
     var crossed = false;
-    for (var step = 0u; step < view.steps; step++) {
+    for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
         let inside = distance < 0.0;
         // A ray that starts inside is at its hit; so is one whose bracket has closed on a jump.
@@ -26,5 +26,5 @@ fn trace(ray: Ray) -> Trace {
             return Trace(t, MISS, step + 1u);
         }
     }
-    return Trace(t, CAPPED, view.steps);
+    return Trace(t, CAPPED, ray.steps);
 }

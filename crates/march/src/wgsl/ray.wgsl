@@ -1,12 +1,20 @@
 // What every ray method takes and gives: `fn trace(ray: Ray) -> Trace`.
 // Each method states beside it how near to the surface its hits are: `fn tolerance(ray: Ray, t: f32) -> f32`.
 
+const MISS: u32 = 0;
+const HIT: u32 = 1;
+const CAPPED: u32 = 2;
+
 struct Ray {
     origin: vec3f,
     // A unit vector.
     direction: vec3f,
     // The ray ends here.
     t_max: f32,
+    // At most so many steps.
+    steps: u32,
+    // A hit is nearer than this, absolute (`fixed`, `sphere`).
+    epsilon: f32,
     // Radius of the ray's footprint at its origin, and what it gains per unit of length.
     radius: f32,
     spread: f32,
@@ -36,11 +44,4 @@ fn footprint(ray: Ray, t: f32) -> f32 {
 // What rounding alone may do to a point on the ray.
 fn rounding(ray: Ray, t: f32) -> f32 {
     return ROUNDING * (length(ray.origin) + t);
-}
-
-// The ray through the centre of a pixel.
-fn camera_ray(pixel: vec2u) -> Ray {
-    let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
-    let direction = view.forward + place.x * view.right - place.y * view.up;
-    return Ray(view.eye, normalize(direction), view.t_max, 0.0, view.pixel_radius);
 }

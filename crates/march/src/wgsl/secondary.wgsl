@@ -15,7 +15,8 @@ fn start_at(surface: Surface, seen: Ray, t: f32, lift: f32) -> vec3f {
 // rounding, so that it does not meet the surface that it leaves.
 fn shadow_ray(surface: Surface, seen: Ray, t: f32, direction: vec3f) -> Ray {
     let lift = max(3.0 * nearness(seen, t), footprint(seen, t));
-    return Ray(start_at(surface, seen, t, lift), direction, view.t_max, 0.5 * lift, 0.0);
+    let origin = start_at(surface, seen, t, lift);
+    return Ray(origin, direction, seen.t_max, seen.steps, seen.epsilon, 0.5 * lift, 0.0);
 }
 
 // From a surface to what it mirrors, less far off, since that moves the image. The footprint goes on growing
@@ -23,5 +24,6 @@ fn shadow_ray(surface: Surface, seen: Ray, t: f32, direction: vec3f) -> Ray {
 fn mirrored_ray(surface: Surface, seen: Ray, t: f32) -> Ray {
     let origin = start_at(surface, seen, t, 1.5 * nearness(seen, t));
     let direction = reflect(seen.direction, surface.normal);
-    return Ray(origin, direction, view.t_max, footprint(seen, t), seen.spread);
+    let radius = footprint(seen, t);
+    return Ray(origin, direction, seen.t_max, seen.steps, seen.epsilon, radius, seen.spread);
 }

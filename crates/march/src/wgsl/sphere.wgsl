@@ -2,12 +2,12 @@
 // J. C. Hart, Sphere tracing (The Visual Computer 12, 1996).
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return view.epsilon;
+    return ray.epsilon;
 }
 
 fn trace(ray: Ray) -> Trace {
     var t = 0.0;
-    for (var step = 0u; step < view.steps; step++) {
+    for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
         // Below zero too: a field that overestimates leads through the surface, not to it.
         if distance < tolerance(ray, t) {
@@ -18,5 +18,5 @@ fn trace(ray: Ray) -> Trace {
             return Trace(t, MISS, step + 1u);
         }
     }
-    return Trace(t, CAPPED, view.steps);
+    return Trace(t, CAPPED, ray.steps);
 }

@@ -1,14 +1,9 @@
-// Camera, limits and lights of one picture, and the pixels that come out of it. The layouts are
-// those of `ViewBlock`, `LightBlock` and `PixelBlock`.
+// Camera, limits and lights of one picture, in `view`. The layouts are those of `ViewBlock` and `LightBlock`.
 
 const MAX_LIGHTS: u32 = 8;
 const MAX_REFLECTIONS: u32 = 8;
 
 const SHADOW_OFF: u32 = 0;
-
-const MISS: u32 = 0;
-const HIT: u32 = 1;
-const CAPPED: u32 = 2;
 
 struct Light {
     direction: vec3f,
@@ -30,7 +25,7 @@ struct View {
     tile_origin: vec2u,
     tile_size: vec2u,
     light_count: u32,
-    fixed_step: f32,
+    pad: f32,
     ambient: vec3f,
     reflections: u32,
     background: vec3f,
@@ -38,13 +33,9 @@ struct View {
     lights: array<Light, MAX_LIGHTS>,
 }
 
-struct Pixel {
-    color: vec4f,
-    depth: f32,
-    status: u32,
-    evaluations: u32,
-    primary_evaluations: u32,
+// The ray through the centre of a pixel.
+fn camera_ray(pixel: vec2u) -> Ray {
+    let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
+    let direction = normalize(view.forward + place.x * view.right - place.y * view.up);
+    return Ray(view.eye, direction, view.t_max, view.steps, view.epsilon, 0.0, view.pixel_radius);
 }
-
-@group(0) @binding(0) var<uniform> view: View;
-@group(0) @binding(2) var<storage, read_write> pixels: array<Pixel>;

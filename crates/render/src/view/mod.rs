@@ -61,8 +61,6 @@ pub struct View {
     pub epsilon: f64,
     /// At most so many steps a ray.
     pub steps: u32,
-    /// Length of one step (`fixed`).
-    pub fixed_step: f64,
     /// The lights, at most [`MAX_LIGHTS`].
     pub lights: Vec<ViewLight>,
     /// Linear colour of light from everywhere.
@@ -180,7 +178,6 @@ impl View {
             t_max: limits.t_max,
             epsilon: limits.epsilon,
             steps: limits.steps,
-            fixed_step: limits.t_max / f64::from(limits.steps),
             lights: lights(&settings.lights, forward, value)?,
             ambient: color(settings.ambient, "the ambient light")?,
             background: color(settings.background, "the background colour")?,
@@ -232,7 +229,7 @@ impl View {
             tile_origin: tile.origin,
             tile_size: tile.size,
             light_count: self.lights.len().min(MAX_LIGHTS) as u32,
-            fixed_step: self.fixed_step as f32,
+            pad: 0.0,
             ambient: self.ambient.as_vec3().to_array(),
             reflections: self.reflections,
             background: self.background.as_vec3().to_array(),
@@ -450,7 +447,6 @@ mod tests {
             March { steps: Some(50), epsilon: Some(0.01), distance: Some(20.0), method: None };
         let stated = stated.view(Some(UNIT), [10, 10]).unwrap();
         assert_eq!((stated.steps, stated.epsilon, stated.t_max), (50, 0.01, 20.0));
-        assert_eq!(stated.fixed_step, 0.4);
     }
 
     #[test]

@@ -1,0 +1,12 @@
+// The entry points: a triangle over the whole target, and the colour of one of its pixels.
+
+@vertex
+fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(vec2u(corner & 1u, corner >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
+    load_frame();
+    return picture(pixel_at(place.xy)).color;
+}

@@ -1,0 +1,15 @@
+// What comes out of a pixel. The layout is that of `PixelBlock`.
+
+struct Pixel {
+    color: vec4f,
+    depth: f32,
+    status: u32,
+    evaluations: u32,
+    primary_evaluations: u32,
+}
+
+// Where a ray ran out of steps the background is drawn, as where it missed.
+fn pixel_of(seen: Trace, color: vec3f, evaluations: u32) -> Pixel {
+    let depth = select(seen.t, view.t_max, seen.t > view.t_max);
+    return Pixel(vec4f(color, 1.0), depth, seen.status, evaluations, seen.evaluations);
+}
