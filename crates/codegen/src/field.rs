@@ -1,15 +1,17 @@
-//! A scene's functions by themselves, for those who embed them.
+//! The functions of a scene by themselves, for those who embed them.
 
-use naga::{Function, Module, ResourceBinding, Span, StructMember, TypeInner};
-use sdfc_graph::{FrameInput, MaterialField, Node, NodeId, Program, Type, reachable};
-use sdfc_march::Features;
+use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeInner};
+use sdfc_graph::{MaterialField, Program, Type};
+use sdfc_march::{Features, Method, ray_source, stubs};
 
-use crate::inputs::declare_members;
+use crate::inputs::{declare_members, raw_inputs};
 use crate::lower::{struct_function, value_function};
+use crate::names::{check_prefix, make_public};
+use crate::picture::known_method;
 use crate::reflect::{Parts, Role};
-use crate::{Error, Shader, types};
+use crate::{Error, Shader, link, types};
 
-/// What a field module holds and how it is named.
+/// What the functions of a scene hold and how they are named.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
     /// Start of every name.
@@ -42,70 +44,80 @@ impl Default for FieldOptions {
 /// [`Error::BadPrefix`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program has no
 /// distance or lacks the gradient that the options ask for; others where its nodes cannot be lowered.
 pub fn field_module(program: &Program, options: &FieldOptions) -> Result<Shader, Error> {
+    functions(program, None, options)
+}
+
+/// As [`field_module`], with `<prefix>trace` beside them: a ray method as a function of a ray, which
+/// yields where the ray met the surface, whether it did, and how often it evaluated the distance. The
+/// structures are those of `ray.wgsl` in `sdfc-march`.
+///
+/// # Errors
+///
+/// [`Error::UnknownMethod`]; others as [`field_module`].
+pub fn march_module(
+    program: &Program,
+    method_name: &str,
+    options: &FieldOptions,
+) -> Result<Shader, Error> {
+    functions(program, Some(known_method(method_name)?), options)
+}
+
+fn functions(
+    program: &Program,
+    method: Option<&Method>,
+    options: &FieldOptions,
+) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
-    let mut roots = vec![(Role::Distance, "distance", distance)];
+    let mut roots = vec![(Role::Distance, stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        roots.push((Role::Gradient, "gradient", gradient));
+        roots.push((Role::Gradient, stubs::GRADIENT, gradient));
     }
     let material = program.material.filter(|_| options.material);
-
-    let mut module = Module::default();
     let mut nodes: Vec<_> = roots.iter().map(|&(.., root)| root).collect();
     nodes.extend(material.into_iter().flatten());
-    let used = used_inputs(program, &nodes);
-    let binding = ResourceBinding { group: options.group, binding: options.binding };
-    let prefix = options.prefix.as_str();
-    let (inputs, members) = declare_members(&mut module, program, &used, prefix, binding);
 
-    let mut parts = Parts { members, uniform: inputs.buffer(), ..Default::default() };
-    let mut add = |module: &mut Module, role, function: Function| {
-        let handle = module.functions.append(function, Span::UNDEFINED);
-        parts.functions.push((role, handle));
+    let mut module = match method {
+        Some(method) => link::skeleton(&ray_source(method), &[])?,
+        None => Module::default(),
     };
-    for (role, name, root) in roots {
-        let name = format!("{prefix}{name}");
-        let function = value_function(program, &inputs, &mut module.types, &name, root)?;
-        add(&mut module, role, function);
+    module.entry_points.clear();
+    let binding = ResourceBinding { group: options.group, binding: options.binding };
+    let used = raw_inputs(program, &nodes);
+    let (inputs, members) = declare_members(&mut module, program, &used, binding);
+
+    let mut parts = Parts { members, uniform: inputs.buffer, ..Default::default() };
+    for (role, stub, root) in roots {
+        let function = value_function(program, &inputs, &mut module.types, stub, root)?;
+        parts.functions.push((role, fill_or_add(&mut module, stub, function)?));
     }
     if let Some(fields) = material {
-        let structure = material_type(&mut module, prefix);
-        let (name, types) = (format!("{prefix}material"), &mut module.types);
-        let function = struct_function(program, &inputs, types, &name, &fields, structure)?;
-        add(&mut module, Role::Material, function);
+        let structure = material_type(&mut module);
+        let (stub, types) = (stubs::MATERIAL, &mut module.types);
+        let function = struct_function(program, &inputs, types, stub, &fields, structure)?;
+        parts.functions.push((Role::Material, fill_or_add(&mut module, stub, function)?));
     }
+    parts.functions.extend(link::find_function(&module, stubs::TRACE).map(|f| (Role::Trace, f)));
+    make_public(&mut module, &parts, &options.prefix);
     Shader::new(module, parts, Features { materials: material.is_some(), ..Features::default() })
 }
 
-/// Letters, digits and `_`, no digit first, no `__`: what naga and WGSL both leave as it is.
-fn check_prefix(prefix: &str) -> Result<(), Error> {
-    let plain = prefix.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    let digit_first = prefix.starts_with(|c: char| c.is_ascii_digit());
-    if plain && !digit_first && !prefix.contains("__") {
-        Ok(())
-    } else {
-        Err(Error::BadPrefix(prefix.to_owned()))
+/// Replaces the stub of that name where a ray method calls it, else adds the function.
+fn fill_or_add(
+    module: &mut Module,
+    stub: &str,
+    function: Function,
+) -> Result<Handle<Function>, Error> {
+    if let Some(handle) = link::find_function(module, stub) {
+        link::fill(module, stub, function)?;
+        return Ok(handle);
     }
-}
-
-/// The per-frame inputs that the roots need: params by position, then `time`, then `frame`.
-fn used_inputs(program: &Program, roots: &[NodeId]) -> Vec<(FrameInput, Type)> {
-    let nodes = reachable(&program.graph, roots);
-    let mut inputs: Vec<_> = nodes
-        .into_iter()
-        .filter_map(|id| {
-            let Node::Frame(input, ty) = program.graph.node(id) else { return None };
-            Some((input, ty))
-        })
-        .collect();
-    inputs.sort_unstable();
-    inputs.dedup_by_key(|(input, _)| *input);
-    inputs
+    Ok(module.functions.append(function, Span::UNDEFINED))
 }
 
 /// A structure with the fields of `MaterialField::ALL` in that order.
-fn material_type(module: &mut Module, prefix: &str) -> naga::Handle<naga::Type> {
+fn material_type(module: &mut Module) -> naga::Handle<naga::Type> {
     let mut offset = 0u32;
     let mut members = Vec::new();
     for field in MaterialField::ALL {
@@ -117,7 +129,7 @@ fn material_type(module: &mut Module, prefix: &str) -> naga::Handle<naga::Type> 
         offset += size;
     }
     let inner = TypeInner::Struct { members, span: offset.next_multiple_of(16) };
-    let name = Some(format!("{prefix}Material"));
+    let name = Some("Material".to_owned());
     module.types.insert(naga::Type { name, inner }, Span::UNDEFINED)
 }
 

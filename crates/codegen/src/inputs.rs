@@ -3,12 +3,12 @@
 use std::num::NonZeroU32;
 
 use naga::{
-    AddressSpace, ArraySize, BinaryOperator, Expression, GlobalVariable, Handle, Literal, Module,
-    ResourceBinding, Scalar, Span, Statement, StructMember, SwizzleComponent, TypeInner,
+    AddressSpace, ArraySize, BinaryOperator, Constant, Expression, GlobalVariable, Handle, Literal,
+    Module, ResourceBinding, Scalar, Span, Statement, StructMember, SwizzleComponent, TypeInner,
     VectorSize,
 };
 use rustc_hash::FxHashMap;
-use sdfc_graph::{FrameInput, NodeId, Program, Type};
+use sdfc_graph::{FrameInput, Node, NodeId, Program, Type, reachable};
 
 use crate::lower::Body;
 use crate::reflect::Member;
@@ -16,69 +16,100 @@ use crate::types;
 
 /// Where a function finds what is known per frame.
 #[derive(Debug, Default)]
-pub(crate) enum Inputs {
-    /// Nothing is known per frame.
-    #[default]
-    None,
-    /// Raw inputs are members of one uniform structure.
-    Members {
+pub(crate) struct Inputs {
+    /// The uniform buffer behind them.
+    pub(crate) buffer: Option<Handle<GlobalVariable>>,
+    /// Where each raw input is.
+    raw: FxHashMap<FrameInput, Raw>,
+    /// The private variable of each node whose value waits in one.
+    slots: FxHashMap<NodeId, Handle<GlobalVariable>>,
+}
+
+/// Where a raw input is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Raw {
+    /// A member of a uniform structure.
+    Member {
         /// The structure.
-        global: Handle<GlobalVariable>,
-        /// Index and type of each input's member.
-        members: FxHashMap<FrameInput, (u32, Type)>,
+        structure: Handle<GlobalVariable>,
+        /// Which member.
+        index: u32,
+        /// Its type in the scene.
+        ty: Type,
     },
-    /// Values computed per frame wait in private variables, copied from a buffer.
-    Slots {
-        /// The buffer.
-        buffer: Handle<GlobalVariable>,
-        /// Each node's private variable.
-        variables: FxHashMap<NodeId, Handle<GlobalVariable>>,
-    },
+    /// A constant of the module.
+    Constant(Handle<Constant>),
+    /// A private variable that the shader sets itself.
+    Variable(Handle<GlobalVariable>),
 }
 
 impl Inputs {
+    /// Raw inputs alone.
+    pub(crate) fn of_raw(raw: FxHashMap<FrameInput, Raw>) -> Self {
+        Self { raw, ..Self::default() }
+    }
+
+    /// The same inputs, these nodes from private variables.
+    pub(crate) fn with_slots(self, slots: FxHashMap<NodeId, Handle<GlobalVariable>>) -> Self {
+        Self { slots, ..self }
+    }
+
     /// Reads the input into a named value; `None` where it is not among these.
-    pub(crate) fn read_member(
+    pub(crate) fn read_raw(
         &self,
         body: &mut Body,
         input: FrameInput,
         name: &str,
     ) -> Option<Handle<Expression>> {
-        let Self::Members { global, members } = self else { return None };
-        let &(index, ty) = members.get(&input)?;
-        let base = body.declare(Expression::GlobalVariable(*global));
-        let pointer = body.compute(Expression::AccessIndex { base, index }, &[base]);
-        let load = body.compute(Expression::Load { pointer }, &[pointer]);
-        if ty != Type::Bool {
-            body.name(load, name);
-            return Some(load);
+        match *self.raw.get(&input)? {
+            Raw::Member { structure, index, ty } => {
+                let base = body.declare(Expression::GlobalVariable(structure));
+                let pointer = body.compute(Expression::AccessIndex { base, index }, &[base]);
+                let load = body.compute(Expression::Load { pointer }, &[pointer]);
+                let value = if ty == Type::Bool {
+                    let zero = body.declare(Expression::Literal(Literal::U32(0)));
+                    body.binary(BinaryOperator::NotEqual, load, zero)
+                } else {
+                    load
+                };
+                body.name(value, name);
+                Some(value)
+            }
+            Raw::Constant(constant) => Some(body.declare(Expression::Constant(constant))),
+            Raw::Variable(variable) => {
+                let pointer = body.declare(Expression::GlobalVariable(variable));
+                let load = body.compute(Expression::Load { pointer }, &[]);
+                body.name(load, name);
+                Some(load)
+            }
         }
-        let zero = body.declare(Expression::Literal(Literal::U32(0)));
-        let truth = body.binary(BinaryOperator::NotEqual, load, zero);
-        body.name(truth, name);
-        Some(truth)
     }
 
     /// Reads a node's private variable; `None` where it has none.
     pub(crate) fn read_slot(&self, body: &mut Body, node: NodeId) -> Option<Handle<Expression>> {
-        let Self::Slots { variables, .. } = self else { return None };
-        let pointer = body.declare(Expression::GlobalVariable(*variables.get(&node)?));
+        let pointer = body.declare(Expression::GlobalVariable(*self.slots.get(&node)?));
         Some(body.compute(Expression::Load { pointer }, &[]))
     }
 
-    /// The uniform buffer behind the inputs.
-    pub(crate) fn buffer(&self) -> Option<Handle<GlobalVariable>> {
-        match self {
-            Self::None => None,
-            Self::Members { global, .. } => Some(*global),
-            Self::Slots { buffer, .. } => Some(*buffer),
-        }
-    }
-
-    /// Whether the node is computed outside the shader.
+    /// Whether the node is computed outside the function.
     pub(crate) fn is_slot(&self, node: NodeId) -> bool {
-        matches!(self, Self::Slots { variables, .. } if variables.contains_key(&node))
+        self.slots.contains_key(&node)
     }
+}
+
+/// The raw inputs that nodes need: params by position, then `time`, then `frame`.
+pub(crate) fn raw_inputs(program: &Program, roots: &[NodeId]) -> Vec<(FrameInput, Type)> {
+    let nodes = reachable(&program.graph, roots);
+    let mut inputs: Vec<_> = nodes
+        .into_iter()
+        .filter_map(|id| {
+            let Node::Frame(input, ty) = program.graph.node(id) else { return None };
+            Some((input, ty))
+        })
+        .collect();
+    inputs.sort_unstable();
+    inputs.dedup_by_key(|(input, _)| *input);
+    inputs
 }
 
 /// What a scene calls an input.
@@ -92,16 +123,15 @@ pub(crate) fn input_name(program: &Program, input: FrameInput) -> &str {
     }
 }
 
-/// Declares the uniform structure of these inputs, in this order.
+/// Declares the uniform structure `Params` of these inputs, in this order.
 pub(crate) fn declare_members(
     module: &mut Module,
     program: &Program,
     inputs: &[(FrameInput, Type)],
-    prefix: &str,
     binding: ResourceBinding,
 ) -> (Inputs, Vec<Member>) {
     if inputs.is_empty() {
-        return (Inputs::None, Vec::new());
+        return (Inputs::default(), Vec::new());
     }
     let mut offset = 0u32;
     let mut structure_alignment = 4;
@@ -123,14 +153,13 @@ pub(crate) fn declare_members(
         offset += size;
     }
     let span = offset.next_multiple_of(structure_alignment);
-    let structure = naga::Type {
-        name: Some(format!("{prefix}Params")),
-        inner: TypeInner::Struct { members, span },
-    };
+    let structure =
+        naga::Type { name: Some("Params".to_owned()), inner: TypeInner::Struct { members, span } };
     let ty = module.types.insert(structure, Span::UNDEFINED);
-    let global = declare(module, &format!("{prefix}params"), AddressSpace::Uniform, ty, binding);
-    let places = inputs.iter().zip(0..).map(|(&(input, ty), index)| (input, (index, ty))).collect();
-    (Inputs::Members { global, members: places }, described)
+    let structure = declare(module, "params", AddressSpace::Uniform, ty, Some(binding));
+    let raw = inputs.iter().zip(0..);
+    let raw = raw.map(|(&(input, ty), index)| (input, Raw::Member { structure, index, ty }));
+    (Inputs { buffer: Some(structure), ..Inputs::of_raw(raw.collect()) }, described)
 }
 
 /// Size and alignment in a uniform structure, in bytes.
@@ -153,39 +182,41 @@ pub(crate) fn declare_slots(
 ) -> (Inputs, Option<naga::Function>) {
     let count = u32::try_from(program.uniforms.len()).ok().and_then(NonZeroU32::new);
     let Some(count) = count.filter(|_| !used.is_empty()) else {
-        return (Inputs::None, None);
+        return (Inputs::default(), None);
     };
     let base = types::value(&mut module.types, Type::Vec4);
     let size = ArraySize::Constant(count);
     let array = types::add(&mut module.types, TypeInner::Array { base, size, stride: 16 });
-    let buffer = declare(module, "frame_slots", AddressSpace::Uniform, array, binding);
+    let buffer = declare(module, "frame_slots", AddressSpace::Uniform, array, Some(binding));
 
     let mut body = Body::default();
     let mut variables = FxHashMap::default();
     for &slot in used {
         let node = program.uniforms[slot];
-        let ty = program.graph.ty(node);
-        let ty_handle = types::value(&mut module.types, ty);
-        let variable = GlobalVariable {
-            name: Some(format!("frame_{}", frame_name(program, node))),
-            space: AddressSpace::Private,
-            binding: None,
-            ty: ty_handle,
-            init: None,
-            memory_decorations: naga::MemoryDecorations::empty(),
-        };
-        let variable = module.global_variables.append(variable, Span::UNDEFINED);
-        copy_slot(&mut body, buffer, slot, ty, variable);
+        let variable = declare_variable(module, program, node);
+        copy_slot(&mut body, buffer, slot, program.graph.ty(node), variable);
         variables.insert(node, variable);
     }
-    (Inputs::Slots { buffer, variables }, Some(body.finish(None)))
+    let inputs = Inputs { buffer: Some(buffer), ..Inputs::default() };
+    (inputs.with_slots(variables), Some(body.finish(None)))
+}
+
+/// The private variable in which a node's value waits.
+pub(crate) fn declare_variable(
+    module: &mut Module,
+    program: &Program,
+    node: NodeId,
+) -> Handle<GlobalVariable> {
+    let ty = types::value(&mut module.types, program.graph.ty(node));
+    let name = format!("frame_{}", frame_name(program, node));
+    declare(module, &name, AddressSpace::Private, ty, None)
 }
 
 /// What a scene calls a value that is known per frame.
 pub(crate) fn frame_name(program: &Program, node: NodeId) -> &str {
     match (program.names.get(&node), program.graph.node(node)) {
         (Some(name), _) => name,
-        (None, sdfc_graph::Node::Frame(input, _)) => input_name(program, input),
+        (None, Node::Frame(input, _)) => input_name(program, input),
         (None, _) => "value",
     }
 }
@@ -233,12 +264,12 @@ fn declare(
     name: &str,
     space: AddressSpace,
     ty: Handle<naga::Type>,
-    binding: ResourceBinding,
+    binding: Option<ResourceBinding>,
 ) -> Handle<GlobalVariable> {
     let variable = GlobalVariable {
         name: Some(name.to_owned()),
         space,
-        binding: Some(binding),
+        binding,
         ty,
         init: None,
         memory_decorations: naga::MemoryDecorations::empty(),

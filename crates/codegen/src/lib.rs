@@ -45,6 +45,7 @@ mod inputs;
 mod instructions;
 mod link;
 mod lower;
+mod names;
 mod picture;
 mod reflect;
 mod shader;
@@ -52,10 +53,13 @@ mod target;
 mod types;
 
 pub use error::Error;
-pub use field::{FieldOptions, field_module};
+pub use field::{FieldOptions, field_module, march_module};
 pub use instructions::FunctionCost;
-pub use picture::{measured_module, render_module};
-pub use reflect::{FunctionInfo, Member, Reflection, Role, Uniform};
+pub use picture::{PictureOptions, Stage, measured_module, picture_module, render_module};
+pub use reflect::{
+    Buffer, BufferRole, Entry, FunctionInfo, Member, Reflection, Role, Structure, StructureMember,
+    Uniform,
+};
 pub use sdfc_march::{Features, FieldSource};
 pub use shader::{Shader, Written};
 pub use target::{Code, Target};

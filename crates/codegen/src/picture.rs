@@ -1,12 +1,13 @@
 //! The shader of a picture: a scene's functions linked into a ray method and shading.
 
-use naga::ResourceBinding;
+use naga::{Module, ResourceBinding};
 use rustc_hash::FxHashSet;
 use sdfc_graph::{NodeId, Program, Shadow, reachable_where};
-use sdfc_march::{Features, FieldSource, Form, Method, method, source, source_over, stubs};
+use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
-use crate::inputs::declare_slots;
-use crate::lower::{struct_function, value_function};
+use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
+use crate::lower::{store_function, struct_function, value_function};
+use crate::names::{check_prefix, make_public};
 use crate::reflect::{Parts, Role};
 use crate::{Error, Shader, link};
 
@@ -28,7 +29,7 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program
 /// has no distance or no gradient; others where its nodes cannot be lowered.
 pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
-    let method = method(method_name).ok_or_else(|| Error::UnknownMethod(method_name.to_owned()))?;
+    let method = known_method(method_name)?;
     link_picture(program, method)
 }
 
@@ -46,7 +47,7 @@ pub fn measured_module(
     method_name: &str,
     field: FieldSource,
 ) -> Result<Shader, Error> {
-    let method = method(method_name).ok_or_else(|| Error::UnknownMethod(method_name.to_owned()))?;
+    let method = known_method(method_name)?;
     let distance = match field {
         FieldSource::Scene => return link_picture(program, method),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
@@ -68,41 +69,162 @@ pub fn measured_module(
     Shader::new(module, Parts::default(), features)
 }
 
-fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
-    let distance = program.distance.ok_or(Error::NothingDrawn)?;
-    let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-    let features = features(program);
-    let mut filled = vec![(Role::Distance, stubs::FIELD, distance)];
-    if method.gradient.is_none() {
-        filled.push((Role::Gradient, stubs::GRADIENT, gradient));
-    }
-    let mut roots: Vec<_> = filled.iter().map(|&(.., root)| root).collect();
-    roots.extend(program.material.into_iter().flatten());
-    let used = used_slots(program, roots);
-    let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
-    let mut module = link::skeleton(&source(method, features), unused)?;
+/// The stages of a picture's shader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// A compute stage that writes pixels into a buffer.
+    #[default]
+    Compute,
+    /// A triangle over the target, and a fragment stage that gives a pixel's colour.
+    Fragment,
+}
 
-    let (inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+/// How a picture's shader for an engine of someone else's is called and named.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureOptions {
+    /// The ray method.
+    pub method: String,
+    /// The stages.
+    pub stage: Stage,
+    /// Whether the first row of the target is the lowest, as in OpenGL, for [`Stage::Fragment`].
+    pub rows_up: bool,
+    /// Start of every name.
+    pub prefix: String,
+    /// Bind group of the buffers.
+    pub group: u32,
+    /// Binding of the view; params have the next one, and pixels the one after that.
+    pub binding: u32,
+}
+
+/// The shader of a program's picture, for an engine of someone else's: it needs no values but those of params,
+/// `time` and `frame`, in a structure as that of [`crate::field_module`]; what follows from them is computed once
+/// for each pixel.
+///
+/// Uniform `view` is a `sdfc_march::ViewBlock`. With [`Stage::Compute`] the entry point is `main`, and
+/// `pixels` a storage array as in [`render_module`]; with [`Stage::Fragment`] there are `vertex`, to be called for
+/// three vertices without buffers, and `fragment`, which gives a linear colour.
+///
+/// # Errors
+///
+/// [`Error::BadPrefix`]; others as [`render_module`].
+pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
+    check_prefix(&options.prefix)?;
+    let method = known_method(&options.method)?;
+    let form = match options.stage {
+        Stage::Compute => Form::Compute,
+        Stage::Fragment if options.rows_up => Form::FragmentUp,
+        Stage::Fragment => Form::Fragment,
+    };
+    let mut picture = Picture::skeleton(program, form, method)?;
+    let place = |offset| ResourceBinding {
+        group: options.group,
+        binding: options.binding.saturating_add(offset),
+    };
+    for (_, variable) in picture.module.global_variables.iter_mut() {
+        if let Some(binding) = &mut variable.binding {
+            *binding = place(binding.binding);
+        }
+    }
+    let raw = raw_inputs(program, &picture.slot_nodes());
+    let (inputs, members) =
+        declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
+    picture.parts.members = members;
+    picture.compute_slots(inputs)?;
+    picture.fill()?;
+    make_public(&mut picture.module, &picture.parts, &options.prefix);
+    picture.finish()
+}
+
+fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
+    let mut picture = Picture::skeleton(program, Form::Compute, method)?;
+    let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {
-        link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
+        link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
     }
-    let mut parts = Parts { uniform: inputs.buffer(), ..Default::default() };
-    for (role, stub, root) in filled {
-        let function = value_function(program, &inputs, &mut module.types, stub, root)?;
-        link::fill(&mut module, stub, function)?;
-        parts.functions.extend(link::find_function(&module, stub).map(|f| (role, f)));
+    picture.inputs = inputs;
+    picture.fill()?;
+    picture.finish()
+}
+
+/// A picture's shader while the scene's parts are put into it.
+struct Picture<'p> {
+    program: &'p Program,
+    distance: NodeId,
+    gradient: NodeId,
+    features: Features,
+    /// Positions in `Program::uniforms` of those that the scene's functions read.
+    used: Vec<usize>,
+    module: Module,
+    inputs: Inputs,
+    parts: Parts,
+}
+
+impl<'p> Picture<'p> {
+    /// The files of `march`, without what the scene has no need of.
+    fn skeleton(program: &'p Program, form: Form, method: &Method) -> Result<Self, Error> {
+        let distance = program.distance.ok_or(Error::NothingDrawn)?;
+        let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
+        let features = features(program);
+        let mut roots = vec![distance, gradient];
+        roots.extend(program.material.into_iter().flatten());
+        let used = used_slots(program, roots);
+        let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
+        let source = source_over(FieldSource::Scene, form, method, features);
+        let module = link::skeleton(&source, unused)?;
+        let (inputs, parts) = Default::default();
+        Ok(Self { program, distance, gradient, features, used, module, inputs, parts })
     }
-    if let Some(fields) = program.material {
+
+    fn slot_nodes(&self) -> Vec<NodeId> {
+        self.used.iter().map(|&slot| self.program.uniforms[slot]).collect()
+    }
+
+    /// Lets `load_frame` compute what follows from raw inputs, into private variables.
+    fn compute_slots(&mut self, raw: Inputs) -> Result<(), Error> {
+        let nodes = self.slot_nodes();
+        if !nodes.is_empty() {
+            let module = &mut self.module;
+            let declare = |node| (node, declare_variable(module, self.program, node));
+            let kept: Vec<_> = nodes.into_iter().map(declare).collect();
+            let load = store_function(self.program, &raw, &mut module.types, &kept)?;
+            link::fill(module, stubs::LOAD_FRAME, load)?;
+            self.inputs = raw.with_slots(kept.into_iter().collect());
+        }
+        Ok(())
+    }
+
+    /// Fills the stubs with the scene's functions.
+    fn fill(&mut self) -> Result<(), Error> {
+        self.parts.uniform = self.inputs.buffer;
+        let (module, inputs) = (&mut self.module, &self.inputs);
+        for (role, stub, root) in [
+            (Role::Distance, stubs::FIELD, self.distance),
+            (Role::Gradient, stubs::GRADIENT, self.gradient),
+        ] {
+            let function = value_function(self.program, inputs, &mut module.types, stub, root)?;
+            link::fill(module, stub, function)?;
+            self.parts.functions.extend(link::find_function(module, stub).map(|f| (role, f)));
+        }
+        let Some(fields) = self.program.material else { return Ok(()) };
         let stub = stubs::MATERIAL;
-        let handle = link::find_function(&module, stub);
+        let handle = link::find_function(module, stub);
         let structure = handle.and_then(|f| module.functions[f].result.as_ref());
         let structure = structure.ok_or(Error::MissingRoot("material"))?.ty;
         let types = &mut module.types;
-        let function = struct_function(program, &inputs, types, stub, &fields, structure)?;
-        link::fill(&mut module, stub, function)?;
-        parts.functions.extend(handle.map(|f| (Role::Material, f)));
+        let function = struct_function(self.program, inputs, types, stub, &fields, structure)?;
+        link::fill(module, stub, function)?;
+        self.parts.functions.extend(handle.map(|f| (Role::Material, f)));
+        Ok(())
     }
-    Shader::new(module, parts, features)
+
+    fn finish(self) -> Result<Shader, Error> {
+        Shader::new(self.module, self.parts, self.features)
+    }
+}
+
+/// The ray method of that name.
+pub(crate) fn known_method(name: &str) -> Result<&'static Method, Error> {
+    method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
 }
 
 /// What a scene's picture needs beyond the least.

@@ -1,7 +1,12 @@
 //! What a shader offers to those who embed it.
 
+mod text;
+
 use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
-use naga::{FastHashMap, GlobalVariable, Handle, Module};
+use naga::{
+    AddressSpace, ArraySize, FastHashMap, GlobalVariable, Handle, Module, Scalar, ShaderStage,
+    StorageAccess, TypeInner,
+};
 use sdfc_graph::{FrameInput, Type};
 
 use crate::target::{Code, Written};
@@ -15,9 +20,23 @@ pub enum Role {
     Gradient,
     /// Material.
     Material,
+    /// Where a ray meets the surface.
+    Trace,
 }
 
-/// A function of the point.
+impl Role {
+    /// How functions for embedding are called, after a prefix.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Distance => "distance",
+            Self::Gradient => "gradient",
+            Self::Material => "material",
+            Self::Trace => "trace",
+        }
+    }
+}
+
+/// A function of the point, or of a ray.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FunctionInfo {
     /// What it computes.
@@ -29,7 +48,7 @@ pub struct FunctionInfo {
     pub signature: String,
 }
 
-/// A member of the uniform structure of a field module.
+/// A member of the uniform structure of params.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Member {
     /// What it sets.
@@ -61,15 +80,84 @@ pub struct Uniform {
     pub block: Option<String>,
 }
 
+/// What a buffer holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BufferRole {
+    /// Camera, limits and lights.
+    View,
+    /// What the scene's functions read per frame.
+    Params,
+    /// The pixels of a tile, written.
+    Pixels,
+}
+
+/// A buffer that the host binds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Buffer {
+    /// What it holds.
+    pub role: BufferRole,
+    /// Name of the variable.
+    pub variable: String,
+    /// Its type, or that of its elements.
+    pub ty: String,
+    /// Whether there are as many elements as the host likes.
+    pub is_array: bool,
+    /// Bind group.
+    pub group: u32,
+    /// Binding in the group.
+    pub binding: u32,
+    /// Size in bytes, of one element where there may be many.
+    pub size: u32,
+    /// In GLSL, the name of its block.
+    pub block: Option<String>,
+}
+
+/// A structure that functions take or give, or buffers hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Structure {
+    /// Its name in the written text.
+    pub name: String,
+    /// Size in a buffer, in bytes.
+    pub size: u32,
+    /// Its members.
+    pub members: Vec<StructureMember>,
+}
+
+/// A member of a structure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StructureMember {
+    /// Its name in the written text.
+    pub name: String,
+    /// Its type as WGSL calls it.
+    pub ty: String,
+    /// Bytes from the start of the structure in a buffer.
+    pub offset: u32,
+}
+
+/// An entry point.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// `vertex`, `fragment` or `compute`.
+    pub stage: &'static str,
+    /// Its name in the written text.
+    pub name: String,
+}
+
 /// What a shader offers. Names are those of the written text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reflection {
-    /// Functions of the point.
+    /// Functions that a host may call.
     pub functions: Vec<FunctionInfo>,
     /// Members of the uniform structure; empty for an array of slots.
     pub members: Vec<Member>,
     /// The uniform buffer; `None` where nothing that the functions need is known per frame.
     pub uniform: Option<Uniform>,
+    /// All buffers.
+    pub buffers: Vec<Buffer>,
+    /// The structures of functions and buffers, members before what holds them.
+    pub structures: Vec<Structure>,
+    /// The entry points that are written.
+    pub entries: Vec<Entry>,
 }
 
 /// What is known of a module before names are final.
@@ -80,23 +168,58 @@ pub(crate) struct Parts {
     pub(crate) uniform: Option<Handle<GlobalVariable>>,
 }
 
-/// Reads the final names off the module.
+/// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
+pub(crate) type Names = FastHashMap<NameKey, String>;
+
+/// Reads the names off the module, as WGSL has them.
 pub(crate) fn reflect(module: &Module, parts: &Parts) -> Reflection {
-    let names = final_names(module);
+    describe(module, parts, &final_names(module))
+}
+
+/// Reads the names off what a writer gave.
+pub(crate) fn reflect_written(module: &Module, parts: &Parts, written: &Written) -> Reflection {
+    let mut reflection = describe(module, parts, &text::written_names(module, &written.code));
+    if let Code::Text(text) = &written.code {
+        for function in &mut reflection.functions {
+            if let Some((name, signature)) = text::declaration(text, &function.name) {
+                *function = FunctionInfo { role: function.role, name, signature };
+            }
+        }
+    }
+    let block = |handle: Option<Handle<GlobalVariable>>| {
+        let block = written.blocks.iter().find(|(known, _)| Some(*known) == handle);
+        block.map(|(_, name)| name.clone())
+    };
+    if let Some(uniform) = &mut reflection.uniform {
+        uniform.block = block(parts.uniform);
+    }
+    for (buffer, (handle, _)) in reflection.buffers.iter_mut().zip(buffers(module, parts)) {
+        buffer.block = block(Some(handle));
+    }
+    if let Some(entries) = &written.entries {
+        reflection.entries.clone_from(entries);
+    }
+    reflection
+}
+
+fn describe(module: &Module, parts: &Parts, names: &Names) -> Reflection {
     let name = |key: NameKey| names.get(&key).cloned().unwrap_or_default();
     let mut reflection = Reflection { members: parts.members.clone(), ..Default::default() };
+    let mut structures = Vec::new();
     for &(role, handle) in &parts.functions {
         let function = &module.functions[handle];
         let function_name = name(NameKey::Function(handle));
-        let argument = name(NameKey::FunctionArgument(handle, 0));
-        let result = match role {
-            Role::Distance => "f32".to_owned(),
-            Role::Gradient => "vec3<f32>".to_owned(),
-            Role::Material => {
-                function.result.as_ref().map_or_else(String::new, |r| name(NameKey::Type(r.ty)))
-            }
-        };
-        let signature = format!("fn {function_name}({argument}: vec3<f32>) -> {result}");
+        let mut arguments = Vec::new();
+        for (argument, index) in function.arguments.iter().zip(0..) {
+            add_structures(module, argument.ty, &mut structures);
+            let argument_name = name(NameKey::FunctionArgument(handle, index));
+            arguments.push(format!("{argument_name}: {}", type_name(module, names, argument.ty)));
+        }
+        let result = function.result.as_ref().map_or_else(String::new, |result| {
+            add_structures(module, result.ty, &mut structures);
+            type_name(module, names, result.ty)
+        });
+        let signature = format!("fn {function_name}({}) -> {result}", arguments.join(", "));
         reflection.functions.push(FunctionInfo { role, name: function_name, signature });
     }
     if let Some(handle) = parts.uniform {
@@ -114,48 +237,131 @@ pub(crate) fn reflect(module: &Module, parts: &Parts) -> Reflection {
             block: None,
         });
     }
-    reflection
-}
-
-/// Reads the names off what a writer gave.
-pub(crate) fn reflect_written(module: &Module, parts: &Parts, written: &Written) -> Reflection {
-    let mut reflection = reflect(module, parts);
-    if let Code::Text(text) = &written.code {
-        for function in &mut reflection.functions {
-            if let Some((name, signature)) = declaration(text, &function.name) {
-                *function = FunctionInfo { role: function.role, name, signature };
-            }
-        }
+    for (handle, role) in buffers(module, parts) {
+        add_structures(module, module.global_variables[handle].ty, &mut structures);
+        reflection.buffers.push(buffer(module, names, handle, role));
     }
-    if let Some(uniform) = &mut reflection.uniform {
-        let mut blocks = written.blocks.iter();
-        let block = blocks.find(|(handle, _)| Some(*handle) == parts.uniform);
-        uniform.block = block.map(|(_, name)| name.clone());
-    }
-    reflection
-}
-
-/// Name and head of the function of that name in the text, on one line. naga adds `_` to names that the
-/// language has itself. Heads stand at the start of a line, calls do not.
-fn declaration(text: &str, name: &str) -> Option<(String, String)> {
-    [name.to_owned(), format!("{name}_")].into_iter().find_map(|name| {
-        let call = format!(" {name}(");
-        let mut places = text.match_indices(&call).map(|(place, _)| place);
-        places.find_map(|place| {
-            let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
-            let rest = &text[start..];
-            let head = &rest[..rest.find('{')?];
-            let is_head = !head.starts_with(char::is_whitespace) && !head.contains([';', '=']);
-            let words: Vec<_> = head.split_whitespace().collect();
-            let signature = words.join(" ").replace("( ", "(").replace(" )", ")");
-            is_head.then(|| (name.clone(), signature))
+    reflection.structures =
+        structures.into_iter().filter_map(|ty| structure(module, names, ty)).collect();
+    reflection.entries = module
+        .entry_points
+        .iter()
+        .zip(0..)
+        .map(|(entry, index)| Entry {
+            stage: stage_name(entry.stage),
+            name: name(NameKey::EntryPoint(index)),
         })
+        .collect();
+    reflection
+}
+
+/// The buffers that every host binds, and what they hold.
+fn buffers<'a>(
+    module: &'a Module,
+    parts: &'a Parts,
+) -> impl Iterator<Item = (Handle<GlobalVariable>, BufferRole)> + 'a {
+    module.global_variables.iter().filter_map(|(handle, variable)| {
+        variable.binding?;
+        let is_written = variable.space
+            == AddressSpace::Storage { access: StorageAccess::LOAD | StorageAccess::STORE };
+        let role = if Some(handle) == parts.uniform {
+            BufferRole::Params
+        } else if variable.space == AddressSpace::Uniform {
+            BufferRole::View
+        } else if is_written {
+            BufferRole::Pixels
+        } else {
+            return None;
+        };
+        Some((handle, role))
     })
 }
 
+fn buffer(
+    module: &Module,
+    names: &Names,
+    handle: Handle<GlobalVariable>,
+    role: BufferRole,
+) -> Buffer {
+    let variable = &module.global_variables[handle];
+    let binding = variable.binding.unwrap_or(naga::ResourceBinding { group: 0, binding: 0 });
+    let (ty, is_array) = match module.types[variable.ty].inner {
+        TypeInner::Array { base, size: ArraySize::Dynamic, .. } => (base, true),
+        _ => (variable.ty, false),
+    };
+    Buffer {
+        role,
+        variable: names.get(&NameKey::GlobalVariable(handle)).cloned().unwrap_or_default(),
+        ty: type_name(module, names, ty),
+        is_array,
+        group: binding.group,
+        binding: binding.binding,
+        size: module.types[ty].inner.size(module.to_ctx()),
+        block: None,
+    }
+}
+
+/// The structures in a type, members first, each once. Types nest as deep as `march` writes them.
+fn add_structures(module: &Module, ty: Handle<naga::Type>, found: &mut Vec<Handle<naga::Type>>) {
+    if let TypeInner::Array { base, .. } = module.types[ty].inner {
+        add_structures(module, base, found);
+    }
+    if let TypeInner::Struct { members, .. } = &module.types[ty].inner
+        && !found.contains(&ty)
+    {
+        members.iter().for_each(|member| add_structures(module, member.ty, found));
+        found.push(ty);
+    }
+}
+
+fn structure(module: &Module, names: &Names, ty: Handle<naga::Type>) -> Option<Structure> {
+    let TypeInner::Struct { members, span } = &module.types[ty].inner else { return None };
+    let name = |key: NameKey| names.get(&key).cloned().unwrap_or_default();
+    let members = members.iter().zip(0..).map(|(member, index)| StructureMember {
+        name: name(NameKey::StructMember(ty, index)),
+        ty: type_name(module, names, member.ty),
+        offset: member.offset,
+    });
+    Some(Structure { name: name(NameKey::Type(ty)), size: *span, members: members.collect() })
+}
+
+/// A type as WGSL calls it.
+fn type_name(module: &Module, names: &Names, ty: Handle<naga::Type>) -> String {
+    match &module.types[ty].inner {
+        TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
+            format!("array<{}, {count}>", type_name(module, names, *base))
+        }
+        TypeInner::Array { base, .. } => format!("array<{}>", type_name(module, names, *base)),
+        TypeInner::Struct { .. } => names.get(&NameKey::Type(ty)).cloned().unwrap_or_default(),
+        TypeInner::Vector { size, scalar } => {
+            format!("vec{}<{}>", *size as u8, scalar_name(*scalar))
+        }
+        TypeInner::Scalar(scalar) => scalar_name(*scalar).to_owned(),
+        // Neither structures of `march` nor params hold others.
+        _ => String::new(),
+    }
+}
+
+fn scalar_name(scalar: Scalar) -> &'static str {
+    match scalar {
+        Scalar::U32 => "u32",
+        Scalar::I32 => "i32",
+        Scalar::BOOL => "bool",
+        _ => "f32",
+    }
+}
+
+pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
+    match stage {
+        ShaderStage::Vertex => "vertex",
+        ShaderStage::Fragment => "fragment",
+        _ => "compute",
+    }
+}
+
 /// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
-fn final_names(module: &Module) -> FastHashMap<NameKey, String> {
-    let mut names = FastHashMap::default();
+pub(crate) fn final_names(module: &Module) -> Names {
+    let mut names = Names::default();
     Namer::default().reset(
         module,
         &naga::keywords::wgsl::RESERVED_SET,

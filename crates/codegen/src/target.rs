@@ -1,11 +1,14 @@
 //! The languages that shaders are written in.
 
+use naga::proc::NameKey;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
-    EntryPoint, Expression, Function, Module, ResourceBinding, ShaderStage, Span, Statement, back,
+    EntryPoint, Expression, Function, GlobalVariable, Handle, Module, ResourceBinding, ShaderStage,
+    Span, Statement, back,
 };
 
 use crate::Error;
+use crate::reflect::{Entry, final_names, stage_name};
 
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,14 +67,10 @@ impl Code {
 /// What a writer gives.
 pub(crate) struct Written {
     pub(crate) code: Code,
-    /// Name of the block of each uniform variable, where the language has such names.
-    pub(crate) blocks: Vec<(naga::Handle<naga::GlobalVariable>, String)>,
-}
-
-impl Written {
-    fn text(text: String) -> Self {
-        Self { code: Code::Text(text), blocks: Vec::new() }
-    }
+    /// Name of the block of each buffer, where the language has such names.
+    pub(crate) blocks: Vec<(Handle<GlobalVariable>, String)>,
+    /// The entry points, where they are not those of the module or are not named as there.
+    pub(crate) entries: Option<Vec<Entry>>,
 }
 
 /// Writes a validated module; `comment` is one line for the head of a text.
@@ -81,18 +80,25 @@ pub(crate) fn write(
     info: &ModuleInfo,
     comment: &str,
 ) -> Result<Written, Error> {
-    let head = |text: String| Written::text(format!("// {}\n\n{text}", one_line(comment)));
+    let head = |text: String| Code::Text(format!("// {}\n\n{text}", one_line(comment)));
+    let written = |code, entries| Written { code, blocks: Vec::new(), entries };
     match target {
-        Target::Wgsl => wgsl(module, info).map(head),
+        Target::Wgsl => wgsl(module, info).map(|text| written(head(text), None)),
         Target::Glsl => glsl(target, back::glsl::Version::Desktop(450), module, info, comment),
         Target::GlslEs => glsl(target, back::glsl::Version::new_gles(300), module, info, comment),
-        Target::Hlsl => hlsl(module, info).map(head),
-        Target::Msl => msl(module, info).map(head),
-        Target::Spirv => {
-            let words = spirv(module, info)?;
-            Ok(Written { code: Code::Words(words), blocks: Vec::new() })
+        Target::Hlsl => hlsl(module, info)
+            .map(|(text, names)| written(head(text), Some(renamed(module, names)))),
+        Target::Msl => {
+            msl(module, info).map(|(text, names)| written(head(text), Some(renamed(module, names))))
         }
+        Target::Spirv => spirv(module, info).map(|words| written(Code::Words(words), None)),
     }
+}
+
+/// The module's entry points by other names.
+fn renamed(module: &Module, names: Vec<String>) -> Vec<Entry> {
+    let entries = module.entry_points.iter().zip(names);
+    entries.map(|(entry, name)| Entry { stage: stage_name(entry.stage), name }).collect()
 }
 
 /// A comment that ends where its line does, in every language: `\` at the end of a line continues it.
@@ -165,10 +171,40 @@ fn glsl_stage(
         .map_err(refused)?;
     let mut blocks: Vec<_> = reflected.uniforms.into_iter().collect();
     blocks.sort_unstable();
+    let blocks = rename_blocks(&mut text, module, entry.stage, blocks);
     // Nothing may stand before the version.
     let (version, rest) = text.split_once('\n').unwrap_or((&text, ""));
     let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));
-    Ok(Written { code, blocks })
+    let entry = Entry { stage: stage_name(entry.stage), name: "main".to_owned() };
+    Ok(Written { code, blocks, entries: Some(vec![entry]) })
+}
+
+/// Calls buffers by the names of their variables, and their blocks after them. naga calls both after
+/// numbers, by which two texts in one file clash.
+fn rename_blocks(
+    text: &mut String,
+    module: &Module,
+    stage: ShaderStage,
+    blocks: Vec<(Handle<GlobalVariable>, String)>,
+) -> Vec<(Handle<GlobalVariable>, String)> {
+    let names = final_names(module);
+    let suffix = match stage {
+        ShaderStage::Vertex => "vs",
+        ShaderStage::Fragment => "fs",
+        _ => "cs",
+    };
+    let rename = |(handle, block): (Handle<GlobalVariable>, String)| {
+        let binding = module.global_variables[handle].binding;
+        let name = names.get(&NameKey::GlobalVariable(handle));
+        let (Some(ResourceBinding { group, binding }), Some(name)) = (binding, name) else {
+            return (handle, block);
+        };
+        let by_name = format!("{name}_block");
+        let number = format!("_group_{group}_binding_{binding}_{suffix}");
+        *text = text.replace(&block, &by_name).replace(&number, name);
+        (handle, by_name)
+    };
+    blocks.into_iter().map(rename).collect()
 }
 
 /// The module and a fragment stage that does nothing but load the buffers, so that they count as used:
@@ -198,7 +234,8 @@ fn with_empty_stage(module: &Module) -> Module {
     module
 }
 
-fn hlsl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
+/// The text, and what entry points are called in it.
+fn hlsl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<String>), Error> {
     let mut binding_map = back::hlsl::BindingMap::new();
     for binding in bindings(module) {
         let space = slot(Target::Hlsl, binding.group)?;
@@ -216,11 +253,13 @@ fn hlsl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
     let mut text = String::new();
     let stages = back::hlsl::PipelineOptions::default();
     let mut writer = back::hlsl::Writer::new(&mut text, &options, &stages);
-    writer.write(module, info, None).map_err(refused)?;
-    Ok(text)
+    let reflected = writer.write(module, info, None).map_err(refused)?;
+    let names: Result<_, _> = reflected.entry_point_names.into_iter().collect();
+    Ok((text, names.map_err(refused)?))
 }
 
-fn msl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
+/// The text, and what entry points are called in it.
+fn msl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<String>), Error> {
     let mut resources = back::msl::EntryPointResources::default();
     for binding in bindings(module) {
         let buffer = Some(slot(Target::Msl, binding.binding)?);
@@ -237,8 +276,10 @@ fn msl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {
         ..Default::default()
     };
     let stages = back::msl::PipelineOptions::default();
-    let (text, _) = back::msl::write_string(module, info, &options, &stages).map_err(refused)?;
-    Ok(text)
+    let (text, reflected) =
+        back::msl::write_string(module, info, &options, &stages).map_err(refused)?;
+    let names: Result<_, _> = reflected.entry_point_names.into_iter().collect();
+    Ok((text, names.map_err(refused)?))
 }
 
 /// Places of the buffers.

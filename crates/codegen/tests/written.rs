@@ -5,7 +5,9 @@
 mod common;
 
 use common::{blend, lit, mirrored, painted, sphere, twisted};
-use sdfc_codegen::{Code, Error, FieldOptions, Shader, Target, field_module, render_module};
+use sdfc_codegen::{
+    Code, Error, FieldOptions, Shader, Target, field_module, march_module, render_module,
+};
 use sdfc_graph::{Program, Shadow};
 use sdfc_march::METHODS;
 
@@ -96,6 +98,22 @@ fn a_small_scene_in_every_text() {
         insta::assert_snapshot!(
             format!("a_blend_as_{}", target.name()),
             format!("{text}\n{:#?}\n{:#?}", reflection.functions, reflection.uniform)
+        );
+    }
+}
+
+/// The ray method as a function beside those of the scene.
+#[test]
+fn a_march_in_every_text() {
+    let options = FieldOptions { gradient: false, ..FieldOptions::default() };
+    let shader = march_module(&blend(), "auto", &options).expect("links");
+    for target in Target::ALL {
+        let written = shader.write(target, "a").expect("is written");
+        let Code::Text(text) = written.code else { continue };
+        let reflection = written.reflection;
+        insta::assert_snapshot!(
+            format!("a_march_as_{}", target.name()),
+            format!("{text}\n{:#?}\n{:#?}", reflection.functions, reflection.structures)
         );
     }
 }

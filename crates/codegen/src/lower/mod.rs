@@ -8,8 +8,8 @@ mod body;
 mod operation;
 mod uses;
 
-use naga::{BinaryOperator, Literal, UniqueArena};
-use naga::{Expression, Function, FunctionArgument, FunctionResult, Handle, SwizzleComponent};
+use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
+use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Const, Dim, Node, NodeId, Program, Type};
 
@@ -55,13 +55,32 @@ pub(crate) fn struct_function(
     Ok(lowering.finish(name, value, structure))
 }
 
+/// A function without arguments that computes nodes and keeps each in a private variable.
+pub(crate) fn store_function(
+    program: &Program,
+    inputs: &Inputs,
+    types: &mut UniqueArena<naga::Type>,
+    kept: &[(NodeId, Handle<GlobalVariable>)],
+) -> Result<Function, Error> {
+    let roots: Vec<_> = kept.iter().map(|&(node, _)| node).collect();
+    let mut lowering = Lowering::new(program, inputs, types, &roots);
+    lowering.visit_all()?;
+    for &(node, variable) in kept {
+        let value = lowering.value(node)?;
+        let pointer = lowering.body.declare(Expression::GlobalVariable(variable));
+        lowering.body.push(Statement::Store { pointer, value });
+    }
+    Ok(lowering.body.finish(None))
+}
+
 struct Lowering<'a> {
     program: &'a Program,
     inputs: &'a Inputs,
     types: &'a mut UniqueArena<naga::Type>,
     uses: Uses,
     body: Body,
-    point: Value,
+    /// The argument, once it is used: not every function has one.
+    point: Option<Value>,
     /// Values of the nodes visited so far, but for constants.
     values: FxHashMap<NodeId, Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
@@ -74,11 +93,9 @@ impl<'a> Lowering<'a> {
         types: &'a mut UniqueArena<naga::Type>,
         roots: &[NodeId],
     ) -> Self {
-        let mut body = Body::default();
-        let point = body.declare(Expression::FunctionArgument(0));
         let uses = Uses::count(&program.graph, roots, inputs);
-        let (values, matrices) = Default::default();
-        Self { program, inputs, types, uses, body, point, values, matrices }
+        let (body, values, matrices) = Default::default();
+        Self { program, inputs, types, uses, body, point: None, values, matrices }
     }
 
     /// Computes all nodes that the roots need.
@@ -125,12 +142,16 @@ impl<'a> Lowering<'a> {
     fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {
         match node {
             Node::Const(constant) => self.constant(id, constant),
-            Node::Point(0, Dim::Three) => Ok(self.point),
+            Node::Point(0, Dim::Three) => {
+                let body = &mut self.body;
+                let argument = || body.declare(Expression::FunctionArgument(0));
+                Ok(*self.point.get_or_insert_with(argument))
+            }
             Node::Point(..) | Node::Sample(..) | Node::MaterialAt(..) => Err(Error::NotFlat(id)),
             Node::Frame(input, _) => {
                 let name = input_name(self.program, input);
-                let member = self.inputs.read_member(&mut self.body, input, name);
-                member.ok_or(Error::UnboundInput(id))
+                let value = self.inputs.read_raw(&mut self.body, input, name);
+                value.ok_or(Error::UnboundInput(id))
             }
             Node::Unary(op, a) => {
                 self.refuse_constants(id, &[a])?;

@@ -22,7 +22,7 @@ fn secant(before: vec2f, t: f32, distance: f32) -> f32 {
 fn trace(ray: Ray) -> Trace {
     // Last sample outside and first sample inside, as (t, distance).
     var outside = vec2f(-1.0, 0.0);
-    var inside = vec2f();
+    var inside = vec2f(0.0);
     var crossed = false;
     var t = 0.0;
     for (var step = 0u; step < ray.steps; step++) {

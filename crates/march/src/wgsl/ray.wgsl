@@ -7,17 +7,18 @@ const CAPPED: u32 = 2;
 
 struct Ray {
     origin: vec3f,
+    // Radius of the ray's footprint at its origin.
+    radius: f32,
     // A unit vector.
     direction: vec3f,
+    // What the radius gains per unit of length.
+    spread: f32,
     // The ray ends here.
     t_max: f32,
-    // At most so many steps.
-    steps: u32,
     // A hit is nearer than this, absolute (`fixed`, `sphere`).
     epsilon: f32,
-    // Radius of the ray's footprint at its origin, and what it gains per unit of length.
-    radius: f32,
-    spread: f32,
+    // At most so many steps.
+    steps: u32,
 }
 
 struct Trace {

@@ -16,7 +16,7 @@ fn start_at(surface: Surface, seen: Ray, t: f32, lift: f32) -> vec3f {
 fn shadow_ray(surface: Surface, seen: Ray, t: f32, direction: vec3f) -> Ray {
     let lift = max(3.0 * nearness(seen, t), footprint(seen, t));
     let origin = start_at(surface, seen, t, lift);
-    return Ray(origin, direction, seen.t_max, seen.steps, seen.epsilon, 0.5 * lift, 0.0);
+    return Ray(origin, 0.5 * lift, direction, 0.0, seen.t_max, seen.epsilon, seen.steps);
 }
 
 // From a surface to what it mirrors, less far off, since that moves the image. The footprint goes on growing
@@ -25,5 +25,5 @@ fn mirrored_ray(surface: Surface, seen: Ray, t: f32) -> Ray {
     let origin = start_at(surface, seen, t, 1.5 * nearness(seen, t));
     let direction = reflect(seen.direction, surface.normal);
     let radius = footprint(seen, t);
-    return Ray(origin, direction, seen.t_max, seen.steps, seen.epsilon, radius, seen.spread);
+    return Ray(origin, radius, direction, seen.spread, seen.t_max, seen.epsilon, seen.steps);
 }

@@ -37,5 +37,5 @@ struct View {
 fn camera_ray(pixel: vec2u) -> Ray {
     let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
     let direction = normalize(view.forward + place.x * view.right - place.y * view.up);
-    return Ray(view.eye, direction, view.t_max, view.steps, view.epsilon, 0.0, view.pixel_radius);
+    return Ray(view.eye, 0.0, direction, view.pixel_radius, view.t_max, view.epsilon, view.steps);
 }

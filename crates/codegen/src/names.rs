@@ -1,0 +1,45 @@
+//! What the parts of a module are called.
+
+use naga::Module;
+
+use crate::Error;
+use crate::reflect::Parts;
+
+/// Letters, digits and `_`, no digit first, no `__`: what naga and WGSL both leave as it is.
+pub(crate) fn check_prefix(prefix: &str) -> Result<(), Error> {
+    let plain = prefix.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let digit_first = prefix.starts_with(|c: char| c.is_ascii_digit());
+    if plain && !digit_first && !prefix.contains("__") {
+        Ok(())
+    } else {
+        Err(Error::BadPrefix(prefix.to_owned()))
+    }
+}
+
+/// Calls functions after what they compute, and puts the prefix before all names that a text declares at
+/// its top level.
+pub(crate) fn make_public(module: &mut Module, parts: &Parts, prefix: &str) {
+    for &(role, handle) in &parts.functions {
+        module.functions.get_mut(handle).name = Some(role.name().to_owned());
+    }
+    if prefix.is_empty() {
+        return;
+    }
+    let add = |name: &mut Option<String>| {
+        if let Some(name) = name {
+            name.insert_str(0, prefix);
+        }
+    };
+    let named: Vec<_> = module.types.iter().filter(|(_, ty)| ty.name.is_some()).collect();
+    let renamed: Vec<_> = named.into_iter().map(|(handle, ty)| (handle, ty.clone())).collect();
+    for (handle, mut ty) in renamed {
+        add(&mut ty.name);
+        module.types.replace(handle, ty);
+    }
+    module.constants.iter_mut().for_each(|(_, constant)| add(&mut constant.name));
+    module.global_variables.iter_mut().for_each(|(_, variable)| add(&mut variable.name));
+    module.functions.iter_mut().for_each(|(_, function)| add(&mut function.name));
+    for entry in &mut module.entry_points {
+        entry.name.insert_str(0, prefix);
+    }
+}

@@ -1,0 +1,109 @@
+//! Names and heads in a written text.
+//!
+//! Only naga's WGSL writer tells its names; what the others made of a name is read off their text, in
+//! which top-level declarations start a line.
+
+use naga::Module;
+use naga::TypeInner;
+use naga::proc::NameKey;
+
+use super::{Names, final_names};
+use crate::target::Code;
+
+/// Names of functions, structures, members and variables as they are written.
+pub(super) fn written_names(module: &Module, code: &Code) -> Names {
+    let mut names = final_names(module);
+    match code {
+        Code::Words(_) => take_raw_names(module, &mut names),
+        Code::Text(text) => take_structures(module, text, &mut names),
+    }
+    names
+}
+
+/// SPIR-V tells names for people only, which are those of the module.
+fn take_raw_names(module: &Module, names: &mut Names) {
+    let mut take = |key: NameKey, name: &Option<String>| {
+        if let Some(name) = name {
+            names.insert(key, name.clone());
+        }
+    };
+    for (handle, function) in module.functions.iter() {
+        take(NameKey::Function(handle), &function.name);
+        for (argument, index) in function.arguments.iter().zip(0..) {
+            take(NameKey::FunctionArgument(handle, index), &argument.name);
+        }
+    }
+    for (handle, variable) in module.global_variables.iter() {
+        take(NameKey::GlobalVariable(handle), &variable.name);
+    }
+    for (handle, ty) in module.types.iter() {
+        take(NameKey::Type(handle), &ty.name);
+        if let TypeInner::Struct { members, .. } = &ty.inner {
+            for (member, index) in members.iter().zip(0..) {
+                take(NameKey::StructMember(handle, index), &member.name);
+            }
+        }
+    }
+    for (entry, index) in module.entry_points.iter().zip(0..) {
+        take(NameKey::EntryPoint(index), &Some(entry.name.clone()));
+    }
+}
+
+fn take_structures(module: &Module, text: &str, names: &mut Names) {
+    for (handle, ty) in module.types.iter() {
+        let TypeInner::Struct { members, .. } = &ty.inner else { continue };
+        let known = names.get(&NameKey::Type(handle)).cloned().unwrap_or_default();
+        let Some((name, found)) = structure(text, &known) else { continue };
+        names.insert(NameKey::Type(handle), name);
+        if found.len() == members.len() {
+            for (member, index) in found.into_iter().zip(0..) {
+                names.insert(NameKey::StructMember(handle, index), member);
+            }
+        }
+    }
+}
+
+/// As it is, and as naga writes it where the language has such a word itself.
+fn spellings(name: &str) -> [String; 2] {
+    [name.to_owned(), format!("{name}_")]
+}
+
+/// Name and members of the structure of that name, without those that only fill gaps.
+fn structure(text: &str, name: &str) -> Option<(String, Vec<String>)> {
+    spellings(name).into_iter().find_map(|name| {
+        let head = format!("struct {name} {{\n");
+        let start = text.find(&head)? + head.len();
+        let lines = text[start..].lines().take_while(|line| !line.starts_with('}'));
+        let members = lines.filter_map(member).map(str::to_owned).collect();
+        Some((name, members))
+    })
+}
+
+/// The name in `name: type,` or in `type name;`, `type name[8];`.
+fn member(line: &str) -> Option<&str> {
+    let line = line.trim();
+    let name = match line.strip_suffix(',') {
+        Some(line) => line.split(':').next()?,
+        None => line.split([';', '[']).next()?.rsplit(' ').next()?,
+    };
+    let is_gap = ["_pad", "_end_pad"].iter().any(|gap| name.starts_with(gap));
+    (!is_gap && !name.is_empty()).then_some(name)
+}
+
+/// Name and head of the function of that name in the text, on one line. Heads stand at the start of a line,
+/// calls do not.
+pub(super) fn declaration(text: &str, name: &str) -> Option<(String, String)> {
+    spellings(name).into_iter().find_map(|name| {
+        let call = format!(" {name}(");
+        let mut places = text.match_indices(&call).map(|(place, _)| place);
+        places.find_map(|place| {
+            let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
+            let rest = &text[start..];
+            let head = &rest[..rest.find('{')?];
+            let is_head = !head.starts_with(char::is_whitespace) && !head.contains([';', '=']);
+            let words: Vec<_> = head.split_whitespace().collect();
+            let signature = words.join(" ").replace("( ", "(").replace(" )", ")");
+            is_head.then(|| (name.clone(), signature))
+        })
+    })
+}
