@@ -4,19 +4,39 @@
 //! A trial whose tool is not installed is reported as ignored. After a change to what can be written,
 //! or a new example, `TARGETS_UPDATE=1 cargo test -p sdfc --test targets` writes the table anew.
 
+mod draw;
+mod paste;
 mod table;
 mod tools;
 
 use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Code, Emit, Scene, ShaderOptions, Target};
+use sdfc::render::testing;
+use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
 
-/// The parts that are written.
-pub const EMITS: [(Emit, &str); 2] = [(Emit::Field, "field"), (Emit::Render, "render")];
+/// A part that is written: what it is called here, and how it is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// In messages and in the table.
+    pub name: &'static str,
+    /// The part.
+    pub emit: Emit,
+    /// Its stage, where it has one.
+    pub stage: Stage,
+}
+
+/// All parts.
+pub const PARTS: [Part; 4] = [
+    Part { name: "field", emit: Emit::Field, stage: Stage::Compute },
+    Part { name: "march", emit: Emit::March, stage: Stage::Compute },
+    Part { name: "compute", emit: Emit::Render, stage: Stage::Compute },
+    Part { name: "fragment", emit: Emit::Render, stage: Stage::Fragment },
+];
 
 fn main() {
     let mut trials = vec![
+        Trial::test("two_prefixes_go_into_one_file", paste::two_prefixes_go_into_one_file),
         Trial::test("the_table_is_current", table::is_current),
         Trial::test("the_same_source_gives_the_same_bytes", the_same_source_gives_the_same_bytes),
     ];
@@ -29,25 +49,46 @@ fn main() {
         let trial = Trial::test(name, move || every_example_is_accepted(tool));
         trials.push(trial.with_ignored_flag(!tool.is_installed()));
     }
+    let forms: [(&str, Compared); 3] =
+        [("compute", draw::compute), ("fragment", draw::fragment), ("shadertoy", draw::shadertoy)];
+    for (name, form) in forms {
+        let name = format!("every_example_is_drawn_as_{name}");
+        let trial = Trial::test(name, move || every_example_is_drawn(form));
+        trials.push(trial.with_ignored_flag(testing::without_gpu()));
+    }
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
+/// Draws a scene in two ways and compares them.
+type Compared = fn(&draw::Devices, &Scene) -> Result<(), Failed>;
+
 /// Whether a target's language has words for a part.
-pub fn is_held(target: Target, emit: Emit) -> bool {
-    !(target == Target::GlslEs && emit == Emit::Render)
+pub fn is_held(target: Target, part: Part) -> bool {
+    let has_stage = part.emit != Emit::Render || target.has_stage(part.stage);
+    has_stage && (target != Target::Shadertoy || part.emit == Emit::Render)
 }
 
-fn write(scene: &Scene, target: Target, emit: Emit) -> Result<Code, sdfc::Error> {
-    let options = ShaderOptions { target, emit, ..ShaderOptions::default() };
+fn write(scene: &Scene, target: Target, part: Part) -> Result<Code, sdfc::Error> {
+    let Part { emit, stage, .. } = part;
+    let options = ShaderOptions { target, emit, stage, ..ShaderOptions::default() };
     Ok(scene.write_shader(&options)?.code)
+}
+
+fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
+    let devices = draw::Devices::open()?;
+    for (name, scene) in examples()? {
+        compared(&devices, &scene)
+            .map_err(|found| format!("{name}: {}", found.message().unwrap_or("")))?;
+    }
+    Ok(())
 }
 
 fn every_example_is_written(target: Target) -> Result<(), Failed> {
     for (name, scene) in examples()? {
-        for (emit, part) in EMITS {
-            let found = write(&scene, target, emit);
-            if found.is_ok() != is_held(target, emit) {
-                return Err(format!("{name}, {part}: {:?}", found.map(drop)).into());
+        for part in PARTS {
+            let found = write(&scene, target, part);
+            if found.is_ok() != is_held(target, part) {
+                return Err(format!("{name}, {}: {:?}", part.name, found.map(drop)).into());
             }
         }
     }
@@ -56,9 +97,10 @@ fn every_example_is_written(target: Target) -> Result<(), Failed> {
 
 fn every_example_is_accepted(tool: &tools::Tool) -> Result<(), Failed> {
     for (name, scene) in examples()? {
-        for (emit, part) in EMITS.into_iter().filter(|part| is_held(tool.target, part.0)) {
-            let code = write(&scene, tool.target, emit).map_err(|e| e.to_string())?;
-            tool.check(emit, &code).map_err(|found| format!("{name}, {part}: {found}"))?;
+        for part in PARTS.into_iter().filter(|part| is_held(tool.target, *part)) {
+            let code = write(&scene, tool.target, part).map_err(|e| e.to_string())?;
+            let place = format!("{name}, {}", part.name);
+            tool.check(part, &code).map_err(|found| format!("{place}: {found}"))?;
         }
     }
     Ok(())
@@ -68,9 +110,11 @@ fn the_same_source_gives_the_same_bytes() -> Result<(), Failed> {
     let again = examples()?;
     for ((name, scene), (_, twin)) in examples()?.iter().zip(&again) {
         for target in Target::ALL {
-            let [one, other] = [scene, twin].map(|s| write(s, target, Emit::Field));
-            if one.map_err(|e| e.to_string())? != other.map_err(|e| e.to_string())? {
-                return Err(format!("{name} as {}: two texts", target.name()).into());
+            for part in PARTS.into_iter().filter(|part| is_held(target, *part)) {
+                let [one, other] = [scene, twin].map(|s| write(s, target, part));
+                if one.map_err(|e| e.to_string())? != other.map_err(|e| e.to_string())? {
+                    return Err(format!("{name} as {}: two texts", target.name()).into());
+                }
             }
         }
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use libtest_mimic::Failed;
 use sdfc::Target;
 
-use crate::{EMITS, examples, write};
+use crate::{PARTS, examples, write};
 
 const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
 const END: &str = "<!-- End of the table. -->\n";
@@ -19,8 +19,8 @@ fn table() -> Result<String, Failed> {
     for (name, scene) in examples()? {
         write!(text, "| {name} |")?;
         for target in Target::ALL {
-            let written = EMITS.iter().filter(|part| write(&scene, target, part.0).is_ok());
-            let parts: Vec<_> = written.map(|part| part.1).collect();
+            let written = PARTS.iter().filter(|part| write(&scene, target, **part).is_ok());
+            let parts: Vec<_> = written.map(|part| part.name).collect();
             write!(text, " {} |", parts.join(" "))?;
         }
         text.push('\n');

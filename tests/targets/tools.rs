@@ -3,7 +3,11 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use sdfc::{Code, Emit, Target};
+use sdfc::{Code, Emit, Stage, Target};
+
+use crate::Part;
+
+const SHADERTOY: &str = include_str!("shadertoy.glsl");
 
 /// A validator and the target that it judges.
 pub struct Tool {
@@ -12,7 +16,7 @@ pub struct Tool {
     /// An argument on which it says its version.
     version: &'static str,
     /// Arguments for a part, before the file.
-    arguments: fn(Emit) -> &'static [&'static str],
+    arguments: fn(Part) -> &'static [&'static str],
 }
 
 pub const TOOLS: &[Tool] = &[
@@ -27,9 +31,9 @@ pub const TOOLS: &[Tool] = &[
         program: "glslangValidator",
         target: Target::Glsl,
         version: "--version",
-        arguments: |emit| match emit {
-            Emit::Field => &["-S", "frag"],
-            Emit::Render => &["-S", "comp"],
+        arguments: |part| match (part.emit, part.stage) {
+            (Emit::Render, Stage::Compute) => &["-S", "comp"],
+            (Emit::Render, Stage::Fragment) | (Emit::Field | Emit::March, _) => &["-S", "frag"],
         },
     },
     Tool {
@@ -39,12 +43,19 @@ pub const TOOLS: &[Tool] = &[
         arguments: |_| &["-S", "frag"],
     },
     Tool {
+        program: "glslangValidator",
+        target: Target::Shadertoy,
+        version: "--version",
+        // Linked, so that all that is called is there.
+        arguments: |_| &["-l", "-S", "frag"],
+    },
+    Tool {
         program: "spirv-val",
         target: Target::Spirv,
         version: "--version",
         // A field alone is for linking, which Vulkan does not know.
-        arguments: |emit| match emit {
-            Emit::Field => &["--target-env", "spv1.3"],
+        arguments: |part| match part.emit {
+            Emit::Field | Emit::March => &["--target-env", "spv1.3"],
             Emit::Render => &["--target-env", "vulkan1.1"],
         },
     },
@@ -62,16 +73,23 @@ impl Tool {
         self.is_library() || command.status().is_ok()
     }
 
+    /// The tool for a target's texts, where one is installed.
+    pub fn of(target: Target) -> Option<&'static Self> {
+        TOOLS.iter().find(|tool| tool.target == target && tool.is_installed())
+    }
+
     /// What it has against the code, as an error.
-    pub fn check(&self, emit: Emit, code: &Code) -> Result<(), String> {
+    pub fn check(&self, part: Part, code: &Code) -> Result<(), String> {
         if self.is_library() {
             return check_with_naga(code);
         }
         let name = format!("{}.{}", self.program, self.target.name());
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        std::fs::write(&file, code.clone().into_bytes()).map_err(|e| e.to_string())?;
+        let before = if self.target == Target::Shadertoy { SHADERTOY } else { "" };
+        let bytes = [before.as_bytes(), &code.clone().into_bytes()].concat();
+        std::fs::write(&file, bytes).map_err(|e| e.to_string())?;
         let mut command = Command::new(self.program);
-        command.args((self.arguments)(emit)).arg(&file).stdin(Stdio::null());
+        command.args((self.arguments)(part)).arg(&file).stdin(Stdio::null());
         let output = command.output().map_err(|e| e.to_string())?;
         if output.status.success() {
             return Ok(());

@@ -24,6 +24,9 @@ pub struct Args {
     pub command: Command,
 }
 
+/// The greatest bind group or binding that can be asked for.
+const MAX_BINDING: i64 = 65_535;
+
 /// Options that every command takes.
 #[derive(clap::Args, Debug)]
 pub struct Global {
@@ -105,18 +108,24 @@ pub struct Compile {
     /// The language to write
     #[arg(long, value_enum, default_value_t)]
     pub target: Target,
-    /// Which part to write
-    #[arg(long, value_enum, default_value_t)]
-    pub emit: Emit,
-    /// Start of every name
-    #[arg(long, value_name = "NAME", default_value = "sdf_")]
-    pub prefix: String,
-    /// Bind group of the uniform buffer
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub group: u32,
-    /// Its binding
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub binding: u32,
+    /// Which part to write [default: field; render for shadertoy]
+    #[arg(long, value_enum)]
+    pub emit: Option<Emit>,
+    /// The stage of `--emit render` [default: compute; fragment for glsl-es]
+    #[arg(long, value_enum)]
+    pub stage: Option<Stage>,
+    /// The ray method of `--emit march` and `render`; the scene's `march(...)` or auto if not given
+    #[arg(long, value_name = "METHOD", value_parser = methods())]
+    pub march: Option<String>,
+    /// Start of every name [default: sdf_]
+    #[arg(long, value_name = "NAME")]
+    pub prefix: Option<String>,
+    /// Bind group of the buffers [default: 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
+    pub group: Option<u32>,
+    /// Binding of the first of them; the others have the next ones [default: 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
+    pub binding: Option<u32>,
     /// Where names, layouts and what is known of the field go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub reflect: Option<PathBuf>,
@@ -142,6 +151,8 @@ pub enum Target {
     Msl,
     /// SPIR-V 1.3 for Vulkan
     Spirv,
+    /// A whole shader to be pasted on shadertoy.com
+    Shadertoy,
 }
 
 impl From<Target> for sdfc::Target {
@@ -153,6 +164,7 @@ impl From<Target> for sdfc::Target {
             Target::Hlsl => Self::Hlsl,
             Target::Msl => Self::Msl,
             Target::Spirv => Self::Spirv,
+            Target::Shadertoy => Self::Shadertoy,
         }
     }
 }
@@ -163,6 +175,8 @@ pub enum Emit {
     /// The functions for distance, gradient and material
     #[default]
     Field,
+    /// The same, and where a ray meets the surface
+    March,
     /// The whole shader that draws pictures
     Render,
 }
@@ -171,7 +185,26 @@ impl From<Emit> for sdfc::Emit {
     fn from(emit: Emit) -> Self {
         match emit {
             Emit::Field => Self::Field,
+            Emit::March => Self::March,
             Emit::Render => Self::Render,
+        }
+    }
+}
+
+/// Stages of the shader that draws pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Stage {
+    /// Pixels into a buffer
+    Compute,
+    /// The colour of a pixel, and a vertex stage for a triangle over the target
+    Fragment,
+}
+
+impl From<Stage> for sdfc::Stage {
+    fn from(stage: Stage) -> Self {
+        match stage {
+            Stage::Compute => Self::Compute,
+            Stage::Fragment => Self::Fragment,
         }
     }
 }

@@ -52,6 +52,13 @@ pub enum Error {
         /// The number.
         number: u32,
     },
+    /// The bytes of a view are not as many as the shader reads.
+    ViewBytes {
+        /// How many it reads.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
     /// The shader does not validate, or a writer refused it; naga's own words.
     Naga(String),
 }
@@ -73,6 +80,7 @@ impl Error {
             | Self::IllTyped(_)
             | Self::BadLane(_)
             | Self::MixedLimits(_)
+            | Self::ViewBytes { .. }
             | Self::Naga(_) => false,
         }
     }
@@ -116,6 +124,9 @@ impl fmt::Display for Error {
             }
             Self::BindingTooLarge { target, number } => {
                 write!(f, "{} counts groups and bindings up to 255, not {number}", target.name())
+            }
+            Self::ViewBytes { expected, found } => {
+                write!(f, "the view has {found} bytes, not the {expected} that the shader reads")
             }
             Self::Naga(text) => write!(f, "the shader was refused: {text}"),
         }

@@ -49,6 +49,7 @@ mod names;
 mod picture;
 mod reflect;
 mod shader;
+mod shadertoy;
 mod target;
 mod types;
 
@@ -62,4 +63,5 @@ pub use reflect::{
 };
 pub use sdfc_march::{Features, FieldSource};
 pub use shader::{Shader, Written};
+pub use shadertoy::shadertoy_module;
 pub use target::{Code, Target};

@@ -1,7 +1,7 @@
 //! From the text of `march` to a module whose stubs a scene can fill.
 
 use naga::compact::{KeepUnused, compact};
-use naga::{Block, Expression, Function, Handle, Module, Statement};
+use naga::{Block, Expression, Function, GlobalVariable, Handle, Module, Statement};
 use rustc_hash::FxHashSet;
 
 use crate::Error;
@@ -28,6 +28,12 @@ pub(crate) fn skeleton(source: &str, unused: &[&str]) -> Result<Module, Error> {
 pub(crate) fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
     let mut functions = module.functions.iter();
     functions.find(|(_, f)| f.name.as_deref() == Some(name)).map(|(handle, _)| handle)
+}
+
+/// The variable of that name.
+pub(crate) fn find_variable(module: &Module, name: &str) -> Option<Handle<GlobalVariable>> {
+    let mut variables = module.global_variables.iter();
+    variables.find(|(_, v)| v.name.as_deref() == Some(name)).map(|(handle, _)| handle)
 }
 
 /// Replaces a stub by a function of the same signature. A stub calls nothing and so does what

@@ -79,6 +79,19 @@ pub enum Stage {
     Fragment,
 }
 
+impl Stage {
+    /// Both, the default first.
+    pub const ALL: [Self; 2] = [Self::Compute, Self::Fragment];
+
+    /// What messages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Compute => "compute stage",
+            Self::Fragment => "fragment stage",
+        }
+    }
+}
+
 /// How a picture's shader for an engine of someone else's is called and named.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureOptions {
@@ -115,7 +128,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
         Stage::Fragment if options.rows_up => Form::FragmentUp,
         Stage::Fragment => Form::Fragment,
     };
-    let mut picture = Picture::skeleton(program, form, method)?;
+    let mut picture = Picture::skeleton(program, form, method, &[])?;
     let place = |offset| ResourceBinding {
         group: options.group,
         binding: options.binding.saturating_add(offset),
@@ -136,7 +149,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
 }
 
 fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
-    let mut picture = Picture::skeleton(program, Form::Compute, method)?;
+    let mut picture = Picture::skeleton(program, Form::Compute, method, &[])?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
@@ -147,40 +160,50 @@ fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
 }
 
 /// A picture's shader while the scene's parts are put into it.
-struct Picture<'p> {
+pub(crate) struct Picture<'p> {
     program: &'p Program,
-    distance: NodeId,
-    gradient: NodeId,
+    /// What fills the stubs; not the gradient of a method that has its own.
+    filled: Vec<(Role, &'static str, NodeId)>,
     features: Features,
     /// Positions in `Program::uniforms` of those that the scene's functions read.
     used: Vec<usize>,
-    module: Module,
+    pub(crate) module: Module,
     inputs: Inputs,
     parts: Parts,
 }
 
 impl<'p> Picture<'p> {
-    /// The files of `march`, without what the scene has no need of.
-    fn skeleton(program: &'p Program, form: Form, method: &Method) -> Result<Self, Error> {
+    /// The files of `march`, without calls to these functions and what else the scene has no need of.
+    pub(crate) fn skeleton(
+        program: &'p Program,
+        form: Form,
+        method: &Method,
+        unused: &[&str],
+    ) -> Result<Self, Error> {
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let features = features(program);
-        let mut roots = vec![distance, gradient];
+        let mut filled = vec![(Role::Distance, stubs::FIELD, distance)];
+        if method.gradient.is_none() {
+            filled.push((Role::Gradient, stubs::GRADIENT, gradient));
+        }
+        let mut roots: Vec<_> = filled.iter().map(|&(.., root)| root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);
-        let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
+        let mut unused = unused.to_vec();
+        unused.extend(used.is_empty().then_some(stubs::LOAD_FRAME));
         let source = source_over(FieldSource::Scene, form, method, features);
-        let module = link::skeleton(&source, unused)?;
+        let module = link::skeleton(&source, &unused)?;
         let (inputs, parts) = Default::default();
-        Ok(Self { program, distance, gradient, features, used, module, inputs, parts })
+        Ok(Self { program, filled, features, used, module, inputs, parts })
     }
 
-    fn slot_nodes(&self) -> Vec<NodeId> {
+    pub(crate) fn slot_nodes(&self) -> Vec<NodeId> {
         self.used.iter().map(|&slot| self.program.uniforms[slot]).collect()
     }
 
     /// Lets `load_frame` compute what follows from raw inputs, into private variables.
-    fn compute_slots(&mut self, raw: Inputs) -> Result<(), Error> {
+    pub(crate) fn compute_slots(&mut self, raw: Inputs) -> Result<(), Error> {
         let nodes = self.slot_nodes();
         if !nodes.is_empty() {
             let module = &mut self.module;
@@ -194,13 +217,10 @@ impl<'p> Picture<'p> {
     }
 
     /// Fills the stubs with the scene's functions.
-    fn fill(&mut self) -> Result<(), Error> {
+    pub(crate) fn fill(&mut self) -> Result<(), Error> {
         self.parts.uniform = self.inputs.buffer;
         let (module, inputs) = (&mut self.module, &self.inputs);
-        for (role, stub, root) in [
-            (Role::Distance, stubs::FIELD, self.distance),
-            (Role::Gradient, stubs::GRADIENT, self.gradient),
-        ] {
+        for &(role, stub, root) in &self.filled {
             let function = value_function(self.program, inputs, &mut module.types, stub, root)?;
             link::fill(module, stub, function)?;
             self.parts.functions.extend(link::find_function(module, stub).map(|f| (role, f)));
@@ -217,7 +237,7 @@ impl<'p> Picture<'p> {
         Ok(())
     }
 
-    fn finish(self) -> Result<Shader, Error> {
+    pub(crate) fn finish(self) -> Result<Shader, Error> {
         Shader::new(self.module, self.parts, self.features)
     }
 }

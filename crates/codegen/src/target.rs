@@ -6,8 +6,11 @@ use naga::{
     EntryPoint, Expression, Function, GlobalVariable, Handle, Module, ResourceBinding, ShaderStage,
     Span, Statement, back,
 };
+use sdfc_march::{SHADERTOY_HEAD, SHADERTOY_TAIL, stubs};
 
 use crate::Error;
+use crate::link::find_function;
+use crate::picture::Stage;
 use crate::reflect::{Entry, final_names, stage_name};
 
 /// A language that shaders are written in.
@@ -25,12 +28,15 @@ pub enum Target {
     Msl,
     /// SPIR-V 1.3 for Vulkan, with names.
     Spirv,
+    /// The one text of a shader on shadertoy.com, GLSL ES 3.00: a whole picture, see
+    /// [`crate::shadertoy_module`].
+    Shadertoy,
 }
 
 impl Target {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Wgsl, Self::Glsl, Self::GlslEs, Self::Hlsl, Self::Msl, Self::Spirv];
+    pub const ALL: [Self; 7] =
+        [Self::Wgsl, Self::Glsl, Self::GlslEs, Self::Hlsl, Self::Msl, Self::Spirv, Self::Shadertoy];
 
     /// What the command line calls it.
     pub fn name(self) -> &'static str {
@@ -41,6 +47,39 @@ impl Target {
             Self::Hlsl => "hlsl",
             Self::Msl => "msl",
             Self::Spirv => "spirv",
+            Self::Shadertoy => "shadertoy",
+        }
+    }
+
+    /// Whether buffers are in groups.
+    pub fn has_groups(self) -> bool {
+        match self {
+            Self::Wgsl | Self::Hlsl | Self::Spirv => true,
+            Self::Glsl | Self::GlslEs | Self::Msl | Self::Shadertoy => false,
+        }
+    }
+
+    /// Whether buffers are bound by numbers, not by names.
+    pub fn has_bindings(self) -> bool {
+        match self {
+            Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => true,
+            Self::GlslEs | Self::Shadertoy => false,
+        }
+    }
+
+    /// Whether there is a stage.
+    pub fn has_stage(self, stage: Stage) -> bool {
+        match self {
+            Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => true,
+            Self::GlslEs | Self::Shadertoy => stage == Stage::Fragment,
+        }
+    }
+
+    /// Whether the first row of what a fragment stage draws is the lowest.
+    pub fn counts_rows_upwards(self) -> bool {
+        match self {
+            Self::Glsl | Self::GlslEs | Self::Shadertoy => true,
+            Self::Wgsl | Self::Hlsl | Self::Msl | Self::Spirv => false,
         }
     }
 }
@@ -92,6 +131,7 @@ pub(crate) fn write(
             msl(module, info).map(|(text, names)| written(head(text), Some(renamed(module, names))))
         }
         Target::Spirv => spirv(module, info).map(|words| written(Code::Words(words), None)),
+        Target::Shadertoy => shadertoy(module, info, comment),
     }
 }
 
@@ -177,6 +217,36 @@ fn glsl_stage(
     let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));
     let entry = Entry { stage: stage_name(entry.stage), name: "main".to_owned() };
     Ok(Written { code, blocks, entries: Some(vec![entry]) })
+}
+
+/// Between two whole files, what naga writes: constants, which the params begin, then structures, then functions,
+/// without the version, precisions and the empty stage.
+fn shadertoy(module: &Module, info: &ModuleInfo, comment: &str) -> Result<Written, Error> {
+    let target = Target::Shadertoy;
+    if find_function(module, stubs::IMAGE).is_none() {
+        return Err(Error::Unsupported { target, what: "text but that of a whole picture" });
+    }
+    let written = glsl(target, back::glsl::Version::new_gles(300), module, info, comment)?;
+    let Code::Text(text) = &written.code else { return Ok(written) };
+    let body = text.find("struct ").map_or("", |start| &text[start..]);
+    let body = body.rfind("void main()").map_or(body, |end| &body[..end]);
+    let (structures, rest) = body.split_at(body.find("\nconst ").map_or(0, |before| before + 1));
+    let is_constant = |line: &&str| line.starts_with("const ");
+    let constants: String = rest.split_inclusive('\n').take_while(is_constant).collect();
+    let functions = without_zeros(&rest[constants.len()..], "View view");
+    let head = format!("// {}\n{SHADERTOY_HEAD}", one_line(comment));
+    let text = [&head, &constants, structures, functions.trim_matches('\n')].join("\n");
+    let code = Code::Text(format!("{text}\n\n{SHADERTOY_TAIL}"));
+    Ok(Written { code, blocks: Vec::new(), entries: Some(Vec::new()) })
+}
+
+/// The text without what a variable begins with: `load_view` sets all that is read of the view.
+fn without_zeros(text: &str, variable: &str) -> String {
+    let parts = text.split_once(&format!("{variable} = ")).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(";\n")?;
+        Some(format!("{before}{variable};\n{after}"))
+    });
+    parts.unwrap_or_else(|| text.to_owned())
 }
 
 /// Calls buffers by the names of their variables, and their blocks after them. naga calls both after

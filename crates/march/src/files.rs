@@ -98,6 +98,8 @@ pub enum Form {
     Fragment,
     /// As [`Form::Fragment`], the target's first row lowest.
     FragmentUp,
+    /// A function of a place, the size of the picture, the mouse and the clock, without buffers.
+    Shadertoy,
 }
 
 impl Form {
@@ -108,6 +110,7 @@ impl Form {
             Self::Compute => &[BUFFER, include_str!("wgsl/compute.wgsl")],
             Self::Fragment => &[BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
+            Self::Shadertoy => &[include_str!("wgsl/shadertoy.wgsl")],
         }
     }
 }
@@ -158,6 +161,11 @@ pub fn ray_source(method: &Method) -> String {
 
 const RAY: &str = include_str!("wgsl/ray.wgsl");
 
+/// What stands before the functions of [`Form::Shadertoy`] in the text for shadertoy.com, in GLSL.
+pub const SHADERTOY_HEAD: &str = include_str!("shadertoy/head.glsl");
+/// What stands behind them: the entry point.
+pub const SHADERTOY_TAIL: &str = include_str!("shadertoy/tail.glsl");
+
 /// Names of the functions that a scene supplies, and of those that a host calls.
 pub mod stubs {
     /// `fn field(p: vec3f) -> f32`, signed distance.
@@ -170,4 +178,18 @@ pub mod stubs {
     pub const LOAD_FRAME: &str = "load_frame";
     /// `fn trace(ray: Ray) -> Trace`, which a method supplies and a host may call.
     pub const TRACE: &str = "trace";
+    /// `var<private> view: View` of [`super::Form::Shadertoy`], and the functions that fill it.
+    pub const VIEW: &str = "view";
+    /// `fn load_view()`, what of the view does not follow from the camera.
+    pub const LOAD_VIEW: &str = "load_view";
+    /// `fn camera() -> Camera`.
+    pub const CAMERA: &str = "camera";
+    /// `fn load_time(now: f32)`; calls to it are dropped where nothing depends on the time.
+    pub const LOAD_TIME: &str = "load_time";
+    /// `fn load_count(count: f32)`; calls to it are dropped where nothing depends on the frame's number.
+    pub const LOAD_COUNT: &str = "load_count";
+    /// `fn load_headlight()`; calls to it are dropped where the scene states lights.
+    pub const LOAD_HEADLIGHT: &str = "load_headlight";
+    /// `fn image(...) -> vec4f` of [`super::Form::Shadertoy`], which the entry point of the text calls.
+    pub const IMAGE: &str = "image";
 }

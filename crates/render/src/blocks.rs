@@ -32,7 +32,7 @@ impl Bytes {
 }
 
 /// The view block as the shader reads it.
-pub(crate) fn view_bytes(block: &ViewBlock) -> Vec<u8> {
+pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     // Taken apart so that a new field of the block does not compile until it is written here.
     let ViewBlock {
         eye,

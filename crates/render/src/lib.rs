@@ -47,6 +47,7 @@ pub mod testing;
 mod tiles;
 mod view;
 
+pub use blocks::view_bytes;
 pub use compare::{Difference, compare, edges};
 pub use cpu::{CpuScene, Real};
 pub use device::{AdapterInfo, Gpu};

@@ -53,12 +53,15 @@ pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
 pub use params::ParamError;
 pub use picture::{Backend, Painter, Picture, PictureOptions};
-pub use reflection::{Certificate, FunctionRow, ParamRow, ShaderReflection, Sides, UniformRow};
+pub use reflection::{
+    BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
+    StructRow, UniformRow,
+};
 pub use shader::{Emit, ShaderOptions};
 
 pub use sdfc_accuracy as accuracy_data;
 pub use sdfc_codegen as codegen;
-pub use sdfc_codegen::{Code, FieldOptions, Shader, Target, Written};
+pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
 pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;
 pub use sdfc_graph::eval::FrameValues;

@@ -1,7 +1,7 @@
 //! What a written shader offers, and what is known of its field, for programs.
 
 use sdfc_analyze::{Promise, Sides as ShapeSides};
-use sdfc_codegen::{Member, Role, Written};
+use sdfc_codegen::{Buffer, BufferRole, Member, Structure, Written};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::{FrameInput, Param, ParamKind, Type};
 use serde::Serialize;
@@ -20,20 +20,26 @@ pub struct ShaderReflection {
     pub prefix: String,
     /// The language.
     pub target: &'static str,
-    /// Functions of the point.
+    /// Functions that a host may call.
     pub functions: Vec<FunctionRow>,
     /// Members of the uniform structure, in its order.
     pub params: Vec<ParamRow>,
     /// The uniform buffer; null where nothing is known per frame only.
     pub uniform: Option<UniformRow>,
+    /// All buffers that a host binds, that one included.
+    pub buffers: Vec<BufferRow>,
+    /// The structures that functions take or give and buffers hold, members before what holds them.
+    pub structs: Vec<StructRow>,
+    /// The entry points.
+    pub entry_points: Vec<EntryRow>,
     /// What is known of the field.
     pub certificate: Certificate,
 }
 
-/// A function of the point.
+/// A function of the point, or of a ray.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FunctionRow {
-    /// `distance`, `gradient` or `material`.
+    /// `distance`, `gradient`, `material` or `trace`.
     pub role: &'static str,
     /// Its name in the text.
     pub name: String,
@@ -44,7 +50,7 @@ pub struct FunctionRow {
 /// A member of the uniform structure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParamRow {
-    /// Its name in WGSL.
+    /// Its name in the text.
     pub name: String,
     /// Its name in the scene, `time` or `frame`.
     pub param: String,
@@ -69,7 +75,7 @@ pub struct ParamRow {
 /// The uniform buffer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UniformRow {
-    /// Name of its structure in WGSL; null for an array of values computed per frame.
+    /// Name of its structure in the text; null for an array of values computed per frame.
     #[serde(rename = "struct")]
     pub structure: Option<String>,
     /// Bind group.
@@ -80,6 +86,60 @@ pub struct UniformRow {
     pub size: u32,
     /// In GLSL, the name of its block; else null.
     pub block: Option<String>,
+}
+
+/// A buffer that a host binds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BufferRow {
+    /// `view`: camera, limits and lights; `params`; or `pixels`, which the shader writes.
+    pub role: &'static str,
+    /// Name of its variable.
+    pub name: String,
+    /// Its type as WGSL calls it, or that of its elements.
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// Whether it has as many elements as the host likes.
+    pub array: bool,
+    /// Bind group.
+    pub group: u32,
+    /// Binding in the group.
+    pub binding: u32,
+    /// Bytes, of one element where there may be many.
+    pub size: u32,
+    /// In GLSL, the name of its block; else null.
+    pub block: Option<String>,
+}
+
+/// A structure.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StructRow {
+    /// Its name in the text.
+    pub name: String,
+    /// Bytes in a buffer.
+    pub size: u32,
+    /// Its members.
+    pub members: Vec<MemberRow>,
+}
+
+/// A member of a structure.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MemberRow {
+    /// Its name in the text.
+    pub name: String,
+    /// Its type as WGSL calls it.
+    #[serde(rename = "type")]
+    pub ty: String,
+    /// Bytes from the start of the structure in a buffer.
+    pub offset: u32,
+}
+
+/// An entry point.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct EntryRow {
+    /// `vertex`, `fragment` or `compute`.
+    pub stage: &'static str,
+    /// Its name in the text.
+    pub name: String,
 }
 
 /// What is known of the emitted field, at the params' defaults.
@@ -118,7 +178,7 @@ impl Scene {
     ) -> ShaderReflection {
         let found = &written.reflection;
         let functions = found.functions.iter().map(|function| FunctionRow {
-            role: role_name(function.role),
+            role: function.role.name(),
             name: function.name.clone(),
             signature: function.signature.clone(),
         });
@@ -129,6 +189,8 @@ impl Scene {
             size: uniform.size,
             block: uniform.block.clone(),
         });
+        let entries = found.entries.iter();
+        let entries = entries.map(|e| EntryRow { stage: e.stage, name: e.name.clone() });
         ShaderReflection {
             sdfc: env!("CARGO_PKG_VERSION"),
             source_hash: self.source_hash(),
@@ -137,6 +199,9 @@ impl Scene {
             functions: functions.collect(),
             params: found.members.iter().map(|member| self.param_row(member)).collect(),
             uniform,
+            buffers: found.buffers.iter().map(buffer_row).collect(),
+            structs: found.structures.iter().map(struct_row).collect(),
+            entry_points: entries.collect(),
             certificate: self.certificate(sources),
         }
     }
@@ -191,11 +256,33 @@ impl Scene {
     }
 }
 
-fn role_name(role: Role) -> &'static str {
+fn buffer_row(buffer: &Buffer) -> BufferRow {
+    BufferRow {
+        role: buffer_name(buffer.role),
+        name: buffer.variable.clone(),
+        ty: buffer.ty.clone(),
+        array: buffer.is_array,
+        group: buffer.group,
+        binding: buffer.binding,
+        size: buffer.size,
+        block: buffer.block.clone(),
+    }
+}
+
+fn struct_row(structure: &Structure) -> StructRow {
+    let members = structure.members.iter().map(|member| MemberRow {
+        name: member.name.clone(),
+        ty: member.ty.clone(),
+        offset: member.offset,
+    });
+    StructRow { name: structure.name.clone(), size: structure.size, members: members.collect() }
+}
+
+fn buffer_name(role: BufferRole) -> &'static str {
     match role {
-        Role::Distance => "distance",
-        Role::Gradient => "gradient",
-        Role::Material => "material",
+        BufferRole::View => "view",
+        BufferRole::Params => "params",
+        BufferRole::Pixels => "pixels",
     }
 }
 

@@ -1,7 +1,12 @@
 //! A scene's shader in the language of choice.
 
-use sdfc_codegen::{FieldOptions, Shader, Target, Written};
+use sdfc_codegen::{
+    FieldOptions, PictureOptions, Shader, Stage, Target, Written, field_module, march_module,
+    picture_module, shadertoy_module,
+};
 use sdfc_diagnostics::{FileId, Sources};
+use sdfc_graph::eval::FrameValues;
+use sdfc_render::{Tile, View, view_bytes};
 
 use crate::{Error, Scene};
 
@@ -11,6 +16,8 @@ pub enum Emit {
     /// The functions for distance, gradient and material.
     #[default]
     Field,
+    /// The same and a ray method: where a ray meets the surface.
+    March,
     /// The whole shader that draws pictures.
     Render,
 }
@@ -22,11 +29,15 @@ pub struct ShaderOptions {
     pub target: Target,
     /// The part.
     pub emit: Emit,
-    /// Start of every name of a field.
+    /// The stages of [`Emit::Render`]; nothing elsewhere.
+    pub stage: Stage,
+    /// The ray method of [`Emit::March`] and [`Emit::Render`]; `None` takes the scene's, or `auto`.
+    pub method: Option<String>,
+    /// Start of every name; [`Target::Shadertoy`] has none.
     pub prefix: String,
-    /// Bind group of its buffers.
+    /// Bind group of the buffers, where the target has groups.
     pub group: u32,
-    /// Binding of the first of them.
+    /// Binding of the first of them, where the target has bindings.
     pub binding: u32,
 }
 
@@ -34,7 +45,8 @@ impl Default for ShaderOptions {
     /// A field in WGSL, its names beginning with `sdf_`, its buffer at 0, 0.
     fn default() -> Self {
         let FieldOptions { prefix, group, binding, .. } = FieldOptions::default();
-        Self { target: Target::Wgsl, emit: Emit::Field, prefix, group, binding }
+        let (target, emit, stage) = (Target::Wgsl, Emit::Field, Stage::Compute);
+        Self { target, emit, stage, method: None, prefix, group, binding }
     }
 }
 
@@ -86,7 +98,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Codegen`].
+    /// [`Error::Codegen`], also where the target cannot hold what is asked for; [`Error::View`] for
+    /// [`Target::Shadertoy`], where the settings make no picture.
     pub fn write_shader(&self, options: &ShaderOptions) -> Result<Written, Error> {
         let shader = self.shader(options)?;
         let (version, name) = (env!("CARGO_PKG_VERSION"), &self.origin.name);
@@ -95,16 +108,42 @@ impl Scene {
     }
 
     fn shader(&self, options: &ShaderOptions) -> Result<Shader, Error> {
-        match options.emit {
-            Emit::Field => {
-                let ShaderOptions { prefix, group, binding, .. } = options.clone();
-                let defaults = FieldOptions::default();
-                self.field_shader(&FieldOptions { prefix, group, binding, ..defaults })
-            }
-            Emit::Render => self.picture_shader(self.method()),
+        let ShaderOptions { target, stage, prefix, group, binding, .. } = options.clone();
+        let method = options.method.as_deref().unwrap_or(self.method());
+        if options.emit == Emit::Render && !target.has_stage(stage) {
+            let what = stage.name();
+            return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }
+        let functions = || {
+            let prefix = prefix.clone();
+            FieldOptions { prefix, group, binding, ..FieldOptions::default() }
+        };
+        let shader = match options.emit {
+            Emit::Field => field_module(&self.program, &functions())?,
+            Emit::March => march_module(&self.program, method, &functions())?,
+            Emit::Render if target == Target::Shadertoy => {
+                shadertoy_module(&self.program, method, &self.default_view()?)?
+            }
+            Emit::Render => {
+                let rows_up = target.counts_rows_upwards();
+                let method = method.to_owned();
+                let options = PictureOptions { method, stage, rows_up, prefix, group, binding };
+                picture_module(&self.program, &options)?
+            }
+        };
+        Ok(shader)
+    }
+
+    /// The view at the defaults, as a buffer would hold it. Its size says how wide it is, no more.
+    fn default_view(&self) -> Result<Vec<u8>, Error> {
+        let frame = FrameValues::defaults(self.params());
+        let view = View::new(&self.program, &frame, self.bounds_at(&frame), SHADERTOY_SIZE)?;
+        Ok(view_bytes(&view.block(Tile { origin: [0, 0], size: SHADERTOY_SIZE })))
     }
 }
+
+/// What shadertoy.com shows beside a text.
+const SHADERTOY_SIZE: [u32; 2] = [640, 360];
 
 #[cfg(test)]
 mod tests {

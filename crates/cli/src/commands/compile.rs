@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use sdfc::ShaderOptions;
 use sdfc::lang::Options;
+use sdfc::{Emit, ShaderOptions, Stage, Target};
 
 use crate::args::Compile;
 use crate::console::Console;
@@ -20,16 +20,10 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let paths: Vec<&Path> =
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
+    let options = options(args)?;
     let mut compiled = super::compiled_with(&args.file, Options { slots: args.slots })?;
     super::show(&mut compiled, console);
     let scene = compiled.scene.ok_or(Failure::Scene)?;
-    let options = ShaderOptions {
-        target: args.target.into(),
-        emit: args.emit.into(),
-        prefix: args.prefix.clone(),
-        group: args.group,
-        binding: args.binding,
-    };
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {
@@ -47,4 +41,51 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// What the shader is to be. An option that would change nothing is refused.
+///
+/// # Errors
+///
+/// The target or the part has no such thing.
+fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
+    let target = Target::from(args.target);
+    let is_toy = target == Target::Shadertoy;
+    let emit = match args.emit {
+        Some(emit) => emit.into(),
+        None if is_toy => Emit::Render,
+        None => Emit::Field,
+    };
+    let name = target.name();
+    let refusals = [
+        (args.stage.is_some() && emit != Emit::Render, "--stage is for --emit render".to_owned()),
+        (
+            args.march.is_some() && emit == Emit::Field,
+            "--march is for --emit march and render: a field has no ray method".to_owned(),
+        ),
+        (args.prefix.is_some() && is_toy, format!("{name} has no prefix; leave out --prefix")),
+        (
+            args.group.is_some() && !target.has_groups(),
+            format!("{name} has no bind groups; leave out --group"),
+        ),
+        (
+            args.binding.is_some() && !target.has_bindings(),
+            format!("{name} has no bindings: buffers go by their names; leave out --binding"),
+        ),
+    ];
+    if let Some((_, why)) = refusals.into_iter().find(|refusal| refusal.0) {
+        return Err(Failure::Call(why));
+    }
+    let has_compute = target.has_stage(Stage::Compute);
+    let stage = if has_compute { Stage::Compute } else { Stage::Fragment };
+    let defaults = ShaderOptions::default();
+    Ok(ShaderOptions {
+        target,
+        emit,
+        stage: args.stage.map_or(stage, Stage::from),
+        method: args.march.clone(),
+        prefix: args.prefix.clone().unwrap_or(defaults.prefix),
+        group: args.group.unwrap_or(defaults.group),
+        binding: args.binding.unwrap_or(defaults.binding),
+    })
 }

@@ -1,0 +1,104 @@
+// A picture without buffers, for a place that gives a shader no more than the size of the picture, the mouse and
+// the clock: camera, limits and lights are set by functions. Its entry point is there only to reach `image`.
+
+const PI: f32 = 3.14159265;
+// A dragged camera stops short of straight above.
+const MOST_PITCH: f32 = 1.5;
+
+struct Camera {
+    eye: vec3f,
+    // What is in the middle of the picture.
+    center: vec3f,
+    up: vec3f,
+    // Vertical field of view, in radians.
+    fov: f32,
+}
+
+var<private> view: View;
+var<private> time: f32;
+var<private> frame: f32;
+
+fn load_time(now: f32) {
+    time = now;
+}
+
+fn load_count(count: f32) {
+    frame = count;
+}
+
+// Supplied by the scene: limits, lights, and where the eye was when they were chosen.
+fn load_view() {
+}
+
+// Supplied by the scene.
+fn camera() -> Camera {
+    return Camera();
+}
+
+// The camera turned about the middle: by one turn over the picture's width, by half a turn over its height.
+fn orbited(still: Camera, mouse: vec2f) -> Camera {
+    let offset = still.eye - still.center;
+    let radius = length(offset);
+    let turn = vec2f(2.0 * PI, PI) * (vec2f(0.5) - mouse);
+    let yaw = atan2(offset.x, offset.z) + turn.x;
+    let pitch = clamp(asin(offset.y / radius) + turn.y, -MOST_PITCH, MOST_PITCH);
+    let direction = vec3f(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
+    return Camera(still.center + radius * direction, still.center, still.up, still.fov);
+}
+
+// Looking along `up`: what lies behind is at the bottom then, as on a map.
+fn sideways(forward: vec3f, up: vec3f) -> vec3f {
+    let right = cross(forward, normalize(up));
+    if length(right) > 1e-6 {
+        return normalize(right);
+    }
+    let level = abs(forward.z) > 0.9;
+    return normalize(cross(forward, select(vec3f(0.0, 0.0, forward.y), vec3f(0.0, 1.0, 0.0), level)));
+}
+
+fn look(seen_by: Camera, size: vec2f) {
+    let half_height = tan(0.5 * seen_by.fov);
+    let forward = normalize(seen_by.center - seen_by.eye);
+    let right = sideways(forward, seen_by.up);
+    // Rays reach as far as they did from where the eye was.
+    view.t_max += distance(seen_by.eye, view.eye);
+    view.eye = seen_by.eye;
+    view.forward = forward;
+    view.right = half_height * (size.x / size.y) * right;
+    view.up = half_height * cross(right, forward);
+    view.pixel_radius = half_height / size.y;
+    view.size = vec2u(size);
+}
+
+// The light of a scene that states none comes from the eye.
+fn load_headlight() {
+    view.lights[0].direction = -view.forward;
+}
+
+// IEC 61966-2-1.
+fn srgb(linear: vec3f) -> vec3f {
+    let light = saturate(linear);
+    return select(1.055 * pow(light, vec3f(1.0 / 2.4)) - 0.055, 12.92 * light, light <= vec3f(0.0031308));
+}
+
+// The colour at a place, in pixels from the picture's lower left. The mouse turns the camera once it was dragged.
+fn image(place: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
+    load_time(now);
+    load_count(count);
+    load_frame();
+    load_view();
+    var seen_by = camera();
+    if any(mouse > vec2f(0.0)) {
+        seen_by = orbited(seen_by, mouse / size);
+    }
+    look(seen_by, size);
+    load_headlight();
+    let pixel = vec2u(place);
+    let seen = picture(vec2u(pixel.x, view.size.y - 1u - pixel.y));
+    return vec4f(srgb(seen.color.rgb), 1.0);
+}
+
+@fragment
+fn anchor(@builtin(position) place: vec4f) -> @location(0) vec4f {
+    return image(place.xy, vec2f(1.0), vec2f(0.0), 0.0, 0.0);
+}

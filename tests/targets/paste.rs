@@ -1,0 +1,74 @@
+//! Two scenes in one file of a host.
+
+use std::collections::BTreeSet;
+
+use libtest_mimic::Failed;
+use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+
+use crate::tools::Tool;
+use crate::{Part, examples};
+
+const TEXTS: [Target; 5] = [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
+
+/// Every example beside itself, with another prefix and binding: no name is declared by both, and where a
+/// validator is here, it takes the two as one file.
+pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
+    for (name, scene) in examples()? {
+        for target in TEXTS {
+            for emit in [Emit::Field, Emit::March] {
+                let place = format!("{name} as {}, {emit:?}", target.name());
+                let [one, other] = [("one_", 0), ("other_", 1)]
+                    .map(|(prefix, binding)| text(&scene, target, emit, prefix, binding));
+                let (one, other) = (one?, other?);
+                let both =
+                    declared(&one).intersection(&declared(&other)).cloned().collect::<Vec<_>>();
+                if !both.is_empty() {
+                    return Err(format!("{place}: both declare {}", both.join(", ")).into());
+                }
+                let Some(tool) = Tool::of(target) else { continue };
+                let part = Part { name: "both", emit, stage: Stage::Fragment };
+                let pasted = Code::Text(format!("{one}{}", pasteable(&other, target)));
+                tool.check(part, &pasted).map_err(|found| format!("{place}: {found}"))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn text(
+    scene: &Scene,
+    target: Target,
+    emit: Emit,
+    prefix: &str,
+    binding: u32,
+) -> Result<String, Failed> {
+    let prefix = prefix.to_owned();
+    let options = ShaderOptions { target, emit, prefix, binding, ..ShaderOptions::default() };
+    match scene.write_shader(&options)?.code {
+        Code::Text(text) => Ok(text),
+        Code::Words(_) => Err("no text".into()),
+    }
+}
+
+/// The text without what a file has once: in GLSL, as `docs/targets.md` says, the version and the empty stage.
+fn pasteable(text: &str, target: Target) -> &str {
+    match target {
+        Target::Glsl | Target::GlslEs => {
+            let text = text.split_once('\n').map_or(text, |(_version, rest)| rest);
+            text.rfind("void main()").map_or(text, |end| &text[..end])
+        }
+        Target::Wgsl | Target::Hlsl | Target::Msl | Target::Spirv | Target::Shadertoy => text,
+    }
+}
+
+/// What stands before `(`, `{` or `=` in lines that begin a declaration, but for the stage.
+fn declared(text: &str) -> BTreeSet<String> {
+    let heads = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_alphabetic()));
+    let names = heads.filter_map(|line| {
+        let head = line.split(['(', '{', '=', ':', ';']).next()?.trim_end();
+        let name = head.split_whitespace().next_back()?;
+        (name != "main" && head.contains(' ')).then(|| name.to_owned())
+    });
+    let shared = ["using metal", "using", "metal", "precision highp float", "float", "int"];
+    names.filter(|name| !shared.contains(&name.as_str())).collect()
+}
