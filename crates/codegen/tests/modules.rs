@@ -7,7 +7,10 @@ mod common;
 use std::mem::{offset_of, size_of};
 
 use common::{blend, chain, lit, mirrored, number_param, painted, program, sphere, twisted};
-use sdfc_codegen::{Error, FieldOptions, Role, field_module, render_module};
+use sdfc_codegen::{
+    Error, FieldOptions, PictureOptions, Role, Stage, field_module, march_module, picture_module,
+    render_module, shadertoy_module,
+};
 use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
 use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
 
@@ -34,6 +37,18 @@ fn every_method_links_with_every_kind_of_scene() {
             let shader = render_module(&scene, method.name).expect("links");
             common::check(&shader.wgsl().expect("is written"));
             common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
+            for stage in Stage::ALL {
+                let (method, prefix) = (method.name.to_owned(), "a_".to_owned());
+                let (rows_up, group, binding) = (true, 0, 3);
+                let options = PictureOptions { method, stage, rows_up, prefix, group, binding };
+                let shader = picture_module(&scene, &options).expect("links");
+                common::check(&shader.wgsl().expect("is written"));
+                common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
+            }
+            let view = vec![0; size_of::<ViewBlock>()];
+            shadertoy_module(&scene, method.name, &view).expect("links");
+            let shader = march_module(&scene, method.name, &FieldOptions::default());
+            common::check(&shader.expect("links").wgsl().expect("is written"));
         }
     }
 }

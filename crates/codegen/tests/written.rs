@@ -1,15 +1,16 @@
 //! What is written, for small programs.
 
-#![allow(clippy::expect_used)]
+#![allow(clippy::expect_used, clippy::panic)]
 
 mod common;
 
 use common::{blend, lit, mirrored, painted, sphere, twisted};
 use sdfc_codegen::{
-    Code, Error, FieldOptions, Shader, Target, field_module, march_module, render_module,
+    Code, Error, FieldOptions, PictureOptions, Shader, Stage, Target, field_module, march_module,
+    picture_module, render_module, shadertoy_module,
 };
 use sdfc_graph::{Program, Shadow};
-use sdfc_march::METHODS;
+use sdfc_march::{METHODS, ViewBlock};
 
 fn field(program: &Program) -> String {
     let options = FieldOptions::default();
@@ -86,12 +87,16 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
     }
 }
 
+/// Targets whose texts need no picture.
+const FUNCTIONS: [Target; 6] =
+    [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl, Target::Spirv];
+
 /// The painted sphere with a param, and what the reflection says of it.
 #[test]
 fn a_small_scene_in_every_text() {
     let options = FieldOptions { binding: 3, ..FieldOptions::default() };
     let shader = field_module(&blend(), &options).expect("lowers");
-    for target in Target::ALL {
+    for target in FUNCTIONS {
         let written = shader.write(target, "a\nb\\").expect("is written");
         let Code::Text(text) = written.code else { continue };
         let reflection = written.reflection;
@@ -107,7 +112,7 @@ fn a_small_scene_in_every_text() {
 fn a_march_in_every_text() {
     let options = FieldOptions { gradient: false, ..FieldOptions::default() };
     let shader = march_module(&blend(), "auto", &options).expect("links");
-    for target in Target::ALL {
+    for target in FUNCTIONS {
         let written = shader.write(target, "a").expect("is written");
         let Code::Text(text) = written.code else { continue };
         let reflection = written.reflection;
@@ -115,6 +120,57 @@ fn a_march_in_every_text() {
             format!("a_march_as_{}", target.name()),
             format!("{text}\n{:#?}\n{:#?}", reflection.functions, reflection.structures)
         );
+    }
+}
+
+#[test]
+fn the_fragment_form_binds_view_and_params_from_where_it_is_told() {
+    let options = PictureOptions {
+        method: "sphere".to_owned(),
+        stage: Stage::Fragment,
+        rows_up: true,
+        prefix: "a_".to_owned(),
+        group: 2,
+        binding: 5,
+    };
+    let shader = picture_module(&blend(), &options).expect("links");
+    let reflection = shader.reflection();
+    let (buffers, entries) = (reflection.buffers, reflection.entries);
+    insta::assert_snapshot!(format!("{}\n{buffers:#?}\n{entries:#?}", outline(&shader)));
+    let refused = PictureOptions { prefix: "2".to_owned(), ..options };
+    assert_eq!(picture_module(&blend(), &refused).err(), Some(Error::BadPrefix("2".to_owned())));
+}
+
+#[test]
+fn a_whole_text_for_shadertoy() {
+    let view = vec![0; size_of::<ViewBlock>()];
+    let shader = shadertoy_module(&blend(), "sphere", &view).expect("links");
+    let written = shader.write(Target::Shadertoy, "a").expect("is written");
+    let Code::Text(text) = written.code else { panic!("no text") };
+    insta::assert_snapshot!(text);
+
+    let short = shadertoy_module(&blend(), "sphere", &view[4..]);
+    assert!(matches!(short, Err(Error::ViewBytes { .. })));
+}
+
+/// Words that are free in WGSL and taken in one of the others.
+#[test]
+fn params_are_reported_by_the_names_of_each_text() {
+    for word in ["loop", "float4", "half", "vec2", "gl_x", "double", "thread", "_group", "a__b"] {
+        let mut scene = blend();
+        scene.params[0].name = word.to_owned();
+        let shader = field_module(&scene, &FieldOptions::default()).expect("lowers");
+        for target in FUNCTIONS {
+            let written = shader.write(target, "").expect("is written");
+            let member = &written.reflection.members[0].name;
+            match written.code {
+                Code::Text(text) => {
+                    let read = format!("sdf_params.{member};");
+                    assert!(text.contains(&read), "{word}, {}: {read}\n{text}", target.name());
+                }
+                Code::Words(_) => assert_eq!(member, word),
+            }
+        }
     }
 }
 
@@ -134,6 +190,10 @@ fn what_a_language_cannot_hold_is_refused() {
     let target = Target::GlslEs;
     let refused = Error::Unsupported { target, what: "compute stage" };
     assert_eq!(picture.write(target, ""), Err(refused));
+
+    let field = field_module(&sphere(), &FieldOptions::default()).expect("lowers");
+    let refused = field.write(Target::Shadertoy, "");
+    assert!(matches!(refused, Err(Error::Unsupported { target: Target::Shadertoy, .. })));
 
     let options = FieldOptions { binding: 256, ..FieldOptions::default() };
     let shader = field_module(&blend(), &options).expect("lowers");
