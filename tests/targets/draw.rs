@@ -45,7 +45,7 @@ pub fn compute(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
         &mut unwatched,
     )?;
 
-    let embedded = embedded(scene, Stage::Compute)?;
+    let embedded = embedded(scene, Stage::Compute, false)?;
     let params = params(scene, &embedded.reflection());
     let pipeline = Pipeline::new(&devices.own, embedded, params.len())?;
     let drawn = pipeline.render(&view, &params, &options, &mut unwatched)?;
@@ -59,20 +59,29 @@ pub fn compute(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
 /// The fragment form against the compute form.
 pub fn fragment(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let (_, view) = at_defaults(scene)?;
-    let shader = embedded(scene, Stage::Compute)?;
+    let shader = embedded(scene, Stage::Compute, false)?;
     let params = params(scene, &shader.reflection());
     let pipeline = Pipeline::new(&devices.own, shader, params.len())?;
     let drawn = pipeline.render(&view, &params, &RenderOptions::default(), &mut unwatched)?;
     let expected = drawn.image.pixels().iter().map(|pixel| eight_bits(pixel.color));
 
-    let shader = embedded(scene, Stage::Fragment)?;
-    let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
-    let buffers = [view_bytes(&view.block(TILE)), bytes(&params)];
-    let found = devices.draw(source, ["vertex", "fragment"], &buffers)?.into_iter().map(eight_bits);
-    match differing(&found.collect(), &expected.collect()) {
-        0 => Ok(()),
-        count => Err(format!("{count} pixels differ by more than {COLOR}").into()),
+    let expected: Pixels = expected.collect();
+    for rows_up in [false, true] {
+        let shader = embedded(scene, Stage::Fragment, rows_up)?;
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
+        let buffers = [view_bytes(&view.block(TILE)), bytes(&params)];
+        let found = devices.draw(source, ["vertex", "fragment"], &buffers)?;
+        let mut rows: Vec<_> = found.chunks(SIZE[0] as usize).collect();
+        if rows_up {
+            rows.reverse();
+        }
+        let found = rows.concat().into_iter().map(eight_bits).collect();
+        let count = differing(&found, &expected);
+        if count > 0 {
+            return Err(format!("{count} pixels differ by more than {COLOR}").into());
+        }
     }
+    Ok(())
 }
 
 /// The functions behind the text for shadertoy.com against the picture that `sdfc render` draws.
@@ -103,9 +112,9 @@ fn at_defaults(scene: &Scene) -> Result<(FrameValues, View), Failed> {
     Ok((frame, view))
 }
 
-fn embedded(scene: &Scene, stage: Stage) -> Result<Shader, Failed> {
+fn embedded(scene: &Scene, stage: Stage, rows_up: bool) -> Result<Shader, Failed> {
     let (method, prefix) = (scene.method().to_owned(), String::new());
-    let options = PictureOptions { method, stage, rows_up: false, prefix, group: 0, binding: 0 };
+    let options = PictureOptions { method, stage, rows_up, prefix, group: 0, binding: 0 };
     Ok(picture_module(scene.program(), &options)?)
 }
 

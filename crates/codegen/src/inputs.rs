@@ -91,6 +91,12 @@ impl Inputs {
         Some(body.compute(Expression::Load { pointer }, &[]))
     }
 
+    /// Whether the node is an input that is a constant of the module.
+    pub(crate) fn is_constant(&self, node: Node) -> bool {
+        let Node::Frame(input, _) = node else { return false };
+        matches!(self.raw.get(&input), Some(Raw::Constant(_)))
+    }
+
     /// Whether the node is computed outside the function.
     pub(crate) fn is_slot(&self, node: NodeId) -> bool {
         self.slots.contains_key(&node)

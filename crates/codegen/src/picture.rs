@@ -204,15 +204,16 @@ impl<'p> Picture<'p> {
 
     /// Lets `load_frame` compute what follows from raw inputs, into private variables.
     pub(crate) fn compute_slots(&mut self, raw: Inputs) -> Result<(), Error> {
-        let nodes = self.slot_nodes();
-        if !nodes.is_empty() {
-            let module = &mut self.module;
-            let declare = |node| (node, declare_variable(module, self.program, node));
-            let kept: Vec<_> = nodes.into_iter().map(declare).collect();
-            let load = store_function(self.program, &raw, &mut module.types, &kept)?;
+        let (program, module) = (self.program, &mut self.module);
+        let kept = self.used.iter().map(|&slot| program.uniforms[slot]);
+        let kept = kept.filter(|&node| !raw.is_constant(program.graph.node(node)));
+        let declare = |node| (node, declare_variable(module, program, node));
+        let kept: Vec<_> = kept.map(declare).collect();
+        if !self.used.is_empty() {
+            let load = store_function(program, &raw, &mut module.types, &kept)?;
             link::fill(module, stubs::LOAD_FRAME, load)?;
-            self.inputs = raw.with_slots(kept.into_iter().collect());
         }
+        self.inputs = raw.with_slots(kept.into_iter().collect());
         Ok(())
     }
 
