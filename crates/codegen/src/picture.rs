@@ -209,7 +209,7 @@ impl<'p> Picture<'p> {
         let kept = kept.filter(|&node| !raw.is_constant(program.graph.node(node)));
         let declare = |node| (node, declare_variable(module, program, node));
         let kept: Vec<_> = kept.map(declare).collect();
-        if !self.used.is_empty() {
+        if link::find_function(module, stubs::LOAD_FRAME).is_some() {
             let load = store_function(program, &raw, &mut module.types, &kept)?;
             link::fill(module, stubs::LOAD_FRAME, load)?;
         }

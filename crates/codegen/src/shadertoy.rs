@@ -5,7 +5,7 @@ use naga::{
     Scalar, Span, Statement, TypeInner,
 };
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{FrameInput, NodeId, Program, Type};
+use sdfc_graph::{FrameInput, Node, NodeId, Program, Type};
 use sdfc_march::{Form, stubs};
 
 use crate::inputs::{Inputs, Raw, input_name, raw_inputs};
@@ -57,7 +57,10 @@ fn unused_loads(program: &Program) -> Vec<&'static str> {
     nodes.extend(program.settings.camera.iter().flat_map(|c| [c.eye, c.target, c.up, c.fov]));
     let raw = raw_inputs(program, &nodes);
     let is_used = |input| raw.iter().any(|(found, _)| *found == input);
+    let is_param = |node| matches!(node, Node::Frame(FrameInput::Param(_), _));
+    let only_params = program.uniforms.iter().all(|&node| is_param(program.graph.node(node)));
     let calls = [
+        (stubs::LOAD_FRAME, !only_params),
         (stubs::LOAD_TIME, is_used(FrameInput::Time)),
         (stubs::LOAD_COUNT, is_used(FrameInput::Frame)),
         (stubs::LOAD_HEADLIGHT, program.settings.lights.is_empty()),
