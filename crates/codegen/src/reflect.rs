@@ -285,10 +285,10 @@ fn buffer(
 ) -> Buffer {
     let variable = &module.global_variables[handle];
     let binding = variable.binding.unwrap_or(naga::ResourceBinding { group: 0, binding: 0 });
-    let (ty, is_array) = match module.types[variable.ty].inner {
-        TypeInner::Array { base, size: ArraySize::Dynamic, .. } => (base, true),
-        _ => (variable.ty, false),
-    };
+    let (mut ty, mut is_array) = (variable.ty, false);
+    if let TypeInner::Array { base, size: ArraySize::Dynamic, .. } = module.types[ty].inner {
+        (ty, is_array) = (base, true);
+    }
     Buffer {
         role,
         variable: names.get(&NameKey::GlobalVariable(handle)).cloned().unwrap_or_default(),
@@ -325,20 +325,17 @@ fn structure(module: &Module, names: &Names, ty: Handle<naga::Type>) -> Option<S
     Some(Structure { name: name(NameKey::Type(ty)), size: *span, members: members.collect() })
 }
 
-/// A type as WGSL calls it.
+/// A type as WGSL calls it. Neither structures of `march` nor params hold others than these.
 fn type_name(module: &Module, names: &Names, ty: Handle<naga::Type>) -> String {
-    match &module.types[ty].inner {
-        TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
-            format!("array<{}, {count}>", type_name(module, names, *base))
-        }
-        TypeInner::Array { base, .. } => format!("array<{}>", type_name(module, names, *base)),
-        TypeInner::Struct { .. } => names.get(&NameKey::Type(ty)).cloned().unwrap_or_default(),
-        TypeInner::Vector { size, scalar } => {
-            format!("vec{}<{}>", *size as u8, scalar_name(*scalar))
-        }
-        TypeInner::Scalar(scalar) => scalar_name(*scalar).to_owned(),
-        // Neither structures of `march` nor params hold others.
-        _ => String::new(),
+    let inner = &module.types[ty].inner;
+    if let TypeInner::Scalar(scalar) = inner {
+        scalar_name(*scalar).to_owned()
+    } else if let TypeInner::Vector { size, scalar } = inner {
+        format!("vec{}<{}>", *size as u8, scalar_name(*scalar))
+    } else if let TypeInner::Array { base, size: ArraySize::Constant(count), .. } = inner {
+        format!("array<{}, {count}>", type_name(module, names, *base))
+    } else {
+        names.get(&NameKey::Type(ty)).cloned().unwrap_or_default()
     }
 }
 
@@ -351,11 +348,14 @@ fn scalar_name(scalar: Scalar) -> &'static str {
     }
 }
 
+/// `march` has no other stages.
 pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
-    match stage {
-        ShaderStage::Vertex => "vertex",
-        ShaderStage::Fragment => "fragment",
-        _ => "compute",
+    if stage == ShaderStage::Vertex {
+        "vertex"
+    } else if stage == ShaderStage::Fragment {
+        "fragment"
+    } else {
+        "compute"
     }
 }
 

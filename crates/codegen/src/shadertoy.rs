@@ -228,7 +228,8 @@ impl<'b> View<'b> {
         body.finish(None)
     }
 
-    /// Sets a part of what `base` points to. Types nest as deep as `march` writes them.
+    /// Sets a part of what `base` points to. A view holds no other types than these, and they nest as deep as
+    /// `march` writes them.
     fn store_member(
         &self,
         module: &mut Module,
@@ -239,36 +240,30 @@ impl<'b> View<'b> {
         offset: u32,
     ) {
         let pointer = body.compute(Expression::AccessIndex { base, index }, &[base]);
-        match module.types[ty].inner.clone() {
-            TypeInner::Struct { members, .. } => {
-                for (member, index) in members.into_iter().zip(0..) {
-                    let offset = offset + member.offset;
-                    self.store_member(module, body, pointer, index, member.ty, offset);
+        let inner = module.types[ty].inner.clone();
+        if let TypeInner::Struct { members, .. } = inner {
+            for (member, index) in members.into_iter().zip(0..) {
+                let offset = offset + member.offset;
+                self.store_member(module, body, pointer, index, member.ty, offset);
+            }
+        } else if let TypeInner::Array { base, size: ArraySize::Constant(count), stride } = inner {
+            for index in 0..count.get() {
+                let offset = offset + index * stride;
+                let is_zero = |word| self.word(offset + word) == [0; 4];
+                if !(0..stride).step_by(4).all(is_zero) {
+                    self.store_member(module, body, pointer, index, base, offset);
                 }
             }
-            TypeInner::Array { base, size: ArraySize::Constant(count), stride } => {
-                for index in 0..count.get() {
-                    let offset = offset + index * stride;
-                    let is_zero = |word| self.word(offset + word) == [0; 4];
-                    if !(0..stride).step_by(4).all(is_zero) {
-                        self.store_member(module, body, pointer, index, base, offset);
-                    }
-                }
-            }
-            TypeInner::Vector { size, scalar } => {
-                let lanes = (0..size as u32).map(|lane| self.literal(scalar, offset + 4 * lane));
-                let components: Vec<_> =
-                    lanes.map(|lane| body.declare(Expression::Literal(lane))).collect();
-                let compose = Expression::Compose { ty, components: components.clone() };
-                let value = body.compute(compose, &components);
-                body.push(Statement::Store { pointer, value });
-            }
-            TypeInner::Scalar(scalar) => {
-                let value = body.declare(Expression::Literal(self.literal(scalar, offset)));
-                body.push(Statement::Store { pointer, value });
-            }
-            // A view holds nothing else.
-            _ => {}
+        } else if let TypeInner::Vector { size, scalar } = inner {
+            let lanes = (0..size as u32).map(|lane| self.literal(scalar, offset + 4 * lane));
+            let components: Vec<_> =
+                lanes.map(|lane| body.declare(Expression::Literal(lane))).collect();
+            let compose = Expression::Compose { ty, components: components.clone() };
+            let value = body.compute(compose, &components);
+            body.push(Statement::Store { pointer, value });
+        } else if let TypeInner::Scalar(scalar) = inner {
+            let value = body.declare(Expression::Literal(self.literal(scalar, offset)));
+            body.push(Statement::Store { pointer, value });
         }
     }
 

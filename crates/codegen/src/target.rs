@@ -258,11 +258,8 @@ fn rename_blocks(
     blocks: Vec<(Handle<GlobalVariable>, String)>,
 ) -> Vec<(Handle<GlobalVariable>, String)> {
     let names = final_names(module);
-    let suffix = match stage {
-        ShaderStage::Vertex => "vs",
-        ShaderStage::Fragment => "fs",
-        _ => "cs",
-    };
+    // What naga ends the names with: `vs`, `fs`, `cs`.
+    let suffix = format!("{}s", &stage_name(stage)[..1]);
     let rename = |(handle, block): (Handle<GlobalVariable>, String)| {
         let binding = module.global_variables[handle].binding;
         let name = names.get(&NameKey::GlobalVariable(handle));
