@@ -83,7 +83,7 @@ impl Tool {
         if self.is_library() {
             return check_with_naga(code);
         }
-        let name = format!("{}.{}", self.program, self.target.name());
+        let name = format!("{}.{}.{}", self.program, part.name, self.target.name());
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let before = if self.target == Target::Shadertoy { SHADERTOY } else { "" };
         let bytes = [before.as_bytes(), &code.clone().into_bytes()].concat();
