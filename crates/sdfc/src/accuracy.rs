@@ -183,10 +183,7 @@ fn with(view: &View, (name, value, _): Setting) -> View {
     let mut view = view.clone();
     match name {
         "epsilon" => view.epsilon = value,
-        _ => {
-            view.steps = value as u32;
-            view.fixed_step = view.t_max / value;
-        }
+        _ => view.steps = value as u32,
     }
     view
 }
