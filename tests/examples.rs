@@ -1,4 +1,5 @@
-//! Every scene under `examples/` compiles without a finding, is formatted, and draws something.
+//! Every scene under `examples/` compiles without a finding, is formatted, and draws something; the library is
+//! formatted too.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -37,6 +38,15 @@ fn examples_are_formatted() {
     for (name, text) in texts() {
         let formatted = sdfc::format(&name, &text, false);
         assert!(formatted.as_deref() == Ok(&text), "{name}: run `sdfc fmt`");
+    }
+}
+
+#[test]
+fn the_library_is_formatted() {
+    for (name, text) in sdfc::lang::library::FILES {
+        let text = text.replace("\r\n", "\n");
+        let formatted = sdfc::format(name, &text, false);
+        assert!(formatted.as_deref() == Ok(&*text), "{name}: run `sdfc fmt crates/lang/std/*.sdf`");
     }
 }
 

@@ -16,6 +16,8 @@
 )]
 
 mod pictures;
+#[path = "../shared/same_picture.rs"]
+mod same_picture;
 
 use std::path::{Path, PathBuf};
 
@@ -152,7 +154,7 @@ fn every_picture_of_the_tutorial_is_what_its_block_draws() {
     for (path, block) in shown {
         let place = root().join("docs").join(&path);
         let drawn = pictures::drawn(&block);
-        let is_same = || pictures::same(&std::fs::read(&place).unwrap_or_default(), &drawn);
+        let is_same = || same_picture::same(&std::fs::read(&place).unwrap_or_default(), &drawn);
         if std::env::var_os("DOCUMENTS_UPDATE").is_some() && !is_same() {
             std::fs::write(&place, &drawn).unwrap();
         }
@@ -165,8 +167,10 @@ fn every_link_within_the_repository_leads_somewhere() {
     let mut broken = Vec::new();
     for (page, text) in pages() {
         let folder = root().join(&page).parent().unwrap().to_owned();
-        let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-        let pictures = text.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
+        // Every other part is a block of code, where brackets and parentheses are no link.
+        let prose: String = text.split("\n```").step_by(2).collect();
+        let targets = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        let pictures = prose.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());
         for target in targets.chain(pictures).filter(|target| !target.contains("://")) {
             let path = target.split('#').next().unwrap_or_default();
             if !path.is_empty() && !folder.join(path).exists() {

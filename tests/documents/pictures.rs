@@ -1,18 +1,10 @@
-//! The pictures of the tutorial: each is what the block before it draws.
-//!
-//! They are drawn on the processor in single precision; since the mathematical functions of machines differ in
-//! the last digits, they may differ a little. `DOCUMENTS_UPDATE=1` writes them anew.
+//! The pictures of the tutorial: each is what the block before it draws. `DOCUMENTS_UPDATE=1` writes them anew.
 
 use sdfc::{Backend, PictureOptions, compile, unwatched};
 
 /// Width and height in pixels, and rays for each.
 const SIZE: [u32; 2] = [320, 240];
 const SAMPLES: u32 = 2;
-
-/// A picture counts as the same if no more than this share of its channels, ...
-const SHARE: f64 = 0.01;
-/// ... differs by more than this, in steps of 1/255.
-const DIFFER: u8 = 8;
 
 /// Path of each picture, and the block before it.
 pub fn shown(page: &str) -> Vec<(String, String)> {
@@ -40,16 +32,4 @@ pub fn drawn(block: &str) -> Vec<u8> {
     let scene = compile("tutorial.sdf", block).scene.expect("it compiles");
     let picture = scene.render(&options, &mut unwatched).expect("it is drawn");
     picture.image.to_png().expect("a picture in memory")
-}
-
-/// Whether two files show the same picture, up to rounding.
-pub fn same(a: &[u8], b: &[u8]) -> bool {
-    let decode = |bytes| image::load_from_memory(bytes).map(image::DynamicImage::into_rgb8);
-    let (Ok(a), Ok(b)) = (decode(a), decode(b)) else { return false };
-    if a.dimensions() != b.dimensions() {
-        return false;
-    }
-    let all = a.as_raw().len() as f64;
-    let differ = a.as_raw().iter().zip(b.as_raw()).filter(|(a, b)| a.abs_diff(**b) > DIFFER);
-    differ.count() as f64 <= SHARE * all
 }

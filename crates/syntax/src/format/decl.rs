@@ -116,8 +116,7 @@ fn clause<'a>(source: &mut Source<'a>, tree: &Clause) -> Doc<'a> {
             docs.push(indent(vec![line(" "), source.take()]));
         }
     }
-    docs.push(source.trailing_comments());
-    group(docs)
+    concat(vec![group(docs), source.trailing_comments()])
 }
 
 fn type_expr<'a>(source: &mut Source<'a>, tree: &TypeExpr) -> Doc<'a> {

@@ -78,15 +78,17 @@ fn operators<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
         first = left;
     }
     let mut docs = vec![expr(source, first), source.trailing_comments()];
-    let mut rest = Vec::new();
+    let (mut rest, mut note) = (Vec::new(), NOTHING);
     for (op, left, right) in rights.into_iter().rev() {
+        rest.push(note);
         let tight = op == BinaryOp::Range && is_atom(left) && is_atom(right);
         let space = if tight { "" } else { " " };
         rest.extend([line(space), source.take(), text(space), expr(source, right)]);
-        rest.push(source.trailing_comments());
+        note = source.trailing_comments();
     }
     docs.push(indent(rest));
-    group(docs)
+    // A comment behind all of it is no reason to break it.
+    concat(vec![group(docs), note])
 }
 
 /// Whether it is short enough that `..` stands tight beside it.

@@ -1,0 +1,87 @@
+//! `docs/reference` says what the library, the kernel, the settings and the types say of themselves, with a
+//! picture of everything that the library draws.
+//!
+//! After a change, `REFERENCE_UPDATE=1 cargo test -p sdfc-cli -p sdfc --test reference` writes it anew. Texts are
+//! compared to the letter, pictures as `same_picture` says.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test fails by panicking"
+)]
+
+mod pages;
+mod pictures;
+#[path = "../shared/same_picture.rs"]
+mod same_picture;
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use sdfc::lang::reference;
+
+/// Everything that stands in the folder: path below it and bytes.
+type Files = Vec<(String, Vec<u8>)>;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference")
+}
+
+/// What the folder should hold.
+fn files() -> Files {
+    let entries = reference::entries();
+    let mut files = pages::files(&entries);
+    files.extend(pictures::files(&entries));
+    files
+}
+
+/// Paths of the files that are there, below the folder.
+fn present() -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for below in ["", "pictures"] {
+        for entry in std::fs::read_dir(folder().join(below)).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let path = path.strip_prefix(folder()).unwrap();
+                found.insert(path.to_str().unwrap().replace('\\', "/"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn the_reference_is_current() {
+    let files = files();
+    let wanted: BTreeSet<String> = files.iter().map(|(path, _)| path.clone()).collect();
+    if std::env::var_os("REFERENCE_UPDATE").is_some() {
+        std::fs::create_dir_all(folder().join("pictures")).unwrap();
+        for stray in present().difference(&wanted) {
+            std::fs::remove_file(folder().join(stray)).unwrap();
+        }
+        for (path, bytes) in &files {
+            let place = folder().join(path);
+            // A picture within the tolerance stays as it is, so that a new machine changes nothing.
+            if !same(path, &std::fs::read(&place).unwrap_or_default(), bytes) {
+                std::fs::write(place, bytes).unwrap();
+            }
+        }
+    }
+    let mut wrong: Vec<String> = present().symmetric_difference(&wanted).cloned().collect();
+    let differs = |(path, bytes): &&(String, Vec<u8>)| {
+        std::fs::read(folder().join(path)).is_ok_and(|found| !same(path, &found, bytes))
+    };
+    wrong.extend(files.iter().filter(differs).map(|(path, _)| path.clone()));
+    assert!(
+        wrong.is_empty(),
+        "docs/reference is not what the library says; write it anew with REFERENCE_UPDATE=1: {wrong:?}"
+    );
+}
+
+fn same(path: &str, found: &[u8], wanted: &[u8]) -> bool {
+    if path.ends_with(".png") {
+        return same_picture::same(found, wanted);
+    }
+    String::from_utf8_lossy(found).replace("\r\n", "\n").as_bytes() == wanted
+}

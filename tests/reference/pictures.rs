@@ -1,0 +1,137 @@
+//! The pictures: an example of a solid as it is drawn, a region as its field in the plane.
+
+use sdfc::graph::eval::{FrameValues, Tape};
+use sdfc::graph::{Dim, Expander, ShapeId, bounds};
+use sdfc::lang::library::Entry;
+use sdfc::{Backend, PictureOptions, Scene, compile, unwatched};
+
+use super::Files;
+
+/// Width and height in pixels.
+pub const SIZE: [u32; 2] = [160, 120];
+
+/// Rays for each pixel of a solid, points along each side of a region's pixel.
+const SAMPLES: u32 = 4;
+const POINTS: u32 = 3;
+
+/// Light and ground for all pictures of solids.
+const LIGHT: &str =
+    "\nsun(direction: [1, 2, 1.5], strength: 0.75)\nambient(strength: 0.2)\nbackground(#e8ecf2)";
+
+/// Colours of a region's field, sRGB: inside, outside, and the outline.
+const INSIDE: [f64; 3] = [217.0, 120.0, 80.0];
+const OUTSIDE: [f64; 3] = [232.0, 236.0, 242.0];
+const OUTLINE: [f64; 3] = [60.0, 40.0, 40.0];
+/// Every other band of this width, as a part of the picture's height, is darker.
+const BAND: f64 = 0.08;
+const DARKER: f64 = 0.94;
+/// Thickness of the outline, as a part of the picture's height.
+const LINE: f64 = 0.012;
+
+/// Where the picture of an entry lies, if there is one.
+pub fn name(entry: &Entry) -> Option<String> {
+    entry.place?;
+    Some(format!("pictures/{}-{}.png", entry.name, entry.kind))
+}
+
+/// The pictures as files.
+pub fn files(entries: &[Entry]) -> Files {
+    let pictures = entries.iter().filter_map(|entry| Some((name(entry)?, png(entry))));
+    pictures.collect()
+}
+
+fn png(entry: &Entry) -> Vec<u8> {
+    let pixels = if entry.kind == "region" { region(entry) } else { solid(entry) };
+    let [width, height] = SIZE;
+    let picture = image::RgbImage::from_raw(width, height, pixels).expect("three bytes a pixel");
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new_with_quality(
+        &mut bytes,
+        image::codecs::png::CompressionType::Best,
+        image::codecs::png::FilterType::Adaptive,
+    );
+    picture.write_with_encoder(encoder).expect("a picture in memory");
+    bytes
+}
+
+fn scene(entry: &Entry, more: &str) -> Scene {
+    let compiled = compile(&entry.name, &format!("{}{more}", entry.example));
+    let findings = compiled.diagnostics_text(false);
+    compiled.scene.unwrap_or_else(|| panic!("{findings}"))
+}
+
+fn solid(entry: &Entry) -> Vec<u8> {
+    let options = PictureOptions {
+        size: SIZE,
+        backend: Backend::Cpu,
+        samples: SAMPLES,
+        ..Default::default()
+    };
+    let picture = scene(entry, LIGHT).render(&options, &mut unwatched);
+    picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
+}
+
+/// The region of this name in the example, with bands that follow its distance.
+fn region(entry: &Entry) -> Vec<u8> {
+    let scene = scene(entry, "");
+    let mut graph = scene.graph().graph.clone();
+    let of_entry = |id: &ShapeId| {
+        let shape = graph.shape(*id);
+        shape.definition == entry.name && shape.dim == Dim::Two && shape.level == 0
+    };
+    let shape = graph.shape_ids().find(of_entry).unwrap_or_else(|| panic!("{}", entry.name));
+    let frame = FrameValues::defaults(scene.params());
+    let corners = bounds(&mut graph, shape, scene.params());
+    let corners = sdfc::graph::eval::evaluate_frame(&graph, &corners, &frame);
+    let point = graph.point(0, Dim::Three);
+    let point = graph.swizzle(point, &[0, 1]);
+    let distance = Expander::new().field(&mut graph, shape, point).expect("it expands");
+    let tape = Tape::new(&graph, &[distance]).expect("it is flat");
+    let mut field = tape.prepare::<f64>(&frame);
+
+    let window = Window::around(corners[0], corners[1]);
+    let [width, height] = SIZE;
+    let mut pixels = Vec::new();
+    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+        let mut sum = [0.0; 3];
+        for (j, i) in (0..POINTS).flat_map(|j| (0..POINTS).map(move |i| (j, i))) {
+            let part = |at, of| f64::from(at) + (f64::from(of) + 0.5) / f64::from(POINTS);
+            let color = window.color(field.scalar(window.point(part(x, i), part(y, j))));
+            sum = [0, 1, 2].map(|channel| sum[channel] + color[channel]);
+        }
+        pixels.extend(sum.map(|sum| (sum / f64::from(POINTS * POINTS)).round() as u8));
+    }
+    pixels
+}
+
+/// The part of the plane that a picture shows.
+struct Window {
+    middle: [f64; 2],
+    /// Of the whole picture, in scene units.
+    height: f64,
+}
+
+impl Window {
+    fn around(lo: [f64; 4], hi: [f64; 4]) -> Self {
+        let finite = |end: f64, instead: f64| if end.is_finite() { end } else { instead };
+        let [x, y] = [0, 1].map(|axis| [finite(lo[axis], -1.0), finite(hi[axis], 1.0)]);
+        let [width, height] = SIZE.map(f64::from);
+        let needed = (y[1] - y[0]).max((x[1] - x[0]) * height / width);
+        Self { middle: [x, y].map(|ends| (ends[0] + ends[1]) / 2.0), height: needed * 1.5 }
+    }
+
+    fn point(&self, x: f64, y: f64) -> [f64; 3] {
+        let [width, height] = SIZE.map(f64::from);
+        let unit = self.height / height;
+        [self.middle[0] + (x - width / 2.0) * unit, self.middle[1] - (y - height / 2.0) * unit, 0.0]
+    }
+
+    fn color(&self, f: f64) -> [f64; 3] {
+        if f.abs() < LINE * self.height / 2.0 {
+            return OUTLINE;
+        }
+        let base = if f < 0.0 { INSIDE } else { OUTSIDE };
+        let dark = (f.abs() / (BAND * self.height)).floor() as i64 % 2 == 1;
+        if dark { base.map(|channel| channel * DARKER) } else { base }
+    }
+}
