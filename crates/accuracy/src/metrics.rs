@@ -147,7 +147,6 @@ fn judge(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
         Kind::Edge => true,
         Kind::Plain => false,
     };
-    let width = truth.camera.pixel_width(seen.t.max(0.0));
     match (truth.verdicts[pixel], seen.status) {
         (Verdict::Miss | Verdict::Undecided(_), Status::Miss | Status::Capped) => Judgement::Apart,
         (Verdict::Miss | Verdict::Undecided(_), Status::Hit) => {
@@ -162,6 +161,7 @@ fn judge(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
         }
         (Verdict::Hit(t), Status::Hit) => {
             let error = seen.t - t;
+            let width = truth.camera.pixel_width(t);
             if !edge {
                 return Judgement::Right {
                     pixels: error.abs() / width.max(f64::MIN_POSITIVE),
