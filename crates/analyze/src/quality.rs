@@ -180,14 +180,20 @@ impl Qualities {
         let derived = slopes.constant(formula);
         let children_everywhere =
             children.iter().all(|child| self.get(*child).is_some_and(|q| q.everywhere));
+        let outside = stated.outside;
         let (lipschitz, everywhere) = match contract.lipschitz {
             Some(constant) => {
                 let stated = self.times_children(graph, constant, &children).and_then(|node| {
                     let finite = graph.as_number(node).is_none_or(f64::is_finite);
                     if finite { Ok(node) } else { Err(Reason::Infinite) }
                 });
-                let confirmed = children_everywhere && at_most(graph, &derived, &stated);
-                (stated, confirmed || (children_everywhere && contract.bounds.is_none()))
+                let confirmed = at_most(graph, &derived, &stated);
+                // Beyond the bounds lies only the outside, and a distance has the constant 1.
+                let one =
+                    stated.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l >= 1.0));
+                let exact_beyond = outside == Promise::Exact && one;
+                let holds = confirmed || exact_beyond || contract.bounds.is_none();
+                (stated, children_everywhere && holds)
             }
             None => (derived, children_everywhere),
         };

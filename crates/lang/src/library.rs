@@ -14,8 +14,11 @@ pub const FILES: &[(&str, &str)] = &[
     ("std/distance.sdf", include_str!("../std/distance.sdf")),
     ("std/domain.sdf", include_str!("../std/domain.sdf")),
     ("std/material.sdf", include_str!("../std/material.sdf")),
+    ("std/polyhedra.sdf", include_str!("../std/polyhedra.sdf")),
     ("std/regions.sdf", include_str!("../std/regions.sdf")),
+    ("std/rounds.sdf", include_str!("../std/rounds.sdf")),
     ("std/solids.sdf", include_str!("../std/solids.sdf")),
+    ("std/surfaces.sdf", include_str!("../std/surfaces.sdf")),
 ];
 
 /// The library's files as parsed, with the ids that they have in some [`Sources`].

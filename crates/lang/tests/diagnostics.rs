@@ -40,7 +40,7 @@ fn names() {
 fn calls() {
     assert_findings!(all(&[
         "sphere(1, 2)\nsphere(radius: 1)\nsphere(r: 1, r: 2)\nsphere(r: 1, 2)",
-        "capsule(r: 1)",
+        "plane().color(checker(size: 1))",
         "union(sphere(1), box(1), smooth(0.1))",
         "let color = #f00\nsphere(1).color(color)",
         "let union = 3\nfn difference(a) = a\n(sphere(1) | box(1)) - sphere(difference(union))",

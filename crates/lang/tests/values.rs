@@ -47,6 +47,40 @@ fn solids() {
     assert_at("ellipsoid_fast([1, 0.5, 2])", &[([3.0, 0.0, 0.0], 2.0), ([0.0; 3], -0.5)]);
 }
 
+/// Which way round they stand.
+#[test]
+fn solids_with_a_top_or_a_front() {
+    // The middle of the arc is on x; half of it leaves negative x free.
+    assert_at(
+        "capped_torus(arc: 180deg, major: 2, minor: 0.5)",
+        &[([2.0, 0.0, 0.0], -0.5), ([-3.0, 0.0, 2.0], 2.5)],
+    );
+    assert_at("link(straight: 2, major: 1, minor: 0.25)", &[([0.0, 2.0, 0.0], -0.25)]);
+    assert_at("cone(r: 1, h: 2)", &[([0.0, 3.0, 0.0], 2.0), ([3.0, -3.0, 0.0], 8f64.sqrt())]);
+    assert_at("capped_cone(h: 2, r1: 3, r2: 1)", &[([1.0, -2.0, 0.0], 1.0), ([0.0; 3], -1.0)]);
+    assert_at(
+        "solid_angle(r: 2, open: 90deg)",
+        &[([0.0, 3.0, 0.0], 1.0), ([3.0, -3.0, 0.0], 18f64.sqrt())],
+    );
+    assert_at("cut_sphere(r: 2, y: 1)", &[([0.0, 2.0, 0.0], 1.0), ([0.0, -3.0, 0.0], 1.0)]);
+    assert_at(
+        "cut_hollow_sphere(r: 2, y: 0, wall: 0.2)",
+        &[([0.0, -2.0, 0.0], -0.1), ([2.0, 1.0, 0.0], 0.9)],
+    );
+    assert_at("death_star(r1: 2, r2: 1, d: 2)", &[([0.0, 2.0, 0.0], 1.0), ([0.0, -3.0, 0.0], 1.0)]);
+    // Counter-clockwise from x, a quarter turn reaches -z.
+    assert_at(
+        "helix(major: 2, minor: 0.5, pitch: 4, h: 9)",
+        &[([2.0, 0.0, 0.0], -0.5), ([0.0, 1.0, -2.0], -0.5), ([-2.0, 2.0, 0.0], -0.5)],
+    );
+    assert_at("tri_prism(r: 2, h: 1)", &[([3.0, 0.0, 0.0], 1.0), ([-3.0, 0.0, 0.0], 2.0)]);
+    assert_at("hex_prism(r: 2, h: 1)", &[([3.0, 0.0, 0.0], 1.0), ([0.0, 2.0, 0.0], 1.5)]);
+    assert_at("rhombic_prism([4, 2], h: 1)", &[([3.0, 0.0, 0.0], 1.0), ([0.0, 0.0, 2.0], 1.0)]);
+    assert_at("pyramid(base: 2, h: 2)", &[([0.0, 3.0, 0.0], 2.0), ([2.0, -1.0, 2.0], 2f64.sqrt())]);
+    assert_at("tetrahedron(r: 3)", &[([0.0, 4.0, 0.0], 1.0), ([0.0, -3.0, 0.0], 2.0)]);
+    assert_at("octahedron(2)", &[([3.0, 0.0, 0.0], 1.0), ([2.0; 3], 4.0 / 3f64.sqrt())]);
+}
+
 #[test]
 fn profiles() {
     assert_at("circle(0.5).extrude(2)", &[([3.0, 4.0, 0.0], 4.5), ([0.0, 0.0, 5.0], 4.0)]);

@@ -5,13 +5,22 @@ use libtest_mimic::Trial;
 use crate::contract::check_scene;
 
 /// Contracts that are false, each in its own way.
-const FALSE: [(&str, &str); 6] = [
+const FALSE: [(&str, &str); 8] = [
     ("too steep to be exact", "solid wrong() exact bounds -1..1 = 1.1 * (length(p) - 1)\nwrong()"),
     ("outside its bounds", "solid wrong() exact bounds -0.9..0.9 = length(p) - 1\nwrong()"),
     ("steeper than stated", "solid wrong() lipschitz 0.9 bounds -1..1 = length(p) - 1\nwrong()"),
     (
         "farther than the surface",
         "solid wrong() bound outside bounds -1..1 = if length(p) < 1 { -1 } else { 1.01 * (length(p) - 1) }\nwrong()",
+    ),
+    // Its corners are farther away than its planes.
+    (
+        "planes of an octahedron",
+        "solid wrong() exact bounds -1..1 = (abs(p.x) + abs(p.y) + abs(p.z) - 1) / sqrt(3)\nwrong()",
+    ),
+    (
+        "a point within the body",
+        "solid wrong() exact bounds -1..1 = max(length(p) - 1, -length(p))\nwrong()",
     ),
     // The constant that is often given for a twist.
     (
@@ -48,6 +57,119 @@ const AWKWARD: [&str; 18] = [
     "rect([1, 0.3]).rotate(30deg).round(0.1).extrude(0.2).rotate(x: 50deg, y: -20deg)",
 ];
 
+/// The same of the solids that are made of nothing else.
+const AWKWARD_SOLIDS: [&str; 109] = [
+    "sphere(0)",
+    "box([1, 0, 0.5])",
+    "rounded_box([1, 0.4, 0.7], r: 0.2)",
+    "rounded_box(1, r: 0)",
+    "mitred_box([1, 0.3, 0])",
+    "box_frame([1, 0.6, 0.8], wall: 0.7)",
+    "box_frame([1, 0.6, 0.8], wall: 0.01)",
+    "box_frame([1, 0.6, 0.8], wall: 0)",
+    "slab(h: 0.4, normal: [0.3, -1, 0.2])",
+    "slab(h: 0)",
+    "tube(r: 0.5, wall: 0.5, h: 0.6)",
+    "tube(r: 0.5, wall: 0.01, h: 0.2)",
+    "cylinder(r: 0.5, h: 0)",
+    "cylinder(r: 0, h: 1)",
+    "cone(r: 1, h: 0.1)",
+    "cone(r: 0.05, h: 1.5)",
+    "cone(r: 0.5, h: 0)",
+    "capped_cone(h: 1, r1: 0.2, r2: 0.7)",
+    "capped_cone(h: 1, r1: 0.5, r2: 0.5)",
+    "capped_cone(h: 0.1, r1: 1, r2: 0.2)",
+    "capped_cone(h: 0.1, r1: 0.2, r2: 1)",
+    "capped_cone(h: 0.5, r1: 0, r2: 0.6)",
+    "capped_cone(h: 0, r1: 0.5, r2: 0.5)",
+    "capped_cone(h: 0, r1: 0.5, r2: 0.2)",
+    "capped_cone(h: 1, r1: 0, r2: 0)",
+    "ellipsoid_fast(0.7)",
+    "ellipsoid_fast([0.05, 1, 0.5])",
+    "capped_torus(arc: 0deg, major: 0.6, minor: 0.2)",
+    "capped_torus(arc: 90deg, major: 0.6, minor: 0.6)",
+    "capped_torus(arc: 180deg, major: 0.6, minor: 0.7)",
+    "capped_torus(arc: 300deg, major: 0.6, minor: 0.2)",
+    "capped_torus(arc: 340deg, major: 0.6, minor: 0.2)",
+    "capped_torus(arc: 360deg, major: 0.6, minor: 0.2)",
+    "capped_torus(arc: 120deg, major: 0, minor: 0.2)",
+    "link(straight: 0, major: 0.5, minor: 0.2)",
+    "link(straight: 0.8, major: 0.2, minor: 0.3)",
+    "link(straight: 0.8, major: 0, minor: 0.2)",
+    "capped_cylinder([0, 0, 0], [0.4, 0.5, -0.6], r: 0.4)",
+    "capped_cylinder([0.1, 0.3, 0.2], [0.1, 0.31, 0.2], r: 0.6)",
+    "capped_cylinder([0.1, 0.3, 0.2], [0.1, -0.3, 0.2], r: 0)",
+    "rounded_cylinder(r: 0.3, h: 1, edge: 0.3)",
+    "rounded_cylinder(r: 0.5, h: 0.4, edge: 0.2)",
+    "rounded_cylinder(r: 0.5, h: 0.4, edge: 0)",
+    "round_cone(r1: 0.2, r2: 0.5)",
+    "round_cone(r1: 0.3, r2: 0.3)",
+    "round_cone(r1: 0, r2: 0.4)",
+    "round_cone([0, 0, 0], [0.1, 0.2, 0.1], r1: 0.6, r2: 0.2)",
+    "round_cone([0, 0, 0], [0.1, 0.2, 0.1], r1: 0.2, r2: 0.6)",
+    "round_cone([0, 0, 0], [0, 0.3, 0], r1: 0.5, r2: 0.2)",
+    "round_cone([0.1, 0, 0], [0.1, 0, 0], r1: 0.2, r2: 0.6)",
+    "round_cone([0.1, 0, 0], [0.1, 0, 0], r1: 0.4, r2: 0.4)",
+    "solid_angle(r: 0.9, open: 0deg)",
+    "solid_angle(r: 0.9, open: 10deg)",
+    "solid_angle(r: 0.9, open: 180deg)",
+    "solid_angle(r: 0.9, open: 300deg)",
+    "solid_angle(r: 0.9, open: 350deg)",
+    "solid_angle(r: 0.9, open: 359.9deg)",
+    "solid_angle(r: 0)",
+    "cut_sphere(r: 0.8, y: 0)",
+    "cut_sphere(r: 0.8, y: -0.5)",
+    "cut_sphere(r: 0.8, y: -0.79)",
+    "cut_sphere(r: 0.8, y: 0.8)",
+    "cut_sphere(r: 0.8, y: -0.8)",
+    "cut_sphere(r: 0)",
+    "cut_hollow_sphere(r: 0.8, y: -0.4, wall: 0.3)",
+    "cut_hollow_sphere(r: 0.8, y: 0.75, wall: 0.3)",
+    "cut_hollow_sphere(r: 0.8, y: 0.75, wall: 0.8)",
+    "cut_hollow_sphere(r: 0.4, y: -0.1, wall: 1.2)",
+    "cut_hollow_sphere(r: 0.8, y: 0.8, wall: 0.2)",
+    "cut_hollow_sphere(r: 0.8, y: -0.8, wall: 0.2)",
+    "death_star(r1: 0.7, r2: 0.3, d: 0.9)",
+    "death_star(r1: 0.7, r2: 1.2, d: 0.9)",
+    "death_star(r1: 0.7, r2: 0.3, d: 0.2)",
+    "death_star(r1: 0.7, r2: 0.3, d: 1)",
+    "death_star(r1: 0.7, r2: 0.3, d: 2)",
+    "death_star(r1: 0.7, r2: 0.3, d: 0)",
+    "death_star(r1: 0.7, r2: 0, d: 0.5)",
+    "vesica_segment([-0.5, 0, 0.2], [0.5, 0.3, 0.2], r: 0.01)",
+    "vesica_segment(r: 0.5)",
+    "helix(major: 0.5, minor: 0.3, pitch: 0.2, h: 0.5)",
+    "helix(major: 0.5, minor: 0.1, pitch: -0.3, h: 1)",
+    "helix(major: 0.5, minor: 0.1, pitch: 3, h: 2)",
+    "helix(major: 0.5, minor: 0, pitch: 0.3, h: 2)",
+    "tri_prism(r: 0.5, h: 0)",
+    "tri_prism(r: 0, h: 1)",
+    "hex_prism(r: 0.5, h: 0.01)",
+    "hex_prism(r: 0, h: 1)",
+    "rhombic_prism([1, 0.05], h: 1)",
+    "rhombic_prism([0, 1], h: 0.2)",
+    "pyramid(base: 1, h: 0)",
+    "pyramid(base: 0, h: 1)",
+    "pyramid(base: 1.5, h: 0.1)",
+    "pyramid(base: 0.1, h: 1.5)",
+    "octahedron(0)",
+    "dodecahedron(0)",
+    "icosahedron(0)",
+    "triangle_plate([0, 0, 0], [0.5, 0, 0], [1, 0, 0], r: 0.1)",
+    "triangle_plate([0, 0, 0], [0.5, 0.2, 0], [0, 0, 0], r: 0.1)",
+    "triangle_plate([0.1, 0, 0], [0.1, 0, 0], [0.1, 0, 0], r: 0.1)",
+    "triangle_plate([0, 0, 0], [1, 0, 0], [0.5, 0.02, 0.01], r: 0.3)",
+    "triangle_plate(r: 0)",
+    "quad_plate([0, 0, 0], [1, 0, 0.5], [1, 1, 0], [0, 1, 0.7], r: 0.1)",
+    "quad_plate([0, 0, 0], [1, 0, 0], [0.2, 0.2, 0], [0, 1, 0], r: 0.1)",
+    "quad_plate([0, 0, 0], [0, 0, 0], [0.2, 0.2, 0], [0, 1, 0], r: 0.1)",
+    "gyroid(cell: 0.3, wall: 0)",
+    "gyroid(cell: 2, wall: 0.6)",
+    "schwarz_p(cell: 0.7, wall: 0.5)",
+    "diamond(cell: 1, wall: 0.02)",
+    "neovius(cell: 2, wall: 0.5)",
+];
+
 pub fn trials() -> Vec<Trial> {
     let mut trials = vec![Trial::test("documented entry", documented)];
     for (name, text) in FALSE {
@@ -57,7 +179,7 @@ pub fn trials() -> Vec<Trial> {
             Err(_) => Ok(()),
         }));
     }
-    for text in AWKWARD {
+    for text in AWKWARD.into_iter().chain(AWKWARD_SOLIDS) {
         let name = text.lines().last().unwrap_or(text);
         trials.push(Trial::test(format!("awkward/{name}"), move || Ok(check_scene(text)?)));
     }

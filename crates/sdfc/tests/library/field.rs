@@ -19,6 +19,8 @@ const HALVINGS: usize = 60;
 const MOVES: usize = 40;
 /// The least turn of a direction that counts as a move.
 const STALL: f64 = 1e-12;
+/// Directions in which the other side of a corner is looked for: towards points of the surface, and any.
+const AIMS: usize = 60;
 /// How near a point that stands in for another is, in parts of the scale.
 const NEARBY: f64 = 1e-7;
 
@@ -125,8 +127,11 @@ impl Asked<'_> {
         let margin = 0.1 * self.field.scale();
         let seeds: Vec<Point> =
             (0..SEEDS).map(|i| self.point(random, if i % 2 == 0 { 0.0 } else { margin })).collect();
-        let (inside, outside): (Vec<Point>, Vec<Point>) =
-            seeds.into_iter().partition(|&p| self.at(p) < 0.0);
+        // What is 0 is on neither side.
+        let mut side = |sign: f64| -> Vec<Point> {
+            seeds.iter().copied().filter(|&p| sign * self.at(p) > 0.0).collect()
+        };
+        let (inside, outside) = (side(-1.0), side(1.0));
         if inside.is_empty() || outside.is_empty() {
             return Vec::new();
         }
@@ -217,7 +222,30 @@ impl Asked<'_> {
                 return least.min(foot + length(offset));
             }
         }
-        least
+        self.corner(p, surface, random).map_or(least, |corner| least.min(corner))
+    }
+
+    /// How far from `p` the foot point is that the field names, if the sign is another somewhere beside it: the way
+    /// down to a sharp corner goes past the surface.
+    fn corner(&mut self, p: Point, surface: &[Point], random: &mut Random) -> Option<f64> {
+        let (f, slope) = (self.at(p), self.slope(p));
+        let foot = sub(p, scaled(slope, f / length(slope)));
+        let aims = surface.iter().step_by(surface.len().div_ceil(AIMS).max(1));
+        let mut ways: Vec<Point> = aims.map(|&aim| sub(aim, foot)).collect();
+        ways.extend((0..AIMS).map(|_| [0; 3].map(|_| random.signed())));
+        for way in ways {
+            let mut beside = add(foot, scaled(way, NEARBY * self.field.scale() / length(way)));
+            // Then on to where the field, whose sign alone counts, points from there.
+            for _ in 0..3 {
+                let found = self.at(beside);
+                if found * f < 0.0 {
+                    return Some(distance(p, beside));
+                }
+                let slope = self.slope(beside);
+                beside = sub(beside, scaled(slope, 1.05 * found / dot(slope, slope)));
+            }
+        }
+        None
     }
 
     /// How far from `p` the surface is met straight down the slope, if it is where |f| says.
