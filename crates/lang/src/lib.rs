@@ -36,6 +36,7 @@ pub mod elab;
 pub mod hir;
 pub mod import;
 pub mod library;
+mod reach;
 pub mod reference;
 pub mod settings;
 pub mod slots;
@@ -84,13 +85,10 @@ pub fn front_with(
         return (None, found);
     }
     // The library comes before the imports, so that its places are the same in every scene.
-    library::with_parsed(sources, |_| ());
+    let library = library::add_to(sources);
     let (imports, of_imports) = import::load(sources, &scene, resolver);
     found.extend(of_imports);
-    let ((program, of_check), of_library) = library::with_parsed(sources, |library| {
-        check_with_imports(library, &imports, (file, &scene))
-    });
-    found.extend(of_library);
+    let (program, of_check) = reach::check(sources, &library, &imports, (file, &scene));
     let parsed = !has_errors(&found);
     // What could not be read may have used or drawn what seems to be idle.
     found.extend(of_check.into_iter().filter(|it| parsed || it.is_error()));

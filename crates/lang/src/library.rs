@@ -3,9 +3,7 @@
 //! Everything that is a shape, a blend or a pattern is written there. A new shape is a new entry
 //! of one of the files; nothing here or elsewhere in Rust names one.
 
-use std::sync::OnceLock;
-
-use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
+use sdfc_diagnostics::{FileId, Sources, Span};
 use sdfc_syntax::ast::{self, DeclKind, Item};
 
 /// Name, as messages show it, and text of each file.
@@ -21,41 +19,15 @@ pub const FILES: &[(&str, &str)] = &[
     ("std/surfaces.sdf", include_str!("../std/surfaces.sdf")),
 ];
 
-/// The library's files as parsed, with the ids that they have in some [`Sources`].
-type Parsed = Vec<(FileId, ast::File)>;
-
-/// Adds the library's files, unless they are there, and runs `use_it` with what they say.
-///
-/// Ids are part of every span, so a parse can be used again only where the files got the same
-/// ids as before: always, where scenes are read into fresh `Sources`.
-pub(crate) fn with_parsed<T>(
-    sources: &mut Sources,
-    use_it: impl FnOnce(&[(FileId, ast::File)]) -> T,
-) -> (T, Vec<Diagnostic>) {
-    static FIRST: OnceLock<Parsed> = OnceLock::new();
-    let ids: Vec<FileId> = FILES.iter().map(|(name, text)| add(sources, name, text)).collect();
-    let first = FIRST.get_or_init(|| parse(sources, &ids).0);
-    if first.iter().map(|(id, _)| *id).eq(ids.iter().copied()) {
-        return (use_it(first), Vec::new());
-    }
-    let (parsed, diagnostics) = parse(sources, &ids);
-    (use_it(&parsed), diagnostics)
+/// Adds the library's files, unless they are there.
+pub(crate) fn add_to(sources: &mut Sources) -> Vec<FileId> {
+    FILES.iter().map(|(name, text)| add(sources, name, text)).collect()
 }
 
 fn add(sources: &mut Sources, name: &str, text: &str) -> FileId {
     let known = (0..sources.len() as u32).map(FileId);
     let mut known = known.filter(|&id| sources.name(id) == name && sources.text(id) == text);
     known.next().unwrap_or_else(|| sources.add(name, text))
-}
-
-fn parse(sources: &Sources, ids: &[FileId]) -> (Parsed, Vec<Diagnostic>) {
-    let mut diagnostics = Vec::new();
-    let parse = |&id: &FileId| {
-        let (file, found) = sdfc_syntax::parse(sources, id);
-        diagnostics.extend(found);
-        (id, file)
-    };
-    (ids.iter().map(parse).collect(), diagnostics)
 }
 
 /// What the reference says of one name: a public declaration of the library, or something that the

@@ -40,10 +40,11 @@ pub(crate) struct Lexed {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Splits a text into tokens. Its length must fit `u32`.
-pub(crate) fn lex(text: &str, file: FileId) -> Lexed {
+/// Splits a text into tokens, from the byte `from` on. Its length must fit `u32`.
+pub(crate) fn lex(text: &str, file: FileId, from: usize) -> Lexed {
     let mut lexed = Lexed { tokens: Vec::new(), comments: Vec::new(), diagnostics: Vec::new() };
-    let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let mark = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let start = if text.is_char_boundary(from) { from.max(mark) } else { text.len() };
     let mut lexer = TokenKind::lexer(text);
     lexer.bump(start);
     let mut previous_end = start;
@@ -189,7 +190,7 @@ mod tests {
     use super::*;
 
     fn kinds(text: &str) -> Vec<TokenKind> {
-        lex(text, FileId(0)).tokens.iter().map(|token| token.kind).collect()
+        lex(text, FileId(0), 0).tokens.iter().map(|token| token.kind).collect()
     }
 
     #[test]
@@ -205,7 +206,7 @@ mod tests {
     #[test]
     fn lines_begin_after_line_feeds_only() {
         let firsts = |text: &str| -> Vec<bool> {
-            lex(text, FileId(0)).tokens.iter().map(|token| token.first).collect()
+            lex(text, FileId(0), 0).tokens.iter().map(|token| token.first).collect()
         };
         assert_eq!(firsts("a b\r\nc // d\ne"), [true, false, true, true, true]);
         assert_eq!(firsts("\u{feff}a // b"), [true, true]);
@@ -214,7 +215,7 @@ mod tests {
     #[test]
     fn a_string_ends_at_its_quote_or_its_line() {
         let texts = |text: &str| -> Vec<String> {
-            let lexed = lex(text, FileId(0));
+            let lexed = lex(text, FileId(0), 0);
             let tokens = lexed.tokens.iter();
             tokens.map(|t| text[t.start as usize..t.end as usize].to_owned()).collect()
         };

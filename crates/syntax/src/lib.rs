@@ -39,7 +39,7 @@ mod parser;
 mod token;
 
 pub use format::format;
-pub use parser::parse;
+pub use parser::{parse, parse_part};
 
 /// The largest file in bytes: 4 MiB.
 pub const MAX_BYTES: usize = 4 << 20;

@@ -41,7 +41,7 @@ use std::rc::Rc;
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, FileId, Span, has_errors};
 use sdfc_graph::Dim;
-use sdfc_syntax::ast;
+use sdfc_syntax::ast::{self, Item};
 
 use crate::hir::{Expr, ExprKind, GlobalId, Param, ParamId, Program, Type};
 use crate::import::{self, Imported};
@@ -71,12 +71,21 @@ pub fn check_with_imports(
     imports: &[Imported],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
+    check_items(&whole(library), imports, scene)
+}
+
+/// As [`check_with_imports`], with those of the library's items that are given for each of its files.
+pub(crate) fn check_items<'a>(
+    library: &[(FileId, Vec<&'a Item>)],
+    imports: &'a [Imported],
+    scene: (FileId, &'a ast::File),
+) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     for import in imports {
-        let module = checker.add_module(&import.tree, Some(&import.path), false);
+        let module = checker.add_module(&import.tree.items, Some(&import.path), false);
         checker.modules[module].whole = import.whole;
     }
-    let module = checker.add_module(scene.1, Some(""), false);
+    let module = checker.add_module(&scene.1.items, Some(""), false);
     for (import, module) in imports.iter().zip(library.len()..) {
         checker.check_imported(module, &import.tree);
     }
@@ -86,11 +95,21 @@ pub fn check_with_imports(
 
 /// Checks every declaration of the library, in both dimensions where it has two.
 pub fn check_library(library: &[(FileId, ast::File)]) -> (Program, Vec<Diagnostic>) {
+    check_library_items(&whole(library))
+}
+
+/// As [`check_library`], of the items that are given for each file.
+pub(crate) fn check_library_items(library: &[(FileId, Vec<&Item>)]) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     for module in 0..library.len() {
         checker.check_declarations(module);
     }
     checker.finish()
+}
+
+/// All items of each file.
+fn whole(library: &[(FileId, ast::File)]) -> Vec<(FileId, Vec<&Item>)> {
+    library.iter().map(|(file, ast)| (*file, ast.items.iter().collect())).collect()
 }
 
 /// Position in [`Checker::decls`].
@@ -176,10 +195,10 @@ struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    fn new(library: &'a [(FileId, ast::File)]) -> Self {
+    fn new(library: &[(FileId, Vec<&'a Item>)]) -> Self {
         let mut checker = Self { settings: settings::table(), ..Self::default() };
-        for (_, ast) in library {
-            checker.add_module(ast, None, true);
+        for (_, items) in library {
+            checker.add_module(items.iter().copied(), None, true);
         }
         checker.program.library = library.iter().map(|(file, _)| *file).collect();
         checker

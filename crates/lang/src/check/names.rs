@@ -76,14 +76,14 @@ impl<'a> Checker<'a> {
     /// Takes in a file: its declarations, lets and params get indices, its names a table.
     pub(super) fn add_module(
         &mut self,
-        ast: &'a ast::File,
+        items: impl IntoIterator<Item = &'a Item>,
         path: Option<&'a str>,
         library: bool,
     ) -> usize {
         let module = self.modules.len();
         let (names, imports) = Default::default();
         self.modules.push(Module { path, whole: true, names, imports });
-        for item in &ast.items {
+        for item in items {
             match item {
                 Item::Decl(decl) => self.add_decl(module, decl),
                 Item::Let(item) => {

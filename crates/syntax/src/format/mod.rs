@@ -51,7 +51,7 @@ pub fn format(sources: &Sources, file: FileId) -> Result<String, Vec<Diagnostic>
         return Err(found);
     }
     let text = sources.text(file);
-    let lexed = lex(text, file);
+    let lexed = lex(text, file, 0);
     let mut source = Source::new(text, &lexed);
     let mut out = String::new();
     let mut after_lines = false;

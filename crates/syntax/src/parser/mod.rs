@@ -12,6 +12,8 @@ mod primary;
 mod report;
 mod signature;
 
+use std::ops::Range;
+
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 
 use crate::ast::File;
@@ -36,11 +38,20 @@ type Parsed<T> = Result<T, Failed>;
 /// a value that could not be read is [`crate::ast::ExprKind::Error`], an item without a name is
 /// absent. An unknown `file` parses as an empty one.
 pub fn parse(sources: &Sources, file: FileId) -> (File, Vec<Diagnostic>) {
+    parse_part(sources, file, 0..sources.text(file).len())
+}
+
+/// Parses some of a file, a range of its bytes, as [`parse`] does all of it. Spans are places in the file.
+///
+/// A part has to begin where an item or its documentation does, and to end where one ends. One that does not
+/// lie in the file parses as an empty one.
+pub fn parse_part(sources: &Sources, file: FileId, part: Range<usize>) -> (File, Vec<Diagnostic>) {
     let text = sources.text(file);
     if text.len() > MAX_BYTES {
         return (File::default(), vec![too_large(file, text.len())]);
     }
-    let lexed = lex(text, file);
+    let text = text.get(..part.end).unwrap_or("");
+    let lexed = lex(text, file, part.start);
     let mut parser = Parser::new(text, file, &lexed.tokens, &lexed.comments);
     for found in lexed.diagnostics {
         parser.report(found);

@@ -1,0 +1,208 @@
+//! What a scene can reach of the library: only that is parsed and checked for it.
+//!
+//! A library item is reached by its name. So what a scene's check can ask for is among the items whose names
+//! stand somewhere in the scene's text, and those whose names stand in these, and so on. Where a check fails, it
+//! is done again with all of the library, since messages propose names that the scene does not have.
+
+use std::ops::Range;
+use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+use sdfc_syntax::ast::{self, Item};
+
+use crate::check::check_items;
+use crate::hir::Program;
+use crate::import::Imported;
+use crate::library;
+
+/// What `|`, `&` and `-` mean, which name nothing; `union` joins what is drawn, too.
+const OPERATORS: [&str; 3] = ["union", "intersection", "difference"];
+
+/// Checks a scene and its imports against the library, whose files have these ids in `sources`.
+pub(crate) fn check(
+    sources: &Sources,
+    library: &[FileId],
+    imports: &[Imported],
+    scene: (FileId, &ast::File),
+) -> (Program, Vec<Diagnostic>) {
+    // Ids are part of every span, so what was read can be used again only where the files have the
+    // same ids: always, where scenes are read into fresh `Sources`.
+    static FIRST: OnceLock<Library> = OnceLock::new();
+    let other;
+    let first = FIRST.get_or_init(|| Library::new(library));
+    let library = if first.files == library {
+        first
+    } else {
+        other = Library::new(library);
+        &other
+    };
+    let files = imports.iter().map(|import| import.file).chain([scene.0]);
+    let reached = library.reached(sources, files.map(|file| sources.text(file)));
+    let checked = check_items(&reached, imports, scene);
+    if has_errors(&checked.1) {
+        return check_items(&library.whole(sources), imports, scene);
+    }
+    checked
+}
+
+/// The library's items by name, each read when a scene first reaches it.
+#[derive(Debug)]
+struct Library {
+    files: Vec<FileId>,
+    parts: Vec<Part>,
+    by_name: FxHashMap<&'static str, Vec<usize>>,
+}
+
+/// Where an item stands.
+#[derive(Debug)]
+struct Part {
+    /// Position among the files.
+    file: usize,
+    /// The item with its documentation, up to the next one's.
+    place: Range<usize>,
+    read: OnceLock<Read>,
+}
+
+#[derive(Debug)]
+struct Read {
+    /// One item: a part holds no more.
+    items: Vec<Item>,
+    /// The parts whose names stand in it.
+    mentions: Vec<usize>,
+}
+
+impl Library {
+    fn new(files: &[FileId]) -> Self {
+        let mut library =
+            Self { files: files.to_vec(), parts: Vec::new(), by_name: FxHashMap::default() };
+        for (file, (_, text)) in library::FILES.iter().enumerate() {
+            for (name, place) in parts(text) {
+                library.by_name.entry(name).or_default().push(library.parts.len());
+                library.parts.push(Part { file, place, read: OnceLock::new() });
+            }
+        }
+        library
+    }
+
+    fn read(&self, sources: &Sources, part: usize) -> &Read {
+        let Part { file, place, read } = &self.parts[part];
+        read.get_or_init(|| {
+            let file = self.files[*file];
+            let lines = sources.text(file)[place.clone()].lines();
+            let code = lines.map(|line| line.split("//").next().unwrap_or(line));
+            let mentions = code.flat_map(words).flat_map(|word| self.named(word)).collect();
+            let (tree, _) = sdfc_syntax::parse_part(sources, file, place.clone());
+            Read { items: tree.items, mentions }
+        })
+    }
+
+    fn named(&self, word: &str) -> impl Iterator<Item = usize> {
+        self.by_name.get(word).into_iter().flatten().copied()
+    }
+
+    /// The items of each file that can be reached from these texts.
+    fn reached<'a>(
+        &self,
+        sources: &Sources,
+        texts: impl Iterator<Item = &'a str>,
+    ) -> Vec<(FileId, Vec<&Item>)> {
+        let mut reached = vec![false; self.parts.len()];
+        let words = texts.flat_map(words).chain(OPERATORS);
+        let mut waiting: Vec<usize> = words.flat_map(|word| self.named(word)).collect();
+        while let Some(part) = waiting.pop() {
+            if !std::mem::replace(&mut reached[part], true) {
+                waiting.extend(&self.read(sources, part).mentions);
+            }
+        }
+        self.items(sources, |part| reached[part])
+    }
+
+    /// All items of each file.
+    fn whole(&self, sources: &Sources) -> Vec<(FileId, Vec<&Item>)> {
+        self.items(sources, |_| true)
+    }
+
+    fn items(
+        &self,
+        sources: &Sources,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Vec<(FileId, Vec<&Item>)> {
+        let mut files: Vec<_> = self.files.iter().map(|file| (*file, Vec::new())).collect();
+        for part in (0..self.parts.len()).filter(|part| wanted(*part)) {
+            files[self.parts[part].file].1.extend(&self.read(sources, part).items);
+        }
+        files
+    }
+}
+
+/// Name and place of each item of a file in the one layout: there an item begins with a letter in the first
+/// column, or with documentation on the lines above.
+fn parts(text: &str) -> Vec<(&str, Range<usize>)> {
+    let mut parts: Vec<(&str, Range<usize>)> = Vec::new();
+    let (mut at, mut documentation) = (0, None);
+    for line in text.split_inclusive('\n') {
+        if line.starts_with("//") {
+            documentation.get_or_insert(at);
+        } else {
+            let start = documentation.take().unwrap_or(at);
+            if line.starts_with(|c: char| c.is_ascii_lowercase()) {
+                if let Some((_, last)) = parts.last_mut() {
+                    last.end = start;
+                }
+                parts.push((words(line).nth(1).unwrap_or(""), start..text.len()));
+            }
+        }
+        at += line.len();
+    }
+    parts
+}
+
+/// What may be names in a text, and more.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|word| !word.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_library() -> (Sources, Library) {
+        let mut sources = Sources::new();
+        let library = Library::new(&library::add_to(&mut sources));
+        (sources, library)
+    }
+
+    #[test]
+    fn the_parts_of_the_library_are_all_of_it() {
+        let (sources, library) = with_library();
+        for (file, items) in library.whole(&sources) {
+            let (whole, found) = sdfc_syntax::parse(&sources, file);
+            assert!(found.is_empty(), "{found:?}");
+            assert_eq!(items, whole.items.iter().collect::<Vec<_>>());
+        }
+    }
+
+    /// Each declaration is reached by its name, with all that its own check asks for.
+    #[test]
+    fn what_is_reached_is_enough() {
+        let (sources, library) = with_library();
+        for name in library.by_name.keys() {
+            let reached = library.reached(&sources, [*name].into_iter());
+            let (_, found) = crate::check::check_library_items(&reached);
+            assert!(!has_errors(&found), "{name}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_no_name_leads_to_is_left_unread() {
+        let (sources, library) = with_library();
+        let count = |files: Vec<(FileId, Vec<&Item>)>| {
+            files.iter().map(|(_, items)| items.len()).sum::<usize>()
+        };
+        let reached = count(library.reached(&sources, ["sphere(1)"].into_iter()));
+        let unread = library.parts.iter().filter(|part| part.read.get().is_none()).count();
+        assert_eq!(reached + unread, library.parts.len());
+        assert!(unread > reached, "{unread} of {}", library.parts.len());
+    }
+}
