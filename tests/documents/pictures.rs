@@ -26,7 +26,7 @@ pub fn drawn(block: &str) -> Vec<u8> {
     let options = PictureOptions {
         size: SIZE,
         backend: Backend::Cpu,
-        samples: SAMPLES,
+        samples: Some(SAMPLES),
         ..Default::default()
     };
     let scene = compile("tutorial.sdf", block).scene.expect("it compiles");

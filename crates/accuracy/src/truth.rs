@@ -11,17 +11,19 @@ use crate::oracle::{Oracle, Prober, Ray, Verdict};
 pub struct Camera {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Where rays start.
+    /// Whether rays are parallel.
+    pub parallel: bool,
+    /// Where rays start, or the middle of where parallel ones do.
     pub eye: [f64; 3],
     /// Through the middle of the picture, at distance 1 from the eye along the camera's axis.
     pub forward: [f64; 3],
-    /// Half the width of the picture at distance 1.
+    /// Half the width of the picture, at distance 1 unless rays are parallel.
     pub right: [f64; 3],
-    /// Half the height of the picture at distance 1.
+    /// Half the height of the picture, at distance 1 unless rays are parallel.
     pub up: [f64; 3],
     /// Rays end here.
     pub t_max: f64,
-    /// Half the width of a pixel at distance 1.
+    /// Half the width of a pixel, at distance 1 unless rays are parallel.
     pub pixel_radius: f64,
 }
 
@@ -31,17 +33,21 @@ impl Camera {
         let [width, height] = self.size.map(|side| side.max(1) as usize);
         let place = |index: usize, side: usize| 2.0 * (index as f64 + 0.5) / side as f64 - 1.0;
         let (x, y) = (place(pixel % width, width), place(pixel / width, height));
-        let toward: [f64; 3] = std::array::from_fn(|axis| {
-            self.forward[axis] + x * self.right[axis] - y * self.up[axis]
-        });
+        let aside = |axis: usize| x * self.right[axis] - y * self.up[axis];
+        let moved = |from: [f64; 3]| std::array::from_fn(|axis| from[axis] + aside(axis));
+        let (origin, toward) = if self.parallel {
+            (moved(self.eye), self.forward)
+        } else {
+            (self.eye, moved(self.forward))
+        };
         let length = toward.iter().map(|part| part * part).sum::<f64>().sqrt();
         let direction = toward.map(|part| part / length);
-        Ray { origin: self.eye, direction, t_max: self.t_max }
+        Ray { origin, direction, t_max: self.t_max }
     }
 
     /// Width of a pixel at a distance.
     pub fn pixel_width(&self, t: f64) -> f64 {
-        2.0 * self.pixel_radius * t
+        2.0 * self.pixel_radius * if self.parallel { 1.0 } else { t }
     }
 
     /// How many pixels.

@@ -245,10 +245,10 @@ pub struct Render {
     /// Frames a second
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = sequence::rate)]
     pub fps: f64,
-    /// Rays from the eye for each pixel, averaged
-    #[arg(long, value_name = "N", default_value_t = 1,
+    /// Rays from the eye for each pixel, averaged; the scene's `antialias(...)` or 1 if not given
+    #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
-    pub samples: u32,
+    pub samples: Option<u32>,
     /// Where depths go, as an EXR: channel Z, the distance along each pixel's ray in scene units, infinite
     /// where nothing is met
     #[arg(long, value_name = "OUT.exr")]

@@ -79,7 +79,7 @@ fn functions(
     nodes.extend(material.into_iter().flatten());
 
     let mut module = match method {
-        Some(method) => link::skeleton(&ray_source(method), &[])?,
+        Some(method) => link::skeleton(&ray_source(method), &[], &[stubs::PASSED])?,
         None => Module::default(),
     };
     module.entry_points.clear();

@@ -1,25 +1,41 @@
 //! From the text of `march` to a module whose stubs a scene can fill.
 
 use naga::compact::{KeepUnused, compact};
-use naga::{Block, Expression, Function, GlobalVariable, Handle, Module, Statement};
-use rustc_hash::FxHashSet;
+use naga::{Arena, Block, Expression, Function, GlobalVariable, Handle, Module, Statement};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::Error;
 
-/// Parses joined files, drops the calls to functions of `unused` and all that only they reached.
-pub(crate) fn skeleton(source: &str, unused: &[&str]) -> Result<Module, Error> {
+/// Parses joined files, takes one side of each branch on an override, and drops the calls to functions of `unused`,
+/// with all that only they and the other sides reached. `overrides` has a value for each override of the files.
+pub(crate) fn skeleton(
+    source: &str,
+    overrides: &[(&str, bool)],
+    unused: &[&str],
+) -> Result<Module, Error> {
     let mut module = naga::front::wgsl::parse_str(source)
         .map_err(|error| Error::Naga(error.emit_to_string(source)))?;
-    let dropped: FxHashSet<_> =
-        unused.iter().filter_map(|name| find_function(&module, name)).collect();
-    for (_, function) in module.functions.iter_mut() {
-        drop_calls(&mut function.body, &dropped);
+    let dropped = unused.iter().filter_map(|name| find_function(&module, name)).collect();
+    let value = |name: &Option<String>| {
+        let found = overrides.iter().find(|known| Some(known.0) == name.as_deref());
+        found.is_some_and(|known| known.1)
+    };
+    let values = module.overrides.iter().map(|(handle, known)| (handle, value(&known.name)));
+    let choices = Choices { dropped, values: values.collect() };
+    let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
+    for function in module.functions.iter_mut().map(|(_, function)| function).chain(entries) {
+        let conditions = choices.conditions(function);
+        let mut gone = Vec::new();
+        choices.apply(&mut function.body, &conditions, &mut gone);
+        forget(&gone, function);
     }
-    for entry in &mut module.entry_points {
-        drop_calls(&mut entry.function.body, &dropped);
+    // `compact` keeps what is named; the overrides' conditions are gone, those that were taken too.
+    for (_, known) in module.overrides.iter_mut() {
+        known.name = None;
     }
     // The files are valid beside each other, as `compact` requires; a test joins each of them.
     compact(&mut module, KeepUnused::No);
+    module.functions.iter_mut().for_each(|(_, function)| drop_unused_variables(function));
     drop_unused_constants(&mut module);
     Ok(module)
 }
@@ -47,20 +63,103 @@ pub(crate) fn fill(module: &mut Module, name: &str, filling: Function) -> Result
     Ok(())
 }
 
-/// Removes the calls to functions without a result. Blocks nest as deep as the files of `march`
-/// write them.
-fn drop_calls(block: &mut Block, dropped: &FxHashSet<Handle<Function>>) {
-    let kept = std::mem::take(block).span_into_iter().filter(|(statement, _)| {
-        !matches!(statement, Statement::Call { function, result: None, .. } if dropped.contains(function))
-    });
-    let mut rest = Block::new();
-    for (mut statement, span) in kept {
-        for inner in inner_blocks(&mut statement) {
-            drop_calls(inner, dropped);
-        }
-        rest.push(statement, span);
+/// What is decided when a module is linked.
+struct Choices {
+    /// Functions whose calls go.
+    dropped: FxHashSet<Handle<Function>>,
+    values: FxHashMap<Handle<naga::Override>, bool>,
+}
+
+impl Choices {
+    /// The conditions of a function that are overrides, and their values.
+    fn conditions(&self, function: &Function) -> FxHashMap<Handle<Expression>, bool> {
+        let expressions = function.expressions.iter().filter_map(|(handle, expression)| {
+            let Expression::Override(known) = expression else { return None };
+            Some((handle, *self.values.get(known)?))
+        });
+        expressions.collect()
     }
-    *block = rest;
+
+    /// Removes the calls to functions without a result, and the sides of branches that are not taken, which are
+    /// added to `gone`. Blocks nest as deep as the files of `march` write them.
+    fn apply(
+        &self,
+        block: &mut Block,
+        conditions: &FxHashMap<Handle<Expression>, bool>,
+        gone: &mut Vec<Block>,
+    ) {
+        let mut rest = Block::new();
+        for (mut statement, span) in std::mem::take(block).span_into_iter() {
+            if let Statement::Call { function, result: None, .. } = &statement
+                && self.dropped.contains(function)
+            {
+                continue;
+            }
+            for inner in inner_blocks(&mut statement) {
+                self.apply(inner, conditions, gone);
+            }
+            match statement {
+                Statement::If { condition, accept, reject }
+                    if conditions.contains_key(&condition) =>
+                {
+                    let (taken, other) =
+                        if conditions[&condition] { (accept, reject) } else { (reject, accept) };
+                    append(&mut rest, taken);
+                    gone.push(other);
+                }
+                // What continues a loop is not reached where it is left first.
+                Statement::Loop { mut body, .. } if runs_once(&body) => {
+                    body.cull(body.len() - 1..);
+                    append(&mut rest, body);
+                }
+                other => rest.push(other, span),
+            }
+        }
+        *block = rest;
+    }
+}
+
+/// Takes the names of values that were computed in blocks: what has a name is kept, and must be computed.
+fn forget(gone: &[Block], function: &mut Function) {
+    let mut todo: Vec<&Statement> = gone.iter().flat_map(|block| block.iter()).collect();
+    while let Some(statement) = todo.pop() {
+        match statement {
+            Statement::Emit(range) => range.clone().for_each(|value| {
+                function.named_expressions.swap_remove(&value);
+            }),
+            Statement::Call { result: Some(value), .. } => {
+                function.named_expressions.swap_remove(value);
+            }
+            other => todo.extend(nested(other)),
+        }
+    }
+}
+
+fn append(block: &mut Block, other: Block) {
+    for (statement, span) in other.span_into_iter() {
+        block.push(statement, span);
+    }
+}
+
+/// Whether a loop's body ends in `break`, and nowhere else ends a turn.
+fn runs_once(body: &Block) -> bool {
+    let leaves =
+        |statement: &Statement| matches!(statement, Statement::Break | Statement::Continue);
+    let Some((Statement::Break, before)) = body.split_last() else { return false };
+    let mut todo: Vec<&Statement> = before.iter().collect();
+    while let Some(statement) = todo.pop() {
+        if leaves(statement) {
+            return false;
+        }
+        // A loop within is left and continued by its own; in a switch, either may be meant.
+        match statement {
+            Statement::Block(block) => todo.extend(block.iter()),
+            Statement::If { accept, reject, .. } => todo.extend(accept.iter().chain(reject.iter())),
+            Statement::Switch { .. } => return false,
+            _ => {}
+        }
+    }
+    true
 }
 
 fn inner_blocks(statement: &mut Statement) -> Vec<&mut Block> {
@@ -75,6 +174,36 @@ fn inner_blocks(statement: &mut Statement) -> Vec<&mut Block> {
     } else {
         Vec::new()
     }
+}
+
+/// The statements of the blocks of a statement.
+fn nested(statement: &Statement) -> Vec<&Statement> {
+    if let Statement::Block(block) = statement {
+        block.iter().collect()
+    } else if let Statement::If { accept, reject, .. } = statement {
+        accept.iter().chain(reject.iter()).collect()
+    } else if let Statement::Switch { cases, .. } = statement {
+        cases.iter().flat_map(|case| case.body.iter()).collect()
+    } else if let Statement::Loop { body, continuing, .. } = statement {
+        body.iter().chain(continuing.iter()).collect()
+    } else {
+        Vec::new()
+    }
+}
+
+/// `compact` keeps all local variables.
+fn drop_unused_variables(function: &mut Function) {
+    let mut variables = Arena::new();
+    let mut places = FxHashMap::default();
+    for (_, expression) in function.expressions.iter_mut() {
+        if let Expression::LocalVariable(old) = expression {
+            let span = function.local_variables.get_span(*old);
+            let variable = &function.local_variables[*old];
+            let place = places.entry(*old);
+            *old = *place.or_insert_with(|| variables.append(variable.clone(), span));
+        }
+    }
+    function.local_variables = variables;
 }
 
 /// `compact` keeps all named constants.

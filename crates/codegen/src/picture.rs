@@ -2,7 +2,7 @@
 
 use naga::{Module, ResourceBinding};
 use rustc_hash::FxHashSet;
-use sdfc_graph::{NodeId, Program, Shadow, reachable_where};
+use sdfc_graph::{Lens, LightSource, NodeId, Program, Shadow, reachable_where};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
@@ -21,8 +21,7 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// absent where the functions use none of them ([`crate::Reflection::uniform`] is `None`). 2: storage
 /// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row.
 ///
-/// Shadows are linked where a light of the settings casts one, soft ones as hard ones; materials where
-/// the program has them; reflections where the settings want at least one.
+/// Of shading, what the settings and the program need is linked and nothing else: [`Shader::features`] tells.
 ///
 /// # Errors
 ///
@@ -55,8 +54,8 @@ pub fn measured_module(
     };
     let features = Features { materials: false, ..features(program) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
-    let unused: &[&str] = if used.is_empty() { &[stubs::LOAD_FRAME] } else { &[] };
-    let mut module = link::skeleton(&source_over(field, Form::Compute, method, features), unused)?;
+    let source = source_over(field, Form::Compute, method, features);
+    let mut module = skeleton(&source, features, &used, &[])?;
     let (inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
@@ -190,10 +189,8 @@ impl<'p> Picture<'p> {
         let mut roots: Vec<_> = filled.iter().map(|&(.., root)| root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);
-        let mut unused = unused.to_vec();
-        unused.extend(used.is_empty().then_some(stubs::LOAD_FRAME));
         let source = source_over(FieldSource::Scene, form, method, features);
-        let module = link::skeleton(&source, &unused)?;
+        let module = skeleton(&source, features, &used, unused)?;
         let (inputs, parts) = Default::default();
         Ok(Self { program, filled, features, used, module, inputs, parts })
     }
@@ -248,14 +245,45 @@ pub(crate) fn known_method(name: &str) -> Result<&'static Method, Error> {
     method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
 }
 
+/// Files of `march` without what these features and slots do not need, nor calls to `unused` functions.
+fn skeleton(
+    source: &str,
+    features: Features,
+    used_slots: &[usize],
+    unused: &[&str],
+) -> Result<Module, Error> {
+    let mut unused = unused.to_vec();
+    unused.extend(features.unused());
+    unused.extend(used_slots.is_empty().then_some(stubs::LOAD_FRAME));
+    link::skeleton(source, &features.overrides(), &unused)
+}
+
 /// What a scene's picture needs beyond the least.
 fn features(program: &Program) -> Features {
-    let shadows = program.settings.lights.iter().any(|light| match light.shadow {
-        Shadow::Off => false,
-        Shadow::Hard | Shadow::Soft(_) => true,
-    });
-    let reflections = program.settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
-    Features { shadows, materials: program.material.is_some(), reflections }
+    let settings = &program.settings;
+    let mut features = Features {
+        materials: program.material.is_some(),
+        reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
+        occlusion: settings.occlusion.is_some(),
+        sky: settings.sky.is_some(),
+        fog: settings.fog.is_some(),
+        fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
+        parallel: matches!(settings.camera.map(|camera| camera.lens), Some(Lens::Height(_))),
+        ..Features::default()
+    };
+    for light in &settings.lights {
+        match light.source {
+            LightSource::Sun { .. } => {}
+            LightSource::Point { .. } => features.lamps = true,
+            LightSource::Spot { .. } => (features.lamps, features.spots) = (true, true),
+        }
+        match light.shadow {
+            Shadow::Off => {}
+            Shadow::Hard => features.shadows = true,
+            Shadow::Soft(_) => (features.shadows, features.soft_shadows) = (true, true),
+        }
+    }
+    features
 }
 
 /// Positions in `Program::uniforms` of those that the roots read.

@@ -5,7 +5,7 @@ use naga::{
     Scalar, Span, Statement, TypeInner,
 };
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{FrameInput, Node, NodeId, Program, Type};
+use sdfc_graph::{Camera, FrameInput, Lens, Node, NodeId, Program, Type};
 use sdfc_march::{Form, stubs};
 
 use crate::inputs::{Inputs, Raw, input_name, raw_inputs};
@@ -32,8 +32,7 @@ pub fn shadertoy_module(
     let mut picture = Picture::skeleton(program, Form::Shadertoy, method, &unused_loads(program))?;
     picture.module.entry_points.clear();
 
-    let camera = program.settings.camera.as_ref();
-    let camera = camera.map(|c| [c.eye, c.target, c.up, c.fov]);
+    let camera = program.settings.camera.as_ref().map(camera_nodes);
     let mut nodes = picture.slot_nodes();
     nodes.extend(camera.into_iter().flatten());
     let raw = declare_raw(&mut picture.module, program, &nodes)?;
@@ -51,10 +50,16 @@ pub fn shadertoy_module(
     picture.finish()
 }
 
+/// In the order of `Camera` of `shadertoy.wgsl`.
+fn camera_nodes(camera: &Camera) -> [NodeId; 4] {
+    let Camera { eye, target, up, lens: Lens::Fov(lens) | Lens::Height(lens) } = *camera;
+    [eye, target, up, lens]
+}
+
 /// Calls of `shadertoy.wgsl` that the program has no need of.
 fn unused_loads(program: &Program) -> Vec<&'static str> {
     let mut nodes = program.uniforms.clone();
-    nodes.extend(program.settings.camera.iter().flat_map(|c| [c.eye, c.target, c.up, c.fov]));
+    nodes.extend(program.settings.camera.iter().flat_map(camera_nodes));
     let raw = raw_inputs(program, &nodes);
     let is_used = |input| raw.iter().any(|(found, _)| *found == input);
     let is_param = |node| matches!(node, Node::Frame(FrameInput::Param(_), _));

@@ -6,7 +6,10 @@ mod common;
 
 use std::mem::{offset_of, size_of};
 
-use common::{blend, chain, lit, mirrored, number_param, painted, program, sphere, twisted};
+use common::{
+    FEATURES, blend, chain, featured, lit, mirrored, number_param, painted, program, sphere,
+    twisted,
+};
 use sdfc_codegen::{
     Error, FieldOptions, PictureOptions, Role, Stage, field_module, march_module, picture_module,
     render_module, shadertoy_module,
@@ -54,6 +57,19 @@ fn every_method_links_with_every_kind_of_scene() {
 }
 
 #[test]
+fn any_two_features_and_all_but_one_link_together() {
+    let (none, all) = (0, (1 << FEATURES) - 1);
+    let bits = (0..FEATURES as u32).map(|bit| 1 << bit);
+    let pairs = bits.clone().flat_map(|one| bits.clone().map(move |other| one | other));
+    for chosen in pairs.chain(bits.clone().map(|one| all & !one)).chain([none, all]) {
+        let shader = render_module(&featured(painted(), chosen), "auto").expect("links");
+        common::check(&shader.wgsl().expect("is written"));
+        common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
+        assert!(shader.module().overrides.is_empty());
+    }
+}
+
+#[test]
 fn every_scene_has_a_field_module() {
     for scene in scenes() {
         for prefix in ["", "sdf_", "scene2", "_x_"] {
@@ -91,9 +107,12 @@ fn blocks_have_the_layout_of_the_shader() {
         layout(module, "View"),
         block!(ViewBlock: eye pixel_radius right t_max up epsilon forward steps size tile_origin
             tile_size light_count pad ambient reflections background reflection_strength
-            lights)
+            zenith fog_density horizon occlusion_radius fog_color occlusion_strength lights)
     );
-    assert_eq!(layout(module, "Light"), block!(LightBlock: direction shadow color pad));
+    assert_eq!(
+        layout(module, "Light"),
+        block!(LightBlock: place kind color shadow axis sharpness rim pad)
+    );
     assert_eq!(
         layout(module, "Pixel"),
         block!(PixelBlock: color depth status evaluations primary_evaluations)

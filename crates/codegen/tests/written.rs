@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{blend, lit, mirrored, painted, sphere, twisted};
+use common::{FEATURES, blend, featured, lit, mirrored, painted, sphere, twisted};
 use sdfc_codegen::{
     Code, Error, FieldOptions, PictureOptions, Shader, Stage, Target, field_module, march_module,
     picture_module, render_module, shadertoy_module,
@@ -77,8 +77,12 @@ fn a_mirror_links_the_mirrored_ray_and_no_shadow() {
 
 #[test]
 fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
-    let all = mirrored(lit(painted(), Shadow::Hard));
-    for method in METHODS {
+    let shadowed = mirrored(lit(painted(), Shadow::Hard));
+    let unoccluded = (1 << FEATURES) - 1 - (1 << 5);
+    for (method, all) in METHODS
+        .into_iter()
+        .flat_map(|method| [(method, shadowed.clone()), (method, featured(painted(), unoccluded))])
+    {
         let shader = render_module(&all, method.name).expect("links");
         let text = shader.wgsl().expect("is written");
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();

@@ -156,6 +156,9 @@ codes! {
     NOT_YET "E0411" "A part of the language that this version does not have"
         "The specification has it, this version of the compiler does not; nothing is drawn in its place."
         "remove it; nothing is drawn in its place";
+    TOO_MANY_LIGHTS "E0412" "More lights than are drawn"
+        "A scene has at most 8 lights, those of all kinds counted: each is asked for at every point that is seen."
+        "remove one, or let `ambient` stand for the weakest";
 
     PROMISE_BROKEN "E0502" "A promise that sampling refutes"
         "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."

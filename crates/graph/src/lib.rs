@@ -71,7 +71,10 @@ pub use node::{
 };
 pub use program::Program;
 pub use range::Range;
-pub use scene::{Camera, Light, March, Param, ParamKind, Reflections, Scene, Settings, Shadow};
+pub use scene::{
+    Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
+    Settings, Shadow, Sky,
+};
 pub use shape::{Arg, Contract, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};
 pub use walk::{reachable, reachable_where};

@@ -38,19 +38,27 @@ pub enum ParamKind {
     Choice,
 }
 
-/// How the scene is drawn. Nodes are of stage `Const` or `Frame`.
+/// How the scene is drawn. Nodes are of stage `Const` or `Frame`, colours linear.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// None: fitted to the bounds.
     pub camera: Option<Camera>,
     /// None at all: a head light.
     pub lights: Vec<Light>,
-    /// Linear colour of light from everywhere (strength applied).
+    /// Colour of light from everywhere (strength applied).
     pub ambient: Option<NodeId>,
-    /// Linear colour behind everything.
+    /// Colour behind everything.
     pub background: Option<NodeId>,
+    /// Colours behind everything, by direction.
+    pub sky: Option<Sky>,
+    /// What is far away fades.
+    pub fog: Option<Fog>,
+    /// Light from everywhere does not reach everything.
+    pub occlusion: Option<Occlusion>,
     /// Mirror reflections; none: surfaces show lamps alone.
     pub reflections: Option<Reflections>,
+    /// Rays from the eye for each pixel.
+    pub samples: Option<u32>,
     /// How rays are marched.
     pub march: March,
 }
@@ -59,25 +67,56 @@ impl Settings {
     /// All nodes that the settings are made of.
     pub fn nodes(&self) -> Vec<NodeId> {
         // Taken apart so that a new setting does not compile until it is thought of here.
-        let Self { camera, lights, ambient, background, reflections, march: _ } = self;
-        let camera = camera.iter().flat_map(|camera| {
-            let Camera { eye, target, up, fov } = *camera;
-            [eye, target, up, fov]
-        });
-        let lights = lights.iter().flat_map(|light| {
-            let Light { direction, color, shadow } = *light;
-            let sharpness = match shadow {
-                Shadow::Soft(sharpness) => Some(sharpness),
-                Shadow::Off | Shadow::Hard => None,
-            };
-            [Some(direction), Some(color), sharpness].into_iter().flatten()
-        });
-        let strength = reflections.as_ref().map(|Reflections { count: _, strength }| *strength);
-        camera.chain(lights).chain(*ambient).chain(*background).chain(strength).collect()
+        let Self {
+            camera,
+            lights,
+            ambient,
+            background,
+            sky,
+            fog,
+            occlusion,
+            reflections,
+            samples: _,
+            march: _,
+        } = self;
+        let mut nodes = Vec::new();
+        if let Some(Camera { eye, target, up, lens: Lens::Fov(size) | Lens::Height(size) }) =
+            *camera
+        {
+            nodes.extend([eye, target, up, size]);
+        }
+        for Light { source, color, shadow } in lights {
+            match *source {
+                LightSource::Sun { direction } => nodes.push(direction),
+                LightSource::Point { position } => nodes.push(position),
+                LightSource::Spot { position, target, angle } => {
+                    nodes.extend([position, target, angle]);
+                }
+            }
+            nodes.push(*color);
+            match *shadow {
+                Shadow::Soft(sharpness) => nodes.push(sharpness),
+                Shadow::Off | Shadow::Hard => {}
+            }
+        }
+        nodes.extend(ambient.iter().chain(background));
+        if let Some(Sky { zenith, horizon }) = *sky {
+            nodes.extend([zenith, horizon]);
+        }
+        if let Some(Fog { density, color }) = *fog {
+            nodes.extend(Some(density).into_iter().chain(color));
+        }
+        if let Some(Occlusion { radius, strength }) = *occlusion {
+            nodes.extend([radius, strength]);
+        }
+        if let Some(Reflections { count: _, strength }) = *reflections {
+            nodes.push(strength);
+        }
+        nodes
     }
 }
 
-/// A perspective camera, right-handed, y up.
+/// A camera, right-handed, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Position, 3-vector.
@@ -86,19 +125,79 @@ pub struct Camera {
     pub target: NodeId,
     /// Upward direction, 3-vector.
     pub up: NodeId,
-    /// Vertical field of view, radians.
-    pub fov: NodeId,
+    /// How its rays spread.
+    pub lens: Lens,
 }
 
-/// A directional light.
+/// How a camera's rays spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lens {
+    /// From one point; vertical field of view, radians.
+    Fov(NodeId),
+    /// Not at all; height of the picture.
+    Height(NodeId),
+}
+
+/// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Towards the light, 3-vector, of any length.
-    pub direction: NodeId,
-    /// Linear colour times strength, 3-vector.
+    /// Where its light comes from.
+    pub source: LightSource,
+    /// Linear colour times strength, 3-vector: of a sun anywhere, of others at distance 1.
     pub color: NodeId,
     /// Its shadow.
     pub shadow: Shadow,
+}
+
+/// Where a light comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightSource {
+    /// From infinitely far away.
+    Sun {
+        /// Towards the light, 3-vector, of any length.
+        direction: NodeId,
+    },
+    /// From a point, in all directions.
+    Point {
+        /// 3-vector.
+        position: NodeId,
+    },
+    /// From a point, in a cone.
+    Spot {
+        /// 3-vector.
+        position: NodeId,
+        /// A point on the middle of the cone, 3-vector.
+        target: NodeId,
+        /// From the middle of the cone to its edge, radians.
+        angle: NodeId,
+    },
+}
+
+/// What is seen where nothing is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sky {
+    /// Colour straight up, 3-vector.
+    pub zenith: NodeId,
+    /// Colour at the horizon and below it, 3-vector.
+    pub horizon: NodeId,
+}
+
+/// What is far away fades.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fog {
+    /// Per length: after a length of 1 / density, 1 / e of a surface's light is left.
+    pub density: NodeId,
+    /// Colour that it fades to, 3-vector; none: what lies behind.
+    pub color: Option<NodeId>,
+}
+
+/// How much of the light from everywhere reaches a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Occlusion {
+    /// What is farther away takes no light.
+    pub radius: NodeId,
+    /// 0 for none to 1 for all of it.
+    pub strength: NodeId,
 }
 
 /// What surfaces mirror of each other.

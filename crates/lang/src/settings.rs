@@ -40,7 +40,18 @@ pub fn table() -> Vec<SettingRow> {
     let position = ("position", vec3.clone(), false, "where it is, in scene units");
     let color = ("color", Color, true, "its colour; white if not given");
     let strength = ("strength", Number, true, "what its colour is multiplied by; 1 if not given");
-    let shadow = ("shadow", Shadow, true, "`hard` or `soft(sharpness)`; none if not given");
+    let brightness = (
+        "strength",
+        Number,
+        true,
+        "what its colour is multiplied by at distance 1, a quarter of it at 2; 1 if not given",
+    );
+    let shadow = (
+        "shadow",
+        Shadow,
+        true,
+        "`hard`, or `soft(k)` whose edge fades over 1 / k of the way from what throws it; none if not given",
+    );
     vec![
         row(
             (Kind::Camera, "camera", ONCE),
@@ -70,20 +81,31 @@ pub fn table() -> Vec<SettingRow> {
         ),
         row(
             (Kind::Sky, "sky", ONCE),
-            "Light and background from above, in two colours.",
+            "What is seen, and mirrored, where nothing is met: the horizon's colour turns into the zenith's \
+             upwards. It lights nothing; `ambient` does.",
             "sky(zenith: #4477bb, horizon: #dde8f0)",
             &[
-                ("zenith", Color, true, "the colour straight up"),
-                ("horizon", Color, true, "the colour at the horizon"),
+                ("zenith", Color, true, "the colour straight up; #4477bb if not given"),
+                (
+                    "horizon",
+                    Color,
+                    true,
+                    "the colour at the horizon and below it; #dde8f0 if not given",
+                ),
             ],
         ),
         row(
             (Kind::Fog, "fog", ONCE),
-            "What is far away fades.",
+            "What is far away fades: of a surface at distance t its colour stays by exp(-density * t).",
             "fog(density: 0.05)",
             &[
-                ("density", Number, true, "how fast, per scene unit"),
-                ("color", Color, true, "what it fades to; the background if not given"),
+                ("density", Number, true, "how fast, per scene unit; 0.05 if not given"),
+                (
+                    "color",
+                    Color,
+                    true,
+                    "what it fades to; the sky or the background behind it if not given",
+                ),
             ],
         ),
         row(
@@ -97,13 +119,18 @@ pub fn table() -> Vec<SettingRow> {
             "Corners that little ambient light reaches are darker.",
             "ambient_occlusion(radius: 0.3)",
             &[
-                ("radius", Number, true, "how far away things count, in scene units"),
-                ("strength", Number, true, "0 for none to 1 for all of it"),
+                (
+                    "radius",
+                    Number,
+                    true,
+                    "how far away things count, in scene units; 0.3 if not given",
+                ),
+                ("strength", Number, true, "0 for none to 1 for all of it; 1 if not given"),
             ],
         ),
         row(
             (Kind::Reflections, "reflections", ONCE),
-            "Surfaces mirror one another, the smoother the more.",
+            "Surfaces mirror one another and what lies behind, all alike.",
             "reflections(count: 2, strength: 0.5)",
             &[
                 ("count", Int, true, "how many mirrors a ray follows, at most 8; 1 if not given"),
@@ -117,9 +144,9 @@ pub fn table() -> Vec<SettingRow> {
         ),
         row(
             (Kind::Antialias, "antialias", ONCE),
-            "Several rays for each pixel, averaged.",
+            "Several rays for each pixel, averaged. `--samples` goes before it.",
             "antialias(samples: 4)",
-            &[("samples", Int, true, "how many")],
+            &[("samples", Int, true, "how many, at most 1024; 4 if not given")],
         ),
         row(
             (Kind::March, "march", ONCE),
@@ -157,18 +184,23 @@ pub fn table() -> Vec<SettingRow> {
             (Kind::PointLight, "point_light", false),
             "A light at a place, which shines in all directions.",
             "point_light(position: [0, 3, 0], strength: 5)",
-            &[position.clone(), color.clone(), strength.clone(), shadow.clone()],
+            &[position.clone(), color.clone(), brightness.clone(), shadow.clone()],
         ),
         row(
             (Kind::SpotLight, "spot_light", false),
             "A light at a place, which shines in a cone.",
-            "spot_light(position: [0, 3, 0], angle: 20deg)",
+            "spot_light(position: [0, 3, 0], angle: 20deg, strength: 9)",
             &[
                 position,
                 ("target", vec3, true, "what it shines at; the origin if not given"),
-                ("angle", Angle, true, "from the middle of the cone to its edge"),
+                (
+                    "angle",
+                    Angle,
+                    true,
+                    "from the middle of the cone to its edge; 30deg if not given",
+                ),
                 color,
-                strength,
+                brightness,
                 shadow,
             ],
         ),

@@ -43,7 +43,12 @@ shows! {
     too_many_rounds: "sphere(iterate(5000, 1, fn(s) = s))\n";
     an_infinite_radius: "let r = inf\nsphere(r)\n";
     a_list_too_short: "solid it() = min([for x in [1] if x > 2: x])\nit()\n";
-    settings_of_a_later_version: "sphere(1)\nfog(density: 0.1)\nsun(shadow: soft(8))\n";
+    a_sky_and_a_background: "sphere(1)\nsky()\nbackground(#123)\n";
+    lights_out_of_range:
+        "sphere(1)\nsun(shadow: soft(0))\nspot_light(position: [0, 3, 0], angle: 90deg)\nfog(density: -1)\nambient_occlusion(radius: 0, strength: 2)\nantialias(samples: 0)\n";
+    more_lights_than_are_drawn:
+        "sphere(1)\nsun()\nsun()\nsun()\nsun()\nsun()\npoint_light(position: 1)\nspot_light(position: 2)\nsun()\nsun()\npoint_light(position: 3)\n";
+    a_parallel_camera_without_height: "sphere(1)\ncamera(eye: [0, 0, 5], height: 0)\n";
     reflections_out_of_range: "sphere(1)\nreflections(count: 9, strength: 1.5)\n";
     settings_out_of_range: "sphere(1)\nmarch(steps: 0, method: \"spere\")\n";
 }

@@ -49,12 +49,67 @@ pub fn method(name: &str) -> Option<&'static Method> {
 /// What a scene needs beyond the least.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Features {
-    /// Some light casts a hard shadow.
-    pub shadows: bool,
     /// Something is painted.
     pub materials: bool,
+    /// Some light casts a shadow.
+    pub shadows: bool,
+    /// Some light's shadow is soft.
+    pub soft_shadows: bool,
+    /// Some light stands at a point.
+    pub lamps: bool,
+    /// Some light shines in a cone.
+    pub spots: bool,
     /// Surfaces mirror each other.
     pub reflections: bool,
+    /// Light from everywhere does not reach everything.
+    pub occlusion: bool,
+    /// The background changes with the direction.
+    pub sky: bool,
+    /// What is far away fades.
+    pub fog: bool,
+    /// It fades to a colour of its own.
+    pub fog_color: bool,
+    /// Rays from the eye are parallel.
+    pub parallel: bool,
+}
+
+impl Features {
+    /// The overrides of `features.wgsl` and their values.
+    pub fn overrides(self) -> [(&'static str, bool); 10] {
+        // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
+        // of their own.
+        let Self {
+            materials: _,
+            shadows,
+            soft_shadows,
+            lamps,
+            spots,
+            reflections,
+            occlusion,
+            sky,
+            fog,
+            fog_color,
+            parallel,
+        } = self;
+        [
+            ("SHADOWS", shadows),
+            ("SOFT_SHADOWS", soft_shadows),
+            ("LAMPS", lamps),
+            ("SPOTS", spots),
+            ("REFLECTIONS", reflections),
+            ("OCCLUSION", occlusion),
+            ("SKY", sky),
+            ("FOG", fog),
+            ("FOG_COLOR", fog_color),
+            ("PARALLEL", parallel),
+        ]
+    }
+
+    /// Functions whose calls have no use.
+    pub fn unused(self) -> Vec<&'static str> {
+        let stubs = [(stubs::PASSED, self.soft_shadows), (stubs::SLOPED, self.occlusion)];
+        stubs.into_iter().filter(|stub| !stub.1).map(|stub| stub.0).collect()
+    }
 }
 
 /// Where a picture's distance and gradient come from. Pictures that are compared for speed differ in nothing
@@ -115,39 +170,37 @@ impl Form {
     }
 }
 
-/// Text of a picture's shader: whole files, joined.
+/// Text of a picture's shader: whole files, joined. Of all branches on `features.wgsl` both sides are still there.
 pub fn source(method: &Method, features: Features) -> String {
     source_over(FieldSource::Scene, Form::Compute, method, features)
 }
 
 /// As [`source`], with the distance and the gradient from elsewhere, or called otherwise.
 pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Features) -> String {
+    let [field, gradient] = field.files();
     let shade = if features.materials {
         include_str!("wgsl/shade_painted.wgsl")
     } else {
         include_str!("wgsl/shade_plain.wgsl")
     };
-    let picture = match (features.reflections, features.shadows) {
-        (false, false) => include_str!("wgsl/picture_plain.wgsl"),
-        (false, true) => include_str!("wgsl/picture_shadowed.wgsl"),
-        (true, false) => include_str!("wgsl/picture_reflected.wgsl"),
-        (true, true) => include_str!("wgsl/picture_reflected_shadowed.wgsl"),
-    };
-    let [field, gradient] = field.files();
     let mut files = vec![
+        include_str!("wgsl/features.wgsl"),
         include_str!("wgsl/view.wgsl"),
         field,
         method.gradient.unwrap_or(gradient),
         include_str!("wgsl/frame.wgsl"),
         RAY,
+        PASSED,
         method.source,
+        include_str!("wgsl/lamp.wgsl"),
+        include_str!("wgsl/occlusion.wgsl"),
         include_str!("wgsl/shade.wgsl"),
         shade,
+        include_str!("wgsl/secondary.wgsl"),
+        include_str!("wgsl/behind.wgsl"),
+        include_str!("wgsl/pixel.wgsl"),
+        include_str!("wgsl/picture.wgsl"),
     ];
-    if features.shadows || features.reflections {
-        files.push(include_str!("wgsl/secondary.wgsl"));
-    }
-    files.extend([include_str!("wgsl/pixel.wgsl"), picture]);
     files.extend(form.files());
     files.join("\n")
 }
@@ -156,10 +209,11 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
 /// reach `trace`.
 pub fn ray_source(method: &Method) -> String {
     let [field, _] = FieldSource::Scene.files();
-    [field, RAY, method.source, include_str!("wgsl/anchor.wgsl")].join("\n")
+    [field, RAY, PASSED, method.source, include_str!("wgsl/anchor.wgsl")].join("\n")
 }
 
 const RAY: &str = include_str!("wgsl/ray.wgsl");
+const PASSED: &str = include_str!("wgsl/passed.wgsl");
 
 /// What stands before the functions of [`Form::Shadertoy`] in the text for shadertoy.com, in GLSL.
 pub const SHADERTOY_HEAD: &str = include_str!("shadertoy/head.glsl");
@@ -192,4 +246,9 @@ pub mod stubs {
     pub const LOAD_HEADLIGHT: &str = "load_headlight";
     /// `fn image(...) -> vec4f` of [`super::Form::Shadertoy`], which the entry point of the text calls.
     pub const IMAGE: &str = "image";
+    /// `fn passed(t: f32, distance: f32)`, told each sample of a ray; not supplied by a scene, but dropped where
+    /// no shadow is soft.
+    pub const PASSED: &str = "passed";
+    /// `fn sloped(square: f32)`, told the square of each gradient; dropped where nothing is occluded.
+    pub const SLOPED: &str = "sloped";
 }

@@ -1,22 +1,25 @@
 //! Ray methods and shading, one `.wgsl` file each, around stubs that codegen fills.
 //!
-//! A picture's shader is whole files joined: what all pictures share, one ray method, and the
-//! shading that the scene needs ([`source`]). Each file is valid WGSL beside those it names; none
-//! knows a scene. What a scene supplies are functions with a body to be replaced, listed in
-//! [`stubs`].
+//! A picture's shader is whole files joined: what all pictures share, one ray method, one way of
+//! shading ([`source`]). Each file is valid WGSL beside those it names; none knows a scene. What a
+//! scene supplies are functions with a body to be replaced, listed in [`stubs`]. What it needs of the
+//! rest are [`Features`]: one override each, on which the files branch, so that a feature is written once,
+//! whatever it is combined with. Whoever links the files takes one side of each branch and drops the other.
 //!
 //! ```
 //! use sdfc_march::{Features, method, source};
 //!
 //! let sphere = method("sphere").expect("a method of the table");
-//! let plain = source(sphere, Features::default());
-//! assert!(plain.contains("fn trace(ray: Ray) -> Trace"));
-//! assert!(!plain.contains("shadow_ray"));
+//! let text = source(sphere, Features::default());
+//! assert!(text.contains("fn trace(ray: Ray) -> Trace"));
+//! for (name, _) in Features::default().overrides() {
+//!     assert!(text.contains(&format!("override {name}: bool;")));
+//! }
 //! ```
 //!
 //! A ray method is `fn trace(ray: Ray) -> Trace` and `fn tolerance(ray: Ray, t: f32) -> f32`
 //! (`ray.wgsl`), in a file of its own and a row of [`METHODS`]. It calls `field` at one place, in a
-//! loop of at most `ray.steps` turns; it takes a sign change for a hit, so that a field that leads
+//! loop of at most `ray.steps` turns, and tells `passed` what it gave; it takes a sign change for a hit, so that a field that leads
 //! through a surface does not walk away from it.
 //!
 //! The blocks below are what `view.wgsl` and `pixel.wgsl` declare; their layout is WGSL's.
@@ -37,29 +40,47 @@ pub const MAX_LIGHTS: usize = 8;
 /// A ray from the eye is mirrored at most so often.
 pub const MAX_REFLECTIONS: u32 = 8;
 
-/// Shadow kind of a [`LightBlock`]: none.
-pub const SHADOW_OFF: u32 = 0;
-/// Shadow kind of a [`LightBlock`]: hard.
-pub const SHADOW_HARD: u32 = 1;
+/// Kind of a [`LightBlock`]: from infinitely far away.
+pub const SUN: u32 = 0;
+/// Kind of a [`LightBlock`]: from a point, in all directions.
+pub const POINT: u32 = 1;
+/// Kind of a [`LightBlock`]: from a point, in a cone.
+pub const SPOT: u32 = 2;
 
-/// A directional light as the shader sees it: 32 bytes.
+/// Shadow of a [`LightBlock`]: none.
+pub const SHADOW_OFF: u32 = 0;
+/// Shadow of a [`LightBlock`]: hard.
+pub const SHADOW_HARD: u32 = 1;
+/// Shadow of a [`LightBlock`]: soft.
+pub const SHADOW_SOFT: u32 = 2;
+
+/// A light as the shader sees it: 64 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct LightBlock {
-    /// Unit vector towards the light.
-    pub direction: [f32; 3],
-    /// `SHADOW_OFF` or `SHADOW_HARD`.
-    pub shadow: u32,
-    /// Linear colour times strength.
+    /// Unit vector towards a sun; where any other light stands.
+    pub place: [f32; 3],
+    /// [`SUN`], [`POINT`] or [`SPOT`].
+    pub kind: u32,
+    /// Linear colour times strength; of a light at a point, at distance 1.
     pub color: [f32; 3],
+    /// [`SHADOW_OFF`], [`SHADOW_HARD`] or [`SHADOW_SOFT`].
+    pub shadow: u32,
+    /// Unit vector along the middle of a spot light's cone.
+    pub axis: [f32; 3],
+    /// Of a soft shadow: its edge fades over the inverse of this.
+    pub sharpness: f32,
+    /// Cosines of angles from the axis: all light within the first, none outside the second.
+    pub rim: [f32; 2],
     /// Unused.
-    pub pad: f32,
+    pub pad: [f32; 2],
 }
 
 /// Binding 0 of group 0: camera, tile, limits, lights. Lengths are in scene units.
 ///
-/// The ray through the centre of pixel (x, y), y downwards, has direction
-/// `normalize(forward + (2 (x + 0.5) / width - 1) * right - (2 (y + 0.5) / height - 1) * up)`.
+/// The ray through the centre of pixel (x, y), y downwards, has direction `normalize(forward + aside)`, where `aside` is
+/// `(2 (x + 0.5) / width - 1) * right - (2 (y + 0.5) / height - 1) * up`. Of parallel rays it starts at
+/// `eye + aside`, and the picture is as large at any distance as it otherwise is at distance 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ViewBlock {
@@ -97,6 +118,18 @@ pub struct ViewBlock {
     pub background: [f32; 3],
     /// What is seen in a mirror counts by this factor, once more for each mirror.
     pub reflection_strength: f32,
+    /// Linear colour of the sky straight up.
+    pub zenith: [f32; 3],
+    /// What is left of a surface's light after a length t is `exp(-fog_density * t)`.
+    pub fog_density: f32,
+    /// Linear colour of the sky at the horizon.
+    pub horizon: [f32; 3],
+    /// What is farther from a surface takes no light from it.
+    pub occlusion_radius: f32,
+    /// Linear colour that surfaces fade to.
+    pub fog_color: [f32; 3],
+    /// By what part light is taken, 0..1.
+    pub occlusion_strength: f32,
     /// The lights.
     pub lights: [LightBlock; MAX_LIGHTS],
 }

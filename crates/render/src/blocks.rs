@@ -26,8 +26,9 @@ impl Bytes {
     }
 
     fn light(&mut self, light: &LightBlock) -> &mut Self {
-        let LightBlock { direction, shadow, color, pad } = light;
-        self.floats(direction).words(&[*shadow]).floats(color).floats(&[*pad])
+        let LightBlock { place, kind, color, shadow, axis, sharpness, rim, pad } = light;
+        self.floats(place).words(&[*kind]).floats(color).words(&[*shadow]);
+        self.floats(axis).floats(&[*sharpness]).floats(rim).floats(pad)
     }
 }
 
@@ -52,6 +53,12 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
         reflections,
         background,
         reflection_strength,
+        zenith,
+        fog_density,
+        horizon,
+        occlusion_radius,
+        fog_color,
+        occlusion_strength,
         lights,
     } = block;
     let mut bytes = Bytes::default();
@@ -63,6 +70,9 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     bytes.words(&[*light_count]).floats(&[*pad]);
     bytes.floats(ambient).words(&[*reflections]);
     bytes.floats(background).floats(&[*reflection_strength]);
+    bytes.floats(zenith).floats(&[*fog_density]);
+    bytes.floats(horizon).floats(&[*occlusion_radius]);
+    bytes.floats(fog_color).floats(&[*occlusion_strength]);
     for light in lights {
         bytes.light(light);
     }
@@ -136,6 +146,9 @@ mod tests {
             offset_of!(ViewBlock, forward),
             offset_of!(ViewBlock, ambient),
             offset_of!(ViewBlock, background),
+            offset_of!(ViewBlock, zenith),
+            offset_of!(ViewBlock, horizon),
+            offset_of!(ViewBlock, fog_color),
             offset_of!(ViewBlock, lights),
             VIEW_BYTES,
         ] {

@@ -51,7 +51,7 @@ fn is_edge(image: &Image, x: u32, y: u32) -> bool {
 
 fn bends(image: &Image, before: &PixelBlock, center: &PixelBlock, after: &PixelBlock) -> bool {
     let bend = before.depth - 2.0 * center.depth + after.depth;
-    let pixel_width = 2.0 * image.pixel_radius() * center.depth;
+    let pixel_width = image.pixel_width(center.depth);
     center.status == HIT && bend.abs() > EDGE_PIXEL_WIDTHS * pixel_width
 }
 
@@ -96,10 +96,11 @@ fn depth_difference(one: &PixelBlock, other: &PixelBlock) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Footprint;
 
     /// 5x5 hits whose depth is given by column and row.
     fn hits(depth: impl Fn(usize, usize) -> f32) -> Image {
-        let mut image = Image::new([5, 5], 0.01).unwrap();
+        let mut image = Image::new([5, 5], Footprint { radius: 0.0, spread: 0.01 }).unwrap();
         for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
             pixel.status = HIT;
             pixel.depth = depth(index % 5, index / 5);
@@ -151,6 +152,9 @@ mod tests {
     #[test]
     fn pictures_of_different_sizes_do_not_compare() {
         let a = hits(|_, _| 5.0);
-        assert!(compare(&a, &Image::new([5, 4], 0.01).unwrap()).is_none());
+        assert!(
+            compare(&a, &Image::new([5, 4], Footprint { radius: 0.0, spread: 0.01 }).unwrap())
+                .is_none()
+        );
     }
 }

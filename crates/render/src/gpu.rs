@@ -130,7 +130,7 @@ impl Pipeline {
             let (given, expected) = (uniforms.len(), self.uniform_count);
             return Err(RenderError::UniformCount { given, expected });
         }
-        let mut image = Image::new(view.size, view.pixel_radius() as f32)?;
+        let mut image = Image::new(view.size, view.footprint())?;
         let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
         let clock = if self.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
         let mut run = Run::new(self, uniforms)?;

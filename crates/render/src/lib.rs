@@ -60,4 +60,7 @@ pub use image::{
 };
 pub use stats::{Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};
-pub use view::{Bounds, View, ViewError, ViewLight};
+pub use view::{
+    Background, Bounds, Footprint, View, ViewError, ViewFog, ViewLight, ViewOcclusion, ViewShadow,
+    ViewSource,
+};

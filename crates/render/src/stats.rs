@@ -191,6 +191,7 @@ impl LeafEvaluations {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Footprint;
 
     #[test]
     fn median_of_odd_and_even_numbers_of_frames() {
@@ -203,19 +204,19 @@ mod tests {
 
     #[test]
     fn evaluations_of_a_hundred_pixels() {
-        let mut image = Image::new([10, 10], 0.1).unwrap();
+        let mut image = Image::new([10, 10], Footprint::default()).unwrap();
         for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
             pixel.evaluations = 100 - index as u32;
         }
         let counts = EvaluationCounts::of(&image);
         assert_eq!(counts, EvaluationCounts { mean: 50.5, p99: 99, max: 100 });
-        let one = EvaluationCounts::of(&Image::new([1, 1], 0.1).unwrap());
+        let one = EvaluationCounts::of(&Image::new([1, 1], Footprint::default()).unwrap());
         assert_eq!(one, EvaluationCounts { mean: 0.0, p99: 0, max: 0 });
     }
 
     #[test]
     fn keys_are_those_that_tools_read() {
-        let mut image = Image::new([2, 1], 0.1).unwrap();
+        let mut image = Image::new([2, 1], Footprint::default()).unwrap();
         image.pixels_mut()[0].status = crate::HIT;
         image.pixels_mut()[0].evaluations = 9;
         image.pixels_mut()[1].evaluations = 6;

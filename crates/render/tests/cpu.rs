@@ -5,7 +5,7 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use sdfc_graph::{Program, eval::FrameValues};
+use sdfc_graph::{Program, Shadow, eval::FrameValues};
 use sdfc_render::{
     CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
     TileSize, compare, edges, unwatched,
@@ -41,7 +41,7 @@ fn a_sphere_lies_where_the_quadratic_formula_says() {
                 assert_eq!(pixel.status, if expected.is_some() { HIT } else { MISS });
                 let Some(depth) = expected else { continue };
                 // `auto` promises a quarter of a pixel, `sphere` the tolerance of the view.
-                let quarter = 0.5 * view.pixel_radius() * depth;
+                let quarter = 0.5 * view.footprint().at(depth);
                 let limit = if method == "auto" { quarter } else { 1e-3 };
                 let error = (f64::from(pixel.depth) - depth).abs();
                 assert!(error < limit, "{method}: off by {error}");
@@ -82,7 +82,7 @@ fn a_lamp_overhead_throws_the_spheres_shadow_on_the_floor() {
     let (mut lit, mut shadowed) = (0, 0);
     for (index, pixel) in frame.image.pixels().iter().enumerate() {
         let [x, y] = [index as u32 % 96, index as u32 / 96];
-        let point = view.eye + view.ray_direction(x, y) * f64::from(pixel.depth);
+        let point = view.eye + view.ray(x, y)[1] * f64::from(pixel.depth);
         if pixel.status != HIT || (point.y + 1.0).abs() > 1e-3 {
             continue;
         }
@@ -103,6 +103,132 @@ fn a_lamp_overhead_throws_the_spheres_shadow_on_the_floor() {
     assert!(lit > 500 && shadowed > 100, "{lit} lit, {shadowed} in shadow");
 }
 
+/// The floor's pixels: where they are, and their colour.
+fn floor_pixels(program: &Program) -> Vec<(glam::DVec3, f64, [f32; 4])> {
+    let view = common::view(program, [96, 64]);
+    let frame = draw(program, [96, 64], "auto", TileSize::default());
+    let pixels = frame.image.pixels().iter().enumerate().map(|(index, pixel)| {
+        let direction = view.ray(index as u32 % 96, index as u32 / 96)[1];
+        let depth = f64::from(pixel.depth);
+        (view.eye + direction * depth, depth, pixel.color, pixel.status)
+    });
+    let floor =
+        pixels.filter(|(point, _, _, status)| *status == HIT && (point.y + 1.0).abs() < 1e-3);
+    floor.map(|(point, depth, color, _)| (point, depth, color)).collect()
+}
+
+fn fade(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+#[test]
+fn a_soft_shadow_fades_as_the_clearance_says() {
+    let sharpness = 4.0;
+    let (mut fading, mut dark, mut off) = (0, 0, 0.0f64);
+    for (point, _, color) in floor_pixels(&common::soft_shadow(sharpness)) {
+        let away = point.x.hypot(point.z);
+        // The ray goes straight up past the sphere, whose centre is 1.5 above the floor.
+        let ratio = |t: f64| (away.hypot(1.5 - t) - 1.0) / t;
+        let clearance = (1..4000).map(|i| ratio(f64::from(i) * 1e-3)).fold(f64::INFINITY, f64::min);
+        let light = fade(sharpness * clearance);
+        let expected = 0.8 * (0.1 + light);
+        fading += usize::from(0.05 < light && light < 0.95);
+        dark += usize::from(clearance < 0.0);
+        off = off.max((f64::from(color[0]) - expected).abs());
+    }
+    assert!(fading > 200 && dark > 100, "{fading} between, {dark} in shadow");
+    // The places of a ray are not so close that the nearest is among them.
+    assert!(off < 0.06, "off by {off}");
+}
+
+#[test]
+fn light_of_a_lamp_thins_out_with_the_square_of_the_distance() {
+    let place = glam::DVec3::new(3.0, 0.5, 1.0);
+    let (mut lit, mut shadowed) = (0, 0);
+    for (point, _, color) in floor_pixels(&common::lamp(place.to_array(), 4.0, Shadow::Hard)) {
+        let way = place - point;
+        // How far the sphere's centre is from the ray, if it lies along it.
+        let center = glam::DVec3::new(0.0, 0.5, 0.0) - point;
+        let along = center.dot(way.normalize());
+        let aside = (center - way.normalize() * along).length();
+        let light = match aside {
+            _ if aside < 0.95 && along > 0.0 && along < way.length() => 0.0,
+            _ if aside > 1.05 || along < 0.0 || along > way.length() + 1.0 => {
+                4.0 / way.length_squared() * way.normalize().y
+            }
+            _ => continue,
+        };
+        if light > 0.0 {
+            lit += 1
+        } else {
+            shadowed += 1
+        }
+        assert!((f64::from(color[0]) - 0.8 * (0.1 + light)).abs() < 2e-3, "{point}: {color:?}");
+    }
+    assert!(lit > 500 && shadowed > 100, "{lit} lit, {shadowed} in shadow");
+}
+
+#[test]
+fn fog_turns_what_is_far_into_the_sky_behind_it() {
+    let density = 0.2;
+    let program = common::foggy(density);
+    let eye = common::view(&program, [96, 64]).eye;
+    let without = floor_pixels(&common::foggy(0.0));
+    let with = floor_pixels(&program);
+    assert!(with.len() > 500 && with.len() == without.len());
+    for ((point, depth, color), (_, _, clear)) in with.iter().zip(without) {
+        // All of the floor is seen downwards, where the sky has the horizon's colour.
+        assert!(point.y < eye.y);
+        let left = (-density * depth).exp() as f32;
+        for channel in 0..3 {
+            let expected = clear[channel] * left + 1.0 - left;
+            assert!((color[channel] - expected).abs() < 1e-4, "{point}: {color:?}");
+        }
+    }
+    let frame = draw(&program, [96, 64], "auto", TileSize::default());
+    let top = frame.image.pixel(48, 0).unwrap();
+    let up = common::view(&program, [96, 64]).ray(48, 0)[1].y;
+    assert!(up > 0.1 && (f64::from(top.color[0]) - (1.0 - up).powi(3)).abs() < 1e-4, "{top:?}");
+}
+
+#[test]
+fn the_floor_is_dark_under_the_sphere_and_open_away_from_it() {
+    let (mut under, mut open) = (0, 0);
+    for (point, _, color) in floor_pixels(&common::occluded(1.0)) {
+        let away = point.x.hypot(point.z);
+        // Heights 0.2 to 1 above the floor; the sphere begins 0.5 above it.
+        let gap = |height: f64| (away.hypot(1.5 - height) - 1.0).min(height);
+        let heights = (1..=5).map(|i| (f64::from(i) / 5.0, 0.5f64.powi(i)));
+        let closed: f64 = heights.map(|(h, share)| share * (1.0 - gap(h).max(0.0) / h)).sum();
+        let expected = 0.8 * (1.0 - closed / (1.0 - 0.5f64.powi(5)));
+        if away < 0.5 {
+            under += usize::from(expected < 0.7)
+        }
+        if away > 2.0 {
+            open += usize::from(expected > 0.799)
+        }
+        assert!((f64::from(color[0]) - expected).abs() < 2e-3, "{point}: {color:?}, {expected}");
+    }
+    assert!(under > 20 && open > 200, "{under} under it, {open} open");
+}
+
+#[test]
+fn parallel_rays_see_the_sphere_as_a_disc_of_its_size() {
+    let program = common::parallel(4.0);
+    let frame = draw(&program, [80, 80], "auto", TileSize::default());
+    // 20 pixels for each unit.
+    let disc = std::f64::consts::PI * 400.0;
+    let hits = frame.image.counts().hit as f64;
+    assert!((hits - disc).abs() < 0.02 * disc, "{hits} pixels of {disc}");
+    for (x, y) in [(40, 40), (50, 33), (27, 45)] {
+        let [a, b] = [x, y].map(|at: u32| (f64::from(at) + 0.5) / 20.0 - 2.0);
+        let expected = 5.0 - (1.0 - a * a - b * b).sqrt();
+        let pixel = frame.image.pixel(x, y).unwrap();
+        assert!((f64::from(pixel.depth) - expected).abs() < 1e-3, "{pixel:?}, {expected}");
+    }
+}
+
 #[test]
 fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
     let program = common::mirrors();
@@ -112,7 +238,7 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
     let center = glam::DVec3::new(0.0, 0.5, 0.0);
     let (mut spheres, mut skies) = (0, 0);
     for (index, (with, without)) in mirrored.pixels().iter().zip(plain.pixels()).enumerate() {
-        let direction = view.ray_direction(index as u32 % 96, index as u32 / 96);
+        let direction = view.ray(index as u32 % 96, index as u32 / 96)[1];
         let point = view.eye + direction * f64::from(with.depth);
         if with.status != HIT || (point.y + 1.0).abs() > 1e-3 {
             continue;

@@ -6,7 +6,7 @@ mod common;
 use std::ops::ControlFlow;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc_graph::{Program, eval::FrameValues};
+use sdfc_graph::{Program, Shadow, eval::FrameValues};
 use sdfc_render::{
     Clock, CpuScene, Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, TileSize, View,
     compare, testing, uniform_values, unwatched,
@@ -68,6 +68,12 @@ fn gpu_and_cpu_agree() -> Outcome {
         common::painted_sphere(),
         common::steep_sphere(),
         common::mirrors(),
+        common::soft_shadow(4.0),
+        // At the edge of a hard shadow rounding decides.
+        common::lamp([3.0, 0.5, 1.0], 4.0, Shadow::Off),
+        common::foggy(0.2),
+        common::occluded(1.0),
+        common::parallel(4.0),
     ] {
         let view = common::view(&program, size);
         let scene = CpuScene::new(&program)?;

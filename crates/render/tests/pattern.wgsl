@@ -2,10 +2,14 @@
 // scene's shader, without a scene.
 
 struct Light {
-    direction: vec3f,
-    shadow: u32,
+    place: vec3f,
+    kind: u32,
     color: vec3f,
-    pad: f32,
+    shadow: u32,
+    axis: vec3f,
+    sharpness: f32,
+    rim: vec2f,
+    pad: vec2f,
 }
 
 struct View {
@@ -23,9 +27,15 @@ struct View {
     light_count: u32,
     pad: f32,
     ambient: vec3f,
-    pad0: f32,
+    reflections: u32,
     background: vec3f,
-    pad1: f32,
+    reflection_strength: f32,
+    zenith: vec3f,
+    fog_density: f32,
+    horizon: vec3f,
+    occlusion_radius: f32,
+    fog_color: vec3f,
+    occlusion_strength: f32,
     lights: array<Light, 8>,
 }
 

@@ -191,12 +191,13 @@ fn with(view: &View, (name, value, _): Setting) -> View {
 fn camera(view: &View) -> Camera {
     Camera {
         size: view.size,
+        parallel: view.parallel,
         eye: view.eye.to_array(),
         forward: view.forward.to_array(),
         right: view.right.to_array(),
         up: view.up.to_array(),
         t_max: view.t_max,
-        pixel_radius: view.pixel_radius(),
+        pixel_radius: view.footprint().at(1.0),
     }
 }
 

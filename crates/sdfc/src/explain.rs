@@ -1,5 +1,6 @@
 //! What was modelled and why, as `sdfc explain` shows it.
 
+use sdfc_march::Features;
 use serde::Serialize;
 
 /// The explanation of a scene. The keys are a promise to other tools: some may be added, none renamed.
@@ -33,6 +34,36 @@ pub struct Explanation {
     pub knobs: Vec<Knob>,
     /// Every shape of the scene that a call in it made, in order of place.
     pub quality: Vec<QualityRow>,
+}
+
+/// What of the shading a shader holds, by the names that people see.
+pub(crate) fn feature_names(features: Features) -> Vec<String> {
+    let Features {
+        materials,
+        shadows,
+        soft_shadows,
+        lamps,
+        spots,
+        reflections,
+        occlusion,
+        sky,
+        fog,
+        fog_color: _,
+        parallel,
+    } = features;
+    let names = [
+        ("material", materials),
+        ("shadow", shadows),
+        ("soft shadow", soft_shadows),
+        ("point light", lamps),
+        ("spot light", spots),
+        ("reflection", reflections),
+        ("ambient occlusion", occlusion),
+        ("sky", sky),
+        ("fog", fog),
+        ("parallel camera", parallel),
+    ];
+    names.iter().filter(|name| name.1).map(|name| name.0.to_owned()).collect()
 }
 
 /// Lowest and highest coordinates; `None` (null) where infinite.

@@ -138,7 +138,7 @@ fn compared(name: &'static str, image: &Image, reference: &Image) -> FaultVarian
             [false, true] => found.missed += 1,
             [true, false] => found.false_hits += 1,
             [true, true] => {
-                let width = 2.0 * reference.pixel_radius() * right.depth;
+                let width = reference.pixel_width(right.depth);
                 let off = |channel: usize| {
                     let [a, b] = [pixel, right].map(|pixel| linear_to_srgb8(pixel.color[channel]));
                     a.abs_diff(b) > COLOR_STEPS

@@ -35,8 +35,9 @@ pub struct PictureOptions {
     pub backend: Backend,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
-    /// Rays from the eye for each pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES).
-    pub samples: u32,
+    /// Rays from the eye for each pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes
+    /// the scene's, or 1.
+    pub samples: Option<u32>,
     /// How often the frame is drawn, to time it; at least 1.
     pub repetitions: u32,
 }
@@ -45,7 +46,7 @@ impl Default for PictureOptions {
     /// 640 by 360, everything else left to the scene and the machine.
     fn default() -> Self {
         let (size, backend) = ([640, 360], Backend::Auto);
-        Self { size, method: None, backend, frame: None, samples: 1, repetitions: 1 }
+        Self { size, method: None, backend, frame: None, samples: None, repetitions: 1 }
     }
 }
 
@@ -92,7 +93,8 @@ impl Scene {
     pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
         let start = Instant::now();
         let method = options.method.as_deref().unwrap_or(self.method());
-        let samples = sample_places(options.samples)?;
+        let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
+        let samples = sample_places(samples)?;
         let on_cpu = || CpuScene::new(&self.program).map(|scene| Engine::Cpu(Box::new(scene)));
         let (engine, compile, note) = match options.backend {
             Backend::Cpu => (on_cpu()?, cpu_times(start), None),

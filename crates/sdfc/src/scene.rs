@@ -6,7 +6,7 @@ use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, bounds, reachable};
 
-use crate::explain::{Bounds, Explanation, Knob, QualityRow};
+use crate::explain::{Bounds, Explanation, Knob, QualityRow, feature_names};
 use crate::{Error, Scene};
 
 /// Lowest and highest point of what is drawn, per-frame nodes of a graph of their own.
@@ -76,16 +76,10 @@ impl Scene {
         if program.distance.is_none() {
             return Err(Error::NothingDrawn);
         }
-        let material = program.material.is_some();
         let options = FieldOptions { gradient: false, material: false, ..FieldOptions::default() };
         let costs = self.field_shader(&options)?.instructions()?;
         let field = costs.iter().find(|cost| cost.role == Role::Distance);
-        let linked = self.picture_shader(self.method())?.features();
-        let features = [
-            ("material", material),
-            ("shadow", linked.shadows),
-            ("reflection", linked.reflections),
-        ];
+        let features = self.picture_shader(self.method())?.features();
         let report = &self.report;
         Ok(Explanation {
             leaves: report.leaves,
@@ -95,7 +89,7 @@ impl Scene {
             ops_per_frame: report.distance.per_frame,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
-            features: features.iter().filter(|f| f.1).map(|f| f.0.to_owned()).collect(),
+            features: feature_names(features),
             method: self.method().to_owned(),
             step_scale: 1.0,
             certified: self.is_certified(),

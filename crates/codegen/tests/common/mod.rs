@@ -6,8 +6,8 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use sdfc_graph::{
-    Dim, FrameInput, Graph, Light, MaterialField, NodeId, Param, ParamKind, Program, Reflections,
-    Shadow, Ternary, Type, Unary,
+    Camera, Dim, Fog, FrameInput, Graph, Lens, Light, LightSource, MaterialField, NodeId,
+    Occlusion, Param, ParamKind, Program, Reflections, Settings, Shadow, Sky, Ternary, Type, Unary,
 };
 
 pub fn point(graph: &mut Graph) -> NodeId {
@@ -182,7 +182,43 @@ pub fn lit(mut program: Program, shadow: Shadow) -> Program {
     let graph = &mut program.graph;
     let direction = graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]);
     let color = graph.constant(Type::Vec3, &[1.0; 3]);
-    program.settings.lights.push(Light { direction, color, shadow });
+    let source = LightSource::Sun { direction };
+    program.settings.lights.push(Light { source, color, shadow });
+    program
+}
+
+/// How many features a picture can have beside its material.
+pub const FEATURES: usize = 8;
+
+/// The program with the features whose bits are set.
+pub fn featured(mut program: Program, bits: u32) -> Program {
+    let has = |index: u32| bits & (1 << index) != 0;
+    let graph = &mut program.graph;
+    let (number, vector) = (graph.number(0.5), graph.constant(Type::Vec3, &[0.3, 0.2, 0.1]));
+    let shadow = match (has(0), has(1)) {
+        (_, true) => Shadow::Soft(number),
+        (true, false) => Shadow::Hard,
+        (false, false) => Shadow::Off,
+    };
+    let source = match (has(2), has(3)) {
+        (_, true) => LightSource::Spot { position: vector, target: vector, angle: number },
+        (true, false) => LightSource::Point { position: vector },
+        (false, false) => LightSource::Sun { direction: vector },
+    };
+    program.settings = Settings {
+        lights: vec![Light { source, color: vector, shadow }],
+        reflections: has(4).then_some(Reflections { count: 1, strength: number }),
+        occlusion: has(5).then_some(Occlusion { radius: number, strength: number }),
+        sky: has(6).then_some(Sky { zenith: vector, horizon: vector }),
+        fog: has(7).then_some(Fog { density: number, color: has(6).then_some(vector) }),
+        camera: has(4).then_some(Camera {
+            eye: vector,
+            target: vector,
+            up: vector,
+            lens: if has(7) { Lens::Height(number) } else { Lens::Fov(number) },
+        }),
+        ..Settings::default()
+    };
     program
 }
 

@@ -214,6 +214,18 @@ impl<'a> Checker<'a> {
             self.report(found);
             return;
         }
+        let rival = match row.kind {
+            SettingKind::Sky => Some(SettingKind::Background),
+            SettingKind::Background => Some(SettingKind::Sky),
+            _ => None,
+        };
+        if let Some(first) = self.program.settings.iter().find(|s| Some(s.kind) == rival) {
+            let message = "a scene has either `sky` or `background`";
+            let found = Diagnostic::error(Code::SETTING_TWICE, callee.at, message)
+                .note_at(first.span, "the other one")
+                .help("both say what is seen where nothing is met: remove one");
+            self.report(found);
+        }
         let place = |name: &str| slots.iter().position(|slot| slot.name == name);
         if row.kind == SettingKind::Camera
             && let (Some(fov), Some(height)) = (place("fov"), place("height"))

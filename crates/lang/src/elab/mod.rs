@@ -18,6 +18,7 @@ mod color;
 mod expr;
 mod iterate;
 mod kernel;
+mod lights;
 mod probe;
 mod report;
 mod scene;

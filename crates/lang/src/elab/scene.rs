@@ -170,8 +170,14 @@ impl<'p> Elaborator<'p> {
         if range[0] <= value && value <= range[1] {
             return Ok(value);
         }
-        let [lo, hi] = range.map(show_number);
-        let message = format!("{what} is {}, outside {lo}..{hi}", show_lanes(&[value]));
+        let value = show_lanes(&[value]);
+        let message = match range {
+            [lo, hi] if hi < f64::from(f32::MAX) => {
+                format!("{what} is {value}, outside {}..{}", show_number(lo), show_number(hi))
+            }
+            [0.0, _] => format!("{what} is {value}; it is 0 or above, and finite"),
+            _ => format!("{what} is {value}; it is above 0, and finite"),
+        };
         Err(self.fail(ErrorCode::OUT_OF_RANGE, expr.span, message))
     }
 }

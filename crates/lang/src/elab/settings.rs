@@ -1,7 +1,7 @@
-//! Settings: camera, lights, background, method.
+//! Settings: camera, background, method; lights are beside it.
 
-use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Camera, Light, March, NodeId, Reflections, Settings, Shadow, Type};
+use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
+use sdfc_graph::{Camera, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky, Type};
 
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
@@ -11,18 +11,30 @@ use crate::hir::{Expr, Setting, SettingKind};
 const DEFAULT_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
 /// Strength of `ambient()` without one.
 const DEFAULT_AMBIENT: f64 = 0.2;
-/// Towards a `sun()` without direction.
-const DEFAULT_SUN: [f64; 3] = [1.0, 2.0, 1.0];
+/// Linear colours of `sky()`: those of #4477bb and #dde8f0.
+const DEFAULT_ZENITH: [f64; 3] = [0.0578, 0.1845, 0.4969];
+const DEFAULT_HORIZON: [f64; 3] = [0.7230, 0.8070, 0.8714];
+/// Density of `fog()`, per scene unit.
+const DEFAULT_DENSITY: f64 = 0.05;
+/// Radius of `ambient_occlusion()`, in scene units.
+const DEFAULT_OCCLUSION_RADIUS: f64 = 0.3;
 /// How often `reflections()` mirrors.
 const DEFAULT_MIRRORS: u32 = 1;
 /// What the first mirror of `reflections()` counts.
 const DEFAULT_REFLECTION: f64 = 0.3;
 /// As `march` has it: each mirror repeats the whole of the work.
 const MAX_MIRRORS: f64 = 8.0;
+/// Rays for each pixel of `antialias()`.
+const DEFAULT_SAMPLES: u32 = 4;
+/// As many as the renderer takes.
+const MAX_SAMPLES: f64 = 1024.0;
 /// Ray methods of this version.
 const METHODS: [&str; 3] = ["auto", "fixed", "sphere"];
 /// Most steps of a ray: some drivers end a loop silently at 65,535 rounds.
 const MAX_MARCH_STEPS: f64 = 65_535.0;
+/// Lengths and other numbers that must be above 0.
+pub(super) const POSITIVE: [f64; 2] = [f32::MIN_POSITIVE as f64, f32::MAX as f64];
+const SHARE: [f64; 2] = [0.0, 1.0];
 
 impl<'p> Elaborator<'p> {
     /// All settings of the scene.
@@ -43,128 +55,134 @@ impl<'p> Elaborator<'p> {
                 out.ambient = Some(self.light_color(setting, [0, 1], DEFAULT_AMBIENT)?);
             }
             SettingKind::Background => {
-                let color = self.setting_number(setting, 0)?.ok_or(Poison)?;
-                out.background = Some(self.graph.swizzle(color, &[0, 1, 2]));
+                out.background = Some(self.setting_color(setting, 0)?.ok_or(Poison)?);
             }
-            SettingKind::March => out.march = self.march(setting)?,
-            SettingKind::Sun => out.lights.push(self.sun(setting)?),
-            SettingKind::Sky => return Err(self.setting_not_yet(setting.span, "sky")),
-            SettingKind::Fog => return Err(self.setting_not_yet(setting.span, "fog")),
-            SettingKind::AmbientOcclusion => {
-                return Err(self.setting_not_yet(setting.span, "ambient_occlusion"));
-            }
+            SettingKind::Sky => out.sky = Some(self.sky(setting)?),
+            SettingKind::Fog => out.fog = Some(self.fog(setting)?),
+            SettingKind::AmbientOcclusion => out.occlusion = Some(self.occlusion(setting)?),
             SettingKind::Reflections => out.reflections = Some(self.reflections(setting)?),
             SettingKind::Antialias => {
-                return Err(self.setting_not_yet(setting.span, "antialias"));
+                let samples = self.known_within(setting, 0, "`samples`", [1.0, MAX_SAMPLES])?;
+                out.samples = Some(samples.map_or(DEFAULT_SAMPLES, |samples| samples as u32));
+            }
+            SettingKind::March => out.march = self.march(setting)?,
+            SettingKind::Sun => {
+                let source = self.sun(setting)?;
+                self.light(setting, source, 1, out)?;
             }
             SettingKind::PointLight => {
-                return Err(self.setting_not_yet(setting.span, "point_light"));
+                let source = self.point_light(setting)?;
+                self.light(setting, source, 1, out)?;
             }
             SettingKind::SpotLight => {
-                return Err(self.setting_not_yet(setting.span, "spot_light"));
+                let source = self.spot_light(setting)?;
+                self.light(setting, source, 3, out)?;
             }
         }
         Ok(())
     }
 
-    fn setting_not_yet(&mut self, span: Span, name: &str) -> Poison {
-        let message = format!("`{name}` is not in this version");
-        let help = "remove the line; the picture is drawn without it";
-        self.report(Diagnostic::error(ErrorCode::NOT_YET, span, message).help(help))
-    }
-
     /// The argument at a place of the setting's row, if it was written.
-    fn argument(&self, setting: &'p Setting, place: usize) -> Option<&'p Expr> {
+    pub(super) fn argument(&self, setting: &'p Setting, place: usize) -> Option<&'p Expr> {
         setting.args.get(place).and_then(Option::as_ref)
     }
 
-    fn setting_number(&mut self, setting: &'p Setting, place: usize) -> Outcome<Option<NodeId>> {
+    pub(super) fn setting_number(
+        &mut self,
+        setting: &'p Setting,
+        place: usize,
+    ) -> Outcome<Option<NodeId>> {
         let mut env = Env::new(self.program.locals);
         self.argument(setting, place).map(|expr| self.number(&mut env, expr)).transpose()
     }
 
-    fn camera(&mut self, setting: &'p Setting) -> Outcome<Camera> {
-        if let Some(height) = self.argument(setting, 4) {
-            let message = "a camera of parallel rays (`height`) is not in this version";
-            let error = Diagnostic::error(ErrorCode::NOT_YET, height.span, message);
-            return Err(self.report(error.help("give `fov`, for example `fov: 35deg`")));
+    /// A colour without its alpha.
+    fn setting_color(&mut self, setting: &'p Setting, place: usize) -> Outcome<Option<NodeId>> {
+        let color = self.setting_number(setting, place)?;
+        Ok(color.map(|color| self.graph.swizzle(color, &[0, 1, 2])))
+    }
+
+    /// A number within a range; one that moves is looked at when its frame is drawn.
+    pub(super) fn setting_within(
+        &mut self,
+        setting: &'p Setting,
+        place: usize,
+        what: &str,
+        range: [f64; 2],
+    ) -> Outcome<Option<NodeId>> {
+        let node = self.setting_number(setting, place)?;
+        if node.is_some_and(|node| self.graph.as_number(node).is_some()) {
+            self.known_within(setting, place, what, range)?;
         }
+        Ok(node)
+    }
+
+    /// A number that is known when the scene compiles, within a range.
+    fn known_within(
+        &mut self,
+        setting: &'p Setting,
+        place: usize,
+        what: &str,
+        range: [f64; 2],
+    ) -> Outcome<Option<f64>> {
+        let expr = self.argument(setting, place);
+        expr.map(|expr| self.number_within(expr, what, range)).transpose()
+    }
+
+    fn camera(&mut self, setting: &'p Setting) -> Outcome<Camera> {
         let eye = self.setting_number(setting, 0)?.ok_or(Poison)?;
         let [target, up, fov] = [1, 2, 3].map(|place| self.setting_number(setting, place));
+        let height = self.setting_within(setting, 4, "`height`", POSITIVE);
         Ok(Camera {
             eye,
             target: target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3])),
             up: up?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0, 1.0, 0.0])),
-            fov: fov?.unwrap_or_else(|| self.graph.number(DEFAULT_FOV)),
+            lens: match (height?, fov?) {
+                (Some(height), _) => Lens::Height(height),
+                (None, Some(fov)) => Lens::Fov(fov),
+                (None, None) => Lens::Fov(self.graph.number(DEFAULT_FOV)),
+            },
         })
     }
 
-    fn sun(&mut self, setting: &'p Setting) -> Outcome<Light> {
-        let direction = self.setting_number(setting, 0)?;
-        let color = self.light_color(setting, [1, 2], 1.0)?;
-        let shadow = match self.argument(setting, 3) {
-            None => Shadow::Off,
-            Some(expr) => match self.eval(&mut Env::new(self.program.locals), expr)? {
-                Value::Shadow(shadow @ (Shadow::Off | Shadow::Hard)) => shadow,
-                Value::Shadow(Shadow::Soft(_)) => {
-                    let message = "soft shadows are not in this version";
-                    let error = Diagnostic::error(ErrorCode::NOT_YET, expr.span, message);
-                    return Err(self.report(error.help("write `shadow: hard`")));
-                }
-                other => return Err(self.unexpected(expr.span, "a shadow", &other)),
-            },
+    fn sky(&mut self, setting: &'p Setting) -> Outcome<Sky> {
+        let [zenith, horizon] = [0, 1].map(|place| self.setting_color(setting, place));
+        let mut or = |color: Option<NodeId>, default: [f64; 3]| {
+            color.unwrap_or_else(|| self.graph.constant(Type::Vec3, &default))
         };
-        let direction = direction.unwrap_or_else(|| self.graph.constant(Type::Vec3, &DEFAULT_SUN));
-        Ok(Light { direction, color, shadow })
+        let [zenith, horizon] = [or(zenith?, DEFAULT_ZENITH), or(horizon?, DEFAULT_HORIZON)];
+        Ok(Sky { zenith, horizon })
     }
 
-    /// Linear colour times strength, from the places of both.
-    fn light_color(
-        &mut self,
-        setting: &'p Setting,
-        [color, strength]: [usize; 2],
-        default_strength: f64,
-    ) -> Outcome<NodeId> {
-        let color = self.setting_number(setting, color);
-        let strength = self.setting_number(setting, strength);
-        let color = match color? {
-            Some(color) => self.graph.swizzle(color, &[0, 1, 2]),
-            None => self.graph.constant(Type::Vec3, &[1.0; 3]),
-        };
-        let strength = strength?.unwrap_or_else(|| self.graph.number(default_strength));
-        Ok(self.graph.mul(color, strength))
+    fn fog(&mut self, setting: &'p Setting) -> Outcome<Fog> {
+        let density = self.setting_within(setting, 0, "`density`", [0.0, POSITIVE[1]]);
+        let color = self.setting_color(setting, 1)?;
+        let density = density?.unwrap_or_else(|| self.graph.number(DEFAULT_DENSITY));
+        Ok(Fog { density, color })
+    }
+
+    fn occlusion(&mut self, setting: &'p Setting) -> Outcome<Occlusion> {
+        let radius = self.setting_within(setting, 0, "`radius`", POSITIVE);
+        let strength = self.setting_within(setting, 1, "`strength`", SHARE);
+        Ok(Occlusion {
+            radius: radius?.unwrap_or_else(|| self.graph.number(DEFAULT_OCCLUSION_RADIUS)),
+            strength: strength?.unwrap_or_else(|| self.graph.number(1.0)),
+        })
     }
 
     fn reflections(&mut self, setting: &'p Setting) -> Outcome<Reflections> {
-        let count = self.argument(setting, 0);
-        let count = count.map(|expr| self.number_within(expr, "`count`", [0.0, MAX_MIRRORS]));
-        let strength = self.argument(setting, 1).map(|expr| {
-            let node = self.number(&mut Env::new(self.program.locals), expr)?;
-            // What moves is looked at when its frame is drawn.
-            match self.graph.as_number(node) {
-                Some(_) => self.number_within(expr, "`strength`", [0.0, 1.0]).map(|_| node),
-                None => Ok(node),
-            }
-        });
+        let count = self.known_within(setting, 0, "`count`", [0.0, MAX_MIRRORS]);
+        let strength = self.setting_within(setting, 1, "`strength`", SHARE);
         Ok(Reflections {
-            count: count.transpose()?.map_or(DEFAULT_MIRRORS, |count| count as u32),
-            strength: match strength.transpose()? {
-                Some(strength) => strength,
-                None => self.graph.number(DEFAULT_REFLECTION),
-            },
+            count: count?.map_or(DEFAULT_MIRRORS, |count| count as u32),
+            strength: strength?.unwrap_or_else(|| self.graph.number(DEFAULT_REFLECTION)),
         })
     }
 
     fn march(&mut self, setting: &'p Setting) -> Outcome<March> {
-        let mut within = |place, what, range| {
-            let expr = self.argument(setting, place);
-            expr.map(|expr| self.number_within(expr, what, range)).transpose()
-        };
-        let tiny = f64::from(f32::MIN_POSITIVE);
-        let huge = f64::from(f32::MAX);
-        let steps = within(0, "`steps`", [1.0, MAX_MARCH_STEPS]);
-        let epsilon = within(1, "`epsilon`", [tiny, huge]);
-        let distance = within(2, "`distance`", [tiny, huge]);
+        let steps = self.known_within(setting, 0, "`steps`", [1.0, MAX_MARCH_STEPS]);
+        let epsilon = self.known_within(setting, 1, "`epsilon`", POSITIVE);
+        let distance = self.known_within(setting, 2, "`distance`", POSITIVE);
         let method = self.argument(setting, 3).map(|expr| self.method(expr)).transpose();
         Ok(March {
             steps: steps?.map(|steps| steps as u32),

@@ -27,6 +27,7 @@ fn trace(ray: Ray) -> Trace {
     var t = 0.0;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
+        passed(t, distance);
         // A ray that starts inside is at its hit.
         if step == 0u && distance < 0.0 {
             return Trace(t, HIT, 1u);

@@ -1,5 +1,6 @@
 // What every ray method takes and gives: `fn trace(ray: Ray) -> Trace`.
-// Each method states beside it how near to the surface its hits are: `fn tolerance(ray: Ray, t: f32) -> f32`.
+// Each method states beside it how near to the surface its hits are: `fn tolerance(ray: Ray, t: f32) -> f32`, and tells
+// each of its samples to `passed`.
 
 const MISS: u32 = 0;
 const HIT: u32 = 1;

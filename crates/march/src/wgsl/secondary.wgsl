@@ -13,10 +13,13 @@ fn start_at(surface: Surface, seen: Ray, t: f32, lift: f32) -> vec3f {
 
 // From a surface to a lamp. It starts further off than what counts as a hit there, than half a pixel and than
 // rounding, so that it does not meet the surface that it leaves.
-fn shadow_ray(surface: Surface, seen: Ray, t: f32, direction: vec3f) -> Ray {
+fn shadow_ray(surface: Surface, seen: Ray, t: f32, lamp: Lamp) -> Ray {
     let lift = max(3.0 * nearness(seen, t), footprint(seen, t));
     let origin = start_at(surface, seen, t, lift);
-    return Ray(origin, 0.5 * lift, direction, 0.0, seen.t_max, seen.epsilon, seen.steps);
+    if SOFT_SHADOWS {
+        open_penumbra();
+    }
+    return Ray(origin, 0.5 * lift, lamp.direction, 0.0, lamp.reach, seen.epsilon, seen.steps);
 }
 
 // From a surface to what it mirrors, less far off, since that moves the image. The footprint goes on growing

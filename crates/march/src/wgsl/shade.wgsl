@@ -7,6 +7,7 @@ const UNPAINTED = vec3f(0.8);
 fn normal_at(p: vec3f, toward_eye: vec3f) -> vec3f {
     let gradient = field_gradient(p);
     let square = dot(gradient, gradient);
+    sloped(square);
     if square > 0.0 {
         return gradient * inverseSqrt(square);
     }

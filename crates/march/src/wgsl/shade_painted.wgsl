@@ -89,26 +89,26 @@ fn mirrored_everywhere(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f
     return max(straight_on * (r.z - 1.04 * a) + (r.w + 1.04 * a), vec3f());
 }
 
-// Light that does not come from a lamp.
-fn ambient_part(surface: Surface) -> vec3f {
+// What the surface gives off, and returns of light from everywhere.
+fn ambient_part(surface: Surface, ambient: vec3f) -> vec3f {
     let paint = surface.material;
     let mirrored = mirrored_everywhere(mirrored_color(paint), paint.roughness, surface.facing);
     let lost = mirrored_everywhere(vec3f(DIELECTRIC), paint.roughness, surface.facing);
-    return view.ambient * paint.occlusion * (mirrored + (1.0 - lost) * matt_color(paint)) + paint.emission;
+    return ambient * paint.occlusion * (mirrored + (1.0 - lost) * matt_color(paint)) + paint.emission;
 }
 
 // What the surface returns of a lamp's light: highlight and, past the interface twice, Lambert's law.
-fn light_part(surface: Surface, light: Light) -> vec3f {
-    let incidence = dot(surface.normal, light.direction);
+fn light_part(surface: Surface, lamp: Lamp) -> vec3f {
+    let incidence = dot(surface.normal, lamp.direction);
     if incidence <= 0.0 {
         return vec3f();
     }
-    let halfway = normalize(light.direction + surface.toward_eye);
-    let tilt = saturate(dot(light.direction, halfway));
+    let halfway = normalize(lamp.direction + surface.toward_eye);
+    let tilt = saturate(dot(lamp.direction, halfway));
     let paint = surface.material;
     let mirrored = fresnel(mirrored_color(paint), tilt) * highlight(surface, halfway, incidence);
     let dielectric = vec3f(DIELECTRIC);
     let let_in = 1.0 - fresnel(dielectric, incidence);
     let let_out = 1.0 - fresnel(dielectric, surface.facing);
-    return light.color * incidence * (mirrored + let_in * let_out * matt_color(paint));
+    return lamp.color * incidence * (mirrored + let_in * let_out * matt_color(paint));
 }

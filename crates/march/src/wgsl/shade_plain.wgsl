@@ -10,12 +10,12 @@ fn surface_at(ray: Ray, t: f32) -> Surface {
     return Surface(point, normal_at(point, -ray.direction));
 }
 
-// Light that does not come from a lamp.
-fn ambient_part(surface: Surface) -> vec3f {
-    return view.ambient * UNPAINTED;
+// What the surface gives off, and returns of light from everywhere.
+fn ambient_part(surface: Surface, ambient: vec3f) -> vec3f {
+    return ambient * UNPAINTED;
 }
 
 // What the surface returns of a lamp's light: its colour times the cosine of the angle of incidence.
-fn light_part(surface: Surface, light: Light) -> vec3f {
-    return light.color * UNPAINTED * max(dot(surface.normal, light.direction), 0.0);
+fn light_part(surface: Surface, lamp: Lamp) -> vec3f {
+    return lamp.color * UNPAINTED * max(dot(surface.normal, lamp.direction), 0.0);
 }

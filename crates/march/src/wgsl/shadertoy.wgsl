@@ -10,8 +10,8 @@ struct Camera {
     // What is in the middle of the picture.
     center: vec3f,
     up: vec3f,
-    // Vertical field of view, in radians.
-    fov: f32,
+    // Vertical field of view, in radians; of parallel rays the height of the picture.
+    lens: f32,
 }
 
 var<private> view: View;
@@ -43,7 +43,7 @@ fn orbited(still: Camera, mouse: vec2f) -> Camera {
     let yaw = atan2(offset.x, offset.z) + turn.x;
     let pitch = clamp(asin(offset.y / radius) + turn.y, -MOST_PITCH, MOST_PITCH);
     let direction = vec3f(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
-    return Camera(still.center + radius * direction, still.center, still.up, still.fov);
+    return Camera(still.center + radius * direction, still.center, still.up, still.lens);
 }
 
 // Looking along `up`: what lies behind is at the bottom then, as on a map.
@@ -57,7 +57,11 @@ fn sideways(forward: vec3f, up: vec3f) -> vec3f {
 }
 
 fn look(seen_by: Camera, size: vec2f) {
-    let half_height = tan(0.5 * seen_by.fov);
+    var half_height = 0.5 * seen_by.lens;
+    if PARALLEL {
+    } else {
+        half_height = tan(half_height);
+    }
     let forward = normalize(seen_by.center - seen_by.eye);
     let right = sideways(forward, seen_by.up);
     // Rays reach as far as they did from where the eye was.
@@ -72,7 +76,7 @@ fn look(seen_by: Camera, size: vec2f) {
 
 // The light of a scene that states none comes from the eye.
 fn load_headlight() {
-    view.lights[0].direction = -view.forward;
+    view.lights[0].place = -view.forward;
 }
 
 // IEC 61966-2-1.

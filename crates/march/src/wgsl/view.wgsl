@@ -3,13 +3,25 @@
 const MAX_LIGHTS: u32 = 8;
 const MAX_REFLECTIONS: u32 = 8;
 
+const SUN: u32 = 0;
+const SPOT: u32 = 2;
+
 const SHADOW_OFF: u32 = 0;
+const SHADOW_SOFT: u32 = 2;
 
 struct Light {
-    direction: vec3f,
-    shadow: u32,
+    // Towards a sun, of unit length; where any other light stands.
+    place: vec3f,
+    kind: u32,
+    // Of a light at a point, at distance 1.
     color: vec3f,
-    pad: f32,
+    shadow: u32,
+    // Along the middle of a spot light's cone, of unit length.
+    axis: vec3f,
+    sharpness: f32,
+    // Cosines of angles from the axis: all light within the first, none outside the second.
+    rim: vec2f,
+    pad: vec2f,
 }
 
 struct View {
@@ -30,12 +42,26 @@ struct View {
     reflections: u32,
     background: vec3f,
     reflection_strength: f32,
+    zenith: vec3f,
+    fog_density: f32,
+    horizon: vec3f,
+    occlusion_radius: f32,
+    fog_color: vec3f,
+    occlusion_strength: f32,
     lights: array<Light, MAX_LIGHTS>,
 }
 
 // The ray through the centre of a pixel.
 fn camera_ray(pixel: vec2u) -> Ray {
     let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
-    let direction = normalize(view.forward + place.x * view.right - place.y * view.up);
-    return Ray(view.eye, 0.0, direction, view.pixel_radius, view.t_max, view.epsilon, view.steps);
+    let aside = place.x * view.right - place.y * view.up;
+    var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.steps);
+    if PARALLEL {
+        ray.origin += aside;
+        ray.radius = view.pixel_radius;
+    } else {
+        ray.direction = normalize(view.forward + aside);
+        ray.spread = view.pixel_radius;
+    }
+    return ray;
 }

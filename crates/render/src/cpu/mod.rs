@@ -6,6 +6,7 @@
 //! same again for all rays from a mirror.
 
 mod shade;
+mod surroundings;
 mod trace;
 
 pub use trace::Real;
@@ -21,16 +22,20 @@ use sdfc_graph::{
 use sdfc_march::PixelBlock;
 
 use crate::{
-    Clock, Frame, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View, ViewLight,
+    Clock, Footprint, Frame, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
+    ViewLight, ViewOcclusion, ViewShadow,
     frame::unwatched,
     image::{HIT, check_size},
     tiles::Tiler,
 };
 use shade::{Paint, Surface};
+use surroundings::{Lamp, behind, through_fog, unshaded};
 use trace::{Batch, Limits, Method, Ray, Trace, trace, values_at};
 
 /// Pixels that one thread takes at a time.
 const GROUP: usize = 512;
+/// Places above a surface at which it is asked what takes its light.
+const OCCLUSION_SAMPLES: u32 = 5;
 /// Most pixels of a tile; threads wait for each other at its end.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 
@@ -118,10 +123,17 @@ impl CpuScene {
         method: Method,
         shaded: bool,
     ) -> Wave<'a, T> {
+        let is_soft = |light: &ViewLight| matches!(light.shadow, ViewShadow::Soft(_));
+        let clearance = view.lights.iter().any(is_soft);
         let prepare = |tape: &'a Tape| tape.prepare::<Packet<T, { trace::LANES }>>(frame);
         Wave {
             view,
-            limits: Limits { method, epsilon: T::constant(view.epsilon), steps: view.steps },
+            limits: Limits {
+                method,
+                epsilon: T::constant(view.epsilon),
+                steps: view.steps,
+                clearance,
+            },
             field: prepare(&self.field),
             gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
             material: self.material.as_ref().filter(|_| shaded).map(prepare),
@@ -136,7 +148,7 @@ impl CpuScene {
         wave: &Wave<'_, T>,
     ) -> Result<Frame, RenderError> {
         check_size(view.size)?;
-        let mut image = Image::new(view.size, view.pixel_radius() as f32)?;
+        let mut image = Image::new(view.size, view.footprint())?;
         let mut tiler = Tiler::new(view.size, options.tile_size, MAX_TILE_PIXELS);
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
@@ -203,6 +215,14 @@ struct Meeting<T> {
     sight: Sight<T>,
     t: T,
     surface: Surface,
+    /// Length of the gradient there.
+    slope: f64,
+}
+
+impl<T: Real> Meeting<T> {
+    fn point(&self) -> DVec3 {
+        vector(self.sight.ray.at(self.t))
+    }
 }
 
 impl<T: Real> Wave<'_, T> {
@@ -232,7 +252,7 @@ impl<T: Real> Wave<'_, T> {
         traces
     }
 
-    /// Adds the background where sights met nothing, and what lights what they met.
+    /// Adds what lies behind where sights met nothing, and what lights what they met.
     fn lit_meetings(
         &mut self,
         sights: &[Sight<T>],
@@ -240,11 +260,16 @@ impl<T: Real> Wave<'_, T> {
         shades: &mut [Shade],
     ) -> Vec<Meeting<T>> {
         for (sight, _) in sights.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
-            shades[sight.pixel].color += self.view.background * sight.weight;
+            let seen = behind(self.view, vector(sight.ray.direction));
+            shades[sight.pixel].color += seen * sight.weight;
         }
-        let meetings = self.meetings(sights, traces);
-        for Meeting { sight, surface, .. } in &meetings {
-            shades[sight.pixel].color += surface.ambient(self.view.ambient) * sight.weight;
+        let mut meetings = self.meetings(sights, traces);
+        let open = self.open_parts(&meetings, shades);
+        for (Meeting { sight, t, surface, .. }, open) in meetings.iter_mut().zip(open) {
+            let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
+            let own = surface.ambient(self.view.ambient * open);
+            shades[sight.pixel].color += (own * clear + haze * (1.0 - clear)) * sight.weight;
+            sight.weight *= clear;
         }
         for light in &self.view.lights {
             self.light(light, &meetings, shades);
@@ -252,15 +277,39 @@ impl<T: Real> Wave<'_, T> {
         meetings
     }
 
+    /// The parts of the light from everywhere that reach where sights met something: 1, less what the field lacks
+    /// of the height above it, the nearer the more.
+    fn open_parts(&mut self, meetings: &[Meeting<T>], shades: &mut [Shade]) -> Vec<f64> {
+        let mut open = vec![1.0; meetings.len()];
+        let Some(ViewOcclusion { radius, strength }) = self.view.occlusion else { return open };
+        let weight = |sample: u32| 0.5f64.powi(sample as i32);
+        let all: f64 = (1..=OCCLUSION_SAMPLES).map(weight).sum();
+        for sample in 1..=OCCLUSION_SAMPLES {
+            let height = radius * f64::from(sample) / f64::from(OCCLUSION_SAMPLES);
+            let above = |meeting: &Meeting<T>| meeting.point() + meeting.surface.normal * height;
+            let points: Vec<[T; 3]> =
+                meetings.iter().map(|meeting| above(meeting).to_array().map(T::constant)).collect();
+            let values = values_at(&mut self.field, &points);
+            for ((open, meeting), value) in open.iter_mut().zip(meetings).zip(values) {
+                let distance = value.first().map_or(f64::NAN, |lanes| lanes[0]) / meeting.slope;
+                let closed = (1.0 - distance / height).clamp(0.0, 1.0);
+                *open -= strength * closed * weight(sample) / all;
+                shades[meeting.sight.pixel].evaluations += 1;
+            }
+        }
+        open
+    }
+
     fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
-        let view = self.view;
-        let number = |value: DVec3| value.to_array().map(T::constant);
+        let [origin, direction] =
+            self.view.ray(x, y).map(|value| value.to_array().map(T::constant));
+        let Footprint { radius, spread } = self.view.footprint();
         Ray {
-            origin: number(view.eye),
-            direction: number(view.ray_direction(x, y)),
-            t_max: T::constant(view.t_max),
-            radius: T::constant(0.0),
-            spread: T::constant(view.pixel_radius()),
+            origin,
+            direction,
+            t_max: T::constant(self.view.t_max),
+            radius: T::constant(radius),
+            spread: T::constant(spread),
         }
     }
 
@@ -276,30 +325,35 @@ impl<T: Real> Wave<'_, T> {
             let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
             let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
             let toward_eye = -vector(sight.ray.direction);
-            let surface = Surface::new(DVec3::new(x, y, z), toward_eye, paint);
-            Meeting { sight, t, surface }
+            let gradient = DVec3::new(x, y, z);
+            let surface = Surface::new(gradient, toward_eye, paint);
+            let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
+            Meeting { sight, t, surface, slope }
         };
         hits.into_iter().enumerate().map(meeting).collect()
     }
 
-    /// Adds what a lamp lights, and the evaluations that it takes to know what shades it.
+    /// Adds what a light lights, and the evaluations that it takes to know what shades it.
     fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
-        let lit = |meeting: &Meeting<T>| meeting.surface.lit(light) * meeting.sight.weight;
-        let lit = meetings.iter().map(|meeting| (meeting, lit(meeting)));
+        let lit = meetings.iter().map(|meeting| {
+            let lamp = Lamp::seen_from(meeting.point(), light);
+            (meeting, lamp, meeting.surface.lit(&lamp) * meeting.sight.weight)
+        });
         // A surface that returns nothing needs no ray to the lamp.
+        let casts = light.shadow != ViewShadow::Off;
         let (asked, sure): (Vec<_>, Vec<_>) =
-            lit.partition(|(_, lit)| light.shadow && !lit.cmple(DVec3::ZERO).all());
-        for (meeting, lit) in sure {
+            lit.partition(|(.., lit)| casts && lit.cmpgt(DVec3::ZERO).any());
+        for (meeting, _, lit) in sure {
             shades[meeting.sight.pixel].color += lit;
         }
         let rays: Vec<Ray<T>> =
-            asked.iter().map(|(meeting, _)| self.lamp_ray(meeting, light)).collect();
+            asked.iter().map(|(meeting, lamp, _)| self.lamp_ray(meeting, lamp)).collect();
         let traces = trace(&mut self.field, &rays, &self.limits);
-        for ((meeting, lit), trace) in asked.into_iter().zip(traces) {
+        for ((meeting, _, lit), trace) in asked.into_iter().zip(traces) {
             let shade = &mut shades[meeting.sight.pixel];
             shade.evaluations += trace.evaluations;
             if trace.status != HIT {
-                shade.color += lit;
+                shade.color += lit * unshaded(light, trace.clearance.into());
             }
         }
     }
@@ -319,13 +373,13 @@ impl<T: Real> Wave<'_, T> {
     }
 
     /// From a surface towards a lamp.
-    fn lamp_ray(&self, meeting: &Meeting<T>, light: &ViewLight) -> Ray<T> {
+    fn lamp_ray(&self, meeting: &Meeting<T>, lamp: &Lamp) -> Ray<T> {
         let half_pixel = meeting.sight.ray.footprint(meeting.t);
         let lift = (T::constant(3.0) * self.near(meeting)).max(half_pixel);
         Ray {
             origin: self.lifted(meeting, lift),
-            direction: light.direction.to_array().map(T::constant),
-            t_max: T::constant(self.view.t_max),
+            direction: lamp.direction.to_array().map(T::constant),
+            t_max: T::constant(lamp.reach.unwrap_or(self.view.t_max)),
             radius: T::constant(0.5) * lift,
             spread: T::constant(0.0),
         }
@@ -333,7 +387,7 @@ impl<T: Real> Wave<'_, T> {
 
     /// From a surface to what it mirrors.
     fn mirrored(&self, meeting: &Meeting<T>) -> Sight<T> {
-        let Meeting { sight, t, surface } = meeting;
+        let Meeting { sight, t, surface, .. } = meeting;
         let inward = -surface.toward_eye;
         let direction = inward - 2.0 * inward.dot(surface.normal) * surface.normal;
         let ray = Ray {

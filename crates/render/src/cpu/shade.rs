@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use crate::ViewLight;
+use super::surroundings::Lamp;
 
 /// Linear colour of what nothing paints.
 const UNPAINTED: DVec3 = DVec3::splat(0.8);
@@ -79,16 +79,16 @@ impl Surface {
     }
 
     /// What it returns of a lamp's light: Lambert's law and, where painted, a highlight.
-    pub(super) fn lit(&self, light: &ViewLight) -> DVec3 {
-        let incidence = self.normal.dot(light.direction).max(0.0);
+    pub(super) fn lit(&self, lamp: &Lamp) -> DVec3 {
+        let incidence = self.normal.dot(lamp.direction).max(0.0);
         if incidence == 0.0 {
             return DVec3::ZERO;
         }
         let reflectance = match self.paint {
-            Some(paint) => paint.reflectance(self, light.direction),
+            Some(paint) => paint.reflectance(self, lamp.direction),
             None => UNPAINTED,
         };
-        light.color * incidence * reflectance
+        lamp.color * incidence * reflectance
     }
 
     /// Cosine between normal and eye.
@@ -160,8 +160,8 @@ fn karis(roughness: f64, facing: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    fn lamp(direction: DVec3) -> ViewLight {
-        ViewLight { direction, color: DVec3::splat(2.0), shadow: false }
+    fn lamp(direction: DVec3) -> Lamp {
+        Lamp { direction, reach: None, color: DVec3::splat(2.0) }
     }
 
     #[test]

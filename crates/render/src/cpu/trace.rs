@@ -95,6 +95,8 @@ pub(super) struct Limits<T> {
     pub(super) method: Method,
     pub(super) epsilon: T,
     pub(super) steps: u32,
+    /// Whether it is wanted how narrowly rays pass what they do not meet.
+    pub(super) clearance: bool,
 }
 
 impl<T: Real> Limits<T> {
@@ -117,6 +119,8 @@ pub(super) struct Trace<T> {
     /// One of `MISS`, `HIT`, `CAPPED`.
     pub(super) status: u32,
     pub(super) evaluations: u32,
+    /// Least ratio of the distance from the ray to the distance along it; infinite where it is not wanted.
+    pub(super) clearance: T,
 }
 
 /// A ray on its way.
@@ -125,6 +129,9 @@ struct Walk<T> {
     ray: Ray<T>,
     t: T,
     evaluations: u32,
+    clearance: T,
+    /// Last place, and the distance there.
+    before: (T, T),
     /// Last place outside and first place inside, with the distances there (`auto`).
     outside: Option<(T, T)>,
     inside: Option<(T, T)>,
@@ -138,16 +145,28 @@ enum Turn<T> {
 
 impl<T: Real> Walk<T> {
     fn new(ray: Ray<T>) -> Self {
-        Self { ray, t: T::constant(0.0), evaluations: 0, outside: None, inside: None }
+        let zero = T::constant(0.0);
+        Self {
+            ray,
+            t: zero,
+            evaluations: 0,
+            clearance: T::constant(f64::INFINITY),
+            before: (zero, zero),
+            outside: None,
+            inside: None,
+        }
     }
 
     fn ends(&self, t: T, status: u32) -> Option<Trace<T>> {
-        Some(Trace { t, status, evaluations: self.evaluations })
+        Some(Trace { t, status, evaluations: self.evaluations, clearance: self.clearance })
     }
 
     /// Takes the distance at the current place: either the ray has ended, or it has moved.
     fn see(&mut self, distance: T, limits: &Limits<T>) -> Option<Trace<T>> {
         self.evaluations += 1;
+        if limits.clearance {
+            self.pass(distance);
+        }
         let turn = match limits.method {
             Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
             Method::Sphere => Turn::Onward(self.t + distance),
@@ -165,6 +184,25 @@ impl<T: Real> Walk<T> {
             self.ends(self.t, CAPPED)
         } else {
             None
+        }
+    }
+
+    /// This place's distance and the last one's are radii of spheres; they meet in a circle about the ray, whose
+    /// radius is taken for the distance of what lies there, if it lies between.
+    fn pass(&mut self, here: T) {
+        let ((last, before), zero) = (self.before, T::constant(0.0));
+        self.before = (self.t, here);
+        let step = self.t - last;
+        if step > zero {
+            let back = T::constant(0.5) * (step + (here * here - before * before).div(step));
+            let (along, aside) = match back {
+                back if back <= zero => (self.t, here),
+                back if back >= step => (last, before),
+                back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
+            };
+            if along > zero {
+                self.clearance = self.clearance.min(aside.div(along));
+            }
         }
     }
 
@@ -208,7 +246,8 @@ pub(super) fn trace<T: Real>(
     rays: &[Ray<T>],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
-    let lost = Trace { t: T::constant(f64::NAN), status: MISS, evaluations: 0 };
+    let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
+    let lost = Trace { t, status: MISS, evaluations: 0, clearance };
     let mut traces = vec![lost; rays.len()];
     let mut waiting = rays.iter().copied().map(Walk::new).enumerate();
     let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());

@@ -115,12 +115,13 @@ fn refused(error: image::ImageError) -> RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Footprint;
     use exr::prelude::traits::*;
     use image::AnimationDecoder as _;
 
     #[test]
     fn a_png_reads_back() {
-        let mut image = Image::new([3, 2], 0.1).unwrap();
+        let mut image = Image::new([3, 2], Footprint::default()).unwrap();
         image.pixels_mut()[4].color = [1.0, 0.5, 0.0, 1.0];
         let png = image.to_png().unwrap();
         let back = image::load_from_memory(&png).unwrap().to_rgb8();
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn exr_files_read_back() {
-        let mut image = Image::new([3, 2], 0.1).unwrap();
+        let mut image = Image::new([3, 2], Footprint::default()).unwrap();
         image.pixels_mut()[4].color = [3.5, 0.5, -1.0, 1.0];
         image.pixels_mut()[4].depth = 7.25;
         image.pixels_mut()[4].status = HIT;
@@ -162,7 +163,7 @@ mod tests {
         let mut file = Vec::new();
         let mut animation = Animation::new(&mut file).unwrap();
         for level in [0.0, 1.0] {
-            let mut image = Image::new([3, 2], 0.1).unwrap();
+            let mut image = Image::new([3, 2], Footprint::default()).unwrap();
             image.pixels_mut().iter_mut().for_each(|pixel| pixel.color = [level, 0.0, 0.0, 1.0]);
             animation.push(&image, 3).unwrap();
         }

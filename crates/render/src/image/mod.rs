@@ -5,7 +5,7 @@ mod samples;
 
 use sdfc_march::PixelBlock;
 
-use crate::{RenderError, Tile};
+use crate::{Footprint, RenderError, Tile};
 pub use file::Animation;
 pub use samples::{MAX_SAMPLES, sample_places};
 
@@ -25,7 +25,7 @@ pub const CAPPED: u32 = 2;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     size: [u32; 2],
-    pixel_radius: f32,
+    footprint: Footprint,
     pixels: Vec<PixelBlock>,
 }
 
@@ -43,12 +43,12 @@ pub struct PixelCounts {
 }
 
 impl Image {
-    /// An empty picture, every pixel zero. `pixel_radius` is half a pixel's width at distance 1.
+    /// An empty picture, every pixel zero.
     ///
     /// # Errors
     ///
     /// [`RenderError::Size`] outside the limits, [`RenderError::OutOfMemory`].
-    pub fn new(size: [u32; 2], pixel_radius: f32) -> Result<Self, RenderError> {
+    pub fn new(size: [u32; 2], footprint: Footprint) -> Result<Self, RenderError> {
         check_size(size)?;
         let count = size[0] as usize * size[1] as usize;
         let mut pixels = Vec::new();
@@ -56,7 +56,7 @@ impl Image {
             RenderError::OutOfMemory(format!("a picture of {}x{} pixels", size[0], size[1]))
         })?;
         pixels.resize(count, PixelBlock::default());
-        Ok(Self { size, pixel_radius, pixels })
+        Ok(Self { size, footprint, pixels })
     }
 
     /// Width and height in pixels.
@@ -64,9 +64,9 @@ impl Image {
         self.size
     }
 
-    /// Half the width of a pixel at distance 1.
-    pub fn pixel_radius(&self) -> f32 {
-        self.pixel_radius
+    /// The width of a pixel at a depth.
+    pub fn pixel_width(&self, depth: f32) -> f32 {
+        2.0 * self.footprint.at(f64::from(depth)) as f32
     }
 
     /// The pixels, row by row from the top.
@@ -165,14 +165,14 @@ mod tests {
     #[test]
     fn sizes_outside_the_limits_are_refused() {
         for size in [[0, 4], [4, 0], [MAX_SIDE + 1, 1], [MAX_SIDE, MAX_SIDE]] {
-            assert_eq!(Image::new(size, 0.1), Err(RenderError::Size(size)));
+            assert_eq!(Image::new(size, Footprint::default()), Err(RenderError::Size(size)));
         }
         assert!(check_size([MAX_SIDE, 4096]).is_ok());
     }
 
     #[test]
     fn counts_add_up_and_nan_comes_first() {
-        let mut image = Image::new([5, 1], 0.1).unwrap();
+        let mut image = Image::new([5, 1], Footprint::default()).unwrap();
         let statuses = [HIT, MISS, CAPPED, HIT, MISS];
         for (pixel, status) in image.pixels_mut().iter_mut().zip(statuses) {
             pixel.status = status;
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn pixels_outside_are_none() {
-        let image = Image::new([3, 2], 0.1).unwrap();
+        let image = Image::new([3, 2], Footprint::default()).unwrap();
         assert!(image.pixel(2, 1).is_some());
         assert!(image.pixel(3, 0).is_none());
         assert!(image.pixel(0, 2).is_none());

@@ -63,6 +63,7 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Footprint;
 
     #[test]
     fn one_ray_passes_through_the_centre() {
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_mean_is_of_light_and_leaves_depths() {
-        let mut sum = Image::new([1, 1], 0.1).unwrap();
+        let mut sum = Image::new([1, 1], Footprint::default()).unwrap();
         let mut other = sum.clone();
         sum.pixels_mut()[0].depth = 3.0;
         sum.pixels_mut()[0].color = [1.0, 0.5, 0.0, 1.0];

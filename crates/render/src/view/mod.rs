@@ -3,18 +3,21 @@
 //! Right-handed, y up, z towards the viewer. Lengths are in scene units, angles in radians,
 //! colours linear.
 
+mod error;
+mod light;
 mod pose;
-
-use std::fmt;
 
 use glam::DVec3;
 use sdfc_graph::{
-    Light, March, NodeId, Program, Settings, Shadow,
+    Fog, March, NodeId, Occlusion, Program, Settings, Sky,
     eval::{FrameValues, evaluate_frame},
 };
-use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, SHADOW_HARD, SHADOW_OFF, ViewBlock};
+use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, ViewBlock};
 
 use crate::tiles::Tile;
+pub use error::ViewError;
+use light::lights;
+pub use light::{ViewLight, ViewShadow, ViewSource};
 use pose::Pose;
 
 /// Steps of a ray where the scene states none.
@@ -30,27 +33,18 @@ const DISTANCE_MARGIN: f64 = 1.01;
 /// Lowest and highest corner of a box, in scene units; infinite where it is not limited.
 pub type Bounds = [[f64; 3]; 2];
 
-/// A directional light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewLight {
-    /// Unit vector towards the light.
-    pub direction: DVec3,
-    /// Linear colour times strength.
-    pub color: DVec3,
-    /// Whether it throws a shadow.
-    pub shadow: bool,
-}
-
 /// One frame's camera, lights and limits, in f64.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Size of the picture in pixels.
     pub size: [u32; 2],
-    /// Where rays start.
+    /// Where rays start, or the middle of where parallel ones do.
     pub eye: DVec3,
-    /// Half the width of the picture at distance 1.
+    /// Whether the rays of the pixels are parallel.
+    pub parallel: bool,
+    /// Half the width of the picture, at distance 1 unless rays are parallel.
     pub right: DVec3,
-    /// Half the height of the picture at distance 1.
+    /// Half the height of the picture, at distance 1 unless rays are parallel.
     pub up: DVec3,
     /// Through the middle of the picture, at distance 1 from the eye along the camera's axis: a unit
     /// vector unless [`Self::shifted`].
@@ -65,61 +59,65 @@ pub struct View {
     pub lights: Vec<ViewLight>,
     /// Linear colour of light from everywhere.
     pub ambient: DVec3,
-    /// Linear colour behind everything.
-    pub background: DVec3,
+    /// What is seen where nothing is met.
+    pub background: Background,
+    /// What is far away fades.
+    pub fog: Option<ViewFog>,
+    /// Light from everywhere does not reach everything.
+    pub occlusion: Option<ViewOcclusion>,
     /// A ray from the eye is mirrored at most so often, at most [`MAX_REFLECTIONS`] times.
     pub reflections: u32,
     /// What is seen in a mirror counts by this factor, 0..1, once more for each mirror.
     pub reflection_strength: f64,
 }
 
-/// A setting whose values make no picture. The values are those of this frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ViewError {
-    /// The camera's eye and target are one point.
-    EyeIsTarget([f64; 3]),
-    /// The field of view, in radians, is not between 0 and half a turn.
-    Fov(f64),
-    /// A value is not a finite number; which.
-    NotFinite(&'static str),
-    /// A number that must be above 0 is not; which, and its value.
-    NotPositive(&'static str, f64),
-    /// The strength of reflections is not within 0..1.
-    ReflectionStrength(f64),
-    /// The direction of a light has no length.
-    LightDirection,
-    /// More lights than [`MAX_LIGHTS`].
-    TooManyLights(usize),
-    /// A feature of the language that this renderer does not have; which.
-    NotYet(&'static str),
+/// What is seen where nothing is met, in linear colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Background {
+    /// One colour.
+    Plain(DVec3),
+    /// Colours by direction.
+    Sky {
+        /// Straight up.
+        zenith: DVec3,
+        /// At the horizon and below it.
+        horizon: DVec3,
+    },
 }
 
-impl fmt::Display for ViewError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::EyeIsTarget(eye) => {
-                write!(f, "the camera's eye and target are one point, {eye:?}: move one of them")
-            }
-            Self::Fov(fov) => write!(
-                f,
-                "the camera's field of view is {} degrees; it must lie between 0 and 180",
-                fov.to_degrees()
-            ),
-            Self::NotFinite(what) => write!(f, "{what} is not a finite number"),
-            Self::NotPositive(what, value) => write!(f, "{what} is {value}; it must be above 0"),
-            Self::ReflectionStrength(value) => {
-                write!(f, "the strength of reflections is {value}; it must lie between 0 and 1")
-            }
-            Self::LightDirection => f.write_str("a light's direction is [0, 0, 0]"),
-            Self::TooManyLights(count) => {
-                write!(f, "the scene has {count} lights; at most {MAX_LIGHTS} are drawn")
-            }
-            Self::NotYet(what) => write!(f, "{what} are not drawn by this version"),
-        }
+/// What is far away fades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewFog {
+    /// What is left of a surface's light after a length t is `exp(-density * t)`.
+    pub density: f64,
+    /// Linear colour that it fades to; none: what lies behind.
+    pub color: Option<DVec3>,
+}
+
+/// How much of the light from everywhere reaches a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewOcclusion {
+    /// What is farther away takes no light.
+    pub radius: f64,
+    /// By what part light is taken, 0..1.
+    pub strength: f64,
+}
+
+/// Half the width that a pixel sees.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// Where rays start.
+    pub radius: f64,
+    /// What it gains per length.
+    pub spread: f64,
+}
+
+impl Footprint {
+    /// At a distance from where rays start.
+    pub fn at(self, t: f64) -> f64 {
+        self.radius + self.spread * t
     }
 }
-
-impl std::error::Error for ViewError {}
 
 impl View {
     /// The view of one frame of a program. `bounds` of what is drawn limit the rays, and place the
@@ -158,29 +156,30 @@ impl View {
             None => Pose::fitted(bounds, aspect),
         };
         let [right, up, forward] = pose.basis();
-        let half_height = (pose.fov / 2.0).tan();
         let limits = Limits::new(&settings.march, &pose, bounds)?;
         let (reflections, reflection_strength) = match &settings.reflections {
             Some(mirrors) => {
-                (mirrors.count.min(MAX_REFLECTIONS), strength(value(mirrors.strength))?)
+                let strength = share(value(mirrors.strength), "the strength of reflections")?;
+                (mirrors.count.min(MAX_REFLECTIONS), strength)
             }
             None => (0, 0.0),
         };
-        let color = |node: Option<NodeId>, what| {
-            node.map_or(Ok(DVec3::ZERO), |node| finite(value(node), what))
-        };
+        let ambient = settings.ambient.map(|node| finite(value(node), "the ambient light"));
         Ok(Self {
             size,
             eye: pose.eye,
-            right: right * half_height * aspect,
-            up: up * half_height,
+            parallel: pose.parallel,
+            right: right * pose.half_height * aspect,
+            up: up * pose.half_height,
             forward,
             t_max: limits.t_max,
             epsilon: limits.epsilon,
             steps: limits.steps,
             lights: lights(&settings.lights, forward, value)?,
-            ambient: color(settings.ambient, "the ambient light")?,
-            background: color(settings.background, "the background colour")?,
+            ambient: ambient.transpose()?.unwrap_or_default(),
+            background: background(settings, value)?,
+            fog: settings.fog.map(|fog| view_fog(fog, value)).transpose()?,
+            occlusion: settings.occlusion.map(|found| view_occlusion(found, value)).transpose()?,
             reflections,
             reflection_strength,
         })
@@ -189,51 +188,74 @@ impl View {
     /// The view whose rays pass so many pixels to the right of the centres of pixels and below them.
     pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
         let [columns, rows] = self.size.map(|side| f64::from(side.max(1)));
-        let forward = self.forward + self.right * (2.0 * x / columns) - self.up * (2.0 * y / rows);
-        Self { forward, ..self.clone() }
+        let aside = self.right * (2.0 * x / columns) - self.up * (2.0 * y / rows);
+        if self.parallel {
+            Self { eye: self.eye + aside, ..self.clone() }
+        } else {
+            Self { forward: self.forward + aside, ..self.clone() }
+        }
     }
 
-    /// Unit direction of the ray through the centre of a pixel; rows count downwards.
-    pub fn ray_direction(&self, x: u32, y: u32) -> DVec3 {
+    /// Where the ray through the centre of a pixel starts, and its unit direction; rows count downwards.
+    pub fn ray(&self, x: u32, y: u32) -> [DVec3; 2] {
         let place = |index: u32, side: u32| 2.0 * (f64::from(index) + 0.5) / f64::from(side) - 1.0;
         let [width, height] = self.size;
-        (self.forward + self.right * place(x, width) - self.up * place(y, height)).normalize()
+        let aside = self.right * place(x, width) - self.up * place(y, height);
+        if self.parallel {
+            [self.eye + aside, self.forward]
+        } else {
+            [self.eye, (self.forward + aside).normalize()]
+        }
     }
 
-    /// Half the width of a pixel at distance 1.
-    pub fn pixel_radius(&self) -> f64 {
-        self.right.length() / f64::from(self.size[0].max(1))
+    /// Half the width of a pixel.
+    pub fn footprint(&self) -> Footprint {
+        let half = self.right.length() / f64::from(self.size[0].max(1));
+        if self.parallel {
+            Footprint { radius: half, spread: 0.0 }
+        } else {
+            Footprint { radius: 0.0, spread: half }
+        }
     }
 
     /// The view as the shader reads it, for one tile.
     pub fn block(&self, tile: Tile) -> ViewBlock {
         let mut lights = [LightBlock::default(); MAX_LIGHTS];
         for (block, light) in lights.iter_mut().zip(&self.lights) {
-            *block = LightBlock {
-                direction: light.direction.as_vec3().to_array(),
-                shadow: if light.shadow { SHADOW_HARD } else { SHADOW_OFF },
-                color: light.color.as_vec3().to_array(),
-                pad: 0.0,
-            };
+            *block = light.block();
         }
+        let single = |vector: DVec3| vector.as_vec3().to_array();
+        let Footprint { radius, spread } = self.footprint();
+        let [background, zenith, horizon] = match self.background {
+            Background::Plain(color) => [color, DVec3::ZERO, DVec3::ZERO],
+            Background::Sky { zenith, horizon } => [DVec3::ZERO, zenith, horizon],
+        };
+        let fog = self.fog.unwrap_or(ViewFog { density: 0.0, color: None });
+        let occlusion = self.occlusion.unwrap_or(ViewOcclusion { radius: 0.0, strength: 0.0 });
         ViewBlock {
-            eye: self.eye.as_vec3().to_array(),
-            pixel_radius: self.pixel_radius() as f32,
-            right: self.right.as_vec3().to_array(),
+            eye: single(self.eye),
+            pixel_radius: (radius + spread) as f32,
+            right: single(self.right),
             t_max: self.t_max as f32,
-            up: self.up.as_vec3().to_array(),
+            up: single(self.up),
             epsilon: self.epsilon as f32,
-            forward: self.forward.as_vec3().to_array(),
+            forward: single(self.forward),
             steps: self.steps,
             size: self.size,
             tile_origin: tile.origin,
             tile_size: tile.size,
             light_count: self.lights.len().min(MAX_LIGHTS) as u32,
             pad: 0.0,
-            ambient: self.ambient.as_vec3().to_array(),
+            ambient: single(self.ambient),
             reflections: self.reflections,
-            background: self.background.as_vec3().to_array(),
+            background: single(background),
             reflection_strength: self.reflection_strength as f32,
+            zenith: single(zenith),
+            fog_density: fog.density as f32,
+            horizon: single(horizon),
+            occlusion_radius: occlusion.radius as f32,
+            fog_color: single(fog.color.unwrap_or_default()),
+            occlusion_strength: occlusion.strength as f32,
             lights,
         }
     }
@@ -284,38 +306,51 @@ fn stated(value: Option<f64>, what: &'static str) -> Result<Option<f64>, ViewErr
     }
 }
 
-/// The scene's lights, or a white one at the camera if it has none.
-fn lights(
-    lights: &[Light],
-    forward: DVec3,
+fn background(
+    settings: &Settings,
     value: &dyn Fn(NodeId) -> [f64; 4],
-) -> Result<Vec<ViewLight>, ViewError> {
-    if lights.len() > MAX_LIGHTS {
-        return Err(ViewError::TooManyLights(lights.len()));
+) -> Result<Background, ViewError> {
+    if let Some(Sky { zenith, horizon }) = settings.sky {
+        let [zenith, horizon] =
+            [zenith, horizon].map(|node| finite(value(node), "the sky's colour"));
+        return Ok(Background::Sky { zenith: zenith?, horizon: horizon? });
     }
-    if lights.is_empty() {
-        return Ok(vec![ViewLight { direction: -forward, color: DVec3::ONE, shadow: false }]);
-    }
-    lights.iter().map(|light| view_light(light, value)).collect()
+    let color = settings.background.map(|node| finite(value(node), "the background colour"));
+    Ok(Background::Plain(color.transpose()?.unwrap_or_default()))
 }
 
-fn view_light(light: &Light, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<ViewLight, ViewError> {
-    let direction = finite(value(light.direction), "a light's direction")?;
-    Ok(ViewLight {
-        direction: direction.try_normalize().ok_or(ViewError::LightDirection)?,
-        color: finite(value(light.color), "a light's colour")?,
-        shadow: match light.shadow {
-            Shadow::Off => false,
-            Shadow::Hard => true,
-            Shadow::Soft(_) => return Err(ViewError::NotYet("soft shadows")),
-        },
+fn view_fog(fog: Fog, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<ViewFog, ViewError> {
+    let density = value(fog.density)[0];
+    if density < 0.0 {
+        return Err(ViewError::NotPositive("the fog's density", density));
+    }
+    if !density.is_finite() {
+        return Err(ViewError::NotFinite("the fog's density"));
+    }
+    let color = fog.color.map(|node| finite(value(node), "the fog's colour")).transpose()?;
+    Ok(ViewFog { density, color })
+}
+
+fn view_occlusion(
+    occlusion: Occlusion,
+    value: &dyn Fn(NodeId) -> [f64; 4],
+) -> Result<ViewOcclusion, ViewError> {
+    Ok(ViewOcclusion {
+        radius: positive(value(occlusion.radius), "the radius of ambient occlusion")?,
+        strength: share(value(occlusion.strength), "the strength of ambient occlusion")?,
     })
 }
 
-/// Of reflections.
-fn strength([strength, ..]: [f64; 4]) -> Result<f64, ViewError> {
-    let within = (0.0..=1.0).contains(&strength);
-    if within { Ok(strength) } else { Err(ViewError::ReflectionStrength(strength)) }
+fn share([value, ..]: [f64; 4], what: &'static str) -> Result<f64, ViewError> {
+    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(ViewError::NotShare(what, value)) }
+}
+
+fn positive([value, ..]: [f64; 4], what: &'static str) -> Result<f64, ViewError> {
+    match value {
+        value if !value.is_finite() => Err(ViewError::NotFinite(what)),
+        value if value <= 0.0 => Err(ViewError::NotPositive(what, value)),
+        value => Ok(value),
+    }
 }
 
 fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError> {
@@ -325,7 +360,8 @@ fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError
 
 #[cfg(test)]
 mod tests {
-    use sdfc_graph::{Camera, Reflections};
+    use sdfc_graph::{Camera, Lens, Light, LightSource, Reflections, Shadow};
+    use sdfc_march::{SHADOW_HARD, SUN};
 
     use super::*;
 
@@ -348,7 +384,7 @@ mod tests {
                 eye: fixture.vec3(eye),
                 target: fixture.vec3(target),
                 up: fixture.vec3(up),
-                fov: fixture.0.graph.number(degrees.to_radians()),
+                lens: Lens::Fov(fixture.0.graph.number(degrees.to_radians())),
             };
             fixture.0.settings.camera = Some(camera);
             fixture
@@ -356,7 +392,7 @@ mod tests {
 
         fn light(&mut self, direction: [f64; 3], shadow: Shadow) {
             let light = Light {
-                direction: self.vec3(direction),
+                source: LightSource::Sun { direction: self.vec3(direction) },
                 color: self.vec3([1.0, 0.5, 0.25]),
                 shadow,
             };
@@ -381,18 +417,18 @@ mod tests {
         close(view.forward, [0.0, 0.0, -1.0]);
         close(view.right, [2.0, 0.0, 0.0]);
         close(view.up, [0.0, 1.0, 0.0]);
-        assert!((view.pixel_radius() - 0.01).abs() < 1e-12);
+        assert!((view.footprint().at(3.0) - 0.03).abs() < 1e-12);
         // The centre of the topmost left pixel is 0.99 of the way to the corner.
         let expected = DVec3::new(-1.99, 0.99, -1.0).normalize();
-        close(view.ray_direction(0, 0), expected.to_array());
+        close(view.ray(0, 0)[1], expected.to_array());
     }
 
     #[test]
     fn a_view_shifted_by_a_pixel_sees_what_the_next_pixel_saw() {
         let fixture = Fixture::with_camera([1.0, 2.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0], 50.0);
         let view = fixture.view(None, [20, 10]).unwrap();
-        close(view.shifted([1.0, 0.0]).ray_direction(4, 7), view.ray_direction(5, 7).to_array());
-        close(view.shifted([-2.0, 3.0]).ray_direction(4, 6), view.ray_direction(2, 9).to_array());
+        close(view.shifted([1.0, 0.0]).ray(4, 7)[1], view.ray(5, 7)[1].to_array());
+        close(view.shifted([-2.0, 3.0]).ray(4, 6)[1], view.ray(2, 9)[1].to_array());
         assert_eq!(view.shifted([0.0, 0.0]), view);
     }
 
@@ -469,7 +505,7 @@ mod tests {
         let mut fixture = Fixture::new();
         let strength = fixture.0.graph.number(1.5);
         fixture.0.settings.reflections = Some(Reflections { count: 1, strength });
-        assert_eq!(error(&fixture), ViewError::ReflectionStrength(1.5));
+        assert_eq!(error(&fixture), ViewError::NotShare("the strength of reflections", 1.5));
 
         let mut fixture = Fixture::new();
         fixture.0.settings.march.distance = Some(-3.0);
@@ -483,13 +519,13 @@ mod tests {
         let mut fixture = Fixture::with_camera([0.0, 0.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0], 60.0);
         let view = fixture.view(None, [10, 10]).unwrap();
         assert_eq!(view.lights.len(), 1);
-        close(view.lights[0].direction, [0.0, 0.0, 1.0]);
+        assert_eq!(view.lights[0].source, ViewSource::Sun(DVec3::Z));
 
         fixture.light([0.0, 3.0, 0.0], Shadow::Hard);
         let tile = Tile { origin: [4, 2], size: [3, 1] };
         let block = fixture.view(None, [10, 10]).unwrap().block(tile);
         assert_eq!(block.light_count, 1);
-        assert_eq!(block.lights[0].direction, [0.0, 1.0, 0.0]);
+        assert_eq!((block.lights[0].place, block.lights[0].kind), ([0.0, 1.0, 0.0], SUN));
         assert_eq!(block.lights[0].color, [1.0, 0.5, 0.25]);
         assert_eq!(block.lights[0].shadow, SHADOW_HARD);
         assert_eq!((block.tile_origin, block.tile_size), ([4, 2], [3, 1]));

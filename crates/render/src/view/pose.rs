@@ -1,9 +1,9 @@
 //! Where the camera stands: as the scene says, or fitted to the bounds.
 
 use glam::DVec3;
-use sdfc_graph::{Camera, NodeId};
+use sdfc_graph::{Camera, Lens, NodeId};
 
-use super::{Bounds, ViewError, finite};
+use super::{Bounds, ViewError, finite, positive};
 
 /// Vertical field of view of a camera that is fitted to the bounds.
 const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
@@ -17,8 +17,10 @@ pub(super) struct Pose {
     pub(super) eye: DVec3,
     pub(super) target: DVec3,
     pub(super) up: DVec3,
-    /// Vertical, in radians.
-    pub(super) fov: f64,
+    /// Whether rays are parallel.
+    pub(super) parallel: bool,
+    /// Half the height of the picture, at distance 1 unless rays are parallel.
+    pub(super) half_height: f64,
 }
 
 impl Pose {
@@ -30,14 +32,17 @@ impl Pose {
         let eye = finite(value(camera.eye), "the camera's eye")?;
         let target = finite(value(camera.target), "the camera's target")?;
         let up = finite(value(camera.up), "the camera's up")?;
-        let fov = value(camera.fov)[0];
         if (target - eye).try_normalize().is_none() {
             return Err(ViewError::EyeIsTarget(eye.to_array()));
         }
-        if !(fov > 0.0 && fov < std::f64::consts::PI) {
-            return Err(ViewError::Fov(fov));
-        }
-        Ok(Self { eye, target, up, fov })
+        let (parallel, half_height) = match camera.lens {
+            Lens::Height(height) => (true, positive(value(height), "the camera's height")? / 2.0),
+            Lens::Fov(fov) => match value(fov)[0] {
+                fov if fov > 0.0 && fov < std::f64::consts::PI => (false, (fov / 2.0).tan()),
+                fov => return Err(ViewError::Fov(fov)),
+            },
+        };
+        Ok(Self { eye, target, up, parallel, half_height })
     }
 
     /// Seeing the whole of the bounds, from the right, above and in front.
@@ -49,7 +54,8 @@ impl Pose {
         let radius = ((hi - lo).length() / 2.0).max(1e-3);
         let distance = FITTED_MARGIN * radius / (narrower / 2.0).sin();
         let eye = target + FITTED_DIRECTION.normalize() * distance;
-        Self { eye, target, up: DVec3::Y, fov: FITTED_FOV }
+        let half_height = (FITTED_FOV / 2.0).tan();
+        Self { eye, target, up: DVec3::Y, parallel: false, half_height }
     }
 
     /// Unit vectors to the right, upwards and into the picture.

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 use sdfc_graph::{
-    Camera, Dim, FrameInput, Graph, Light, NodeId, Param, ParamKind, Program, Reflections, Shadow,
-    Type, Unary, eval::FrameValues,
+    Camera, Dim, Fog, FrameInput, Graph, Lens, Light, LightSource, NodeId, Occlusion, Param,
+    ParamKind, Program, Reflections, Shadow, Sky, Type, Unary, eval::FrameValues,
 };
 use sdfc_render::{Bounds, View};
 
@@ -61,7 +61,7 @@ pub fn sphere_above_floor() -> Program {
     look_from(&mut program, [1.0, 1.0, 5.0]);
     let graph = &mut program.graph;
     let light = Light {
-        direction: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]),
+        source: LightSource::Sun { direction: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]) },
         color: graph.constant(Type::Vec3, &[1.0, 0.5, 0.25]),
         shadow: Shadow::Hard,
     };
@@ -76,6 +76,61 @@ pub fn mirrors() -> Program {
     let mut program = sphere_above_floor();
     let strength = program.graph.number(0.5);
     program.settings.reflections = Some(Reflections { count: 1, strength });
+    program
+}
+
+/// The same light, its shadow's edge soft.
+pub fn soft_shadow(sharpness: f64) -> Program {
+    let mut program = sphere_above_floor();
+    let sharpness = program.graph.number(sharpness);
+    for light in &mut program.settings.lights {
+        light.shadow = Shadow::Soft(sharpness);
+    }
+    program
+}
+
+/// The sphere and the floor under a lamp at a place.
+pub fn lamp(place: [f64; 3], strength: f64, shadow: Shadow) -> Program {
+    let mut program = sphere_above_floor();
+    let graph = &mut program.graph;
+    let source = LightSource::Point { position: graph.constant(Type::Vec3, &place) };
+    let color = graph.constant(Type::Vec3, &[strength; 3]);
+    program.settings.lights = vec![Light { source, color, shadow }];
+    program
+}
+
+/// The sphere and the floor in fog, under a sky.
+pub fn foggy(density: f64) -> Program {
+    let mut program = sphere_above_floor();
+    let graph = &mut program.graph;
+    let [zenith, horizon] =
+        [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0]].map(|color| graph.constant(Type::Vec3, &color));
+    program.settings.sky = Some(Sky { zenith, horizon });
+    program.settings.fog = Some(Fog { density: graph.number(density), color: None });
+    program
+}
+
+/// The sphere and the floor without a lamp's light, the distance written twice as large.
+pub fn occluded(radius: f64) -> Program {
+    let mut program = sphere_above_floor();
+    let graph = &mut program.graph;
+    let two = graph.number(2.0);
+    program.distance = program.distance.map(|distance| graph.mul(distance, two));
+    program.gradient = program.gradient.map(|gradient| graph.mul(gradient, two));
+    program.settings.lights[0].color = graph.constant(Type::Vec3, &[0.0; 3]);
+    program.settings.ambient = Some(graph.constant(Type::Vec3, &[1.0; 3]));
+    let (radius, strength) = (graph.number(radius), graph.number(1.0));
+    program.settings.occlusion = Some(Occlusion { radius, strength });
+    program
+}
+
+/// The unit sphere by parallel rays, in a picture of this height.
+pub fn parallel(height: f64) -> Program {
+    let mut program = sphere();
+    let height = program.graph.number(height);
+    if let Some(camera) = &mut program.settings.camera {
+        camera.lens = Lens::Height(height);
+    }
     program
 }
 
@@ -137,7 +192,7 @@ fn look_from(program: &mut Program, eye: [f64; 3]) {
         eye: graph.constant(Type::Vec3, &eye),
         target: graph.constant(Type::Vec3, &[0.0; 3]),
         up: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]),
-        fov: graph.number(40f64.to_radians()),
+        lens: Lens::Fov(graph.number(40f64.to_radians())),
     });
 }
 
@@ -151,7 +206,7 @@ pub fn view(program: &Program, size: [u32; 2]) -> View {
 
 /// Distance from [0, 0, 5] to the unit sphere along a ray; `None` if it passes by.
 pub fn depth_of_sphere(view: &View, x: u32, y: u32) -> Option<f64> {
-    let direction = view.ray_direction(x, y);
+    let [_, direction] = view.ray(x, y);
     let along = -view.eye.dot(direction);
     let square = along * along - (view.eye.length_squared() - 1.0);
     (square >= 0.0).then(|| along - square.sqrt())

@@ -39,7 +39,10 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
 pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
     let picture = |backend| {
         let method = Some(METHOD.to_owned());
-        let options = PictureOptions { size: [SIDE; 2], method, backend, ..Default::default() };
+        // One ray for each pixel, through its centre, as in the pictures of depths.
+        let samples = Some(1);
+        let options =
+            PictureOptions { size: [SIDE; 2], method, backend, samples, ..Default::default() };
         scene.render(&options, &mut unwatched)
     };
     let (gpu, cpu) = (picture(Backend::Gpu)?.image, picture(Backend::Cpu)?.image);

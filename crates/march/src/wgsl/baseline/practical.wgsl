@@ -25,6 +25,7 @@ fn trace(ray: Ray) -> Trace {
             break;
         }
         distance = field(ray_point(ray, t));
+        passed(t, distance);
         steps++;
     }
     return Trace(t, select(MISS, CAPPED, steps == MOST_STEPS), steps);

@@ -1,0 +1,115 @@
+//! Lights: where their light comes from, its colour and its shadow.
+
+use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
+use sdfc_graph::{Light, LightSource, NodeId, Settings, Shadow, Type};
+
+use super::report::show_lanes;
+use super::settings::POSITIVE;
+use super::value::Value;
+use super::{Elaborator, Env, Outcome, Poison};
+use crate::hir::{Expr, Setting};
+
+/// As many as the shader has room for.
+const MAX_LIGHTS: usize = 8;
+/// Towards a `sun()` without direction.
+const DEFAULT_SUN: [f64; 3] = [1.0, 2.0, 1.0];
+/// From the middle of a `spot_light`'s cone to its edge: 30 degrees.
+const DEFAULT_CONE: f64 = 30.0 * std::f64::consts::PI / 180.0;
+
+impl<'p> Elaborator<'p> {
+    pub(super) fn sun(&mut self, setting: &'p Setting) -> Outcome<LightSource> {
+        let direction = self.setting_number(setting, 0)?;
+        let default = || self.graph.constant(Type::Vec3, &DEFAULT_SUN);
+        Ok(LightSource::Sun { direction: direction.unwrap_or_else(default) })
+    }
+
+    pub(super) fn point_light(&mut self, setting: &'p Setting) -> Outcome<LightSource> {
+        let position = self.setting_number(setting, 0)?.ok_or(Poison)?;
+        Ok(LightSource::Point { position })
+    }
+
+    pub(super) fn spot_light(&mut self, setting: &'p Setting) -> Outcome<LightSource> {
+        let position = self.setting_number(setting, 0)?.ok_or(Poison)?;
+        let target = self.setting_number(setting, 1);
+        let angle = self.argument(setting, 2).map(|expr| self.cone(expr));
+        Ok(LightSource::Spot {
+            position,
+            target: target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3])),
+            angle: angle.transpose()?.unwrap_or_else(|| self.graph.number(DEFAULT_CONE)),
+        })
+    }
+
+    /// An angle between 0 and a right one.
+    fn cone(&mut self, expr: &'p Expr) -> Outcome<NodeId> {
+        let angle = self.number(&mut Env::new(self.program.locals), expr)?;
+        let degrees = self.graph.as_number(angle).map(f64::to_degrees);
+        match degrees {
+            Some(degrees) if !(degrees > 0.0 && degrees < 90.0) => {
+                let degrees = show_lanes(&[degrees]);
+                let message = format!("`angle` is {degrees}deg; it is above 0deg and below 90deg");
+                let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);
+                let help =
+                    "it is from the middle of the cone to its edge; a point_light shines all round";
+                Err(self.report(error.help(help)))
+            }
+            Some(_) | None => Ok(angle),
+        }
+    }
+
+    /// Adds a light. Its colour, strength and shadow stand from the place `first` on.
+    pub(super) fn light(
+        &mut self,
+        setting: &'p Setting,
+        source: LightSource,
+        first: usize,
+        out: &mut Settings,
+    ) -> Outcome<()> {
+        let color = self.light_color(setting, [first, first + 1], 1.0)?;
+        let shadow = self.argument(setting, first + 2).map(|expr| self.shadow(expr));
+        let shadow = shadow.transpose()?.unwrap_or_default();
+        if out.lights.len() == MAX_LIGHTS {
+            let message = format!("a scene has at most {MAX_LIGHTS} lights");
+            let error = Diagnostic::error(ErrorCode::TOO_MANY_LIGHTS, setting.span, message);
+            return Err(
+                self.report(error.help("remove one, or let `ambient` stand for the weakest"))
+            );
+        }
+        out.lights.push(Light { source, color, shadow });
+        Ok(())
+    }
+
+    fn shadow(&mut self, expr: &'p Expr) -> Outcome<Shadow> {
+        let shadow = match self.eval(&mut Env::new(self.program.locals), expr)? {
+            Value::Shadow(shadow) => shadow,
+            other => return Err(self.unexpected(expr.span, "a shadow", &other)),
+        };
+        let sharpness = match shadow {
+            Shadow::Soft(node) => self.graph.as_number(node),
+            Shadow::Off | Shadow::Hard => None,
+        };
+        if sharpness.is_some_and(|value| !(POSITIVE[0]..=POSITIVE[1]).contains(&value)) {
+            let message = "the sharpness of a soft shadow is above 0";
+            let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);
+            let help = "soft(8) fades over about an eighth of the distance to what throws it";
+            return Err(self.report(error.help(help)));
+        }
+        Ok(shadow)
+    }
+
+    /// Linear colour times strength, from the places of both.
+    pub(super) fn light_color(
+        &mut self,
+        setting: &'p Setting,
+        [color, strength]: [usize; 2],
+        default_strength: f64,
+    ) -> Outcome<NodeId> {
+        let color = self.setting_number(setting, color);
+        let strength = self.setting_number(setting, strength);
+        let color = match color? {
+            Some(color) => self.graph.swizzle(color, &[0, 1, 2]),
+            None => self.graph.constant(Type::Vec3, &[1.0; 3]),
+        };
+        let strength = strength?.unwrap_or_else(|| self.graph.number(default_strength));
+        Ok(self.graph.mul(color, strength))
+    }
+}

@@ -1,0 +1,22 @@
+// What is seen where nothing is met.
+
+fn behind(direction: vec3f) -> vec3f {
+    var color = view.background;
+    if SKY {
+        // The colour changes fastest near the horizon.
+        let low = 1.0 - saturate(direction.y);
+        color = mix(view.zenith, view.horizon, low * low * low);
+    }
+    return color;
+}
+
+// What a surface seen in this direction fades to.
+fn haze(direction: vec3f) -> vec3f {
+    var color: vec3f;
+    if FOG_COLOR {
+        color = view.fog_color;
+    } else {
+        color = behind(direction);
+    }
+    return color;
+}

@@ -1,0 +1,20 @@
+// What a scene needs beyond the least. Known when it is linked: of a branch on one of these, the side that is taken
+// stays and the other goes, with all that only it reached.
+
+// Some light throws a shadow; some light's shadow is soft.
+override SHADOWS: bool;
+override SOFT_SHADOWS: bool;
+// Some light stands at a point; some of those shine in a cone.
+override LAMPS: bool;
+override SPOTS: bool;
+// Surfaces mirror each other.
+override REFLECTIONS: bool;
+// Light from everywhere does not reach everything.
+override OCCLUSION: bool;
+// The background changes with the direction.
+override SKY: bool;
+// What is far away fades, and to a colour of its own.
+override FOG: bool;
+override FOG_COLOR: bool;
+// Rays from the eye are parallel.
+override PARALLEL: bool;

@@ -1,0 +1,28 @@
+// How much of the light from everywhere reaches a surface, from how far above it the field falls behind the height.
+// A. Evans, Fast approximations for global illumination on dynamic scenes (SIGGRAPH 2006).
+
+const OCCLUSION_SAMPLES: u32 = 5;
+
+// Length of the gradient where the last normal was taken: a field that is steeper or flatter than a distance is
+// measured by it.
+var<private> slope: f32;
+
+// After each gradient, its square.
+fn sloped(square: f32) {
+    slope = select(1.0, sqrt(square), square > 0.0);
+}
+
+fn open_part(point: vec3f, normal: vec3f) -> f32 {
+    var closed = 0.0;
+    var all = 0.0;
+    var share = 1.0;
+    // The nearer, the more it counts.
+    for (var i = 1u; i <= OCCLUSION_SAMPLES; i++) {
+        let height = view.occlusion_radius * f32(i) / f32(OCCLUSION_SAMPLES);
+        let distance = field(point + height * normal) / slope;
+        closed += share * saturate(1.0 - distance / height);
+        all += share;
+        share *= 0.5;
+    }
+    return 1.0 - view.occlusion_strength * closed / all;
+}

@@ -1,0 +1,35 @@
+// The edge of a soft shadow, from how narrowly a ray to a lamp passes what it does not meet. The distances at two
+// places of the ray are the radii of two spheres; where these meet is taken for the surface that both are as far
+// away from. S. Aaltonen, GPU-based clay simulation and ray-tracing tech in Claybook (GDC 2018), there for
+// steps as long as the distance; here for steps of any length, and for no place outside the step.
+
+// Distance from the ray over distance along it, the least of all places.
+var<private> clearance: f32;
+// Last place, and the distance there.
+var<private> before: vec2f;
+
+// Before a ray to a lamp.
+fn open_penumbra() {
+    clearance = 1e30;
+    before = vec2f();
+}
+
+// After each sample of a ray.
+fn passed(t: f32, distance: f32) {
+    let step = t - before.x;
+    if step > 0.0 {
+        let square = distance * distance;
+        // How far before this place the spheres meet, and how far beside the ray.
+        let back = 0.5 * (step + (square - before.y * before.y) / step);
+        var nearest = vec2f(t - back, sqrt(max(square - back * back, 0.0)));
+        if back <= 0.0 {
+            nearest = vec2f(t, distance);
+        } else if back >= step {
+            nearest = before;
+        }
+        if nearest.x > 0.0 {
+            clearance = min(clearance, nearest.y / nearest.x);
+        }
+    }
+    before = vec2f(t, distance);
+}

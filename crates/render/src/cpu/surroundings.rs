@@ -1,0 +1,75 @@
+//! What is about a surface: lamps as it sees them, what lies behind it, and fog.
+
+use glam::DVec3;
+
+use crate::{Background, View, ViewFog, ViewLight, ViewShadow, ViewSource};
+
+/// A lamp is never taken to be nearer than this.
+const LEAST_REACH: f64 = 1e-6;
+
+/// A light as a point sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lamp {
+    /// Unit vector towards it.
+    pub(super) direction: DVec3,
+    /// How far away it is; none for a sun.
+    pub(super) reach: Option<f64>,
+    /// Linear colour of what arrives.
+    pub(super) color: DVec3,
+}
+
+impl Lamp {
+    pub(super) fn seen_from(point: DVec3, light: &ViewLight) -> Self {
+        match light.source {
+            ViewSource::Sun(direction) => Self { direction, reach: None, color: light.color },
+            ViewSource::Point(place) => Self::at(place, point, light.color),
+            ViewSource::Spot { place, axis, rim: [inner, outer] } => {
+                let lamp = Self::at(place, point, light.color);
+                let cosine = -axis.dot(lamp.direction);
+                let share = fade((cosine - outer) / (inner - outer));
+                Self { color: lamp.color * share, ..lamp }
+            }
+        }
+    }
+
+    /// Light thins out with the square of the distance.
+    fn at(place: DVec3, point: DVec3, color: DVec3) -> Self {
+        let way = place - point;
+        let reach = way.length().max(LEAST_REACH);
+        Self { direction: way / reach, reach: Some(reach), color: color / (reach * reach) }
+    }
+}
+
+/// The part of a light that a ray to it lets through, if it meets nothing and passes with this clearance.
+pub(super) fn unshaded(light: &ViewLight, clearance: f64) -> f64 {
+    match light.shadow {
+        ViewShadow::Off | ViewShadow::Hard => 1.0,
+        ViewShadow::Soft(sharpness) => fade(sharpness * clearance),
+    }
+}
+
+/// What is seen in a direction where nothing is met.
+pub(super) fn behind(view: &View, direction: DVec3) -> DVec3 {
+    match view.background {
+        Background::Plain(color) => color,
+        Background::Sky { zenith, horizon } => {
+            zenith + (horizon - zenith) * (1.0 - direction.y.clamp(0.0, 1.0)).powi(3)
+        }
+    }
+}
+
+/// The part of a surface's light that comes through the fog, and the colour of the rest.
+pub(super) fn through_fog(view: &View, direction: DVec3, t: f64) -> (f64, DVec3) {
+    match view.fog {
+        None => (1.0, DVec3::ZERO),
+        Some(ViewFog { density, color }) => {
+            ((-density * t).exp(), color.unwrap_or_else(|| behind(view, direction)))
+        }
+    }
+}
+
+/// From 0 to 1, flat at both ends.
+fn fade(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}

@@ -1,0 +1,132 @@
+//! The lights of a frame as numbers.
+
+use glam::DVec3;
+use sdfc_graph::{Light, LightSource, NodeId, Shadow};
+use sdfc_march::{LightBlock, MAX_LIGHTS, POINT, SHADOW_HARD, SHADOW_OFF, SHADOW_SOFT, SPOT, SUN};
+
+use super::{ViewError, finite, positive};
+
+/// A spot light's light falls off over this outer part of its angle.
+const RIM: f64 = 0.15;
+
+/// A light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewLight {
+    /// Where its light comes from.
+    pub source: ViewSource,
+    /// Linear colour times strength: of a sun anywhere, of others at distance 1.
+    pub color: DVec3,
+    /// What shadow it throws.
+    pub shadow: ViewShadow,
+}
+
+/// Where a light comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ViewSource {
+    /// From infinitely far away: a unit vector towards it.
+    Sun(DVec3),
+    /// From a place, in all directions.
+    Point(DVec3),
+    /// From a place, in a cone.
+    Spot {
+        /// Where it stands.
+        place: DVec3,
+        /// Unit vector along the middle of the cone.
+        axis: DVec3,
+        /// Cosines of angles from the axis: all light within the first, none outside the second.
+        rim: [f64; 2],
+    },
+}
+
+/// What shadow a light throws.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ViewShadow {
+    /// None.
+    #[default]
+    Off,
+    /// One without an edge.
+    Hard,
+    /// One whose edge fades over the inverse of this number.
+    Soft(f64),
+}
+
+impl ViewLight {
+    /// The light as the shader reads it.
+    pub(super) fn block(&self) -> LightBlock {
+        let single = |vector: DVec3| vector.as_vec3().to_array();
+        let color = single(self.color);
+        let (shadow, sharpness) = match self.shadow {
+            ViewShadow::Off => (SHADOW_OFF, 0.0),
+            ViewShadow::Hard => (SHADOW_HARD, 0.0),
+            ViewShadow::Soft(sharpness) => (SHADOW_SOFT, sharpness as f32),
+        };
+        let any = LightBlock { color, shadow, sharpness, ..LightBlock::default() };
+        match self.source {
+            ViewSource::Sun(direction) => LightBlock { place: single(direction), kind: SUN, ..any },
+            ViewSource::Point(place) => LightBlock { place: single(place), kind: POINT, ..any },
+            ViewSource::Spot { place, axis, rim } => LightBlock {
+                place: single(place),
+                kind: SPOT,
+                axis: single(axis),
+                rim: rim.map(|cosine| cosine as f32),
+                ..any
+            },
+        }
+    }
+}
+
+/// The scene's lights, or a white one at the camera if it has none.
+pub(super) fn lights(
+    lights: &[Light],
+    forward: DVec3,
+    value: &dyn Fn(NodeId) -> [f64; 4],
+) -> Result<Vec<ViewLight>, ViewError> {
+    if lights.len() > MAX_LIGHTS {
+        return Err(ViewError::TooManyLights(lights.len()));
+    }
+    if lights.is_empty() {
+        let (source, shadow) = (ViewSource::Sun(-forward), ViewShadow::Off);
+        return Ok(vec![ViewLight { source, color: DVec3::ONE, shadow }]);
+    }
+    lights.iter().map(|light| view_light(light, value)).collect()
+}
+
+fn view_light(light: &Light, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<ViewLight, ViewError> {
+    Ok(ViewLight {
+        source: source(&light.source, value)?,
+        color: finite(value(light.color), "a light's colour")?,
+        shadow: match light.shadow {
+            Shadow::Off => ViewShadow::Off,
+            Shadow::Hard => ViewShadow::Hard,
+            Shadow::Soft(node) => {
+                ViewShadow::Soft(positive(value(node), "a soft shadow's sharpness")?)
+            }
+        },
+    })
+}
+
+fn source(
+    source: &LightSource,
+    value: &dyn Fn(NodeId) -> [f64; 4],
+) -> Result<ViewSource, ViewError> {
+    let position = |node| finite(value(node), "a light's position");
+    match *source {
+        LightSource::Sun { direction } => {
+            let direction = finite(value(direction), "a light's direction")?;
+            Ok(ViewSource::Sun(direction.try_normalize().ok_or(ViewError::LightDirection)?))
+        }
+        LightSource::Point { position: node } => Ok(ViewSource::Point(position(node)?)),
+        LightSource::Spot { position: node, target, angle } => {
+            let place = position(node)?;
+            let target = finite(value(target), "a spot light's target")?;
+            let nowhere = || ViewError::SpotIsTarget(place.to_array());
+            let axis = (target - place).try_normalize().ok_or_else(nowhere)?;
+            let angle = value(angle)[0];
+            if !(angle > 0.0 && angle < std::f64::consts::FRAC_PI_2) {
+                return Err(ViewError::SpotAngle(angle));
+            }
+            let rim = [((1.0 - RIM) * angle).cos(), angle.cos()];
+            Ok(ViewSource::Spot { place, axis, rim })
+        }
+    }
+}
