@@ -64,7 +64,7 @@ fn solid(entry: &Entry) -> Vec<u8> {
     let options = PictureOptions {
         size: SIZE,
         backend: Backend::Cpu,
-        samples: SAMPLES,
+        samples: Some(SAMPLES),
         ..Default::default()
     };
     let picture = scene(entry, LIGHT).render(&options, &mut unwatched);

@@ -20,6 +20,7 @@ fn ball() -> Program {
 
 fn camera() -> Camera {
     Camera {
+        parallel: false,
         size: [SIZE as u32; 2],
         eye: [0.0, 0.0, 4.0],
         forward: [0.0, 0.0, -1.0],

@@ -98,21 +98,21 @@ impl Choices {
             for inner in inner_blocks(&mut statement) {
                 self.apply(inner, conditions, gone);
             }
-            match statement {
-                Statement::If { condition, accept, reject }
-                    if conditions.contains_key(&condition) =>
-                {
-                    let (taken, other) =
-                        if conditions[&condition] { (accept, reject) } else { (reject, accept) };
-                    append(&mut rest, taken);
-                    gone.push(other);
-                }
+            if let Statement::If { condition, accept, reject } = &mut statement
+                && let Some(&value) = conditions.get(condition)
+            {
+                let [accept, reject] = [accept, reject].map(std::mem::take);
+                let (taken, other) = if value { (accept, reject) } else { (reject, accept) };
+                append(&mut rest, taken);
+                gone.push(other);
+            } else if let Statement::Loop { body, .. } = &mut statement
+                && runs_once(body)
+            {
                 // What continues a loop is not reached where it is left first.
-                Statement::Loop { mut body, .. } if runs_once(&body) => {
-                    body.cull(body.len() - 1..);
-                    append(&mut rest, body);
-                }
-                other => rest.push(other, span),
+                body.cull(body.len() - 1..);
+                append(&mut rest, std::mem::take(body));
+            } else {
+                rest.push(statement, span);
             }
         }
         *block = rest;
@@ -123,15 +123,14 @@ impl Choices {
 fn forget(gone: &[Block], function: &mut Function) {
     let mut todo: Vec<&Statement> = gone.iter().flat_map(|block| block.iter()).collect();
     while let Some(statement) = todo.pop() {
-        match statement {
-            Statement::Emit(range) => range.clone().for_each(|value| {
+        if let Statement::Emit(range) = statement {
+            for value in range.clone() {
                 function.named_expressions.swap_remove(&value);
-            }),
-            Statement::Call { result: Some(value), .. } => {
-                function.named_expressions.swap_remove(value);
             }
-            other => todo.extend(nested(other)),
+        } else if let Statement::Call { result: Some(value), .. } = statement {
+            function.named_expressions.swap_remove(value);
         }
+        todo.extend(nested(statement));
     }
 }
 
@@ -148,15 +147,12 @@ fn runs_once(body: &Block) -> bool {
     let Some((Statement::Break, before)) = body.split_last() else { return false };
     let mut todo: Vec<&Statement> = before.iter().collect();
     while let Some(statement) = todo.pop() {
-        if leaves(statement) {
+        // A loop within is left and continued by its own; in a switch, either may be meant.
+        if leaves(statement) || matches!(statement, Statement::Switch { .. }) {
             return false;
         }
-        // A loop within is left and continued by its own; in a switch, either may be meant.
-        match statement {
-            Statement::Block(block) => todo.extend(block.iter()),
-            Statement::If { accept, reject, .. } => todo.extend(accept.iter().chain(reject.iter())),
-            Statement::Switch { .. } => return false,
-            _ => {}
+        if !matches!(statement, Statement::Loop { .. }) {
+            todo.extend(nested(statement));
         }
     }
     true
