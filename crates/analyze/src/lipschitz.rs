@@ -21,6 +21,8 @@ pub enum Reason {
     Child(String),
     /// A stated constant that is infinite, as one over bounds that are.
     Infinite,
+    /// A stated constant that follows from bounds, of a shape that states none itself.
+    NoBounds,
     /// A constant that holds only within the child's bounds, used where the point may lie outside.
     Within(String),
 }
@@ -35,6 +37,9 @@ impl std::fmt::Display for Reason {
             Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),
             Self::Child(name) => write!(f, "`{name}` has no constant"),
             Self::Infinite => f.write_str("its constant is infinite, since its bounds are"),
+            Self::NoBounds => {
+                f.write_str("its constant follows from bounds, so it has to state `bounds` itself")
+            }
             Self::Within(name) => {
                 write!(
                     f,
