@@ -145,7 +145,7 @@ impl Slopes {
             Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
-            Node::Binary(op, a, b) => self.binary(graph, op, a, b),
+            Node::Binary(op, a, b) => self.binary(graph, op, a, b, level),
             Node::Ternary(op, arguments) => self.ternary(graph, op, arguments),
             Node::Splat(ty, a) => {
                 let inner = self.constant(a)?;
@@ -203,7 +203,14 @@ impl Slopes {
         }
     }
 
-    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId) -> Constant {
+    fn binary(
+        &self,
+        graph: &mut Graph,
+        op: Binary,
+        a: NodeId,
+        b: NodeId,
+        level: u16,
+    ) -> Constant {
         let fixed = |node| graph.stage(node) < Stage::Point;
         let (a_fixed, b_fixed) = (fixed(a), fixed(b));
         match op {
@@ -237,7 +244,7 @@ impl Slopes {
                 }
                 Ok(hypotenuse(graph, &[x, y]))
             }
-            Binary::Mul => Err(Reason::Unbounded("*")),
+            Binary::Mul => self.product(graph, a, b, level),
             Binary::Div => Err(Reason::Unbounded("/")),
             Binary::Dot => Err(Reason::Unbounded("dot")),
             Binary::Cross => Err(Reason::Unbounded("cross")),
@@ -249,6 +256,24 @@ impl Slopes {
             Binary::Eq | Binary::Ne => Err(Reason::Jump("==")),
             Binary::And | Binary::Or => Err(Reason::Jump("&&")),
         }
+    }
+
+    /// |xy - uv| <= max|x| |y - v| + max|y| |x - u|, of factors that stay within limits, such as sines; the
+    /// hypotenuse of the two where the factors look at different components of the point.
+    fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId, level: u16) -> Constant {
+        let limit = |id| graph.range(id).lo.abs().max(graph.range(id).hi.abs());
+        let (of_a, of_b) = (limit(a), limit(b));
+        if !(of_a.is_finite() && of_b.is_finite()) {
+            return Err(Reason::Unbounded("*"));
+        }
+        let (x, y) = (self.constant(a)?, self.constant(b)?);
+        let (of_a, of_b) = (graph.number(of_a), graph.number(of_b));
+        let parts = [graph.mul(x, of_b), graph.mul(y, of_a)];
+        let apart = components_seen(graph, a, level) & components_seen(graph, b, level) == 0;
+        if apart && graph.ty(a).width() == 1 {
+            return Ok(hypotenuse(graph, &parts));
+        }
+        Ok(graph.add(parts[0], parts[1]))
     }
 
     fn ternary(&self, graph: &mut Graph, op: Ternary, [a, b, c]: [NodeId; 3]) -> Constant {
