@@ -11,16 +11,16 @@ impl Graph {
     /// The point of `lo..hi` nearest to `point`; an end that is not finite does not bind.
     pub fn nearest_within(&mut self, point: NodeId, [lo, hi]: [NodeId; 2]) -> NodeId {
         let width = self.ty(point).width() as u8;
-        if self.is_finite(lo, width) && self.is_finite(hi, width) {
+        if self.binds(lo, width) && self.binds(hi, width) {
             return self.ternary(Ternary::Clamp, point, lo, hi);
         }
         let mut lanes = Vec::with_capacity(usize::from(width));
         for lane in 0..width {
             let [mut value, lo, hi] = [point, lo, hi].map(|v| self.component(v, lane));
-            if self.is_finite(lo, 1) {
+            if self.binds(lo, 1) {
                 value = self.max(value, lo);
             }
-            if self.is_finite(hi, 1) {
+            if self.binds(hi, 1) {
                 value = self.min(value, hi);
             }
             lanes.push(value);
@@ -29,7 +29,7 @@ impl Graph {
     }
 
     /// Whether no lane is known to be infinite or no number.
-    fn is_finite(&mut self, end: NodeId, width: u8) -> bool {
+    fn binds(&mut self, end: NodeId, width: u8) -> bool {
         (0..width).all(|lane| {
             let lane = self.component(end, lane);
             self.as_number(lane).is_none_or(f64::is_finite)

@@ -129,7 +129,7 @@ impl<'p> Elaborator<'p> {
     /// The bounds beyond which a formula is to be continued, and its constant within.
     fn continuation(&self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
         let constant = contract.lipschitz.filter(|_| contract.is_local)?;
-        let finite = self.graph.as_number(constant).is_none_or(f64::is_finite);
+        let finite = self.graph.is_finite(constant);
         contract.bounds.filter(|_| finite).map(|bounds| (bounds, constant))
     }
 
@@ -199,7 +199,9 @@ impl<'p> Elaborator<'p> {
             let constant = self.number(env, stated)?;
             let constant = self.known(constant, f64::INFINITY);
             contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
-            contract.is_local = self.asked_bounds;
+            contract.everywhere = definition.everywhere;
+            let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
+            contract.is_local = self.asked_bounds && steep && !definition.everywhere;
         }
         if let Some(stated) = &definition.bounds {
             let Value::Range(lo, hi) = self.eval(env, stated)? else {
