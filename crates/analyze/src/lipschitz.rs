@@ -203,14 +203,7 @@ impl Slopes {
         }
     }
 
-    fn binary(
-        &self,
-        graph: &mut Graph,
-        op: Binary,
-        a: NodeId,
-        b: NodeId,
-        level: u16,
-    ) -> Constant {
+    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId, level: u16) -> Constant {
         let fixed = |node| graph.stage(node) < Stage::Point;
         let (a_fixed, b_fixed) = (fixed(a), fixed(b));
         match op {

@@ -36,8 +36,14 @@ const SCENES: &[(&str, &str)] = &[
     ),
     ("twist grown", "box([0.6, 2, 0.6]).twist(120deg).round(0.2)"),
     ("twist twice", "box([0.6, 1, 0.6]).twist(90deg).rotate(z: 90deg).twist(60deg)"),
-    ("product of sines", "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * sin(9 * q.y) * sin(9 * q.z))"),
-    ("product of sines that meet", "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * cos(8 * q.x + q.y))"),
+    (
+        "product of sines",
+        "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * sin(9 * q.y) * sin(9 * q.z))",
+    ),
+    (
+        "product of sines that meet",
+        "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * cos(8 * q.x + q.y))",
+    ),
     ("ellipsoid", "ellipsoid([1, 0.2, 0.5])"),
     (
         "own steep field",

@@ -1,12 +1,15 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Bounds, Dim, MaterialField, NodeId, ShapeId, Type};
+use sdfc_graph::{Bounds, Dim, MaterialField, NodeId, ShapeId, Ternary, Type};
 
 use super::kernel::{Application, name};
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir;
+
+/// The largest whole number up to which 32-bit floats hold every one.
+const MAX_INDEX: f64 = 16_777_216.0;
 
 impl<'p> Elaborator<'p> {
     /// `[x, y]` to `[x, y, 0]`.
@@ -55,13 +58,18 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// A number or vector that can have any value: a shape made of it stands for all such shapes.
+    /// A number or vector that can have any value: a shape made of it stands for all such shapes. Indices beyond
+    /// what 32-bit floats count exactly are left out, since no remainder of those is known.
     fn anything(&mut self, ty: &hir::Type) -> NodeId {
-        let point = self.graph.point(0, Dim::Three);
-        match ty {
+        let any = match ty {
             hir::Type::Vec(2) => self.graph.point(0, Dim::Two),
-            hir::Type::Vec(3) => point,
-            _ => self.graph.component(point, 0),
+            _ => self.graph.point(0, Dim::Three),
+        };
+        let [lo, hi] = [-MAX_INDEX, MAX_INDEX].map(|end| self.graph.number(end));
+        let any = self.graph.ternary(Ternary::Clamp, any, lo, hi);
+        match ty {
+            hir::Type::Vec(_) => any,
+            _ => self.graph.component(any, 0),
         }
     }
 
