@@ -21,6 +21,8 @@ pub enum Reason {
     Child(String),
     /// A stated constant that is infinite, as one over bounds that are.
     Infinite,
+    /// A stated constant that follows from bounds, of a shape that states none itself.
+    NoBounds,
     /// A constant that holds only within the child's bounds, used where the point may lie outside.
     Within(String),
 }
@@ -35,6 +37,9 @@ impl std::fmt::Display for Reason {
             Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),
             Self::Child(name) => write!(f, "`{name}` has no constant"),
             Self::Infinite => f.write_str("its constant is infinite, since its bounds are"),
+            Self::NoBounds => {
+                f.write_str("its constant follows from bounds, so it has to state `bounds` itself")
+            }
             Self::Within(name) => {
                 write!(
                     f,
@@ -140,7 +145,7 @@ impl Slopes {
             Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
-            Node::Binary(op, a, b) => self.binary(graph, op, a, b),
+            Node::Binary(op, a, b) => self.binary(graph, op, a, b, level),
             Node::Ternary(op, arguments) => self.ternary(graph, op, arguments),
             Node::Splat(ty, a) => {
                 let inner = self.constant(a)?;
@@ -198,7 +203,7 @@ impl Slopes {
         }
     }
 
-    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId) -> Constant {
+    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId, level: u16) -> Constant {
         let fixed = |node| graph.stage(node) < Stage::Point;
         let (a_fixed, b_fixed) = (fixed(a), fixed(b));
         match op {
@@ -232,7 +237,7 @@ impl Slopes {
                 }
                 Ok(hypotenuse(graph, &[x, y]))
             }
-            Binary::Mul => Err(Reason::Unbounded("*")),
+            Binary::Mul => self.product(graph, a, b, level),
             Binary::Div => Err(Reason::Unbounded("/")),
             Binary::Dot => Err(Reason::Unbounded("dot")),
             Binary::Cross => Err(Reason::Unbounded("cross")),
@@ -244,6 +249,24 @@ impl Slopes {
             Binary::Eq | Binary::Ne => Err(Reason::Jump("==")),
             Binary::And | Binary::Or => Err(Reason::Jump("&&")),
         }
+    }
+
+    /// |xy - uv| <= max|x| |y - v| + max|y| |x - u|, of factors that stay within limits, such as sines; the
+    /// hypotenuse of the two where the factors look at different components of the point.
+    fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId, level: u16) -> Constant {
+        let limit = |id| graph.range(id).lo.abs().max(graph.range(id).hi.abs());
+        let (of_a, of_b) = (limit(a), limit(b));
+        if !(of_a.is_finite() && of_b.is_finite()) {
+            return Err(Reason::Unbounded("*"));
+        }
+        let (x, y) = (self.constant(a)?, self.constant(b)?);
+        let (of_a, of_b) = (graph.number(of_a), graph.number(of_b));
+        let parts = [graph.mul(x, of_b), graph.mul(y, of_a)];
+        let apart = components_seen(graph, a, level) & components_seen(graph, b, level) == 0;
+        if apart && graph.ty(a).width() == 1 {
+            return Ok(hypotenuse(graph, &parts));
+        }
+        Ok(graph.add(parts[0], parts[1]))
     }
 
     fn ternary(&self, graph: &mut Graph, op: Ternary, [a, b, c]: [NodeId; 3]) -> Constant {

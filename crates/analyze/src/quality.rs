@@ -183,17 +183,22 @@ impl Qualities {
         let outside = stated.outside;
         let (lipschitz, everywhere) = match contract.lipschitz {
             Some(constant) => {
-                let stated = self.times_children(graph, constant, &children).and_then(|node| {
-                    let finite = graph.as_number(node).is_none_or(f64::is_finite);
-                    if finite { Ok(node) } else { Err(Reason::Infinite) }
-                });
+                let stated =
+                    self.times_children(graph, constant, &children).and_then(|node| {
+                        match (graph.is_finite(node), contract.is_local, contract.bounds) {
+                            (false, ..) => Err(Reason::Infinite),
+                            (true, true, None) => Err(Reason::NoBounds),
+                            (true, ..) => Ok(node),
+                        }
+                    });
                 let confirmed = at_most(graph, &derived, &stated);
                 // Beyond the bounds lies only the outside, and a distance has the constant 1.
                 let one =
                     stated.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l >= 1.0));
                 let exact_beyond = outside == Promise::Exact && one;
-                let holds = confirmed || exact_beyond || contract.bounds.is_none();
-                (stated, children_everywhere && holds)
+                // One that was found from bounds is continued beyond them.
+                let said = contract.everywhere || contract.is_local || contract.bounds.is_none();
+                (stated, children_everywhere && (confirmed || exact_beyond || said))
             }
             None => (derived, children_everywhere),
         };

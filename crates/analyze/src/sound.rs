@@ -4,10 +4,8 @@
 //! divided by its own Lipschitz constant; what stands under anything else (a blend, an offset) is
 //! expanded undivided, its constant travels up. So no division moves a surface.
 //!
-//! A constant that holds only within bounds B is used there: with `c` the point of B nearest to p,
-//! `u = f(c) / L` and `v = |p - c|`, the field is `u` inside B and `sqrt(u² + v²)` outside. For a surface
-//! point s in B the angle at c is not acute, so `|p - s|² >= |p - c|² + |c - s|² >= v² + u²`; and as
-//! projection onto a convex set is firmly nonexpansive, `p -> (u, v)` is 1-Lipschitz, and so is its length.
+//! A constant that is stated with bounds and not known to hold beyond them is used there: the field is continued
+//! ([`sdfc_graph::Graph::continued`]).
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
@@ -277,7 +275,7 @@ impl Pass<'_> {
         })
     }
 
-    /// The field of a constant that holds within bounds, as the module's text derives it.
+    /// The field of a constant that holds within bounds, continued beyond them.
     fn drawn_into(
         &mut self,
         shape: ShapeId,
@@ -293,46 +291,13 @@ impl Pass<'_> {
         let [lo, hi] = bounds;
         let lo = self.expander.node(self.graph, lo, points)?;
         let hi = self.expander.node(self.graph, hi, points)?;
-        let nearest = self.clamped(point, lo, hi);
+        let nearest = self.graph.nearest_within(point, [lo, hi]);
         let mut inner_points = outer.to_vec();
         inner_points.push(nearest);
         let value = self.expander.node(self.graph, formula, &inner_points)?;
         let inside = self.quotient(shape, value, constant);
-        if nearest == point {
-            return Ok(inside);
-        }
-        let offset = self.graph.sub(point, nearest);
-        let away = self.graph.length(offset);
-        let both = self.graph.compose(&[inside, away]);
-        let outside = self.graph.length(both);
-        let zero = self.graph.number(0.0);
-        let is_outside = self.graph.lt(zero, away);
-        Ok(self.graph.select(is_outside, outside, inside))
-    }
-
-    /// The point of `lo..hi` nearest to `point`; an end that is not finite does not bind.
-    fn clamped(&mut self, point: NodeId, lo: NodeId, hi: NodeId) -> NodeId {
-        let width = self.graph.ty(point).width() as u8;
-        let all_finite = |graph: &mut Graph, end: NodeId| {
-            (0..width).all(|lane| {
-                let lane = graph.component(end, lane);
-                graph.as_number(lane).is_none_or(f64::is_finite)
-            })
-        };
-        if all_finite(self.graph, lo) && all_finite(self.graph, hi) {
-            return self.graph.ternary(Ternary::Clamp, point, lo, hi);
-        }
-        let mut lanes = Vec::with_capacity(usize::from(width));
-        for lane in 0..width {
-            let [mut value, lo, hi] = [point, lo, hi].map(|v| self.graph.component(v, lane));
-            for (end, join) in [(lo, Graph::max as fn(&mut Graph, _, _) -> _), (hi, Graph::min)] {
-                if self.graph.as_number(end).is_none_or(f64::is_finite) {
-                    value = join(self.graph, value, end);
-                }
-            }
-            lanes.push(value);
-        }
-        self.graph.compose(&lanes)
+        let one = self.graph.number(1.0);
+        Ok(self.graph.continued(point, nearest, inside, one))
     }
 }
 

@@ -43,6 +43,7 @@
 
 mod bounds;
 mod build;
+mod continuation;
 mod derive;
 mod dump;
 pub mod eval;

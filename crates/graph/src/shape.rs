@@ -36,6 +36,11 @@ pub struct Contract {
     pub inside: SidePromise,
     /// The Lipschitz constant, to be multiplied by max(1, the largest child's).
     pub lipschitz: Option<NodeId>,
+    /// Whether the constant is stated to hold beyond the bounds too.
+    pub everywhere: bool,
+    /// Whether the constant was found from bounds. The formula is then continued beyond those of the shape
+    /// ([`crate::Graph::continued`]), and the constant holds everywhere.
+    pub is_local: bool,
     /// Lowest and highest point; `lo > hi` nowhere, infinities allowed.
     pub bounds: Option<[NodeId; 2]>,
 }

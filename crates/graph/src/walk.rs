@@ -1,7 +1,7 @@
 //! Walking and copying nodes; what every pass is made of.
 
 use crate::ids::IdSet;
-use crate::{Graph, Node, NodeId, Ternary};
+use crate::{Const, Graph, Node, NodeId, Ternary};
 
 /// The nodes that the roots are computed from, the roots included, in ascending order: arguments
 /// come before their uses.
@@ -26,6 +26,14 @@ pub fn reachable_where(
 }
 
 impl Graph {
+    /// Whether a node is computed without a constant that is infinite or no number.
+    pub fn is_finite(&self, id: NodeId) -> bool {
+        reachable(self, &[id]).into_iter().all(|node| {
+            let finite = |value: Const| value.lanes().iter().all(|lane| lane.is_finite());
+            !self.non_finite(node) && self.as_const(node).is_none_or(finite)
+        })
+    }
+
     /// The node's operation applied to other arguments, through the typed builders: it may fold or
     /// simplify to another operation.
     pub fn rebuild(&mut self, id: NodeId, mut map: impl FnMut(NodeId) -> NodeId) -> NodeId {

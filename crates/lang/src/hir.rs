@@ -171,6 +171,8 @@ pub struct ShapeDef {
     pub promises: Vec<Promise>,
     /// A stated Lipschitz constant.
     pub lipschitz: Option<Expr>,
+    /// Whether it is stated to hold beyond the bounds too.
+    pub everywhere: bool,
     /// Stated bounds: a range of points (a number is already a vector).
     pub bounds: Option<Expr>,
     /// `material e`: a material, or a number made of samples.

@@ -70,6 +70,7 @@ fn what_no_constant_covers_is_a_warning_with_its_reason() {
     assert_eq!(found, [("W0602", 3, reason.to_owned())]);
     // What an entry of the library builds for itself is told at the scene's call of it.
     assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);
+    assert_eq!(codes("param k = 20deg in 0deg..90deg\nplane().twist(k)"), [("W0602", 2)]);
     assert_eq!(codes("box([0.6, 2, 0.6]).twist(20deg)\nsphere(1)"), []);
 }
 

@@ -29,6 +29,21 @@ const SCENES: &[(&str, &str)] = &[
         "twist turned by a param",
         "param a = 20deg in 0deg..90deg\nbox([0.6, 2, 0.6]).twist(120deg).rotate(y: a, x: a)",
     ),
+    // The constant holds within bounds; what looks beyond them sees the continued field.
+    (
+        "twist in a blend",
+        "union(box([0.6, 2, 0.6]).twist(120deg), sphere(0.7), blend: smooth(0.2))",
+    ),
+    ("twist grown", "box([0.6, 2, 0.6]).twist(120deg).round(0.2)"),
+    ("twist twice", "box([0.6, 1, 0.6]).twist(90deg).rotate(z: 90deg).twist(60deg)"),
+    (
+        "product of sines",
+        "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * sin(9 * q.y) * sin(9 * q.z))",
+    ),
+    (
+        "product of sines that meet",
+        "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * cos(8 * q.x + q.y))",
+    ),
     ("ellipsoid", "ellipsoid([1, 0.2, 0.5])"),
     (
         "own steep field",
@@ -87,8 +102,11 @@ fn no_division_moves_a_surface() {
 
 #[test]
 fn a_blend_that_reaches_past_a_constants_bounds_is_not_certified() {
-    let text = "union(box([0.6, 2, 0.6]).twist(120deg), sphere(0.7), blend: smooth(0.2))";
-    assert!(!scene("blend", text).report().uncertified.is_empty());
+    let own = "solid bar()\n  lipschitz 1.4\n  bounds [-0.5, -1, -0.5] .. [0.5, 1, 0.5]\n  = {\n\
+               let q = spin(p.xz, p.y * 1rad)\n  box([0.6, 2, 0.6])([q.x, p.y, q.y])\n}\n";
+    let text = format!("{own}union(bar(), sphere(0.7), blend: smooth(0.2))");
+    assert!(!scene("blend", &text).report().uncertified.is_empty());
+    assert!(scene("alone", &format!("{own}bar()")).report().uncertified.is_empty());
 }
 
 #[test]

@@ -164,8 +164,8 @@ pub enum ClauseKind {
     Exact(Option<Side>, Option<Expr>),
     /// `bound [side] [if condition]`
     Bound(Option<Side>, Option<Expr>),
-    /// `lipschitz number`
-    Lipschitz(Expr),
+    /// `lipschitz number [everywhere]`
+    Lipschitz(Expr, bool),
     /// `bounds lo..hi`
     Bounds(Expr),
     /// `material e`

@@ -66,6 +66,7 @@ struct Clauses {
     requires: Vec<Require>,
     promises: Vec<Promise>,
     lipschitz: Option<Expr>,
+    everywhere: bool,
     bounds: Option<Expr>,
     material: Option<Expr>,
 }
@@ -197,6 +198,7 @@ impl<'a> Checker<'a> {
                     requires,
                     promises: Vec::new(),
                     lipschitz,
+                    everywhere: false,
                     bounds: None,
                     material: None,
                     body,
@@ -316,7 +318,7 @@ impl<'a> Checker<'a> {
         let ty = formula.ty.clone();
         let body = std::mem::replace(&mut self.body, outer);
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
-        let Clauses { requires, promises, lipschitz, bounds, material } = clauses;
+        let Clauses { requires, promises, lipschitz, everywhere, bounds, material } = clauses;
         match signature.target {
             Target::Fn(FnId(id)) => {
                 if let Some(function) = self.program.functions.get_mut(id as usize) {
@@ -334,6 +336,7 @@ impl<'a> Checker<'a> {
                     shape.requires = requires;
                     shape.promises = promises;
                     shape.lipschitz = lipschitz;
+                    shape.everywhere = everywhere;
                     shape.bounds = bounds;
                     shape.material = material;
                     shape.body = formula;
@@ -401,7 +404,8 @@ impl<'a> Checker<'a> {
                     clauses.promises.push(promise);
                     false
                 }
-                ClauseKind::Lipschitz(e) => {
+                ClauseKind::Lipschitz(e, everywhere) => {
+                    clauses.everywhere = *everywhere;
                     let role = Role::The("the Lipschitz constant");
                     clauses.lipschitz.replace(self.check_expr(e, &Type::Number, role)).is_some()
                 }
@@ -458,7 +462,7 @@ impl<'a> Checker<'a> {
 /// Whether a clause may stand at a `fn`.
 fn belongs_to_functions(clause: &ClauseKind) -> bool {
     match clause {
-        ClauseKind::Lipschitz(_) | ClauseKind::Require(..) => true,
+        ClauseKind::Lipschitz(..) | ClauseKind::Require(..) => true,
         ClauseKind::Exact(..)
         | ClauseKind::Bound(..)
         | ClauseKind::Bounds(_)

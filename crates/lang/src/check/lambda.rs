@@ -103,7 +103,7 @@ impl<'a> Checker<'a> {
         let (mut lipschitz, mut requires) = (None, Vec::new());
         for clause in &signature.clauses {
             match &clause.kind {
-                ClauseKind::Lipschitz(e) => {
+                ClauseKind::Lipschitz(e, _) => {
                     let role = Role::The("the Lipschitz constant");
                     lipschitz = Some(self.check_expr(e, &Type::Number, role));
                 }
@@ -163,7 +163,7 @@ impl<'a> Names<'a> {
     fn signature(&mut self, signature: &'a ast::Signature) {
         for clause in &signature.clauses {
             match &clause.kind {
-                ClauseKind::Lipschitz(e) | ClauseKind::Require(e, _) => self.expr(e),
+                ClauseKind::Lipschitz(e, _) | ClauseKind::Require(e, _) => self.expr(e),
                 ClauseKind::Exact(..)
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)

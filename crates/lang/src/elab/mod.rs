@@ -181,6 +181,8 @@ struct Elaborator<'p> {
     missing: Option<Span>,
     /// Within a clause, where infinite values mean "not known".
     in_clause: bool,
+    /// `bounds(a)` was asked for since this was last set to false.
+    asked_bounds: bool,
     /// Params that stand for literals.
     offer: Offer,
 }
@@ -205,6 +207,7 @@ impl<'p> Elaborator<'p> {
             stopped: false,
             missing: None,
             in_clause: false,
+            asked_bounds: false,
             offer: Offer::new(first_literal),
         }
     }

@@ -100,8 +100,17 @@ impl<'p> Elaborator<'p> {
         let point = self.graph.point(level, definition.dim);
         env.set(definition.parameters.len(), Value::Node(point));
         let contract = self.contract(&mut env, definition)?;
-        let formula = self.number(&mut env, &definition.body)?;
+        let continuation = self.continuation(&contract);
+        let nearest = match continuation {
+            Some((bounds, _)) => self.graph.nearest_within(point, bounds),
+            None => point,
+        };
+        env.set(definition.parameters.len(), Value::Node(nearest));
+        let mut formula = self.number(&mut env, &definition.body)?;
         let material = self.material(&mut env, definition, formula)?;
+        if let Some((_, constant)) = continuation {
+            formula = self.graph.continued(point, nearest, formula, constant);
+        }
         let shape = Shape {
             definition: name,
             dim: definition.dim,
@@ -115,6 +124,13 @@ impl<'p> Elaborator<'p> {
             name: None,
         };
         self.add_shape(shape, span)
+    }
+
+    /// The bounds beyond which a formula is to be continued, and its constant within.
+    fn continuation(&self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
+        let constant = contract.lipschitz.filter(|_| contract.is_local)?;
+        let finite = self.graph.is_finite(constant);
+        contract.bounds.filter(|_| finite).map(|bounds| (bounds, constant))
     }
 
     /// Adds an instance whose children are yet to be found.
@@ -179,9 +195,13 @@ impl<'p> Elaborator<'p> {
             self.promise(env, promise, &mut contract)?;
         }
         if let Some(stated) = &definition.lipschitz {
+            self.asked_bounds = false;
             let constant = self.number(env, stated)?;
             let constant = self.known(constant, f64::INFINITY);
             contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
+            contract.everywhere = definition.everywhere;
+            let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
+            contract.is_local = self.asked_bounds && steep && !definition.everywhere;
         }
         if let Some(stated) = &definition.bounds {
             let Value::Range(lo, hi) = self.eval(env, stated)? else {

@@ -1,11 +1,15 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Bounds, MaterialField, NodeId, ShapeId, Type};
+use sdfc_graph::{Bounds, Dim, MaterialField, NodeId, ShapeId, Ternary, Type};
 
 use super::kernel::{Application, name};
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
+use crate::hir;
+
+/// The largest whole number up to which 32-bit floats hold every one.
+const MAX_INDEX: f64 = 16_777_216.0;
 
 impl<'p> Elaborator<'p> {
     /// `[x, y]` to `[x, y, 0]`.
@@ -35,17 +39,37 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(self.graph.number(length)))
     }
 
-    /// `bounds(a)`: what the graph knows of where the shape lies.
+    /// `bounds(a)`: what the graph knows of where the shape lies; of a function that gives shapes, where any of
+    /// them lies.
     pub(super) fn bounds(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        match self.eval(env, at.args.first().ok_or(Poison)?)? {
+        self.asked_bounds = true;
+        let over = at.args.first().ok_or(Poison)?;
+        let mut value = self.eval(env, over)?;
+        if let (Value::Closure(closure), hir::Type::Fn(takes, _)) = (&value, &over.ty) {
+            let anything = takes.iter().map(|ty| Value::Node(self.anything(ty))).collect();
+            value = self.apply(closure, anything, at.span)?;
+        }
+        match value {
             Value::Shape(shape) => {
                 let [lo, hi] = self.shape_bounds(shape);
                 Ok(Value::Range(lo, hi))
             }
-            Value::Closure(_) => {
-                Err(self.not_yet(at.span, "`bounds` of a function that gives shapes"))
-            }
             other => Err(self.unexpected(at.span, "a shape", &other)),
+        }
+    }
+
+    /// A number or vector that can have any value: a shape made of it stands for all such shapes. Indices beyond
+    /// what 32-bit floats count exactly are left out, since no remainder of those is known.
+    fn anything(&mut self, ty: &hir::Type) -> NodeId {
+        let any = match ty {
+            hir::Type::Vec(2) => self.graph.point(0, Dim::Two),
+            _ => self.graph.point(0, Dim::Three),
+        };
+        let [lo, hi] = [-MAX_INDEX, MAX_INDEX].map(|end| self.graph.number(end));
+        let any = self.graph.ternary(Ternary::Clamp, any, lo, hi);
+        match ty {
+            hir::Type::Vec(_) => any,
+            _ => self.graph.component(any, 0),
         }
     }
 

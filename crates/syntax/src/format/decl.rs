@@ -108,7 +108,13 @@ fn clause<'a>(source: &mut Source<'a>, tree: &Clause) -> Doc<'a> {
                 docs.extend([text(" "), source.take_spaced(), expr(source, condition)]);
             }
         }
-        ClauseKind::Lipschitz(value) | ClauseKind::Bounds(value) | ClauseKind::Material(value) => {
+        ClauseKind::Lipschitz(value, everywhere) => {
+            docs.extend([text(" "), expr(source, value)]);
+            if *everywhere {
+                docs.extend([text(" "), source.take()]);
+            }
+        }
+        ClauseKind::Bounds(value) | ClauseKind::Material(value) => {
             docs.extend([text(" "), expr(source, value)]);
         }
         ClauseKind::Require(condition, _) => {

@@ -116,7 +116,14 @@ impl Parser<'_> {
                 let side = self.side();
                 ClauseKind::Bound(side, self.clause_condition()?)
             }
-            "lipschitz" => ClauseKind::Lipschitz(self.expr()?),
+            "lipschitz" => {
+                let constant = self.expr()?;
+                let everywhere = self.at_word("everywhere");
+                if everywhere {
+                    self.bump();
+                }
+                ClauseKind::Lipschitz(constant, everywhere)
+            }
             "bounds" => ClauseKind::Bounds(self.expr()?),
             "material" => ClauseKind::Material(self.expr()?),
             "require" => self.requirement()?,
