@@ -217,7 +217,10 @@ fn plain() -> Vec<Case> {
         ),
         filled(
             "polygon([for i in 0..500: [0.7 * sin(1turn / 500 * i), 0.4 * cos(1turn / 500 * i)]])",
-            (0..500).map(|i| clock(1.0, 0.72 * i as f64)).map(|[x, y]| [0.7 * x, 0.4 * y]).collect(),
+            (0..500)
+                .map(|i| clock(1.0, 0.72 * i as f64))
+                .map(|[x, y]| [0.7 * x, 0.4 * y])
+                .collect(),
         ),
         filled("stairs([1.2, 0.8], n: 4)", stairs([1.2, 0.8], 4)),
         filled("stairs([0.3, 1.4], n: 7)", stairs([0.3, 1.4], 7)),
@@ -268,9 +271,18 @@ fn round() -> Vec<Case> {
             text: "ring(0.5, width: 0.3)",
             expected: Filled(vec![bow(centre, 0.65, 0.0, 360.0), bow(centre, 0.35, 0.0, 360.0)]),
         },
-        filled("horseshoe(0.4, angle: 180deg, leg: 0.5, width: 0.2)", horseshoe(0.4, 180.0, 0.5, 0.2)),
-        filled("horseshoe(0.4, angle: 260deg, leg: 0.2, width: 0.3)", horseshoe(0.4, 260.0, 0.2, 0.3)),
-        filled("horseshoe(0.4, angle: 60deg, leg: 0.03, width: 0.5)", horseshoe(0.4, 60.0, 0.03, 0.5)),
+        filled(
+            "horseshoe(0.4, angle: 180deg, leg: 0.5, width: 0.2)",
+            horseshoe(0.4, 180.0, 0.5, 0.2),
+        ),
+        filled(
+            "horseshoe(0.4, angle: 260deg, leg: 0.2, width: 0.3)",
+            horseshoe(0.4, 260.0, 0.2, 0.3),
+        ),
+        filled(
+            "horseshoe(0.4, angle: 60deg, leg: 0.03, width: 0.5)",
+            horseshoe(0.4, 60.0, 0.03, 0.5),
+        ),
         filled(
             "vesica(width: 0.6, h: 1.2)",
             both_halves(bow([-0.45, 0.0], 0.75, 90.0 - lens, 90.0 + lens)),
@@ -312,7 +324,10 @@ fn round() -> Vec<Case> {
             "uneven_capsule([-0.2, -0.3], [0.1, 0], r1: 0.1, r2: 0.4)",
             hull(&[([-0.2, -0.3], 0.1), ([0.1, 0.0], 0.4)]),
         ),
-        filled("uneven_capsule([0.1, 0], [0.1, 0], r1: 0.2, r2: 0.4)", bow([0.1, 0.0], 0.4, 0.0, 360.0)),
+        filled(
+            "uneven_capsule([0.1, 0], [0.1, 0], r1: 0.2, r2: 0.4)",
+            bow([0.1, 0.0], 0.4, 0.0, 360.0),
+        ),
         filled("ellipse([0.8, 0.4])", curve(|t| [0.8 * (TAU * t).sin(), 0.4 * (TAU * t).cos()])),
         filled("ellipse([0.1, 0.9])", curve(|t| [0.1 * (TAU * t).sin(), 0.9 * (TAU * t).cos()])),
         filled("ellipse(0.5)", bow(centre, 0.5, 0.0, 360.0)),
@@ -485,7 +500,9 @@ fn bounds_of_regions_are_tight() {
 #[test]
 fn every_region_has_an_outline() {
     let made_here = |entry: &library::Entry| {
-        entry.kind == "region" && !entry.signature.contains(": region") && !entry.signature.contains(": solid")
+        entry.kind == "region"
+            && !entry.signature.contains(": region")
+            && !entry.signature.contains(": solid")
     };
     let cases = cases();
     for entry in library::entries().into_iter().filter(made_here) {
