@@ -114,10 +114,11 @@ impl<'p> Elaborator<'p> {
     /// A shape at a point. In a clause, at a point that is known early, it is the number itself, if that can be
     /// had: clauses are asked for their values.
     fn sample(&mut self, shape: ShapeId, point: NodeId) -> NodeId {
-        if self.in_clause && self.graph.stage(point) < Stage::Point {
-            if let Ok(value) = Expander::new().field(&mut self.graph, shape, point) {
-                return value;
-            }
+        if self.in_clause
+            && self.graph.stage(point) < Stage::Point
+            && let Ok(value) = Expander::new().field(&mut self.graph, shape, point)
+        {
+            return value;
         }
         self.graph.sample(shape, point)
     }
