@@ -8,9 +8,12 @@ use sdfc_syntax::ast::{self, DeclKind, Item};
 
 /// Name, as messages show it, and text of each file.
 pub const FILES: &[(&str, &str)] = &[
+    ("std/bezier.sdf", include_str!("../std/bezier.sdf")),
     ("std/combine.sdf", include_str!("../std/combine.sdf")),
+    ("std/curves.sdf", include_str!("../std/curves.sdf")),
     ("std/distance.sdf", include_str!("../std/distance.sdf")),
     ("std/domain.sdf", include_str!("../std/domain.sdf")),
+    ("std/lift.sdf", include_str!("../std/lift.sdf")),
     ("std/material.sdf", include_str!("../std/material.sdf")),
     ("std/polyhedra.sdf", include_str!("../std/polyhedra.sdf")),
     ("std/regions.sdf", include_str!("../std/regions.sdf")),

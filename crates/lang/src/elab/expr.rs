@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use sdfc_diagnostics::{Code as ErrorCode, Span};
-use sdfc_graph::{FrameInput, Node, NodeId, Type};
+use sdfc_graph::{Expander, FrameInput, Node, NodeId, ShapeId, Stage, Type};
 
 use super::kernel::Application;
 use super::value::{Closure, Code, Value, highest};
@@ -90,7 +90,7 @@ impl<'p> Elaborator<'p> {
             ExprKind::Build(id, args) => self.build(env, *id, args, span),
             ExprKind::Sample(shape, point) => {
                 let (shape, point) = (self.shape(env, shape), self.number(env, point));
-                Ok(Value::Node(self.graph.sample(shape?, point?)))
+                Ok(Value::Node(self.sample(shape?, point?)))
             }
             ExprKind::Apply(function, args) => {
                 let function = self.eval(env, function);
@@ -109,6 +109,18 @@ impl<'p> Elaborator<'p> {
             }
             ExprKind::Error => Err(Poison),
         }
+    }
+
+    /// A shape at a point. In a clause, at a point that is known early, it is the number itself, if that can be
+    /// had: clauses are asked for their values.
+    fn sample(&mut self, shape: ShapeId, point: NodeId) -> NodeId {
+        if self.in_clause
+            && self.graph.stage(point) < Stage::Point
+            && let Ok(value) = Expander::new().field(&mut self.graph, shape, point)
+        {
+            return value;
+        }
+        self.graph.sample(shape, point)
     }
 
     /// All values; all their errors are reported.
