@@ -9,8 +9,65 @@ use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
 
 use crate::polynomial::Polynomial;
 
+/// A coefficient, known before the point is. Numbers stay out of the arena: most are only steps to others.
+#[derive(Clone, Copy, Debug)]
+enum Coefficient {
+    Number(f64),
+    Node(NodeId),
+}
+
+const ZERO: Coefficient = Coefficient::Number(0.0);
+const ONE: Coefficient = Coefficient::Number(1.0);
+
+impl Coefficient {
+    fn of(graph: &Graph, node: NodeId) -> Self {
+        graph.as_number(node).map_or(Self::Node(node), Self::Number)
+    }
+
+    fn node(self, graph: &mut Graph) -> NodeId {
+        match self {
+            Self::Number(value) => graph.number(value),
+            Self::Node(node) => node,
+        }
+    }
+
+    /// What `of_nodes` makes of two coefficients, which is `of_numbers` of two numbers where that is finite.
+    fn join(
+        graph: &mut Graph,
+        (a, b): (Self, Self),
+        of_numbers: fn(f64, f64) -> f64,
+        of_nodes: fn(&mut Graph, NodeId, NodeId) -> NodeId,
+    ) -> Self {
+        if let (Self::Number(x), Self::Number(y)) = (a, b) {
+            let value = of_numbers(x, y);
+            if value.is_finite() {
+                return Self::Number(value);
+            }
+        }
+        let (a, b) = (a.node(graph), b.node(graph));
+        let joined = of_nodes(graph, a, b);
+        Self::of(graph, joined)
+    }
+
+    fn plus(self, graph: &mut Graph, other: Self) -> Self {
+        Self::join(graph, (self, other), |x, y| x + y, Graph::add)
+    }
+
+    fn minus(self, graph: &mut Graph, other: Self) -> Self {
+        Self::join(graph, (self, other), |x, y| x - y, Graph::sub)
+    }
+
+    fn times(self, graph: &mut Graph, other: Self) -> Self {
+        Self::join(graph, (self, other), |x, y| x * y, Graph::mul)
+    }
+
+    fn over(self, graph: &mut Graph, other: Self) -> Self {
+        Self::join(graph, (self, other), |x, y| x / y, Graph::div)
+    }
+}
+
 /// One lane: the coefficients of x, y, z.
-pub(crate) type Row = [NodeId; 3];
+type Row = [Coefficient; 3];
 
 /// The linear part of an affine node: one row per lane.
 #[derive(Clone, Copy, Debug)]
@@ -20,14 +77,22 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    fn new(rows: &[Row]) -> Self {
-        let mut list = [rows[0]; 4];
-        list[..rows.len()].copy_from_slice(rows);
-        Self { rows: list, lanes: rows.len() }
+    /// As many rows as lanes; none is asked for beyond them.
+    fn new(lanes: usize, mut row: impl FnMut(usize) -> Row) -> Self {
+        let mut rows = [[ZERO; 3]; 4];
+        for (lane, place) in rows.iter_mut().enumerate().take(lanes) {
+            *place = row(lane);
+        }
+        Self { rows, lanes }
     }
 
     fn rows(&self) -> &[Row] {
         &self.rows[..self.lanes]
+    }
+
+    /// Each row's coefficients changed.
+    fn map(&self, mut change: impl FnMut(usize, Coefficient) -> Coefficient) -> Self {
+        Self::new(self.lanes, |lane| self.rows[lane].map(|coefficient| change(lane, coefficient)))
     }
 }
 
@@ -38,38 +103,42 @@ pub(crate) fn linear_part(
     level: u16,
     of: &dyn Fn(NodeId) -> Option<Linear>,
 ) -> Option<Linear> {
-    let zero = graph.number(0.0);
-    let one = graph.number(1.0);
     let width = graph.ty(node).width();
     if graph.ty(node) == Type::Bool {
         return None;
     }
     if graph.levels(node) <= level && graph.stage(node) < Stage::Point {
-        return Some(Linear::new(&vec![[zero; 3]; width]));
+        return Some(Linear::new(width, |_| [ZERO; 3]));
     }
     match graph.node(node) {
-        Node::Point(at, _) if at == level => {
-            let unit = |lane| std::array::from_fn(|i| if i == lane { one } else { zero });
-            Some(Linear::new(&(0..width).map(unit).collect::<Vec<Row>>()))
-        }
+        Node::Point(at, _) if at == level => Some(Linear::new(width, |lane| {
+            std::array::from_fn(|i| if i == lane { ONE } else { ZERO })
+        })),
         Node::Unary(Unary::Neg, a) => {
-            let minus = graph.number(-1.0);
-            Some(scaled(graph, &of(a)?, &[minus]))
+            let minus = Coefficient::Number(-1.0);
+            Some(of(a)?.map(|_, coefficient| coefficient.times(graph, minus)))
         }
-        Node::Binary(Binary::Add, a, b) => Some(combined(graph, &of(a)?, &of(b)?, Graph::add)),
-        Node::Binary(Binary::Sub, a, b) => Some(combined(graph, &of(a)?, &of(b)?, Graph::sub)),
+        Node::Binary(Binary::Add, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let sum = |lane: usize, i: usize| a.rows[lane][i].plus(graph, b.rows[lane][i]);
+            Some(by_place(a.lanes, sum))
+        }
+        Node::Binary(Binary::Sub, a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let difference = |lane: usize, i: usize| a.rows[lane][i].minus(graph, b.rows[lane][i]);
+            Some(by_place(a.lanes, difference))
+        }
         Node::Binary(Binary::Mul, a, b) => {
             let (fixed, varying) = if is_fixed(graph, a) { (a, b) } else { (b, a) };
             if !is_fixed(graph, fixed) {
                 return None;
             }
             let factors = lanes_of(graph, fixed);
-            Some(scaled(graph, &of(varying)?, &factors))
+            Some(of(varying)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
         Node::Binary(Binary::Div, a, b) if is_fixed(graph, b) => {
-            let divisors = lanes_of(graph, b);
-            let factors: Vec<NodeId> = divisors.into_iter().map(|d| graph.div(one, d)).collect();
-            Some(scaled(graph, &of(a)?, &factors))
+            let factors = lanes_of(graph, b).map(|divisor| ONE.over(graph, divisor));
+            Some(of(a)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
         Node::Binary(Binary::Dot, a, b) => {
             let (fixed, varying) = if is_fixed(graph, a) { (a, b) } else { (b, a) };
@@ -78,31 +147,32 @@ pub(crate) fn linear_part(
             }
             let weights = lanes_of(graph, fixed);
             let linear = of(varying)?;
-            Some(Linear::new(&[weighted_sum(graph, linear.rows(), &weights)]))
+            Some(Linear::new(1, |_| weighted_sum(graph, linear.rows(), &weights)))
         }
-        Node::Splat(_, a) => Some(Linear::new(&vec![of(a)?.rows[0]; width])),
+        Node::Splat(_, a) => {
+            let row = of(a)?.rows[0];
+            Some(Linear::new(width, |_| row))
+        }
         Node::Compose(_, parts) => {
-            let rows: Option<Vec<Row>> =
-                parts[..width].iter().map(|&part| Some(of(part)?.rows[0])).collect();
-            Some(Linear::new(&rows?))
+            let mut rows = [[ZERO; 3]; 4];
+            for (row, &part) in rows.iter_mut().zip(&parts[..width]) {
+                *row = of(part)?.rows[0];
+            }
+            Some(Linear { rows, lanes: width })
         }
         Node::Swizzle(_, a, lanes) => {
             let from = of(a)?;
-            let rows: Vec<Row> =
-                lanes[..width].iter().map(|&lane| from.rows[usize::from(lane)]).collect();
-            Some(Linear::new(&rows))
+            Some(Linear::new(width, |lane| from.rows[usize::from(lanes[lane])]))
         }
         Node::Transform(columns, v) => {
             if !columns.iter().all(|&column| is_fixed(graph, column)) {
                 return None;
             }
             let linear = of(v)?;
-            let mut rows = Vec::with_capacity(3);
-            for lane in 0..3 {
-                let weights = columns.map(|column| graph.component(column, lane));
-                rows.push(weighted_sum(graph, linear.rows(), &weights));
-            }
-            Some(Linear::new(&rows))
+            let columns = columns.map(|column| lanes_of(graph, column));
+            Some(Linear::new(width, |lane| {
+                weighted_sum(graph, linear.rows(), &columns.map(|column| column[lane]))
+            }))
         }
         Node::Const(_)
         | Node::Point(..)
@@ -120,70 +190,61 @@ fn is_fixed(graph: &Graph, node: NodeId) -> bool {
     graph.stage(node) < Stage::Point
 }
 
-fn lanes_of(graph: &mut Graph, node: NodeId) -> Vec<NodeId> {
-    let width = graph.ty(node).width() as u8;
-    (0..width).map(|lane| graph.component(node, lane)).collect()
-}
-
-fn scaled(graph: &mut Graph, linear: &Linear, factors: &[NodeId]) -> Linear {
-    let mut rows = linear.rows().to_vec();
-    for (lane, row) in rows.iter_mut().enumerate() {
-        let factor = factors[lane.min(factors.len() - 1)];
-        *row = row.map(|coefficient| graph.mul(coefficient, factor));
+/// The lanes of a fixed node, the last one repeated.
+fn lanes_of(graph: &mut Graph, node: NodeId) -> [Coefficient; 4] {
+    let last = graph.ty(node).width() - 1;
+    if let Some(value) = graph.as_const(node) {
+        return std::array::from_fn(|lane| Coefficient::Number(value.lanes()[lane.min(last)]));
     }
-    Linear::new(&rows)
+    std::array::from_fn(|lane| {
+        let component = graph.component(node, lane.min(last) as u8);
+        Coefficient::of(graph, component)
+    })
 }
 
-fn combined(
-    graph: &mut Graph,
-    a: &Linear,
-    b: &Linear,
-    join: fn(&mut Graph, NodeId, NodeId) -> NodeId,
-) -> Linear {
-    let mut rows = a.rows().to_vec();
-    for (row, other) in rows.iter_mut().zip(b.rows()) {
-        *row = std::array::from_fn(|i| join(graph, row[i], other[i]));
-    }
-    Linear::new(&rows)
+fn by_place(lanes: usize, mut coefficient: impl FnMut(usize, usize) -> Coefficient) -> Linear {
+    Linear::new(lanes, |lane| std::array::from_fn(|i| coefficient(lane, i)))
 }
 
-fn weighted_sum(graph: &mut Graph, rows: &[Row], weights: &[NodeId]) -> Row {
+fn weighted_sum(graph: &mut Graph, rows: &[Row], weights: &[Coefficient]) -> Row {
     std::array::from_fn(|i| {
-        let mut sum = graph.number(0.0);
-        for (row, &weight) in rows.iter().zip(weights) {
-            let term = graph.mul(row[i], weight);
-            sum = graph.add(sum, term);
-        }
-        sum
+        rows.iter().zip(weights).fold(ZERO, |sum, (row, weight)| {
+            let term = row[i].times(graph, *weight);
+            sum.plus(graph, term)
+        })
     })
 }
 
 /// The largest factor by which the map stretches distances; `None` where it cannot be told.
 pub(crate) fn stretch(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
-    match constant_rows(graph, linear) {
+    match constant_rows(linear) {
         Some(rows) => Some(graph.number(largest_singular_value(&rows))),
         None => similarity(graph, linear),
     }
 }
 
-fn constant_rows(graph: &Graph, linear: &Linear) -> Option<Vec<[f64; 3]>> {
-    let row_of = |row: &Row| {
-        let lanes = row.map(|c| graph.as_number(c));
-        Some([lanes[0]?, lanes[1]?, lanes[2]?])
+fn constant_rows(linear: &Linear) -> Option<Vec<[f64; 3]>> {
+    let number = |coefficient: Coefficient| match coefficient {
+        Coefficient::Number(value) => Some(value),
+        Coefficient::Node(_) => None,
     };
+    let row_of = |row: &Row| Some([number(row[0])?, number(row[1])?, number(row[2])?]);
     linear.rows().iter().map(row_of).collect()
 }
 
 /// The factor of a multiple of an isometry: rows orthogonal and of one squared length.
 pub(crate) fn similarity(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
-    if let Some(rows) = constant_rows(graph, linear) {
+    if let Some(rows) = constant_rows(linear) {
         return constant_similarity(&rows).map(|factor| graph.number(factor));
     }
     let rows: Option<Vec<[Polynomial; 3]>> = linear
         .rows()
         .iter()
         .map(|row| {
-            let [x, y, z] = row.map(|c| Polynomial::of(graph, c));
+            let [x, y, z] = row.map(|c| {
+                let node = c.node(graph);
+                Polynomial::of(graph, node)
+            });
             Some([x?, y?, z?])
         })
         .collect();
@@ -205,7 +266,7 @@ pub(crate) fn similarity(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
     if let Some(value) = norm.constant() {
         return Some(graph.number(value.sqrt()));
     }
-    let first = linear.rows()[0];
+    let first = linear.rows()[0].map(|coefficient| coefficient.node(graph));
     let row = graph.compose(&first);
     Some(graph.length(row))
 }
@@ -235,7 +296,12 @@ fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
             }
         }
     }
+    // What is left off the diagonal then moves no eigenvalue by more than rounding.
+    let negligible = f64::EPSILON * 0.01 * (m[0][0] + m[1][1] + m[2][2]);
     for _ in 0..12 {
+        if [m[0][1], m[0][2], m[1][2]].iter().all(|off| off.abs() <= negligible) {
+            break;
+        }
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             rotate_away(&mut m, i, j);
         }

@@ -3,7 +3,7 @@
 //! The constant of a node is itself a node, known before the point is, so that a constant that
 //! depends on a param follows the param. Rules after language reference, section "Promises".
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Unary, reachable};
 
 use crate::affine::{self, Linear};
@@ -50,6 +50,8 @@ pub type Constant = Result<NodeId, Reason>;
 
 /// Constants of the nodes of one formula.
 pub(crate) struct Slopes {
+    /// Arguments before their uses.
+    nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
     linear: FxHashMap<NodeId, Linear>,
 }
@@ -63,8 +65,13 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Self {
-        let mut slopes = Self { constants: FxHashMap::default(), linear: FxHashMap::default() };
-        for node in with_claimed_arguments(graph, roots) {
+        let nodes = with_claimed_arguments(graph, roots);
+        let mut slopes = Self {
+            constants: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
+            linear: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
+            nodes: Vec::new(),
+        };
+        for &node in &nodes {
             let lookup = |id: NodeId| slopes.linear.get(&id).copied();
             let linear = affine::linear_part(graph, node, level, &lookup);
             let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
@@ -80,7 +87,12 @@ impl Slopes {
             };
             slopes.constants.insert(node, constant);
         }
-        slopes
+        Self { nodes, ..slopes }
+    }
+
+    /// The nodes of the formula, and those that claims there speak of; arguments before their uses.
+    pub(crate) fn nodes(&self) -> &[NodeId] {
+        &self.nodes
     }
 
     /// The constant of a node that the roots reach.

@@ -222,7 +222,7 @@ impl Qualities {
     /// Promises that follow from the form of a formula alone.
     fn structural(&self, graph: &mut Graph, slopes: &Slopes, formula: NodeId) -> Sides {
         let mut sides: FxHashMap<NodeId, Sides> = FxHashMap::default();
-        for node in sdfc_graph::reachable(graph, &[formula]) {
+        for &node in slopes.nodes() {
             let value = self.structural_node(graph, node, slopes, &sides);
             sides.insert(node, value);
         }

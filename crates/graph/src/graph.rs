@@ -108,17 +108,22 @@ impl Graph {
 
     /// The number, if the node is a constant scalar.
     pub fn as_number(&self, id: NodeId) -> Option<f64> {
-        if let Node::Const(value) = self.node(id) { value.scalar() } else { None }
+        self.const_at(id).and_then(Const::scalar)
     }
 
     /// The constant, if the node is one.
     pub fn as_const(&self, id: NodeId) -> Option<Const> {
-        if let Node::Const(value) = self.node(id) { Some(value) } else { None }
+        self.const_at(id).copied()
+    }
+
+    /// The constant in its place: nodes are large to copy.
+    pub(crate) fn const_at(&self, id: NodeId) -> Option<&Const> {
+        if let Node::Const(value) = &self.nodes[id.index()] { Some(value) } else { None }
     }
 
     /// The number that every component is, if the node is a constant of equal components.
     pub fn as_uniform(&self, id: NodeId) -> Option<f64> {
-        let value = self.as_const(id)?;
+        let value = self.const_at(id)?;
         let lanes = value.lanes();
         lanes[1..value.ty().width()].iter().all(|&lane| lane == lanes[0]).then_some(lanes[0])
     }

@@ -28,24 +28,31 @@ impl Machine for Folding {
 /// operation, and where finite arguments give a lane that is not finite, or any give one that is no number: such an
 /// operation stays, to be reported or to run, rather than become a literal that no shader can hold.
 pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
-    let find = |id: NodeId| {
-        let position = node.arguments().position(|argument| argument == id);
-        position.and_then(|position| arguments.get(position)).copied()
-    };
-    if node.arguments().any(|id| find(id).is_none()) {
+    fold_where(node, |id| arguments.get(node.arguments().position(|argument| argument == id)?))
+}
+
+/// As [`fold`], where `constant` gives what an argument is.
+pub(crate) fn fold_where<'a>(
+    node: &Node,
+    constant: impl Fn(NodeId) -> Option<&'a Const>,
+) -> Option<Const> {
+    if node.arguments().any(|id| constant(id).is_none()) {
         return None;
     }
-    let argument = |id| find(id).unwrap_or(Const::new(Type::Scalar, &[]));
-    let lanes = scalarise(&mut Folding, node, |id| {
-        let (lanes, width) = (argument(id).lanes(), argument(id).ty().width());
-        Lanes::new(width, |i| lanes[i])
+    let lanes = scalarise(&mut Folding, node, |id| match constant(id) {
+        Some(value) => {
+            let lanes = value.lanes();
+            Lanes::new(value.ty().width(), |i| lanes[i])
+        }
+        None => Lanes::scalar(0.0),
     })?;
-    let lane_of = |value: &Const| value.lanes();
-    let from_infinity = arguments.iter().flat_map(lane_of).any(f64::is_infinite);
-    let sound = |lane: &f64| lane.is_finite() || (from_infinity && !lane.is_nan());
-    lanes
-        .as_slice()
-        .iter()
-        .all(sound)
-        .then(|| Const::new(result_type(node, |id| argument(id).ty()), lanes.as_slice()))
+    if !lanes.as_slice().iter().all(|lane| lane.is_finite()) {
+        let infinite = |value: &Const| value.lanes().iter().any(|lane| lane.is_infinite());
+        let from_infinity = node.arguments().filter_map(&constant).any(infinite);
+        if !from_infinity || lanes.as_slice().iter().any(|lane| lane.is_nan()) {
+            return None;
+        }
+    }
+    let ty = result_type(node, |id| constant(id).map_or(Type::Scalar, Const::ty));
+    Some(Const::new(ty, lanes.as_slice()))
 }

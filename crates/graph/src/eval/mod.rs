@@ -48,6 +48,7 @@ mod tape;
 
 pub use dual::Dual;
 pub use fold::fold;
+pub(crate) use fold::fold_where;
 pub use interval::Interval;
 pub use number::Number;
 pub use packet::Packet;

@@ -18,7 +18,7 @@ mod function;
 mod logic;
 mod vector;
 
-use crate::eval::fold;
+use crate::eval::fold_where;
 use crate::{Binary, Const, Graph, Node, NodeId, Stage, Ternary, Type, Unary};
 
 impl Graph {
@@ -40,18 +40,11 @@ impl Graph {
     }
 
     fn folded(&self, node: &Node) -> Option<Const> {
-        // Most nodes depend on something, and constants are large to copy.
+        // Most nodes depend on something, and stages are smaller to look at than nodes.
         if node.arguments().any(|argument| self.stage(argument) > Stage::Const) {
             return None;
         }
-        let mut values = [None; 4];
-        let mut count = 0;
-        for argument in node.arguments() {
-            values[count] = Some(self.as_const(argument)?);
-            count += 1;
-        }
-        let first = values[0]?;
-        fold(node, &values.map(|value| value.unwrap_or(first))[..count])
+        fold_where(node, |argument| self.const_at(argument))
     }
 
     fn simplified(&mut self, node: &Node) -> Option<NodeId> {
