@@ -1,8 +1,9 @@
 //! How long each stage takes from a scene's text to a validated module. Medians of repeated runs in one process;
 //! run with `cargo bench -p sdfc --bench compile`. The row `library read` is one sphere where nothing was
 //! compiled before: what it takes more than `one sphere` is the reading of the library, and whatever else a
-//! process does only once.
+//! process does only once. Other work on the machine counts in all columns but the last.
 
+use cpu_time::ProcessTime;
 use sdfc::compile;
 
 /// Runs of each scene; the first, in which the library is read, is left out.
@@ -30,8 +31,9 @@ fn main() {
         ("10000 hard", many(10_000, "min")),
         ("10000 smooth", many(10_000, "smooth(0.05)")),
     ];
-    let mut table =
-        String::from("scene           front  analyze    lower  validate    total  (ms, median)\n");
+    let mut table = String::from(
+        "scene           front  analyze    lower  validate    total  processor  (ms, median)\n",
+    );
     table.push_str(&row("library read", first));
     for (name, text) in &scenes {
         table.push_str(&row(name, median_times(name, text)));
@@ -43,11 +45,11 @@ fn main() {
     }
 }
 
-fn row(name: &str, times: [f64; 4]) -> String {
-    let total: f64 = times.iter().sum();
-    let [front, analyze, lower, validate] = times;
+fn row(name: &str, times: [f64; 5]) -> String {
+    let [front, analyze, lower, validate, processor] = times;
+    let total = front + analyze + lower + validate;
     format!(
-        "{name:<13} {front:>7.2}  {analyze:>7.2}  {lower:>7.2}  {validate:>8.2}  {total:>7.2}\n"
+        "{name:<13} {front:>7.2}  {analyze:>7.2}  {lower:>7.2}  {validate:>8.2}  {total:>7.2}  {processor:>9.2}\n"
     )
 }
 
@@ -59,26 +61,28 @@ fn many(leaves: usize, blend: &str) -> String {
     )
 }
 
-fn median_times(name: &str, text: &str) -> [f64; 4] {
+fn median_times(name: &str, text: &str) -> [f64; 5] {
     let count = if name.starts_with("10000") { FEW_RUNS } else { RUNS };
-    let mut runs: Vec<[f64; 4]> = (0..count).map(|_| times(name, text)).skip(1).collect();
+    let mut runs: Vec<[f64; 5]> = (0..count).map(|_| times(name, text)).skip(1).collect();
     std::array::from_fn(|stage| {
         runs.sort_by(|a, b| a[stage].total_cmp(&b[stage]));
         runs[runs.len() / 2][stage]
     })
 }
 
-fn times(name: &str, text: &str) -> [f64; 4] {
+fn times(name: &str, text: &str) -> [f64; 5] {
+    let processor = ProcessTime::now();
     let compiled = compile(name, text);
     let Some(scene) = compiled.scene else {
-        return [f64::NAN; 4];
+        return [f64::NAN; 5];
     };
     let start = std::time::Instant::now();
     let Ok(shader) = scene.picture_shader("auto") else {
-        return [f64::NAN; 4];
+        return [f64::NAN; 5];
     };
     let linked = start.elapsed().as_secs_f64() * 1e3;
+    let processor = processor.elapsed().as_secs_f64() * 1e3;
     let validate = shader.validation_time().as_secs_f64() * 1e3;
     let front = scene.times();
-    [front.front, front.analyze, linked - validate, validate]
+    [front.front, front.analyze, linked - validate, validate, processor]
 }
