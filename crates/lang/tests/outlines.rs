@@ -121,7 +121,7 @@ fn horseshoe(r: f64, angle: f64, leg: f64, width: f64) -> Vec<Point> {
     both_halves(outer)
 }
 
-fn stairs([width, height]: Point, n: usize) -> Vec<Point> {
+fn staircase([width, height]: Point, n: usize) -> Vec<Point> {
     let (x, y) = (width / n as f64, height / n as f64);
     let at = |i: usize, j: usize| [i as f64 * x - width / 2.0, j as f64 * y - height / 2.0];
     let mut outline = vec![at(0, 0)];
@@ -222,9 +222,9 @@ fn plain() -> Vec<Case> {
                 .map(|[x, y]| [0.7 * x, 0.4 * y])
                 .collect(),
         ),
-        filled("stairs([1.2, 0.8], n: 4)", stairs([1.2, 0.8], 4)),
-        filled("stairs([0.3, 1.4], n: 7)", stairs([0.3, 1.4], 7)),
-        filled("stairs([1, 0.2], n: 1)", stairs([1.0, 0.2], 1)),
+        filled("staircase([1.2, 0.8], n: 4)", staircase([1.2, 0.8], 4)),
+        filled("staircase([0.3, 1.4], n: 7)", staircase([0.3, 1.4], 7)),
+        filled("staircase([1, 0.2], n: 1)", staircase([1.0, 0.2], 1)),
     ]
 }
 
