@@ -126,11 +126,13 @@ impl<'p> Elaborator<'p> {
         self.add_shape(shape, span)
     }
 
-    /// The bounds beyond which a formula is to be continued, and its constant within.
-    fn continuation(&self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
+    /// The bounds beyond which a formula is to be continued, and how fast.
+    fn continuation(&mut self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
         let constant = contract.lipschitz.filter(|_| contract.is_local)?;
-        let finite = self.graph.is_finite(constant);
-        contract.bounds.filter(|_| finite).map(|bounds| (bounds, constant))
+        let bounds = contract.bounds.filter(|_| self.graph.is_finite(constant))?;
+        // A field that is nowhere above the distance goes on as one.
+        let is_bound = contract.outside != SidePromise::default();
+        Some((bounds, if is_bound { self.graph.number(1.0) } else { constant }))
     }
 
     /// Adds an instance whose children are yet to be found.
