@@ -240,6 +240,7 @@ impl Slopes {
             Binary::Atan2 => Err(Reason::Unbounded("atan2")),
             Binary::Rem => Err(Reason::Jump("%")),
             Binary::Step => Err(Reason::Jump("step")),
+            Binary::Hash => Err(Reason::Jump("hash")),
             Binary::Lt | Binary::Le => Err(Reason::Jump("<")),
             Binary::Eq | Binary::Ne => Err(Reason::Jump("==")),
             Binary::And | Binary::Or => Err(Reason::Jump("&&")),

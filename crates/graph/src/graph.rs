@@ -305,6 +305,7 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
             | Binary::Pow
             | Binary::Atan2
             | Binary::Step
+            | Binary::Hash
             | Binary::Cross => ty(a),
         },
         Node::Ternary(Ternary::Select, [_, yes, _]) => ty(yes),

@@ -184,6 +184,8 @@ pub enum Binary {
     Atan2,
     /// `step(edge, x)`: 0 where `x < edge`, else 1.
     Step,
+    /// `hash(state, x)`: a whole number of 24 bits from another and the whole part of x. Jumps.
+    Hash,
     /// Scalar product of two vectors.
     Dot,
     /// Of two 3-vectors.

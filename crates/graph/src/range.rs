@@ -1,6 +1,7 @@
 //! Conservative ranges of values, in real arithmetic: enough to decide comparisons and selections whose
 //! outcome no point can change.
 
+use crate::eval::HASHES;
 use crate::{Binary, Const, Node, NodeId, Ternary, Unary};
 
 /// Every component lies in `lo..=hi`; infinite ends are open.
@@ -149,6 +150,7 @@ fn binary(op: Binary, a: Range, b: Range) -> Range {
         Binary::Pow if a.lo >= 0.0 => Range::POSITIVE,
         Binary::Atan2 => Range::new(-std::f64::consts::PI, std::f64::consts::PI),
         Binary::Rem | Binary::Pow | Binary::Dot | Binary::Cross => Range::ALL,
+        Binary::Hash => Range::new(0.0, HASHES - 1.0),
         Binary::Step
         | Binary::Lt
         | Binary::Le

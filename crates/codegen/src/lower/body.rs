@@ -1,6 +1,9 @@
 //! A function body under construction: expressions in order, what emits them, and their names.
 
-use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Span, Statement};
+use naga::{
+    BinaryOperator, Expression, Function, Handle, Literal, MathFunction, ScalarKind, Span,
+    Statement,
+};
 use rustc_hash::FxHashMap;
 
 type Value = Handle<Expression>;
@@ -70,6 +73,16 @@ impl Body {
         let literal = self.declare(Expression::Literal(Literal::F32(value)));
         self.literals.insert(value.to_bits(), literal);
         literal
+    }
+
+    /// A word of 32 bits.
+    pub(crate) fn word(&mut self, value: u32) -> Value {
+        self.declare(Expression::Literal(Literal::U32(value)))
+    }
+
+    /// A conversion to another kind of scalar of so many bytes; without, the same bits read as that kind.
+    pub(crate) fn cast(&mut self, expr: Value, kind: ScalarKind, convert: Option<u8>) -> Value {
+        self.compute(Expression::As { expr, kind, convert }, &[expr])
     }
 
     /// A built-in function of one argument.

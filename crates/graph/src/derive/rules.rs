@@ -22,6 +22,7 @@ pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
         Node::Binary(op, ..) => !matches!(
             op,
             Binary::Step
+                | Binary::Hash
                 | Binary::Lt
                 | Binary::Le
                 | Binary::Eq
@@ -210,6 +211,7 @@ impl Sweep<'_> {
                 self.give_with(b, |s| s.graph.binary(Binary::Cross, adjoint, a));
             }
             Binary::Step
+            | Binary::Hash
             | Binary::Lt
             | Binary::Le
             | Binary::Eq

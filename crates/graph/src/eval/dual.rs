@@ -172,6 +172,9 @@ impl Number for Dual {
     fn step(self, x: Self) -> Self {
         Self::flat(self.value.step(x.value))
     }
+    fn hash(self, x: Self) -> Self {
+        Self::flat(self.value.hash(x.value))
+    }
     fn direction(self, length: Self) -> Self {
         if length.value == 0.0 { Self::flat(0.0) } else { self.div(length) }
     }

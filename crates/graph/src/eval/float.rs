@@ -6,6 +6,7 @@
 //! or infinite. `min` and `max` pass on a NaN of their first argument only; WGSL leaves this open.
 
 use super::Number;
+use super::hash::hash;
 
 macro_rules! float {
     ($float:ident) => {
@@ -161,6 +162,10 @@ macro_rules! float {
             #[inline]
             fn step(self, x: Self) -> Self {
                 truth(x >= self)
+            }
+            #[inline]
+            fn hash(self, x: Self) -> Self {
+                hash(self.into(), x.into()) as Self
             }
             #[inline]
             fn direction(self, length: Self) -> Self {

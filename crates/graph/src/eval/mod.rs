@@ -38,6 +38,7 @@ pub(crate) mod direct;
 mod dual;
 mod float;
 mod fold;
+mod hash;
 mod interval;
 mod number;
 mod op;
@@ -48,6 +49,7 @@ mod tape;
 
 pub use dual::Dual;
 pub use fold::fold;
+pub use hash::{HASHES, hash};
 pub use interval::Interval;
 pub use number::Number;
 pub use packet::Packet;

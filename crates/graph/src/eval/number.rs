@@ -80,6 +80,8 @@ pub trait Number: Copy {
     fn atan2(self, x: Self) -> Self;
     /// 0 where x is less than this edge, else 1
     fn step(self, x: Self) -> Self;
+    /// 24 bits from 24 others and the whole part of x, as [`hash`](super::hash::hash) mixes them
+    fn hash(self, x: Self) -> Self;
     /// A component of a vector of the given length, divided by that length; 0 where the length is 0
     fn direction(self, length: Self) -> Self;
     /// `x < y`

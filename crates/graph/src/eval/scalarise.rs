@@ -146,6 +146,7 @@ fn binary<M: Machine>(
         Binary::Pow => Op::Pow,
         Binary::Atan2 => Op::Atan2,
         Binary::Step => Op::Step,
+        Binary::Hash => Op::Hash,
         Binary::Lt => Op::Lt,
         Binary::Le => Op::Le,
         Binary::Eq => Op::Eq,

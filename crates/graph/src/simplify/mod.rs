@@ -132,7 +132,7 @@ impl Graph {
             Binary::Le => self.simplified_le(a, b),
             Binary::Eq | Binary::Ne => self.simplified_equality(op, a, b),
             Binary::And | Binary::Or => self.simplified_connective(op, a, b),
-            Binary::Rem | Binary::Atan2 => None,
+            Binary::Rem | Binary::Atan2 | Binary::Hash => None,
         }
     }
 
@@ -301,7 +301,8 @@ fn is_lanewise(op: Binary) -> bool {
         | Binary::Max
         | Binary::Pow
         | Binary::Atan2
-        | Binary::Step => true,
+        | Binary::Step
+        | Binary::Hash => true,
         Binary::Dot
         | Binary::Cross
         | Binary::Lt

@@ -1,9 +1,10 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Bounds, MaterialField, NodeId, ShapeId, Type};
+use sdfc_graph::eval::HASHES;
+use sdfc_graph::{Binary, Bounds, MaterialField, NodeId, ShapeId, Type};
 
-use super::kernel::{Application, name};
+use super::kernel::Application;
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
 
@@ -81,32 +82,36 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Material(fields))
     }
 
-    /// `hash(...)` of constants.
+    /// `hash(...)`: a number in 0..1.
     pub(super) fn hash(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let words = self.words(env, at)?;
-        Ok(Value::Node(self.graph.number(hash_words(0, &words))))
+        let start = self.graph.number(HASH_STARTS[0]);
+        self.hashed(env, at, start)
     }
 
-    /// `hash3(...)` of constants.
+    /// `hash3(...)`: three numbers in 0..1.
     pub(super) fn hash3(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let words = self.words(env, at)?;
-        let lanes = [0, 1, 2].map(|seed| hash_words(seed, &words));
-        Ok(Value::Node(self.graph.constant(Type::Vec3, &lanes)))
+        let start = self.graph.constant(Type::Vec3, &HASH_STARTS);
+        self.hashed(env, at, start)
     }
 
-    /// The whole parts of all arguments' lanes.
-    fn words(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Vec<u32>> {
-        let mut words = Vec::new();
-        for arg in at.args {
-            let node = self.number(env, arg)?;
-            let Some((lanes, width)) = self.as_lanes(node) else {
-                self.decides(node);
-                let what = format!("`{}` of a value that is not constant", name(at.op));
-                return Err(self.not_yet(arg.span, &what));
+    /// The lanes of all arguments, hashed one after the other.
+    fn hashed(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+        mut state: NodeId,
+    ) -> Outcome<Value<'p>> {
+        for value in self.all(env, at.args)? {
+            let Value::Node(node) = value else {
+                return Err(self.unexpected(at.span, "a number", &value));
             };
-            words.extend(lanes[..width].iter().map(|&lane| lane.floor() as i64 as u32));
+            for lane in 0..self.graph.ty(node).width() as u8 {
+                let part = self.graph.component(node, lane);
+                state = self.graph.binary(Binary::Hash, state, part);
+            }
         }
-        Ok(words)
+        let scale = self.graph.number(1.0 / HASHES);
+        Ok(Value::Node(self.graph.mul(state, scale)))
     }
 
     /// Refuses what the specification has and this version has not.
@@ -116,15 +121,5 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// A number in 0..1 from whole numbers: each word is mixed in by one round of PCG
-/// (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020); 24 bits survive, which f32 holds.
-fn hash_words(seed: u32, words: &[u32]) -> f64 {
-    let mixed = words.iter().fold(seed, |state, &word| pcg(state ^ pcg(word)));
-    f64::from(pcg(mixed) >> 8) / f64::from(1 << 24)
-}
-
-fn pcg(word: u32) -> u32 {
-    let state = word.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    (word >> 22) ^ word
-}
+/// Where the three numbers of `hash3` start: far apart, since a start and a coordinate are added.
+const HASH_STARTS: [f64; 3] = [0.0, 10_368_889.0, 4_370_562.0];

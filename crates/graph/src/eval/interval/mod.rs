@@ -4,6 +4,7 @@ mod arithmetic;
 mod elementary;
 
 use super::Number;
+use super::hash::{HASHES, hash};
 
 /// All numbers from `lo` to `hi`, in f64.
 ///
@@ -231,6 +232,13 @@ impl Number for Interval {
     }
     fn step(self, x: Self) -> Self {
         Self::truth(x.lo >= self.hi, x.hi < self.lo)
+    }
+    fn hash(self, x: Self) -> Self {
+        let whole = x.floor();
+        if self.lo == self.hi && whole.lo == whole.hi {
+            return Self::constant(hash(self.lo, whole.lo));
+        }
+        Self { lo: 0.0, hi: HASHES - 1.0 }
     }
     fn direction(self, length: Self) -> Self {
         self.component(length)
