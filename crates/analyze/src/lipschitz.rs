@@ -4,7 +4,9 @@
 //! depends on a param follows the param. Rules after language reference, section "Promises".
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Unary, reachable};
+use sdfc_graph::{
+    Binary, Graph, LoopId, Node, NodeId, Place, ShapeId, Stage, Ternary, Unary, reachable,
+};
 
 use crate::affine::{self, Linear};
 
@@ -48,6 +50,9 @@ impl std::fmt::Display for Reason {
 /// A constant, or why there is none.
 pub type Constant = Result<NodeId, Reason>;
 
+/// Rounds of a loop that are followed to find how far a constant grows.
+const MOST_ROUNDS: u32 = 16;
+
 /// Constants of the nodes of one formula.
 pub(crate) struct Slopes {
     constants: FxHashMap<NodeId, Constant>,
@@ -65,22 +70,81 @@ impl Slopes {
     ) -> Self {
         let mut slopes = Self { constants: FxHashMap::default(), linear: FxHashMap::default() };
         for node in with_claimed_arguments(graph, roots) {
-            let lookup = |id: NodeId| slopes.linear.get(&id).copied();
-            let linear = affine::linear_part(graph, node, level, &lookup);
-            let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
-            if let Some(linear) = linear {
-                slopes.linear.insert(node, linear);
+            if graph.loops(node) == 0 {
+                slopes.visit(graph, node, level, shapes);
             }
-            let constant = match stretch {
-                Some(constant) => Ok(constant),
-                None => {
-                    let derived = slopes.by_rule(graph, node, level, shapes);
-                    slopes.with_claim(graph, node, derived)
-                }
-            };
-            slopes.constants.insert(node, constant);
         }
         slopes
+    }
+
+    fn visit(
+        &mut self,
+        graph: &mut Graph,
+        node: NodeId,
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) {
+        let lookup = |id: NodeId| self.linear.get(&id).copied();
+        let linear = affine::linear_part(graph, node, level, &lookup);
+        let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
+        if let Some(linear) = linear {
+            self.linear.insert(node, linear);
+        }
+        let constant = match (stretch, graph.node(node)) {
+            (Some(constant), _) => Ok(constant),
+            (None, Node::Variable(..)) => return, // known since its loop was entered
+            (None, Node::Loop(id, position, _)) => {
+                self.after_loop(graph, id, level, shapes).map(|all| all[usize::from(position)])
+            }
+            (None, _) => self.by_rule(graph, node, level, shapes),
+        };
+        let constant = self.with_claim(graph, node, constant);
+        self.constants.insert(node, constant);
+    }
+
+    /// The constants of a loop's state after any number of rounds: those that a round does not raise, or
+    /// those after the most rounds if these are few.
+    fn after_loop(
+        &mut self,
+        graph: &mut Graph,
+        id: LoopId,
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) -> Result<Vec<NodeId>, Reason> {
+        let repeated = graph.repeated(id).clone();
+        if repeated.go_on.is_some() {
+            return Err(Reason::Jump("while"));
+        }
+        let start = repeated.start.iter().map(|&part| self.constant(part));
+        let mut known: Vec<NodeId> = start.collect::<Result<_, _>>()?;
+        let body = graph.body(id);
+        for _ in 0..repeated.cap.min(MOST_ROUNDS) {
+            for &node in &body.round {
+                if let Node::Variable(_, place, _) = graph.node(node) {
+                    let constant = match place {
+                        // The same at every point.
+                        Place::Round => graph.number(0.0),
+                        Place::State(position) => known[usize::from(position)],
+                    };
+                    self.constants.insert(node, Ok(constant));
+                } else {
+                    self.visit(graph, node, level, shapes);
+                }
+            }
+            let next = repeated.next.iter().map(|&part| self.constant(part));
+            let next: Vec<NodeId> = next.collect::<Result<_, _>>()?;
+            for node in &body.round {
+                self.constants.remove(node);
+                self.linear.remove(node);
+            }
+            let pairs = known.iter().zip(next);
+            let raised: Vec<NodeId> = pairs.map(|(&x, y)| graph.max(x, y)).collect();
+            if raised == known {
+                return Ok(known);
+            }
+            known = raised;
+        }
+        if repeated.cap <= MOST_ROUNDS { Ok(known) } else { Err(Reason::Unbounded("iterate")) }
     }
 
     /// The constant of a node that the roots reach.
@@ -136,8 +200,13 @@ impl Slopes {
         if graph.stage(node) < Stage::Point {
             return Ok(graph.number(0.0));
         }
+        if self.is_still(graph, node) {
+            return Ok(graph.number(0.0));
+        }
         match graph.node(node) {
             Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),
+            Node::Variable(..) | Node::Loop(..) => Err(Reason::Unbounded("iterate")),
+            Node::Element(..) => Err(Reason::Jump("[ ]")),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
             Node::Binary(op, a, b) => self.binary(graph, op, a, b),
@@ -163,6 +232,16 @@ impl Slopes {
             }
             Node::MaterialAt(..) => Err(Reason::Unbounded("material_at")),
         }
+    }
+
+    /// Whether a node is computed from what does not vary with the point, such as the number of a round.
+    fn is_still(&self, graph: &Graph, node: NodeId) -> bool {
+        let still =
+            |id| self.constants.get(&id).is_some_and(|c| matches!(c, Ok(c) if is_zero(graph, *c)));
+        let mut arguments = graph.arguments(node).peekable();
+        !matches!(graph.node(node), Node::Sample(..) | Node::MaterialAt(..))
+            && arguments.peek().is_some()
+            && arguments.all(still)
     }
 
     fn unary(&self, op: Unary, a: NodeId) -> Constant {
@@ -385,8 +464,11 @@ fn components_seen(graph: &Graph, node: NodeId, level: u16) -> u8 {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
-            | Node::MaterialAt(..) => pending.extend(graph.node(id).arguments()),
+            | Node::MaterialAt(..) => pending.extend(graph.arguments(id)),
         }
     }
     seen

@@ -85,7 +85,8 @@ fn functions(
     module.entry_points.clear();
     let binding = ResourceBinding { group: options.group, binding: options.binding };
     let used = raw_inputs(program, &nodes);
-    let (inputs, members) = declare_members(&mut module, program, &used, binding);
+    let (mut inputs, members) = declare_members(&mut module, program, &used, binding);
+    inputs.tables.declare(&mut module, program, &nodes)?;
 
     let mut parts = Parts { members, uniform: inputs.buffer, ..Default::default() };
     for (role, stub, root) in roots {

@@ -2,7 +2,7 @@
 //! outcome no point can change.
 
 use crate::eval::HASHES;
-use crate::{Binary, Const, Node, NodeId, Ternary, Unary};
+use crate::{Binary, Const, Node, NodeId, Place, Ternary, Unary};
 
 /// Every component lies in `lo..=hi`; infinite ends are open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +93,14 @@ fn hull(ranges: impl IntoIterator<Item = Range>) -> Range {
 pub(crate) fn range_of(node: &Node, of: impl Fn(NodeId) -> Range, width: usize) -> Range {
     match *node {
         Node::Const(value) => Range::of_const(&value),
-        Node::Point(..) | Node::Frame(..) | Node::Sample(..) | Node::MaterialAt(..) => Range::ALL,
+        Node::Variable(_, Place::Round, _) => Range::POSITIVE,
+        Node::Point(..)
+        | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => Range::ALL,
         Node::Unary(op, a) => unary(op, of(a)),
         Node::Binary(op, a, b) => {
             if a == b && matches!(op, Binary::Mul | Binary::Dot) {

@@ -13,8 +13,11 @@ pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
         Node::Const(_)
         | Node::Point(..)
         | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => false,
+        Node::Loop(.., ty) => ty != Type::Bool,
         Node::Unary(op, _) => !matches!(
             op,
             Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Not
@@ -45,8 +48,11 @@ impl Sweep<'_> {
             Node::Const(_)
             | Node::Point(..)
             | Node::Frame(..)
+            | Node::Variable(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => {}
+            Node::Loop(repeated, position, _) => self.repeat(repeated, position, adjoint),
             Node::Unary(op, a) => {
                 if self.live.contains(a) {
                     let part = self.unary(op, id, a, adjoint);

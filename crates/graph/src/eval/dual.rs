@@ -197,6 +197,13 @@ impl Number for Dual {
         Self::flat(self.value.or(y.value))
     }
 
+    fn is_never(self) -> bool {
+        self.value == 0.0
+    }
+    fn element(self, list: &[f64]) -> Self {
+        Self::flat(self.value.element(list))
+    }
+
     fn mix(self, y: Self, t: Self) -> Self {
         let by_t = t.chain(0.0, y.value - self.value);
         let Self { partials, .. } = self.chain2(y, 0.0, [1.0 - t.value, t.value]).add(by_t);

@@ -197,6 +197,15 @@ macro_rules! float {
             }
 
             #[inline]
+            fn is_never(self) -> bool {
+                self == 0.0
+            }
+            fn element(self, list: &[f64]) -> Self {
+                let last = list.len().saturating_sub(1);
+                let at = (self.max(0.0) as usize).min(last);
+                list.get(at).map_or(Self::NAN, |&value| value as Self)
+            }
+            #[inline]
             fn mix(self, y: Self, t: Self) -> Self {
                 self * (1.0 - t) + y * t
             }

@@ -29,10 +29,10 @@ impl Machine for Folding {
 /// operation stays, to be reported or to run, rather than become a literal that no shader can hold.
 pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
     let find = |id: NodeId| {
-        let position = node.arguments().position(|argument| argument == id);
+        let position = node.own_arguments().position(|argument| argument == id);
         position.and_then(|position| arguments.get(position)).copied()
     };
-    if node.arguments().any(|id| find(id).is_none()) {
+    if node.own_arguments().any(|id| find(id).is_none()) {
         return None;
     }
     let argument = |id| find(id).unwrap_or(Const::new(Type::Scalar, &[]));

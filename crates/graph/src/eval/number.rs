@@ -106,6 +106,12 @@ pub trait Number: Copy {
     /// `yes` where this truth value holds, else `no`
     fn select(self, yes: Self, no: Self) -> Self;
 
+    /// Whether this truth value is false for certain: a loop that it keeps running ends
+    fn is_never(self) -> bool;
+
+    /// The element of a list at a position, rounded down; the first before the first, the last past the last
+    fn element(self, list: &[f64]) -> Self;
+
     /// `x * y` for a y known to be `c * (1 - x)`: the dip of a quadratic blend
     fn parabola(self, y: Self, c: Self) -> Self {
         let _ = c;

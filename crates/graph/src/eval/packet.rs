@@ -35,6 +35,14 @@ macro_rules! lanewise {
             fn constant(value: f64) -> Self {
                 Self([N::constant(value); B])
             }
+            #[inline]
+            fn is_never(self) -> bool {
+                self.0.into_iter().all(N::is_never)
+            }
+            #[inline]
+            fn element(self, list: &[f64]) -> Self {
+                self.map(|at| at.element(list))
+            }
             $(#[inline] fn $unary(self) -> Self { self.map(N::$unary) })*
             $(#[inline] fn $binary(self, y: Self) -> Self { self.map2(y, N::$binary) })*
             $(#[inline] fn $ternary(self, y: Self, z: Self) -> Self { self.map3(y, z, N::$ternary) })*

@@ -19,7 +19,7 @@ mod logic;
 mod vector;
 
 use crate::eval::fold;
-use crate::{Binary, Const, Graph, Node, NodeId, Stage, Ternary, Type, Unary};
+use crate::{Binary, Const, Graph, Node, NodeId, Place, Stage, Ternary, Type, Unary};
 
 impl Graph {
     /// The node for an operation: a constant, a simpler equal, or the operation itself.
@@ -46,7 +46,7 @@ impl Graph {
         }
         let mut values = [None; 4];
         let mut count = 0;
-        for argument in node.arguments() {
+        for argument in node.own_arguments() {
             values[count] = Some(self.as_const(argument)?);
             count += 1;
         }
@@ -59,6 +59,9 @@ impl Graph {
             Node::Const(_)
             | Node::Point(..)
             | Node::Frame(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => None,
             Node::Unary(op, a) => self.simplified_unary(op, a),
@@ -171,8 +174,11 @@ impl Graph {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => false,
+            Node::Variable(_, place, _) => place == Place::Round,
         }
     }
 

@@ -175,7 +175,7 @@ pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const
             None
         };
         let arguments: Option<Vec<Const>> =
-            node.arguments().map(|argument| values[argument.index()]).collect();
+            graph.arguments(id).map(|argument| values[argument.index()]).collect();
         let value = input.or_else(|| fold(&node, &arguments?));
         values.push(value);
     }

@@ -183,6 +183,8 @@ struct Elaborator<'p> {
     in_clause: bool,
     /// Params that stand for literals.
     offer: Offer,
+    /// How many loops the body at hand lies in.
+    loop_depth: u8,
 }
 
 impl<'p> Elaborator<'p> {
@@ -206,6 +208,7 @@ impl<'p> Elaborator<'p> {
             missing: None,
             in_clause: false,
             offer: Offer::new(first_literal),
+            loop_depth: 0,
         }
     }
 }

@@ -263,6 +263,17 @@ impl Number for Interval {
         Number::max(self, y)
     }
 
+    fn is_never(self) -> bool {
+        self.hi == 0.0
+    }
+    fn element(self, list: &[f64]) -> Self {
+        let last = list.len().saturating_sub(1);
+        let place = |end: f64| (end.max(0.0) as usize).min(last);
+        let found = list.get(place(self.lo)..=place(self.hi)).unwrap_or_default();
+        let values = found.iter().map(|&value| Self::constant(value));
+        values.reduce(Self::hull).unwrap_or(Self::ENTIRE)
+    }
+
     fn mix(self, y: Self, t: Self) -> Self {
         self.mixture(y, t)
     }
