@@ -5,10 +5,11 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Graph, LoopId, Node, NodeId, Place, ShapeId, Stage, Ternary, Unary, reachable,
+    Binary, Dim, Graph, LoopId, Node, NodeId, Place, ShapeId, Stage, Ternary, Unary, reachable,
 };
 
 use crate::affine::{self, Linear};
+use crate::polynomial::Polynomial;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +51,12 @@ impl std::fmt::Display for Reason {
 /// A constant, or why there is none.
 pub type Constant = Result<NodeId, Reason>;
 
+/// Components of the point as bits, lane by lane; none beyond a node's width.
+type Seen = [u8; 4];
+
+/// All components of the point.
+const ANY: Seen = [7; 4];
+
 /// Rounds of a loop that are followed to find how far a constant grows.
 const MOST_ROUNDS: u32 = 16;
 
@@ -57,6 +64,8 @@ const MOST_ROUNDS: u32 = 16;
 pub(crate) struct Slopes {
     constants: FxHashMap<NodeId, Constant>,
     linear: FxHashMap<NodeId, Linear>,
+    /// Which components of the point each lane of each node looks at.
+    seen: FxHashMap<NodeId, Seen>,
 }
 
 impl Slopes {
@@ -68,7 +77,8 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Self {
-        let mut slopes = Self { constants: FxHashMap::default(), linear: FxHashMap::default() };
+        let (constants, linear, seen) = Default::default();
+        let mut slopes = Self { constants, linear, seen };
         for node in with_claimed_arguments(graph, roots) {
             if graph.loops(node) == 0 {
                 slopes.visit(graph, node, level, shapes);
@@ -84,6 +94,7 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) {
+        self.seen.insert(node, self.components_seen(graph, node, level));
         let lookup = |id: NodeId| self.linear.get(&id).copied();
         let linear = affine::linear_part(graph, node, level, &lookup);
         let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
@@ -209,6 +220,10 @@ impl Slopes {
             Node::Element(..) => Err(Reason::Jump("[ ]")),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
+            Node::Binary(Binary::Add | Binary::Sub, a, b) if self.look_apart(&[a, b]) => {
+                let constants = [self.constant(a)?, self.constant(b)?];
+                Ok(hypotenuse(graph, &constants))
+            }
             Node::Binary(op, a, b) => self.binary(graph, op, a, b),
             Node::Ternary(op, arguments) => self.ternary(graph, op, arguments),
             Node::Splat(ty, a) => {
@@ -216,7 +231,7 @@ impl Slopes {
                 let factor = graph.number((ty.width() as f64).sqrt());
                 Ok(graph.mul(factor, inner))
             }
-            Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()], level),
+            Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()]),
             Node::Swizzle(ty, a, lanes) => {
                 let inner = self.constant(a)?;
                 let factor = graph.number(repeats(&lanes[..ty.width()]).sqrt());
@@ -359,16 +374,62 @@ impl Slopes {
 
     /// The lanes' constants joined: the largest where the lanes look at different components of the point
     /// (the squares of the changes then add up to no more than the point's), else their hypotenuse.
-    fn compose(&self, graph: &mut Graph, parts: &[NodeId], level: u16) -> Constant {
+    fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
         let constants: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
-        let seen: Vec<u8> = parts.iter().map(|&part| components_seen(graph, part, level)).collect();
-        let apart = seen.iter().map(|mask| mask.count_ones()).sum::<u32>()
-            == seen.iter().fold(0, |all, mask| all | mask).count_ones();
-        if apart {
+        if self.look_apart(parts) {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
         Ok(hypotenuse(graph, &constants))
+    }
+
+    /// Whether no component of the point is looked at by two of the nodes: the squares of their changes then add up
+    /// as those of the components do.
+    fn look_apart(&self, nodes: &[NodeId]) -> bool {
+        let seen = |node: &NodeId| {
+            self.seen.get(node).unwrap_or(&ANY).iter().fold(0, |all, lane| all | lane)
+        };
+        let counted: u32 = nodes.iter().map(|node| seen(node).count_ones()).sum();
+        counted == nodes.iter().fold(0, |all, node| all | seen(node)).count_ones()
+    }
+
+    /// Lane by lane. What is no number of the point's own formula is taken to look at all of it.
+    fn components_seen(&self, graph: &Graph, node: NodeId, level: u16) -> Seen {
+        let of = |id: NodeId| match graph.stage(id) {
+            Stage::Const | Stage::Frame => [0; 4],
+            Stage::Point => self.seen.get(&id).copied().unwrap_or(ANY),
+        };
+        let joined = |ids: &[NodeId]| {
+            ids.iter().fold([0; 4], |all, &id| std::array::from_fn(|i| all[i] | of(id)[i]))
+        };
+        let mixed = |ids: &[NodeId]| [joined(ids).iter().fold(0, |x, y| x | y); 4];
+        match graph.node(node) {
+            Node::Const(_) | Node::Frame(..) => [0; 4],
+            Node::Point(at, Dim::Three) if at == level => [1, 2, 4, 0],
+            Node::Point(at, Dim::Two) if at == level => [1, 2, 0, 0],
+            Node::Unary(Unary::Length | Unary::Normalize, a) => mixed(&[a]),
+            Node::Unary(_, a) => of(a),
+            Node::Binary(Binary::Dot | Binary::Cross, a, b) => mixed(&[a, b]),
+            Node::Binary(_, a, b) => joined(&[a, b]),
+            Node::Ternary(Ternary::Select, [condition, a, b]) => {
+                joined(&[a, b]).map(|seen| seen | of(condition)[0])
+            }
+            Node::Ternary(_, arguments) => joined(&arguments),
+            Node::Splat(_, a) => [of(a)[0]; 4],
+            Node::Compose(ty, parts) => {
+                std::array::from_fn(|i| if i < ty.width() { of(parts[i])[0] } else { 0 })
+            }
+            Node::Swizzle(ty, a, lanes) => {
+                std::array::from_fn(
+                    |i| {
+                        if i < ty.width() { of(a)[usize::from(lanes[i])] } else { 0 }
+                    },
+                )
+            }
+            Node::Transform([a, b, c], v) => mixed(&[a, b, c, v]),
+            Node::Sample(_, q) | Node::MaterialAt(_, q, _) => mixed(&[q]),
+            Node::Point(..) | Node::Variable(..) | Node::Loop(..) | Node::Element(..) => ANY,
+        }
     }
 
     fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {
@@ -411,6 +472,18 @@ fn is_zero(graph: &Graph, node: NodeId) -> bool {
     graph.as_number(node) == Some(0.0)
 }
 
+/// The length of a vector that is the same for all values of params, as of a sine and cosine.
+fn fixed_length(graph: &Graph, parts: &[NodeId]) -> Option<f64> {
+    let mut sum = Polynomial::zero();
+    for &part in parts {
+        // Squares have no sign.
+        let signed = if let Node::Unary(Unary::Abs, x) = graph.node(part) { x } else { part };
+        let term = Polynomial::of(graph, signed)?;
+        sum = sum.plus(&term.times(&term)?);
+    }
+    sum.constant().map(f64::sqrt)
+}
+
 /// The largest of the lanes' magnitudes.
 fn largest_lane(graph: &mut Graph, node: NodeId) -> NodeId {
     let width = graph.ty(node).width() as u8;
@@ -429,6 +502,9 @@ fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
         [] => graph.number(0.0),
         [one] => one,
         _ => {
+            if let Some(length) = fixed_length(graph, &varying) {
+                return graph.number(length);
+            }
             let mut sum = graph.number(0.0);
             for x in varying {
                 let square = graph.mul(x, x);
@@ -437,39 +513,4 @@ fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
             graph.unary(Unary::Sqrt, sum)
         }
     }
-}
-
-/// Which components of the point a node looks at, as a bit mask.
-fn components_seen(graph: &Graph, node: NodeId, level: u16) -> u8 {
-    let mut seen = 0;
-    let mut visited = rustc_hash::FxHashSet::default();
-    let mut pending = vec![node];
-    while let Some(id) = pending.pop() {
-        if graph.stage(id) < Stage::Point || !visited.insert(id) {
-            continue;
-        }
-        match graph.node(id) {
-            Node::Swizzle(ty, a, lanes) if matches!(graph.node(a), Node::Point(at, _) if at == level) => {
-                for lane in &lanes[..ty.width()] {
-                    seen |= 1 << lane;
-                }
-            }
-            Node::Point(..) => seen |= 7,
-            Node::Const(_)
-            | Node::Frame(..)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Ternary(..)
-            | Node::Splat(..)
-            | Node::Compose(..)
-            | Node::Swizzle(..)
-            | Node::Transform(..)
-            | Node::Variable(..)
-            | Node::Loop(..)
-            | Node::Element(..)
-            | Node::Sample(..)
-            | Node::MaterialAt(..) => pending.extend(graph.arguments(id)),
-        }
-    }
-    seen
 }

@@ -142,6 +142,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
     let (inputs, members) =
         declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
     picture.parts.members = members;
+    picture.parts.prefix.clone_from(&options.prefix);
     picture.compute_slots(inputs)?;
     picture.fill()?;
     make_public(&mut picture.module, &picture.parts, &options.prefix);
@@ -202,7 +203,8 @@ impl<'p> Picture<'p> {
 
     /// Lets `load_frame` compute what follows from raw inputs, into private variables.
     pub(crate) fn compute_slots(&mut self, mut raw: Inputs) -> Result<(), Error> {
-        raw.tables.declare(&mut self.module, self.program, &self.slot_nodes())?;
+        let nodes = self.slot_nodes();
+        raw.tables.declare(&mut self.module, self.program, &nodes)?;
         let (program, module) = (self.program, &mut self.module);
         let kept = self.used.iter().map(|&slot| program.uniforms[slot]);
         let kept = kept.filter(|&node| !raw.is_constant(program.graph.node(node)));

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, reason = "a test that cannot be set up fails")]
 
 use proptest::prelude::*;
-use sdfc_graph::eval::{Dual, FrameValues, Interval, Number, Packet, Tape};
+use sdfc_graph::eval::{Dual, FrameValues, Interval, Packet, Tape};
 use sdfc_graph::{
     Binary, Dim, Expander, FrameInput, Graph, Loop, Node, NodeId, Place, Table, Type, Unary,
     fold_transforms, gradient, uniforms,
@@ -210,15 +210,13 @@ fn check(case: &Case, at: [f64; 3], param: f64) {
     let name = case.name;
     assert!(close(values[0][0], values[1][0], 1e-12), "{name} at {at:?}: {values:?}");
     assert!(close(values[0][0], values[4][0], 1e-9), "{name} folded at {at:?}: {values:?}");
-    for lane in 0..3 {
-        let pair = [values[2][lane], values[3][lane]];
-        assert!(close(pair[0], pair[1], 1e-9), "{name}, slope at {at:?}: {pair:?}");
+    for (a, b) in values[2].into_iter().zip(values[3]) {
+        assert!(close(a, b, 1e-9), "{name}, slope at {at:?}: {a} {b}");
     }
 
     let duals = tape.prepare::<Dual>(&frame).eval(Dual::point(at)).to_vec();
-    for lane in 0..3 {
-        let pair = [duals[0][0].partials[lane], values[2][lane]];
-        assert!(close(pair[0], pair[1], 1e-9), "{name}, dual at {at:?}: {pair:?}");
+    for (a, b) in duals[0][0].partials.into_iter().zip(values[2]) {
+        assert!(close(a, b, 1e-9), "{name}, dual at {at:?}: {a} {b}");
     }
 
     let narrow = at.map(|x| x as f32);

@@ -130,3 +130,16 @@ fn an_error_in_a_body_is_told_once() {
     assert!(scene.is_none());
     assert_eq!(found.len(), 1, "{found:?}");
 }
+
+#[test]
+fn rounds_of_loops_in_loops_are_limited_together() {
+    let nested = |inner: u32| {
+        format!(
+            "solid it() = iterate(4000, p.x, fn(s) = iterate({inner}, s, fn(t) = sin(t)))\nit()"
+        )
+    };
+    assert!(support::front(&nested(16)).1.is_some());
+    let (_, scene, found) = support::front(&nested(17));
+    assert!(scene.is_none());
+    assert!(found[0].message.contains("68000 rounds; at most 65536"), "{found:?}");
+}

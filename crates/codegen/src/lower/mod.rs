@@ -5,6 +5,7 @@
 //! the program names; a value used once is written where it is used, to a bounded depth.
 
 mod body;
+mod hash;
 mod operation;
 mod repeat;
 mod uses;
@@ -12,7 +13,7 @@ mod uses;
 use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
 use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Const, Dim, LoopId, Node, NodeId, Program, Type};
+use sdfc_graph::{Binary, Const, Dim, LoopId, Node, NodeId, Program, Type};
 
 pub(crate) use body::Body;
 
@@ -86,6 +87,8 @@ struct Lowering<'a> {
     /// Values of the nodes visited so far, but for constants.
     values: FxHashMap<NodeId, Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
+    /// Hashes as words.
+    words: FxHashMap<NodeId, Value>,
     /// The states after the loops visited so far.
     loops: FxHashMap<LoopId, Vec<Value>>,
     /// What the rounds at hand read, by the depth of their loops.
@@ -96,12 +99,13 @@ impl<'a> Lowering<'a> {
     fn new(
         program: &'a Program,
         inputs: &'a Inputs,
-            types: &'a mut UniqueArena<naga::Type>,
+        types: &'a mut UniqueArena<naga::Type>,
         roots: &[NodeId],
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
-        let (body, values, matrices, loops, rounds) = Default::default();
-        Self { program, inputs, types, uses, body, point: None, values, matrices, loops, rounds }
+        let (body, values, matrices, words, loops, rounds) = Default::default();
+        let point = None;
+        Self { program, inputs, types, uses, body, point, values, matrices, words, loops, rounds }
     }
 
     /// Computes all nodes that the roots need.
@@ -168,6 +172,10 @@ impl<'a> Lowering<'a> {
             Node::Unary(op, a) => {
                 self.refuse_constants(id, &[a])?;
                 self.unary(id, op, a)
+            }
+            Node::Binary(Binary::Hash, state, x) => {
+                self.refuse_constants(id, &[state, x])?;
+                self.hash(id, state, x)
             }
             Node::Binary(op, a, b) => {
                 self.refuse_constants(id, &[a, b])?;

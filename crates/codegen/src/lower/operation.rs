@@ -1,6 +1,6 @@
 //! One match for each group of operations.
 
-use naga::{BinaryOperator, Expression, MathFunction, ScalarKind, UnaryOperator};
+use naga::{BinaryOperator, Expression, MathFunction, UnaryOperator};
 use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
 
 use super::uses::{Filling, Product, product};
@@ -96,45 +96,11 @@ impl Lowering<'_> {
             Binary::Pow => return Ok(self.body.call2(MathFunction::Pow, a, b)),
             Binary::Atan2 => return Ok(self.body.call2(MathFunction::Atan2, a, b)),
             Binary::Step => return Ok(self.body.call2(MathFunction::Step, a, b)),
-            Binary::Hash => return Ok(self.hash(ty, a, b)),
+            Binary::Hash => return Err(Error::IllTyped(id)), // lowered by itself
             Binary::Dot => return Ok(self.body.call2(MathFunction::Dot, a, b)),
             Binary::Cross => return Ok(self.body.call2(MathFunction::Cross, a, b)),
         };
         Ok(self.body.binary(operator, a, b))
-    }
-
-    /// As `sdfc_graph::eval::hash` mixes; Conversions to whole numbers are defined within their range.
-    fn hash(&mut self, ty: Type, state: Value, x: Value) -> Value {
-        use BinaryOperator::{Add, ExclusiveOr, Multiply, ShiftRight};
-        let [least, most] = [-2_147_483_648.0, 2_147_483_520.0].map(|end| self.filled(ty, end));
-        let whole = self.body.call1(MathFunction::Floor, x);
-        let raised = self.body.call2(MathFunction::Max, whole, least);
-        let whole = self.body.call2(MathFunction::Min, raised, most);
-        let whole = self.body.cast(whole, ScalarKind::Sint, Some(4));
-        let place = self.body.cast(whole, ScalarKind::Uint, None);
-        let state = self.body.cast(state, ScalarKind::Uint, Some(4));
-        let word = self.body.binary(Add, state, place);
-        let product = self.with_word(ty, Multiply, word, 747_796_405);
-        let state = self.with_word(ty, Add, product, 2_891_336_453);
-        let top = self.with_word(ty, ShiftRight, state, 28);
-        let by = self.with_word(ty, Add, top, 4);
-        let shifted = self.body.binary(ShiftRight, state, by);
-        let mixed = self.body.binary(ExclusiveOr, shifted, state);
-        let word = self.with_word(ty, Multiply, mixed, 277_803_737);
-        let high = self.with_word(ty, ShiftRight, word, 22);
-        let mixed = self.body.binary(ExclusiveOr, high, word);
-        let upper = self.with_word(ty, ShiftRight, mixed, 8);
-        self.body.cast(upper, ScalarKind::Float, Some(4))
-    }
-
-    /// An operation on a word, or on each of a vector of words, and a constant.
-    fn with_word(&mut self, ty: Type, op: BinaryOperator, left: Value, right: u32) -> Value {
-        let value = self.body.word(right);
-        let right = match types::vector_size(ty) {
-            None => value,
-            Some(size) => self.body.compute(Expression::Splat { size, value }, &[]),
-        };
-        self.body.binary(op, left, right)
     }
 
     /// A product; a vector filled by a scalar multiplies as that scalar.
@@ -217,7 +183,7 @@ impl Lowering<'_> {
     }
 
     /// A number in every lane of a type.
-    fn filled(&mut self, ty: Type, number: f32) -> Value {
+    pub(super) fn filled(&mut self, ty: Type, number: f32) -> Value {
         let value = self.body.literal(number);
         match types::vector_size(ty) {
             None => value,

@@ -96,6 +96,7 @@ impl Lowering<'_> {
     fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
         for id in nodes {
             self.values.remove(id);
+            self.words.remove(id);
             if let Node::Loop(within, ..) = self.program.graph.node(*id) {
                 self.loops.remove(&within);
             }
@@ -103,7 +104,7 @@ impl Lowering<'_> {
     }
 
     fn visit_needed(&mut self, nodes: &[NodeId]) -> Result<(), Error> {
-        let needed = nodes.iter().copied().filter(|&id| self.uses.of(id) > 0);
+        let needed = nodes.iter().copied().filter(|&id| self.uses.contains(id));
         let needed: Vec<NodeId> = needed.collect();
         self.visit(needed.into_iter())
     }

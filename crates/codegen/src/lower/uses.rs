@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
 
+use super::hash::reads_word;
 use crate::inputs::Inputs;
 
 /// How often each node that the roots need is written in the text.
@@ -31,8 +32,10 @@ impl Uses {
             } else {
                 repeats(&node)
             };
-            for operand in operands(graph, id) {
-                *counts.entry(operand).or_insert(0) += times;
+            for (position, operand) in operands(graph, id).into_iter().enumerate() {
+                let as_word =
+                    position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
+                *counts.entry(operand).or_insert(0) += if as_word { 0 } else { times };
                 if graph.loops(id) & !graph.loops(operand) != 0 {
                     keep(graph, operand, &mut kept);
                 }
@@ -44,6 +47,11 @@ impl Uses {
     /// How often the node is written.
     pub(crate) fn of(&self, id: NodeId) -> u32 {
         self.counts.get(&id).copied().unwrap_or(0)
+    }
+
+    /// Whether the roots need the node.
+    pub(crate) fn contains(&self, id: NodeId) -> bool {
+        self.counts.contains_key(&id)
     }
 
     /// Whether the node needs a name however seldom it is written.

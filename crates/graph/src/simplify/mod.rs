@@ -41,7 +41,7 @@ impl Graph {
 
     fn folded(&self, node: &Node) -> Option<Const> {
         // Most nodes depend on something, and constants are large to copy.
-        if node.arguments().any(|argument| self.stage(argument) > Stage::Const) {
+        if node.own_arguments().any(|argument| self.stage(argument) > Stage::Const) {
             return None;
         }
         let mut values = [None; 4];

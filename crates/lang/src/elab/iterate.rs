@@ -10,7 +10,7 @@ use sdfc_graph::{Const, Loop, MAX_LOOP_DEPTH, Node, NodeId, Place, Stage, Table,
 use super::expr::node_type;
 use super::report::show_number;
 use super::value::{Closure, Value};
-use super::{Elaborator, Env, MAX_ROUNDS, Outcome};
+use super::{Elaborator, Env, MAX_NESTED_ROUNDS, MAX_ROUNDS, Outcome};
 use crate::hir::{Expr, Type};
 
 /// Rounds up to this many are written out: what a driver would do anyway.
@@ -120,8 +120,17 @@ impl<'p> Elaborator<'p> {
             return Ok(None);
         }
         let Some(item) = self.item(rounds) else { return Ok(None) };
+        let around = self.loop_rounds;
+        let nested = around.saturating_mul(rounds.items.len());
+        if depth > 0 && nested > MAX_NESTED_ROUNDS {
+            let message = format!(
+                "the loops around this and it run {nested} rounds; at most {MAX_NESTED_ROUNDS} are possible"
+            );
+            return Err(self.stop(Diagnostic::error(ErrorCode::ITERATIONS, steps.span, message)));
+        }
         let before = self.attempt();
         self.loop_depth += 1;
+        self.loop_rounds = nested;
         let ty = self.graph.ty(start);
         let state = self.graph.variable(depth, Place::State(0), ty);
         let body = self.goes_on(steps, Value::Node(state)).and_then(|go_on| {
@@ -129,6 +138,7 @@ impl<'p> Elaborator<'p> {
             Ok((go_on, next))
         });
         self.loop_depth -= 1;
+        self.loop_rounds = around;
         let (go_on, next) = match body {
             Ok((go_on, Value::Node(next))) if self.graph.ty(next) == ty => (go_on, next),
             // A limit that was reached would be reached again.

@@ -1,12 +1,15 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
-use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
+use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::eval::HASHES;
-use sdfc_graph::{Binary, Bounds, MaterialField, NodeId, ShapeId, Type};
+use sdfc_graph::{
+    Binary, Bounds, Dim, Expander, MaterialField, Node, NodeId, ShapeId, Type, Unary, reachable,
+};
 
 use super::kernel::Application;
-use super::value::Value;
+use super::value::{Closure, Value};
 use super::{Elaborator, Env, Outcome, Poison};
+use crate::hir;
 
 impl<'p> Elaborator<'p> {
     /// `[x, y]` to `[x, y, 0]`.
@@ -43,11 +46,95 @@ impl<'p> Elaborator<'p> {
                 let [lo, hi] = self.shape_bounds(shape);
                 Ok(Value::Range(lo, hi))
             }
-            Value::Closure(_) => {
-                Err(self.not_yet(at.span, "`bounds` of a function that gives shapes"))
-            }
+            Value::Closure(closure) => self.bounds_of_all(&closure, at),
             other => Err(self.unexpected(at.span, "a shape", &other)),
         }
+    }
+
+    /// The hull of the bounds of all shapes that a function gives.
+    fn bounds_of_all(&mut self, closure: &Closure<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let takes = match at.args.first().map(|arg| &arg.ty) {
+            Some(hir::Type::Fn(takes, _)) => takes.clone(),
+            _ => return Err(Poison),
+        };
+        // A shape whose arguments depend on an outer point has bounds that hold for all of them.
+        let before = self.attempt();
+        let mut anything = Vec::with_capacity(takes.len());
+        for ty in &takes {
+            anything.push(self.anything(ty, closure.levels, at.span)?);
+        }
+        let shape = self.apply(closure, anything, at.span)?;
+        self.take_back(before);
+        let Value::Shape(shape) = shape else {
+            return Err(self.unexpected(at.span, "a shape", &shape));
+        };
+        let [lo, hi] = self.shape_bounds(shape);
+        Ok(Value::Range(lo, hi))
+    }
+
+    /// A value of a type that no point outside decides.
+    fn anything(&mut self, ty: &hir::Type, level: u16, span: Span) -> Outcome<Value<'p>> {
+        let point = self.graph.point(level, Dim::Three);
+        let node = match ty {
+            hir::Type::Number | hir::Type::Angle => self.graph.component(point, 0),
+            hir::Type::Int => {
+                let number = self.graph.component(point, 0);
+                self.graph.unary(Unary::Floor, number)
+            }
+            hir::Type::Vec(width @ 2..=3) => {
+                let lanes: Vec<u8> = (0..*width).collect();
+                self.graph.swizzle(point, &lanes)
+            }
+            _ => {
+                let message = "`bounds` of a function needs one of numbers or points";
+                return Err(self.fail(ErrorCode::TYPE_MISMATCH, span, message));
+            }
+        };
+        Ok(Value::Node(node))
+    }
+
+    /// `gradient(shape, point)`: the shape's formula, those of its parts put in, differentiated.
+    pub(super) fn gradient(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+    ) -> Outcome<Value<'p>> {
+        let [shape, place] = at.args else { return Err(Poison) };
+        let (shape, place) = (self.shape(env, shape), self.number(env, place));
+        let (shape, place) = (shape?, place?);
+        let (level, dim) = (self.graph.shape(shape).level, self.graph.shape(shape).dim);
+        // Points of the formulas around it stay; its own is replaced by the place in the end.
+        let mut points: Vec<NodeId> =
+            (0..level).map(|outer| self.outer_point(shape, outer)).collect();
+        let own = self.graph.point(level, dim);
+        let mut expander = Expander::new();
+        let gradient =
+            expander.field_under(&mut self.graph, shape, &points, own).and_then(|field| {
+                let gradient = sdfc_graph::gradient(&mut self.graph, field, own);
+                points.push(place);
+                expander.node(&mut self.graph, gradient, &points)
+            });
+        gradient.map(Value::Node).map_err(|error| {
+            self.fail(ErrorCode::TOO_MANY_NODES, at.span, format!("`gradient`: {error}"))
+        })
+    }
+
+    /// The point of a formula around a shape, as the shape's formulas speak of it.
+    fn outer_point(&mut self, shape: ShapeId, level: u16) -> NodeId {
+        let mut pending = vec![shape];
+        let mut seen = rustc_hash::FxHashSet::default();
+        while let Some(shape) = pending.pop() {
+            if !seen.insert(shape) {
+                continue;
+            }
+            for id in reachable(&self.graph, &[self.graph.shape(shape).formula]) {
+                if matches!(self.graph.node(id), Node::Point(at, _) if at == level) {
+                    return id;
+                }
+            }
+            pending.extend(self.graph.shape(shape).children.iter().copied());
+        }
+        self.graph.point(level, Dim::Three) // no formula speaks of it
     }
 
     /// Derived once per shape. All params are known by then: only they stand before shapes.
@@ -112,12 +199,6 @@ impl<'p> Elaborator<'p> {
         }
         let scale = self.graph.number(1.0 / HASHES);
         Ok(Value::Node(self.graph.mul(state, scale)))
-    }
-
-    /// Refuses what the specification has and this version has not.
-    pub(super) fn not_yet(&mut self, span: Span, what: &str) -> Poison {
-        let message = format!("{what} is not in this version");
-        self.report(Diagnostic::error(ErrorCode::NOT_YET, span, message))
     }
 }
 
