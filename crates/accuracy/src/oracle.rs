@@ -1,7 +1,9 @@
 //! The first root of the field along a ray, isolated by intervals.
 
+use std::collections::HashSet;
+
 use sdfc_graph::eval::{Evaluator, FrameValues, Interval, Number, Tape, TapeError};
-use sdfc_graph::{Binary, Node, NodeId, Program, Stage, Ternary, Unary, reachable};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Place, Program, Ternary, Unary, reachable};
 
 /// A stretch this short, in parts of the distance, is not cut again.
 const FINEST: f64 = 1e-9;
@@ -121,12 +123,21 @@ impl Oracle {
 /// it changes.
 fn jumps(program: &Program, distance: NodeId) -> bool {
     let graph = &program.graph;
-    let mut nodes = reachable(graph, &[distance]).into_iter();
-    nodes.any(|id| graph.stage(id) == Stage::Point && may_jump(&graph.node(id)))
+    // The number of a loop's round is the same at every point, and so is what follows from it.
+    let mut moving = HashSet::new();
+    reachable(graph, &[distance]).into_iter().any(|id| {
+        let node = graph.node(id);
+        let moves = matches!(node, Node::Point(..) | Node::Variable(_, Place::State(_), _))
+            || graph.arguments(id).any(|argument| moving.contains(&argument));
+        if moves {
+            moving.insert(id);
+        }
+        moves && may_jump(graph, &node)
+    })
 }
 
 /// Poles count as smooth: about one the interval of the derivative is infinite, which proves nothing.
-fn may_jump(node: &Node) -> bool {
+fn may_jump(graph: &Graph, node: &Node) -> bool {
     match node {
         Node::Unary(op, _) => match op {
             Unary::Sign
@@ -158,7 +169,7 @@ fn may_jump(node: &Node) -> bool {
             | Unary::Not => false,
         },
         Node::Binary(op, ..) => match op {
-            Binary::Rem | Binary::Step | Binary::Atan2 => true,
+            Binary::Rem | Binary::Step | Binary::Hash | Binary::Atan2 => true,
             Binary::Add
             | Binary::Sub
             | Binary::Mul
@@ -179,10 +190,12 @@ fn may_jump(node: &Node) -> bool {
             Ternary::Select => true,
             Ternary::Mix | Ternary::Clamp | Ternary::Smoothstep => false,
         },
-        Node::Sample(..) | Node::MaterialAt(..) => true,
+        Node::Loop(id, ..) => graph.repeated(*id).go_on.is_some(),
+        Node::Element(..) | Node::Sample(..) | Node::MaterialAt(..) => true,
         Node::Const(_)
         | Node::Point(..)
         | Node::Frame(..)
+        | Node::Variable(..)
         | Node::Splat(..)
         | Node::Compose(..)
         | Node::Swizzle(..)

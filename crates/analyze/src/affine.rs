@@ -180,6 +180,9 @@ pub(crate) fn linear_part(
         | Node::Unary(..)
         | Node::Binary(..)
         | Node::Ternary(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => None,
     }

@@ -1,13 +1,14 @@
 //! What one evaluation costs, counted on the graph.
 
-use sdfc_graph::{Graph, Node, NodeId, Stage, reachable};
+use sdfc_graph::{Graph, LoopId, Node, NodeId, Stage, reachable};
 
 /// Counts of what a root needs at each point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// Nodes of any kind and stage.
     pub nodes: usize,
-    /// Arithmetic operations at each point; a vector operation counts once, moving lanes about not at all.
+    /// Arithmetic operations at each point; a vector operation counts once, moving lanes about not at all, what a
+    /// loop does as often as it may run.
     pub operations: usize,
     /// Operations done once per frame.
     pub per_frame: usize,
@@ -24,10 +25,32 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
         match graph.stage(node) {
             Stage::Const => {}
             Stage::Frame => cost.per_frame += 1,
+            Stage::Point if graph.loops(node) > 0 => {} // counted with its loop
             Stage::Point => cost.operations += 1,
         }
     }
+    let outside = reachable(graph, roots).into_iter().filter(|&node| graph.loops(node) == 0);
+    cost.operations += in_loops(graph, outside);
     cost
+}
+
+/// Operations of the loops among some nodes.
+fn in_loops(graph: &Graph, nodes: impl Iterator<Item = NodeId>) -> usize {
+    let mut found: Vec<LoopId> = nodes
+        .filter_map(|node| if let Node::Loop(id, ..) = graph.node(node) { Some(id) } else { None })
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    found.into_iter().map(|id| in_loop(graph, id)).fold(0, usize::saturating_add)
+}
+
+/// Operations of all rounds of a loop.
+fn in_loop(graph: &Graph, id: LoopId) -> usize {
+    let body = graph.body(id);
+    let nodes: Vec<NodeId> = body.condition.into_iter().chain(body.round).collect();
+    let own = nodes.iter().filter(|&&node| is_arithmetic(&graph.node(node))).count();
+    let rest = in_loops(graph, nodes.into_iter());
+    own.saturating_add(rest).saturating_mul(graph.repeated(id).cap as usize)
 }
 
 fn is_arithmetic(node: &Node) -> bool {
@@ -39,6 +62,9 @@ fn is_arithmetic(node: &Node) -> bool {
         | Node::Splat(..)
         | Node::Compose(..)
         | Node::Swizzle(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => false,
     }

@@ -33,6 +33,9 @@ pub(crate) fn count_leaves(
                 | Node::Compose(..)
                 | Node::Swizzle(..)
                 | Node::Transform(..)
+                | Node::Variable(..)
+                | Node::Loop(..)
+                | Node::Element(..)
                 | Node::MaterialAt(..) => None,
             })
             .collect();

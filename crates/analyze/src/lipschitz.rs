@@ -4,9 +4,12 @@
 //! depends on a param follows the param. Rules after language reference, section "Promises".
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
-use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Unary, reachable};
+use sdfc_graph::{
+    Binary, Dim, Graph, LoopId, Node, NodeId, Place, ShapeId, Stage, Ternary, Unary, reachable,
+};
 
 use crate::affine::{self, Linear};
+use crate::polynomial::Polynomial;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,12 +56,23 @@ impl std::fmt::Display for Reason {
 /// A constant, or why there is none.
 pub type Constant = Result<NodeId, Reason>;
 
+/// Components of the point as bits, lane by lane; none beyond a node's width.
+type Seen = [u8; 4];
+
+/// All components of the point.
+const ANY: Seen = [7; 4];
+
+/// Rounds of a loop that are followed to find how far a constant grows.
+const MOST_ROUNDS: u32 = 16;
+
 /// Constants of the nodes of one formula.
 pub(crate) struct Slopes {
     /// Arguments before their uses.
     nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
     linear: FxHashMap<NodeId, Linear>,
+    /// Which components of the point each lane of each node looks at.
+    seen: FxHashMap<NodeId, Seen>,
 }
 
 impl Slopes {
@@ -72,25 +86,15 @@ impl Slopes {
     ) -> Self {
         let nodes = with_claimed_arguments(graph, roots);
         let mut slopes = Self {
+            nodes: Vec::new(),
             constants: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
             linear: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
-            nodes: Vec::new(),
+            seen: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
         };
         for &node in &nodes {
-            let lookup = |id: NodeId| slopes.linear.get(&id).copied();
-            let linear = affine::linear_part(graph, node, level, &lookup);
-            let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
-            if let Some(linear) = linear {
-                slopes.linear.insert(node, linear);
+            if graph.loops(node) == 0 {
+                slopes.visit(graph, node, level, shapes);
             }
-            let constant = match stretch {
-                Some(constant) => Ok(constant),
-                None => {
-                    let derived = slopes.by_rule(graph, node, level, shapes);
-                    slopes.with_claim(graph, node, derived)
-                }
-            };
-            slopes.constants.insert(node, constant);
         }
         Self { nodes, ..slopes }
     }
@@ -98,6 +102,77 @@ impl Slopes {
     /// The nodes of the formula, and those that claims there speak of; arguments before their uses.
     pub(crate) fn nodes(&self) -> &[NodeId] {
         &self.nodes
+    }
+
+    fn visit(
+        &mut self,
+        graph: &mut Graph,
+        node: NodeId,
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) {
+        self.seen.insert(node, self.components_seen(graph, node, level));
+        let lookup = |id: NodeId| self.linear.get(&id).copied();
+        let linear = affine::linear_part(graph, node, level, &lookup);
+        let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
+        if let Some(linear) = linear {
+            self.linear.insert(node, linear);
+        }
+        let constant = match (stretch, graph.node(node)) {
+            (Some(constant), _) => Ok(constant),
+            (None, Node::Variable(..)) => return, // known since its loop was entered
+            (None, Node::Loop(id, position, _)) => {
+                self.after_loop(graph, id, level, shapes).map(|all| all[usize::from(position)])
+            }
+            (None, _) => self.by_rule(graph, node, level, shapes),
+        };
+        let constant = self.with_claim(graph, node, constant);
+        self.constants.insert(node, constant);
+    }
+
+    /// The constants of a loop's state after any number of rounds: those that a round does not raise, or
+    /// those after the most rounds if these are few.
+    fn after_loop(
+        &mut self,
+        graph: &mut Graph,
+        id: LoopId,
+        level: u16,
+        shapes: &dyn Fn(ShapeId) -> Constant,
+    ) -> Result<Vec<NodeId>, Reason> {
+        let repeated = graph.repeated(id).clone();
+        if repeated.go_on.is_some() {
+            return Err(Reason::Jump("while"));
+        }
+        let start = repeated.start.iter().map(|&part| self.constant(part));
+        let mut known: Vec<NodeId> = start.collect::<Result<_, _>>()?;
+        let body = graph.body(id);
+        for _ in 0..repeated.cap.min(MOST_ROUNDS) {
+            for &node in &body.round {
+                if let Node::Variable(_, place, _) = graph.node(node) {
+                    let constant = match place {
+                        // The same at every point.
+                        Place::Round => graph.number(0.0),
+                        Place::State(position) => known[usize::from(position)],
+                    };
+                    self.constants.insert(node, Ok(constant));
+                } else {
+                    self.visit(graph, node, level, shapes);
+                }
+            }
+            let next = repeated.next.iter().map(|&part| self.constant(part));
+            let next: Vec<NodeId> = next.collect::<Result<_, _>>()?;
+            for node in &body.round {
+                self.constants.remove(node);
+                self.linear.remove(node);
+            }
+            let pairs = known.iter().zip(next);
+            let raised: Vec<NodeId> = pairs.map(|(&x, y)| graph.max(x, y)).collect();
+            if raised == known {
+                return Ok(known);
+            }
+            known = raised;
+        }
+        if repeated.cap <= MOST_ROUNDS { Ok(known) } else { Err(Reason::Unbounded("iterate")) }
     }
 
     /// The constant of a node that the roots reach.
@@ -153,18 +228,27 @@ impl Slopes {
         if graph.stage(node) < Stage::Point {
             return Ok(graph.number(0.0));
         }
+        if self.is_still(graph, node) {
+            return Ok(graph.number(0.0));
+        }
         match graph.node(node) {
             Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),
+            Node::Variable(..) | Node::Loop(..) => Err(Reason::Unbounded("iterate")),
+            Node::Element(..) => Err(Reason::Jump("[ ]")),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
-            Node::Binary(op, a, b) => self.binary(graph, op, a, b, level),
+            Node::Binary(Binary::Add | Binary::Sub, a, b) if self.look_apart(&[a, b]) => {
+                let constants = [self.constant(a)?, self.constant(b)?];
+                Ok(hypotenuse(graph, &constants))
+            }
+            Node::Binary(op, a, b) => self.binary(graph, op, a, b),
             Node::Ternary(op, arguments) => self.ternary(graph, op, arguments),
             Node::Splat(ty, a) => {
                 let inner = self.constant(a)?;
                 let factor = graph.number((ty.width() as f64).sqrt());
                 Ok(graph.mul(factor, inner))
             }
-            Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()], level),
+            Node::Compose(ty, parts) => self.compose(graph, &parts[..ty.width()]),
             Node::Swizzle(ty, a, lanes) => {
                 let inner = self.constant(a)?;
                 let factor = graph.number(repeats(&lanes[..ty.width()]).sqrt());
@@ -180,6 +264,16 @@ impl Slopes {
             }
             Node::MaterialAt(..) => Err(Reason::Unbounded("material_at")),
         }
+    }
+
+    /// Whether a node is computed from what does not vary with the point, such as the number of a round.
+    fn is_still(&self, graph: &Graph, node: NodeId) -> bool {
+        let still =
+            |id| self.constants.get(&id).is_some_and(|c| matches!(c, Ok(c) if is_zero(graph, *c)));
+        let mut arguments = graph.arguments(node).peekable();
+        !matches!(graph.node(node), Node::Sample(..) | Node::MaterialAt(..))
+            && arguments.peek().is_some()
+            && arguments.all(still)
     }
 
     fn unary(&self, op: Unary, a: NodeId) -> Constant {
@@ -215,7 +309,7 @@ impl Slopes {
         }
     }
 
-    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId, level: u16) -> Constant {
+    fn binary(&self, graph: &mut Graph, op: Binary, a: NodeId, b: NodeId) -> Constant {
         let fixed = |node| graph.stage(node) < Stage::Point;
         let (a_fixed, b_fixed) = (fixed(a), fixed(b));
         match op {
@@ -249,7 +343,7 @@ impl Slopes {
                 }
                 Ok(hypotenuse(graph, &[x, y]))
             }
-            Binary::Mul => self.product(graph, a, b, level),
+            Binary::Mul => self.product(graph, a, b),
             Binary::Div => Err(Reason::Unbounded("/")),
             Binary::Dot => Err(Reason::Unbounded("dot")),
             Binary::Cross => Err(Reason::Unbounded("cross")),
@@ -257,6 +351,7 @@ impl Slopes {
             Binary::Atan2 => Err(Reason::Unbounded("atan2")),
             Binary::Rem => Err(Reason::Jump("%")),
             Binary::Step => Err(Reason::Jump("step")),
+            Binary::Hash => Err(Reason::Jump("hash")),
             Binary::Lt | Binary::Le => Err(Reason::Jump("<")),
             Binary::Eq | Binary::Ne => Err(Reason::Jump("==")),
             Binary::And | Binary::Or => Err(Reason::Jump("&&")),
@@ -265,7 +360,7 @@ impl Slopes {
 
     /// |xy - uv| <= max|x| |y - v| + max|y| |x - u|, of factors that stay within limits, such as sines; the
     /// hypotenuse of the two where the factors look at different components of the point.
-    fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId, level: u16) -> Constant {
+    fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> Constant {
         let limit = |id| graph.range(id).lo.abs().max(graph.range(id).hi.abs());
         let (of_a, of_b) = (limit(a), limit(b));
         if !(of_a.is_finite() && of_b.is_finite()) {
@@ -274,8 +369,7 @@ impl Slopes {
         let (x, y) = (self.constant(a)?, self.constant(b)?);
         let (of_a, of_b) = (graph.number(of_a), graph.number(of_b));
         let parts = [graph.mul(x, of_b), graph.mul(y, of_a)];
-        let apart = components_seen(graph, a, level) & components_seen(graph, b, level) == 0;
-        if apart && graph.ty(a).width() == 1 {
+        if self.look_apart(&[a, b]) && graph.ty(a).width() == 1 {
             return Ok(hypotenuse(graph, &parts));
         }
         Ok(graph.add(parts[0], parts[1]))
@@ -314,16 +408,62 @@ impl Slopes {
 
     /// The lanes' constants joined: the largest where the lanes look at different components of the point
     /// (the squares of the changes then add up to no more than the point's), else their hypotenuse.
-    fn compose(&self, graph: &mut Graph, parts: &[NodeId], level: u16) -> Constant {
+    fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
         let constants: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
-        let seen: Vec<u8> = parts.iter().map(|&part| components_seen(graph, part, level)).collect();
-        let apart = seen.iter().map(|mask| mask.count_ones()).sum::<u32>()
-            == seen.iter().fold(0, |all, mask| all | mask).count_ones();
-        if apart {
+        if self.look_apart(parts) {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
         Ok(hypotenuse(graph, &constants))
+    }
+
+    /// Whether no component of the point is looked at by two of the nodes: the squares of their changes then add up
+    /// as those of the components do.
+    fn look_apart(&self, nodes: &[NodeId]) -> bool {
+        let seen = |node: &NodeId| {
+            self.seen.get(node).unwrap_or(&ANY).iter().fold(0, |all, lane| all | lane)
+        };
+        let counted: u32 = nodes.iter().map(|node| seen(node).count_ones()).sum();
+        counted == nodes.iter().fold(0, |all, node| all | seen(node)).count_ones()
+    }
+
+    /// Lane by lane. What is no number of the point's own formula is taken to look at all of it.
+    fn components_seen(&self, graph: &Graph, node: NodeId, level: u16) -> Seen {
+        let of = |id: NodeId| match graph.stage(id) {
+            Stage::Const | Stage::Frame => [0; 4],
+            Stage::Point => self.seen.get(&id).copied().unwrap_or(ANY),
+        };
+        let joined = |ids: &[NodeId]| {
+            ids.iter().fold([0; 4], |all, &id| std::array::from_fn(|i| all[i] | of(id)[i]))
+        };
+        let mixed = |ids: &[NodeId]| [joined(ids).iter().fold(0, |x, y| x | y); 4];
+        match graph.node(node) {
+            Node::Const(_) | Node::Frame(..) => [0; 4],
+            Node::Point(at, Dim::Three) if at == level => [1, 2, 4, 0],
+            Node::Point(at, Dim::Two) if at == level => [1, 2, 0, 0],
+            Node::Unary(Unary::Length | Unary::Normalize, a) => mixed(&[a]),
+            Node::Unary(_, a) => of(a),
+            Node::Binary(Binary::Dot | Binary::Cross, a, b) => mixed(&[a, b]),
+            Node::Binary(_, a, b) => joined(&[a, b]),
+            Node::Ternary(Ternary::Select, [condition, a, b]) => {
+                joined(&[a, b]).map(|seen| seen | of(condition)[0])
+            }
+            Node::Ternary(_, arguments) => joined(&arguments),
+            Node::Splat(_, a) => [of(a)[0]; 4],
+            Node::Compose(ty, parts) => {
+                std::array::from_fn(|i| if i < ty.width() { of(parts[i])[0] } else { 0 })
+            }
+            Node::Swizzle(ty, a, lanes) => {
+                std::array::from_fn(
+                    |i| {
+                        if i < ty.width() { of(a)[usize::from(lanes[i])] } else { 0 }
+                    },
+                )
+            }
+            Node::Transform([a, b, c], v) => mixed(&[a, b, c, v]),
+            Node::Sample(_, q) | Node::MaterialAt(_, q, _) => mixed(&[q]),
+            Node::Point(..) | Node::Variable(..) | Node::Loop(..) | Node::Element(..) => ANY,
+        }
     }
 
     fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {
@@ -366,6 +506,18 @@ fn is_zero(graph: &Graph, node: NodeId) -> bool {
     graph.as_number(node) == Some(0.0)
 }
 
+/// The length of a vector that is the same for all values of params, as of a sine and cosine.
+fn fixed_length(graph: &Graph, parts: &[NodeId]) -> Option<f64> {
+    let mut sum = Polynomial::zero();
+    for &part in parts {
+        // Squares have no sign.
+        let signed = if let Node::Unary(Unary::Abs, x) = graph.node(part) { x } else { part };
+        let term = Polynomial::of(graph, signed)?;
+        sum = sum.plus(&term.times(&term)?);
+    }
+    sum.constant().map(f64::sqrt)
+}
+
 /// The largest of the lanes' magnitudes.
 fn largest_lane(graph: &mut Graph, node: NodeId) -> NodeId {
     let width = graph.ty(node).width() as u8;
@@ -384,6 +536,9 @@ fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
         [] => graph.number(0.0),
         [one] => one,
         _ => {
+            if let Some(length) = fixed_length(graph, &varying) {
+                return graph.number(length);
+            }
             let mut sum = graph.number(0.0);
             for x in varying {
                 let square = graph.mul(x, x);
@@ -392,36 +547,4 @@ fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
             graph.unary(Unary::Sqrt, sum)
         }
     }
-}
-
-/// Which components of the point a node looks at, as a bit mask.
-fn components_seen(graph: &Graph, node: NodeId, level: u16) -> u8 {
-    let mut seen = 0;
-    let mut visited = rustc_hash::FxHashSet::default();
-    let mut pending = vec![node];
-    while let Some(id) = pending.pop() {
-        if graph.stage(id) < Stage::Point || !visited.insert(id) {
-            continue;
-        }
-        match graph.node(id) {
-            Node::Swizzle(ty, a, lanes) if matches!(graph.node(a), Node::Point(at, _) if at == level) => {
-                for lane in &lanes[..ty.width()] {
-                    seen |= 1 << lane;
-                }
-            }
-            Node::Point(..) => seen |= 7,
-            Node::Const(_)
-            | Node::Frame(..)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Ternary(..)
-            | Node::Splat(..)
-            | Node::Compose(..)
-            | Node::Swizzle(..)
-            | Node::Transform(..)
-            | Node::Sample(..)
-            | Node::MaterialAt(..) => pending.extend(graph.node(id).arguments()),
-        }
-    }
-    seen
 }

@@ -81,6 +81,9 @@ impl Polynomial {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => Some(Self::atom(Atom::Other(node))),
         }

@@ -285,6 +285,9 @@ impl Qualities {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => Sides::NONE,
         }

@@ -48,6 +48,9 @@ fn level_set(graph: &Graph, shape: ShapeId) -> Option<LevelSet> {
         | Node::Compose(..)
         | Node::Swizzle(..)
         | Node::Transform(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => return None,
     };

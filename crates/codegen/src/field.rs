@@ -85,9 +85,11 @@ fn functions(
     module.entry_points.clear();
     let binding = ResourceBinding { group: options.group, binding: options.binding };
     let used = raw_inputs(program, &nodes);
-    let (inputs, members) = declare_members(&mut module, program, &used, binding);
+    let (mut inputs, members) = declare_members(&mut module, program, &used, binding);
+    inputs.tables.declare(&mut module, program, &nodes)?;
 
-    let mut parts = Parts { members, uniform: inputs.buffer, ..Default::default() };
+    let (uniform, prefix) = (inputs.buffer, options.prefix.clone());
+    let mut parts = Parts { members, uniform, prefix, ..Default::default() };
     for (role, stub, root) in roots {
         let function = value_function(program, &inputs, &mut module.types, stub, root)?;
         parts.functions.push((role, fill_or_add(&mut module, stub, function)?));

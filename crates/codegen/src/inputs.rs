@@ -1,4 +1,4 @@
-//! What functions read besides the point: uniforms, raw or computed per frame.
+//! What functions read besides the point: uniforms, raw or computed per frame, and lists.
 
 use std::num::NonZeroU32;
 
@@ -12,6 +12,7 @@ use sdfc_graph::{FrameInput, Node, NodeId, Program, Type, reachable};
 
 use crate::lower::Body;
 use crate::reflect::Member;
+use crate::tables::Tables;
 use crate::types;
 
 /// Where a function finds what is known per frame.
@@ -23,6 +24,8 @@ pub(crate) struct Inputs {
     raw: FxHashMap<FrameInput, Raw>,
     /// The private variable of each node whose value waits in one.
     slots: FxHashMap<NodeId, Handle<GlobalVariable>>,
+    /// Lists of constants.
+    pub(crate) tables: Tables,
 }
 
 /// Where a raw input is.

@@ -50,6 +50,7 @@ mod picture;
 mod reflect;
 mod shader;
 mod shadertoy;
+mod tables;
 mod target;
 mod types;
 

@@ -56,7 +56,8 @@ pub fn measured_module(
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let source = source_over(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;
-    let (inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    inputs.tables.declare(&mut module, program, distance.as_slice())?;
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
     }
@@ -141,6 +142,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
     let (inputs, members) =
         declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
     picture.parts.members = members;
+    picture.parts.prefix.clone_from(&options.prefix);
     picture.compute_slots(inputs)?;
     picture.fill()?;
     make_public(&mut picture.module, &picture.parts, &options.prefix);
@@ -200,7 +202,9 @@ impl<'p> Picture<'p> {
     }
 
     /// Lets `load_frame` compute what follows from raw inputs, into private variables.
-    pub(crate) fn compute_slots(&mut self, raw: Inputs) -> Result<(), Error> {
+    pub(crate) fn compute_slots(&mut self, mut raw: Inputs) -> Result<(), Error> {
+        let nodes = self.slot_nodes();
+        raw.tables.declare(&mut self.module, self.program, &nodes)?;
         let (program, module) = (self.program, &mut self.module);
         let kept = self.used.iter().map(|&slot| program.uniforms[slot]);
         let kept = kept.filter(|&node| !raw.is_constant(program.graph.node(node)));
@@ -217,6 +221,9 @@ impl<'p> Picture<'p> {
     /// Fills the stubs with the scene's functions.
     pub(crate) fn fill(&mut self) -> Result<(), Error> {
         self.parts.uniform = self.inputs.buffer;
+        let mut roots: Vec<_> = self.filled.iter().map(|&(.., root)| root).collect();
+        roots.extend(self.program.material.into_iter().flatten());
+        self.inputs.tables.declare(&mut self.module, self.program, &roots)?;
         let (module, inputs) = (&mut self.module, &self.inputs);
         for &(role, stub, root) in &self.filled {
             let function = value_function(self.program, inputs, &mut module.types, stub, root)?;

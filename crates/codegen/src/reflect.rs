@@ -166,6 +166,8 @@ pub(crate) struct Parts {
     pub(crate) functions: Vec<(Role, Handle<naga::Function>)>,
     pub(crate) members: Vec<Member>,
     pub(crate) uniform: Option<Handle<GlobalVariable>>,
+    /// Start of the names that are no one else's.
+    pub(crate) prefix: String,
 }
 
 /// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.

@@ -74,7 +74,11 @@ impl Shader {
     /// [`Error::Unsupported`] where the language cannot hold it, [`Error::BindingTooLarge`],
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn write(&self, target: Target, comment: &str) -> Result<Written, Error> {
-        let written = target::write(target, &self.module, &self.info, comment)?;
+        let mut written = target::write(target, &self.module, &self.info, comment)?;
+        if let Code::Text(text) = &mut written.code {
+            // What naga's writers add, such as conversions: two texts in one file would both declare it.
+            *text = text.replace("naga_", &format!("{}naga_", self.parts.prefix));
+        }
         let reflection = reflect_written(&self.module, &self.parts, &written);
         Ok(Written { code: written.code, reflection })
     }

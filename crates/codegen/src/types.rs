@@ -18,6 +18,15 @@ pub(crate) fn value(types: &mut UniqueArena<naga::Type>, ty: Type) -> Handle<nag
     add(types, inner)
 }
 
+/// A word for each number of a type.
+pub(crate) fn words(types: &mut UniqueArena<naga::Type>, ty: Type) -> Handle<naga::Type> {
+    let inner = match vector_size(ty) {
+        Some(size) => TypeInner::Vector { size, scalar: Scalar::U32 },
+        None => TypeInner::Scalar(Scalar::U32),
+    };
+    add(types, inner)
+}
+
 /// A 3x3 matrix.
 pub(crate) fn matrix(types: &mut UniqueArena<naga::Type>) -> Handle<naga::Type> {
     let (columns, rows) = (VectorSize::Tri, VectorSize::Tri);

@@ -40,7 +40,7 @@ const COMPONENTWISE: [Unary; 24] = [
     Unary::Saturate,
 ];
 
-const ARITHMETIC: [Binary; 10] = [
+const ARITHMETIC: [Binary; 11] = [
     Binary::Add,
     Binary::Sub,
     Binary::Mul,
@@ -51,6 +51,7 @@ const ARITHMETIC: [Binary; 10] = [
     Binary::Pow,
     Binary::Atan2,
     Binary::Step,
+    Binary::Hash,
 ];
 
 /// A value of a type that depends on the point; each seed gives another.

@@ -12,15 +12,16 @@
 //! | `length`, `normalize`, `sqrt` at 0 | 0 |
 //! | `abs` at 0 | +1 |
 //! | `min`, `max`, `clamp`, `saturate`, `select` | that of the argument selected; on a tie the first |
-//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, comparisons | 0 |
+//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, `hash`, comparisons, the number of a loop's rounds | 0 |
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
+mod repeat;
 mod rules;
 
 pub(crate) use rules::TINY;
 
 use crate::ids::{IdMap, IdSet};
-use crate::walk::reachable_where;
+use crate::walk::computed_where;
 use crate::{Binary, Graph, NodeId, Type};
 
 /// Derivatives of a scalar root with respect to nodes: for each of `wrt` a node of its type.
@@ -44,7 +45,7 @@ use crate::{Binary, Graph, NodeId, Type};
 /// ```
 pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> {
     let inputs: IdSet = wrt.iter().copied().collect();
-    let order = reachable_where(graph, &[root], |id| !inputs.contains(id));
+    let order = computed_where(graph, &[root], |id| !inputs.contains(id));
     let live = live_nodes(graph, &order, &inputs);
     let mut sweep = Sweep { graph, live, adjoints: IdMap::default() };
     let one = sweep.graph.number(1.0);
@@ -59,7 +60,8 @@ pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> 
 
 /// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
 pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
-    match adjoints(graph, root, &[point])[..] {
+    let found = adjoints(graph, root, &[point]);
+    match repeat::merged(graph, &found)[..] {
         [gradient] => gradient,
         _ => zero(graph, graph.ty(point)),
     }
@@ -71,7 +73,7 @@ fn live_nodes(graph: &Graph, order: &[NodeId], inputs: &IdSet) -> IdSet {
     for &id in order {
         let moves = inputs.contains(id)
             || (rules::passes_derivatives(graph, id)
-                && graph.node(id).arguments().any(|argument| live.contains(argument)));
+                && graph.inputs(id).into_iter().any(|input| live.contains(input)));
         if moves {
             live.insert(id);
         }

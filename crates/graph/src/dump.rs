@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use crate::ids::IdSet;
 use crate::walk::reachable;
-use crate::{Const, Graph, Node, NodeId, Stage, Type};
+use crate::{Const, Graph, Node, NodeId, Place, Stage, Type};
 
 /// The nodes that the roots are computed from, one a line, numbered from 0 in an order that depends on the
 /// roots alone: `%3 = add %1 %2 : vec3`. Constants stand where they are used. The last lines name the roots.
@@ -59,7 +59,7 @@ fn first_use_order(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
             order.push(id);
         } else if done.insert(id) {
             stack.push((id, true));
-            let arguments: Vec<NodeId> = graph.node(id).arguments().collect();
+            let arguments: Vec<NodeId> = graph.arguments(id).collect();
             stack.extend(arguments.into_iter().rev().map(|argument| (argument, false)));
         }
     }
@@ -78,6 +78,9 @@ fn reference(graph: &Graph, numbers: &FxHashMap<NodeId, usize>, id: NodeId) -> S
         | Node::Compose(..)
         | Node::Swizzle(..)
         | Node::Transform(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => match numbers.get(&id) {
             Some(number) => format!("%{number}"),
@@ -118,6 +121,12 @@ fn operation(graph: &Graph, id: NodeId, reference: impl Fn(NodeId) -> String) ->
             return format!("{}.{letters}", reference(a));
         }
         Node::Transform(..) => "transform".to_owned(),
+        Node::Variable(depth, Place::Round, _) => format!("round {depth}"),
+        Node::Variable(depth, Place::State(position), _) => format!("state {depth}.{position}"),
+        Node::Loop(repeated, position, _) => {
+            format!("loop {}.{position}", graph.repeated(repeated).cap)
+        }
+        Node::Element(table, ..) => format!("element {}", table.index()),
         Node::Sample(shape, _) => {
             format!("sample {}#{}", graph.shape(shape).definition, shape.index())
         }
@@ -126,7 +135,7 @@ fn operation(graph: &Graph, id: NodeId, reference: impl Fn(NodeId) -> String) ->
                 .to_lowercase()
         }
     };
-    node.arguments().fold(head, |text, argument| text + " " + &reference(argument))
+    graph.arguments(id).fold(head, |text, argument| text + " " + &reference(argument))
 }
 
 fn type_name(ty: Type) -> &'static str {
@@ -152,11 +161,14 @@ fn is_operation(node: &Node) -> bool {
         | Node::Binary(..)
         | Node::Ternary(..)
         | Node::Transform(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => true,
         Node::Const(_)
         | Node::Point(..)
         | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
         | Node::Splat(..)
         | Node::Compose(..)
         | Node::Swizzle(..) => false,

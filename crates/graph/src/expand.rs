@@ -95,6 +95,8 @@ pub struct Expander {
     done: FxHashMap<(NodeId, Env), NodeId>,
     materials: FxHashMap<ShapeId, [NodeId; 6]>,
     names: Names,
+    /// The arguments of the node at hand and what they became.
+    arguments: Vec<(NodeId, NodeId)>,
     limit: usize,
 }
 
@@ -105,6 +107,7 @@ impl Default for Expander {
             done: FxHashMap::default(),
             materials: FxHashMap::default(),
             names: Names::default(),
+            arguments: Vec::new(),
             limit: NODE_LIMIT,
         }
     }
@@ -260,7 +263,10 @@ impl Expander {
             | Node::Splat(..)
             | Node::Compose(..)
             | Node::Swizzle(..)
-            | Node::Transform(..) => asked,
+            | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..) => asked,
         }
     }
 
@@ -299,11 +305,11 @@ impl Expander {
             return point.map(Step::Done).ok_or(ExpandError::MissingPoint { level });
         }
         let before = stack.len();
-        let mut expanded = [None; 4];
-        for (place, argument) in expanded.iter_mut().zip(graph.node(node).arguments()) {
-            *place = self.lookup(graph, (argument, env)).map(|new| (argument, new));
-            if place.is_none() {
-                stack.push((argument, env));
+        self.arguments.clear();
+        for argument in graph.arguments(node) {
+            match self.lookup(graph, (argument, env)) {
+                Some(new) => self.arguments.push((argument, new)),
+                None => stack.push((argument, env)),
             }
         }
         if stack.len() > before {
@@ -322,8 +328,11 @@ impl Expander {
             | Node::Splat(..)
             | Node::Compose(..)
             | Node::Swizzle(..)
-            | Node::Transform(..) => {
-                let find = |old| expanded.iter().flatten().find(|pair| pair.0 == old);
+            | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..) => {
+                let find = |old| self.arguments.iter().find(|pair| pair.0 == old);
                 Ok(Step::Done(graph.rebuild(node, |old| find(old).map_or(old, |pair| pair.1))))
             }
         }

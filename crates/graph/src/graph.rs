@@ -6,7 +6,10 @@ use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
 
 use crate::range::{Range, range_of};
-use crate::{Arg, Binary, Const, Node, NodeId, Shape, ShapeId, Stage, Ternary, Type, Unary};
+use crate::repeat::{Loop, Table};
+use crate::{
+    Arg, Binary, Const, LoopId, Node, NodeId, Shape, ShapeId, Stage, TableId, Ternary, Type, Unary,
+};
 
 /// What is known of a node beside its operation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +19,8 @@ struct Facts {
     range: Range,
     /// One more than the highest level of a point that it depends on; 0 for none.
     levels: u16,
+    /// The loops whose variables it depends on, one bit by depth.
+    loops: u8,
 }
 
 /// What the author of a function states of its result: it changes by at most `lipschitz` where each of
@@ -38,6 +43,28 @@ pub struct Graph {
     shapes: Vec<Shape>,
     shape_ids: FxHashMap<u64, Vec<ShapeId>>,
     claims: FxHashMap<NodeId, Claim>,
+    loops: Vec<Loop>,
+    loop_ids: FxHashMap<Loop, LoopId>,
+    tables: Vec<Table>,
+    table_ids: FxHashMap<Table, TableId>,
+}
+
+/// The arguments of a node.
+#[derive(Clone, Debug)]
+pub struct Arguments<'g> {
+    own: std::iter::Take<std::array::IntoIter<NodeId, 4>>,
+    /// Of a loop, what is left of its arguments.
+    repeated: Option<(&'g Loop, usize)>,
+}
+
+impl Iterator for Arguments<'_> {
+    type Item = NodeId;
+
+    fn next(&mut self) -> Option<NodeId> {
+        let Some((repeated, position)) = &mut self.repeated else { return self.own.next() };
+        *position += 1;
+        repeated.argument(*position - 1)
+    }
 }
 
 impl Graph {
@@ -64,6 +91,32 @@ impl Graph {
     /// The node.
     pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id.index()]
+    }
+
+    /// The node's arguments in order. Those of a loop are all that it mentions, its body's roots among them.
+    pub fn arguments(&self, id: NodeId) -> Arguments<'_> {
+        self.arguments_of(&self.node(id))
+    }
+
+    fn arguments_of(&self, node: &Node) -> Arguments<'_> {
+        let repeated =
+            if let Node::Loop(id, ..) = *node { Some((self.repeated(id), 0)) } else { None };
+        Arguments { own: node.own_arguments(), repeated }
+    }
+
+    /// The loop.
+    pub fn repeated(&self, id: LoopId) -> &Loop {
+        &self.loops[id.0 as usize]
+    }
+
+    /// The list.
+    pub fn table(&self, id: TableId) -> &Table {
+        &self.tables[id.index()]
+    }
+
+    /// The loops whose bodies the node lies in, one bit by depth: those whose variables it depends on.
+    pub fn loops(&self, id: NodeId) -> u8 {
+        self.facts[id.index()].loops
     }
 
     /// The node's type.
@@ -143,17 +196,21 @@ impl Graph {
     }
 
     fn facts_of(&self, node: &Node) -> Facts {
-        let (mut stage, mut levels) = (Stage::Const, 0);
-        for argument in node.arguments() {
+        let (mut stage, mut levels, mut loops) = (Stage::Const, 0, 0);
+        for argument in self.arguments_of(node) {
             stage = stage.max(self.stage(argument));
             levels = levels.max(self.levels(argument));
+            loops |= self.loops(argument);
         }
         match *node {
+            Node::Variable(depth, ..) => (stage, loops) = (Stage::Point, 1 << depth),
+            Node::Loop(id, ..) => (stage, loops) = (Stage::Point, loops & !self.repeated(id).bit()),
             Node::Point(level, _) => (stage, levels) = (Stage::Point, level + 1),
             Node::Frame(..) => stage = Stage::Frame,
             Node::Sample(shape, _) | Node::MaterialAt(shape, ..) => {
                 // The shape's own arguments may depend on outer points.
                 levels = levels.max(self.shape(shape).level);
+                loops |= self.loops(self.shape(shape).formula);
                 stage = Stage::Point;
             }
             Node::Const(_)
@@ -163,11 +220,32 @@ impl Graph {
             | Node::Splat(..)
             | Node::Compose(..)
             | Node::Swizzle(..)
+            | Node::Element(..)
             | Node::Transform(..) => {}
         }
         let ty = result_type(node, |id| self.ty(id));
         let range = range_of(node, |id| self.range(id), ty.width());
-        Facts { ty, stage, range, levels }
+        Facts { ty, stage, range, levels, loops }
+    }
+
+    /// The loop equal to this one.
+    pub(crate) fn add_loop(&mut self, repeated: Loop) -> LoopId {
+        let next = LoopId(self.loops.len() as u32);
+        let id = *self.loop_ids.entry(repeated.clone()).or_insert(next);
+        if id == next {
+            self.loops.push(repeated);
+        }
+        id
+    }
+
+    /// The list equal to this one.
+    pub(crate) fn add_table(&mut self, table: Table) -> TableId {
+        let next = TableId(self.tables.len() as u32);
+        let id = *self.table_ids.entry(table.clone()).or_insert(next);
+        if id == next {
+            self.tables.push(table);
+        }
+        id
     }
 
     /// The instance equal to this one in definition, dimension, level and arguments, or this one as
@@ -267,6 +345,9 @@ impl Graph {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => None,
         }
@@ -292,6 +373,9 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
         Node::Frame(_, own)
         | Node::Splat(own, _)
         | Node::Compose(own, _)
+        | Node::Variable(.., own)
+        | Node::Loop(.., own)
+        | Node::Element(.., own)
         | Node::Swizzle(own, ..) => own,
         Node::Unary(Unary::Length, _) => Type::Scalar,
         Node::Unary(_, a) => ty(a),
@@ -310,6 +394,7 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
             | Binary::Pow
             | Binary::Atan2
             | Binary::Step
+            | Binary::Hash
             | Binary::Cross => ty(a),
         },
         Node::Ternary(Ternary::Select, [_, yes, _]) => ty(yes),

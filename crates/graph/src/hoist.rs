@@ -14,7 +14,7 @@ pub fn uniforms(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut slots = IdSet::default();
     for id in reachable_where(graph, roots, per_point) {
         if per_point(id) {
-            for slot in graph.node(id).arguments().filter_map(|used| slot(graph, used)) {
+            for slot in graph.arguments(id).filter_map(|used| slot(graph, used)) {
                 slots.insert(slot);
             }
         }

@@ -54,6 +54,7 @@ mod ids;
 mod node;
 mod program;
 mod range;
+mod repeat;
 mod scene;
 mod shape;
 mod simplify;
@@ -64,14 +65,15 @@ pub use bounds::{Bounds, bounds};
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
-pub use graph::{Claim, Graph};
+pub use graph::{Arguments, Claim, Graph};
 pub use hoist::uniforms;
 pub use node::{
-    Binary, Const, Dim, FrameInput, MaterialField, Node, NodeId, ShapeId, Stage, Ternary, Type,
-    Unary,
+    Binary, Const, Dim, FrameInput, LoopId, MaterialField, Node, NodeId, Place, ShapeId, Stage,
+    TableId, Ternary, Type, Unary,
 };
 pub use program::Program;
 pub use range::Range;
+pub use repeat::{Loop, LoopBody, MAX_LOOP_DEPTH, Table};
 pub use scene::{
     Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
     Settings, Shadow, Sky,

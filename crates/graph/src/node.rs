@@ -184,6 +184,8 @@ pub enum Binary {
     Atan2,
     /// `step(edge, x)`: 0 where `x < edge`, else 1.
     Step,
+    /// `hash(state, x)`: a whole number of 24 bits from another and the whole part of x. Jumps.
+    Hash,
     /// Scalar product of two vectors.
     Dot,
     /// Of two 3-vectors.
@@ -274,6 +276,30 @@ impl ShapeId {
     }
 }
 
+/// A loop of the arena.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LoopId(pub(crate) u32);
+
+/// A list of constants of the arena.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TableId(pub(crate) u32);
+
+impl TableId {
+    /// Position in the arena.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What a variable of a loop's body stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Place {
+    /// The number of the round, from 0.
+    Round,
+    /// A part of the state as the round finds it, by position.
+    State(u16),
+}
+
 /// One node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Node {
@@ -297,6 +323,12 @@ pub enum Node {
     Swizzle(Type, NodeId, [u8; 4]),
     /// `c0 * v.x + c1 * v.y + c2 * v.z` for 3-vectors: columns, then `v`.
     Transform([NodeId; 3], NodeId),
+    /// A variable in the body of a loop that so many others are around.
+    Variable(u8, Place, Type),
+    /// A part of a loop's state after its last round, by position.
+    Loop(LoopId, u16, Type),
+    /// The element of a list at a position, rounded down; before the first the first, past the last the last.
+    Element(TableId, NodeId, Type),
     /// Distance of a shape at a point; gone after expansion.
     Sample(ShapeId, NodeId),
     /// Material of a shape at a point; gone after expansion.
@@ -304,14 +336,19 @@ pub enum Node {
 }
 
 impl Node {
-    /// Its arguments in order.
-    pub fn arguments(&self) -> impl Iterator<Item = NodeId> + use<> {
+    /// Its arguments in order; those of a loop are the loop's ([`crate::Graph::arguments`]).
+    pub(crate) fn own_arguments(&self) -> std::iter::Take<std::array::IntoIter<NodeId, 4>> {
         let unused = NodeId(0);
         let (list, count) = match *self {
-            Self::Const(_) | Self::Point(..) | Self::Frame(..) => ([unused; 4], 0),
+            Self::Const(_)
+            | Self::Point(..)
+            | Self::Frame(..)
+            | Self::Variable(..)
+            | Self::Loop(..) => ([unused; 4], 0),
             Self::Unary(_, a)
             | Self::Splat(_, a)
             | Self::Swizzle(_, a, _)
+            | Self::Element(_, a, _)
             | Self::Sample(_, a)
             | Self::MaterialAt(_, a, _) => ([a; 4], 1),
             Self::Binary(_, a, b) => ([a, b, unused, unused], 2),

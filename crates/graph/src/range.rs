@@ -1,7 +1,8 @@
 //! Conservative ranges of values, in real arithmetic: enough to decide comparisons and selections whose
 //! outcome no point can change.
 
-use crate::{Binary, Const, Node, NodeId, Ternary, Unary};
+use crate::eval::HASHES;
+use crate::{Binary, Const, Node, NodeId, Place, Ternary, Unary};
 
 /// Every component lies in `lo..=hi`; infinite ends are open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +93,14 @@ fn hull(ranges: impl IntoIterator<Item = Range>) -> Range {
 pub(crate) fn range_of(node: &Node, of: impl Fn(NodeId) -> Range, width: usize) -> Range {
     match *node {
         Node::Const(value) => Range::of_const(&value),
-        Node::Point(..) | Node::Frame(..) | Node::Sample(..) | Node::MaterialAt(..) => Range::ALL,
+        Node::Variable(_, Place::Round, _) => Range::POSITIVE,
+        Node::Point(..)
+        | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => Range::ALL,
         Node::Unary(op, a) => unary(op, of(a)),
         Node::Binary(op, a, b) => {
             if a == b && matches!(op, Binary::Mul | Binary::Dot) {
@@ -149,6 +157,7 @@ fn binary(op: Binary, a: Range, b: Range) -> Range {
         Binary::Pow if a.lo >= 0.0 => Range::POSITIVE,
         Binary::Atan2 => Range::new(-std::f64::consts::PI, std::f64::consts::PI),
         Binary::Rem | Binary::Pow | Binary::Dot | Binary::Cross => Range::ALL,
+        Binary::Hash => Range::new(0.0, HASHES - 1.0),
         Binary::Step
         | Binary::Lt
         | Binary::Le

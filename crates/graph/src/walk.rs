@@ -19,7 +19,23 @@ pub fn reachable_where(
     let mut pending = roots.to_vec();
     while let Some(id) = pending.pop() {
         if seen.insert(id) && enter(id) {
-            pending.extend(graph.node(id).arguments());
+            pending.extend(graph.arguments(id));
+        }
+    }
+    seen.to_vec()
+}
+
+/// As [`reachable_where`], without what loops compute inside: a loop's arguments are what it reads from outside.
+pub(crate) fn computed_where(
+    graph: &Graph,
+    roots: &[NodeId],
+    enter: impl Fn(NodeId) -> bool,
+) -> Vec<NodeId> {
+    let mut seen = IdSet::default();
+    let mut pending = roots.to_vec();
+    while let Some(id) = pending.pop() {
+        if seen.insert(id) && enter(id) {
+            pending.extend(graph.inputs(id));
         }
     }
     seen.to_vec()
@@ -38,7 +54,12 @@ impl Graph {
     /// simplify to another operation.
     pub fn rebuild(&mut self, id: NodeId, mut map: impl FnMut(NodeId) -> NodeId) -> NodeId {
         match self.node(id) {
-            Node::Const(_) | Node::Point(..) | Node::Frame(..) => id,
+            Node::Const(_) | Node::Point(..) | Node::Frame(..) | Node::Variable(..) => id,
+            Node::Loop(repeated, position, _) => self.rebuild_loop(repeated, position, map),
+            Node::Element(table, at, _) => {
+                let at = map(at);
+                self.element(self.table(table).clone(), at)
+            }
             Node::Unary(op, a) => self.unary(op, map(a)),
             Node::Binary(op, a, b) => {
                 let (a, b) = (map(a), map(b));

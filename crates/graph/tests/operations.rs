@@ -60,7 +60,7 @@ const ONE: [OneRow; 38] = [
     ("not", Number::not, Number::not, 1.0, 0.0),
 ];
 
-const TWO: [TwoRow; 36] = [
+const TWO: [TwoRow; 43] = [
     ("add", Number::add, Number::add, [1.5, 2.0], 3.5),
     ("sub", Number::sub, Number::sub, [1.5, 2.0], -0.5),
     ("mul", Number::mul, Number::mul, [1.5, -2.0], -3.0),
@@ -83,6 +83,14 @@ const TWO: [TwoRow; 36] = [
     ("atan2", Number::atan2, Number::atan2, [-0.0, -0.0], 0.0),
     ("step", Number::step, Number::step, [1.0, 0.5], 0.0),
     ("step", Number::step, Number::step, [1.0, 1.0], 1.0),
+    // By a separate program.
+    ("hash", Number::hash, Number::hash, [0.0, 0.0], 506_671.0),
+    ("hash", Number::hash, Number::hash, [0.0, 0.9], 506_671.0),
+    ("hash", Number::hash, Number::hash, [0.0, -0.5], 15_084_105.0),
+    ("hash", Number::hash, Number::hash, [16777215.0, 7.0], 13_429_413.0),
+    ("hash", Number::hash, Number::hash, [3.0, -1e30], 14_048_042.0),
+    ("hash", Number::hash, Number::hash, [3.0, 1e30], 7_598.0),
+    ("hash", Number::hash, Number::hash, [3.0, 2_147_483_520.0], 7_598.0),
     ("direction", Number::direction, Number::direction, [3.0, 4.0], 0.75),
     ("direction", Number::direction, Number::direction, [0.0, 0.0], 0.0),
     ("lt", Number::lt, Number::lt, [1.0, 1.0], 0.0),

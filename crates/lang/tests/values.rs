@@ -199,6 +199,9 @@ fn hashes_are_spread_over_0_to_1_and_depend_on_every_argument() {
     assert_eq!(value("hash(1.9)"), value("hash(1)"), "the whole part counts");
     assert_ne!(value("hash(1, 2)"), value("hash(2, 1)"));
     assert_ne!(value("hash3(1).x"), value("hash3(1).y"));
+    assert_ne!(value("hash3(1).x"), value("hash3(2).y"));
+    assert_eq!(value("hash(p.x + 3.5, [p.y, p.z] - 0.5)"), value("hash(3, -1, -1)"));
+    assert_eq!(value("hash3(p.x + 3).z"), value("hash3(3).z"));
 }
 
 #[test]

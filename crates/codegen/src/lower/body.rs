@@ -1,6 +1,9 @@
 //! A function body under construction: expressions in order, what emits them, and their names.
 
-use naga::{BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Span, Statement};
+use naga::{
+    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, MathFunction,
+    ScalarKind, Span, Statement,
+};
 use rustc_hash::FxHashMap;
 
 type Value = Handle<Expression>;
@@ -13,6 +16,8 @@ const MAX_NESTING: u8 = 6;
 #[derive(Default)]
 pub(crate) struct Body {
     function: Function,
+    /// The blocks around the one that grows, outermost first.
+    outer: Vec<Block>,
     /// Nesting of each expression in the written text, in arena order.
     nesting: Vec<u8>,
     literals: FxHashMap<u32, Value>,
@@ -51,6 +56,42 @@ impl Body {
         self.push(Statement::Emit(naga::Range::new_from_bounds(value, value)));
     }
 
+    /// A variable without a value.
+    pub(crate) fn variable(&mut self, name: &str, ty: Handle<naga::Type>) -> Value {
+        let variable = LocalVariable { name: Some(name.to_owned()), ty, init: None };
+        let variable = self.function.local_variables.append(variable, Span::UNDEFINED);
+        self.declare(Expression::LocalVariable(variable))
+    }
+
+    /// What a variable holds here, under a name.
+    pub(crate) fn load(&mut self, pointer: Value, name: &str) -> Value {
+        let value = self.compute(Expression::Load { pointer }, &[pointer]);
+        self.name(value, name);
+        value
+    }
+
+    /// Gives a variable a value.
+    pub(crate) fn store(&mut self, pointer: Value, value: Value) {
+        self.push(Statement::Store { pointer, value });
+    }
+
+    /// What follows is the body of a loop.
+    pub(crate) fn open_loop(&mut self) {
+        self.outer.push(std::mem::take(&mut self.function.body));
+    }
+
+    /// Leaves the loop where the condition holds.
+    pub(crate) fn break_if(&mut self, condition: Value) {
+        let accept = Block::from_vec(vec![Statement::Break]);
+        self.push(Statement::If { condition, accept, reject: Block::new() });
+    }
+
+    /// What follows comes after the loop. What was computed within is out of reach.
+    pub(crate) fn close_loop(&mut self) {
+        let body = std::mem::replace(&mut self.function.body, self.outer.pop().unwrap_or_default());
+        self.push(Statement::Loop { body, continuing: Block::new(), break_if: None });
+    }
+
     /// Appends a statement.
     pub(crate) fn push(&mut self, statement: Statement) {
         self.function.body.push(statement, Span::UNDEFINED);
@@ -70,6 +111,16 @@ impl Body {
         let literal = self.declare(Expression::Literal(Literal::F32(value)));
         self.literals.insert(value.to_bits(), literal);
         literal
+    }
+
+    /// A word of 32 bits.
+    pub(crate) fn word(&mut self, value: u32) -> Value {
+        self.declare(Expression::Literal(Literal::U32(value)))
+    }
+
+    /// A conversion to another kind of scalar of so many bytes; without, the same bits read as that kind.
+    pub(crate) fn cast(&mut self, expr: Value, kind: ScalarKind, convert: Option<u8>) -> Value {
+        self.compute(Expression::As { expr, kind, convert }, &[expr])
     }
 
     /// A built-in function of one argument.

@@ -5,18 +5,21 @@
 //! the program names; a value used once is written where it is used, to a bounded depth.
 
 mod body;
+mod hash;
 mod operation;
+mod repeat;
 mod uses;
 
 use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
 use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Const, Dim, Node, NodeId, Program, Type};
+use sdfc_graph::{Binary, Const, Dim, LoopId, Node, NodeId, Program, Type};
 
 pub(crate) use body::Body;
 
 use crate::inputs::{Inputs, frame_name, input_name};
 use crate::{Error, types};
+use repeat::Round;
 use uses::{Uses, is_component};
 
 /// A value within the function.
@@ -84,6 +87,12 @@ struct Lowering<'a> {
     /// Values of the nodes visited so far, but for constants.
     values: FxHashMap<NodeId, Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
+    /// Hashes as words.
+    words: FxHashMap<NodeId, Value>,
+    /// The states after the loops visited so far.
+    loops: FxHashMap<LoopId, Vec<Value>>,
+    /// What the rounds at hand read, by the depth of their loops.
+    rounds: Vec<Option<Round>>,
 }
 
 impl<'a> Lowering<'a> {
@@ -94,14 +103,21 @@ impl<'a> Lowering<'a> {
         roots: &[NodeId],
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
-        let (body, values, matrices) = Default::default();
-        Self { program, inputs, types, uses, body, point: None, values, matrices }
+        let (body, values, matrices, words, loops, rounds) = Default::default();
+        let point = None;
+        Self { program, inputs, types, uses, body, point, values, matrices, words, loops, rounds }
     }
 
     /// Computes all nodes that the roots need.
     fn visit_all(&mut self) -> Result<(), Error> {
-        for position in 0..self.uses.len() {
-            let id = self.uses.node(position);
+        let graph = &self.program.graph;
+        let outside = self.uses.order().into_iter().filter(|&id| graph.loops(id) == 0);
+        self.visit(outside)
+    }
+
+    /// Computes nodes, arguments first.
+    fn visit(&mut self, order: impl Iterator<Item = NodeId>) -> Result<(), Error> {
+        for id in order {
             let node = self.program.graph.node(id);
             if matches!(node, Node::Const(_)) {
                 continue;
@@ -121,12 +137,12 @@ impl<'a> Lowering<'a> {
         if self.inputs.is_slot(id) {
             return self.body.name(value, frame_name(self.program, id));
         }
-        if matches!(node, Node::Point(..) | Node::Frame(..)) {
+        if matches!(node, Node::Point(..) | Node::Frame(..) | Node::Variable(..)) {
             return;
         }
         if let Some(name) = self.program.names.get(&id) {
             self.body.name(value, name);
-        } else if self.uses.of(id) > 1 && !is_component(&node) {
+        } else if (self.uses.of(id) > 1 || self.uses.is_kept(id)) && !is_component(&node) {
             self.body.name(value, hint(self.program.graph.ty(id)));
         }
     }
@@ -157,6 +173,10 @@ impl<'a> Lowering<'a> {
                 self.refuse_constants(id, &[a])?;
                 self.unary(id, op, a)
             }
+            Node::Binary(Binary::Hash, state, x) => {
+                self.refuse_constants(id, &[state, x])?;
+                self.hash(id, state, x)
+            }
             Node::Binary(op, a, b) => {
                 self.refuse_constants(id, &[a, b])?;
                 self.binary(id, op, a, b)
@@ -179,6 +199,9 @@ impl<'a> Lowering<'a> {
             }
             Node::Swizzle(ty, a, lanes) => self.swizzle(id, ty, a, lanes),
             Node::Transform(columns, v) => self.transform(id, columns, v),
+            Node::Variable(depth, place, _) => self.variable(id, depth, place),
+            Node::Loop(repeated, position, _) => self.after_loop(repeated, position),
+            Node::Element(table, at, ty) => self.element(table, at, ty),
         }
     }
 

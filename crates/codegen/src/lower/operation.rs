@@ -96,6 +96,7 @@ impl Lowering<'_> {
             Binary::Pow => return Ok(self.body.call2(MathFunction::Pow, a, b)),
             Binary::Atan2 => return Ok(self.body.call2(MathFunction::Atan2, a, b)),
             Binary::Step => return Ok(self.body.call2(MathFunction::Step, a, b)),
+            Binary::Hash => return Err(Error::IllTyped(id)), // lowered by itself
             Binary::Dot => return Ok(self.body.call2(MathFunction::Dot, a, b)),
             Binary::Cross => return Ok(self.body.call2(MathFunction::Cross, a, b)),
         };
@@ -182,7 +183,7 @@ impl Lowering<'_> {
     }
 
     /// A number in every lane of a type.
-    fn filled(&mut self, ty: Type, number: f32) -> Value {
+    pub(super) fn filled(&mut self, ty: Type, number: f32) -> Value {
         let value = self.body.literal(number);
         match types::vector_size(ty) {
             None => value,
@@ -232,7 +233,8 @@ fn takes(op: Binary, ty: Type) -> bool {
         | Binary::Max
         | Binary::Pow
         | Binary::Atan2
-        | Binary::Step => ty != Type::Bool,
+        | Binary::Step
+        | Binary::Hash => ty != Type::Bool,
         Binary::Dot => types::vector_size(ty).is_some(),
         Binary::Cross => ty == Type::Vec3,
         Binary::Lt | Binary::Le => ty == Type::Scalar,

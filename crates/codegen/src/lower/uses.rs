@@ -3,12 +3,15 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
 
+use super::hash::reads_word;
 use crate::inputs::Inputs;
 
 /// How often each node that the roots need is written in the text.
 #[derive(Debug)]
 pub(crate) struct Uses {
     counts: FxHashMap<NodeId, u32>,
+    /// What loops read from outside: written out there it would be computed in each round.
+    kept: FxHashSet<NodeId>,
     order: Vec<NodeId>,
 }
 
@@ -16,7 +19,7 @@ impl Uses {
     /// Counts from the roots down. Nodes computed outside the shader need no operands.
     pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
         let order = needed(graph, roots, inputs);
-        let mut counts = FxHashMap::default();
+        let (mut counts, mut kept) = (FxHashMap::default(), FxHashSet::default());
         for &root in roots {
             *counts.entry(root).or_insert(0) += 1;
         }
@@ -29,11 +32,16 @@ impl Uses {
             } else {
                 repeats(&node)
             };
-            for operand in operands(graph, &node) {
-                *counts.entry(operand).or_insert(0) += times;
+            for (position, operand) in operands(graph, id).into_iter().enumerate() {
+                let as_word =
+                    position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
+                *counts.entry(operand).or_insert(0) += if as_word { 0 } else { times };
+                if graph.loops(id) & !graph.loops(operand) != 0 {
+                    keep(graph, operand, &mut kept);
+                }
             }
         }
-        Self { counts, order }
+        Self { counts, kept, order }
     }
 
     /// How often the node is written.
@@ -41,15 +49,28 @@ impl Uses {
         self.counts.get(&id).copied().unwrap_or(0)
     }
 
-    /// How many nodes there are.
-    pub(crate) fn len(&self) -> usize {
-        self.order.len()
+    /// Whether the roots need the node.
+    pub(crate) fn contains(&self, id: NodeId) -> bool {
+        self.counts.contains_key(&id)
     }
 
-    /// The node at a position, operands before their uses.
-    pub(crate) fn node(&self, position: usize) -> NodeId {
-        self.order[position]
+    /// Whether the node needs a name however seldom it is written.
+    pub(crate) fn is_kept(&self, id: NodeId) -> bool {
+        self.kept.contains(&id)
     }
+
+    /// All nodes, operands before their uses.
+    pub(crate) fn order(&self) -> Vec<NodeId> {
+        self.order.clone()
+    }
+}
+
+/// A component is as short as a name, so its vector gets one.
+fn keep(graph: &Graph, id: NodeId, kept: &mut FxHashSet<NodeId>) {
+    if let Node::Swizzle(Type::Scalar, vector, _) = graph.node(id) {
+        kept.insert(vector);
+    }
+    kept.insert(id);
 }
 
 /// What fills all lanes of a vector.
@@ -96,9 +117,9 @@ fn filling(graph: &Graph, id: NodeId) -> Option<Filling> {
 }
 
 /// The nodes that the lowering of a node reads.
-fn operands(graph: &Graph, node: &Node) -> Vec<NodeId> {
-    let Node::Binary(Binary::Mul, left, right) = *node else {
-        return node.arguments().collect();
+fn operands(graph: &Graph, id: NodeId) -> Vec<NodeId> {
+    let Node::Binary(Binary::Mul, left, right) = graph.node(id) else {
+        return graph.arguments(id).collect();
     };
     match product(graph, left, right) {
         Product::Plain => vec![left, right],
@@ -135,6 +156,9 @@ fn repeats(node: &Node) -> u32 {
         | Node::Compose(..)
         | Node::Swizzle(..)
         | Node::Transform(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => 1,
     }
@@ -146,7 +170,7 @@ fn needed(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Vec<NodeId> {
     let mut pending = roots.to_vec();
     while let Some(id) = pending.pop() {
         if seen.insert(id) && !inputs.is_slot(id) {
-            pending.extend(operands(graph, &graph.node(id)));
+            pending.extend(operands(graph, id));
         }
     }
     let mut order: Vec<NodeId> = seen.into_iter().collect();

@@ -83,6 +83,9 @@ impl Deriver<'_> {
             | Node::Unary(..)
             | Node::Ternary(..)
             | Node::Sample(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::MaterialAt(..) => [None; 4],
         }
     }
@@ -256,7 +259,13 @@ impl Deriver<'_> {
             | Node::Transform(..) => true,
             Node::Unary(op, _) => matches!(op, Unary::Neg | Unary::Sin | Unary::Cos),
             Node::Binary(op, ..) => matches!(op, Binary::Add | Binary::Sub | Binary::Mul),
-            Node::Point(..) | Node::Ternary(..) | Node::Sample(..) | Node::MaterialAt(..) => false,
+            Node::Point(..)
+            | Node::Ternary(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
+            | Node::Sample(..)
+            | Node::MaterialAt(..) => false,
         }
     }
 

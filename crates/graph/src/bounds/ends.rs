@@ -26,6 +26,9 @@ impl Graph {
             | Node::Ternary(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => self.component(vector, lane as u8),
         }
@@ -109,6 +112,9 @@ impl Graph {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => self.div(a, b),
         }

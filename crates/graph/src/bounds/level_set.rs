@@ -103,6 +103,9 @@ impl Deriver<'_> {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::MaterialAt(..) => self.opaque(question),
         }
     }

@@ -136,8 +136,9 @@ impl Deriver<'_> {
             return Interval::constant(number);
         }
         let graph = &*self.graph;
-        let order =
-            reachable_where(graph, &[node], |id| !matches!(graph.node(id), Node::Sample(..)));
+        let order = reachable_where(graph, &[node], |id| {
+            !matches!(graph.node(id), Node::Sample(..) | Node::Loop(..))
+        });
         direct::evaluate(graph, &order, |id| self.input(id))
     }
 

@@ -13,8 +13,11 @@ pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
         Node::Const(_)
         | Node::Point(..)
         | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => false,
+        Node::Loop(.., ty) => ty != Type::Bool,
         Node::Unary(op, _) => !matches!(
             op,
             Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc | Unary::Not
@@ -22,6 +25,7 @@ pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
         Node::Binary(op, ..) => !matches!(
             op,
             Binary::Step
+                | Binary::Hash
                 | Binary::Lt
                 | Binary::Le
                 | Binary::Eq
@@ -44,8 +48,11 @@ impl Sweep<'_> {
             Node::Const(_)
             | Node::Point(..)
             | Node::Frame(..)
+            | Node::Variable(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => {}
+            Node::Loop(repeated, position, _) => self.repeat(repeated, position, adjoint),
             Node::Unary(op, a) => {
                 if self.live.contains(a) {
                     let part = self.unary(op, id, a, adjoint);
@@ -210,6 +217,7 @@ impl Sweep<'_> {
                 self.give_with(b, |s| s.graph.binary(Binary::Cross, adjoint, a));
             }
             Binary::Step
+            | Binary::Hash
             | Binary::Lt
             | Binary::Le
             | Binary::Eq

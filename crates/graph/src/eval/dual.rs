@@ -172,6 +172,9 @@ impl Number for Dual {
     fn step(self, x: Self) -> Self {
         Self::flat(self.value.step(x.value))
     }
+    fn hash(self, x: Self) -> Self {
+        Self::flat(self.value.hash(x.value))
+    }
     fn direction(self, length: Self) -> Self {
         if length.value == 0.0 { Self::flat(0.0) } else { self.div(length) }
     }
@@ -192,6 +195,13 @@ impl Number for Dual {
     }
     fn or(self, y: Self) -> Self {
         Self::flat(self.value.or(y.value))
+    }
+
+    fn is_never(self) -> bool {
+        self.value == 0.0
+    }
+    fn element(self, list: &[f64]) -> Self {
+        Self::flat(self.value.element(list))
     }
 
     fn mix(self, y: Self, t: Self) -> Self {

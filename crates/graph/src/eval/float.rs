@@ -6,6 +6,7 @@
 //! or infinite. `min` and `max` pass on a NaN of their first argument only; WGSL leaves this open.
 
 use super::Number;
+use super::hash::hash;
 
 macro_rules! float {
     ($float:ident) => {
@@ -163,6 +164,10 @@ macro_rules! float {
                 truth(x >= self)
             }
             #[inline]
+            fn hash(self, x: Self) -> Self {
+                hash(self.into(), x.into()) as Self
+            }
+            #[inline]
             fn direction(self, length: Self) -> Self {
                 if length == 0.0 { 0.0 } else { self / length }
             }
@@ -191,6 +196,15 @@ macro_rules! float {
                 Number::max(self, y)
             }
 
+            #[inline]
+            fn is_never(self) -> bool {
+                self == 0.0
+            }
+            fn element(self, list: &[f64]) -> Self {
+                let last = list.len().saturating_sub(1);
+                let at = (self.max(0.0) as usize).min(last);
+                list.get(at).map_or(Self::NAN, |&value| value as Self)
+            }
             #[inline]
             fn mix(self, y: Self, t: Self) -> Self {
                 self * (1.0 - t) + y * t

@@ -28,7 +28,7 @@ impl Machine for Folding {
 /// operation, and where finite arguments give a lane that is not finite, or any give one that is no number: such an
 /// operation stays, to be reported or to run, rather than become a literal that no shader can hold.
 pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
-    fold_where(node, |id| arguments.get(node.arguments().position(|argument| argument == id)?))
+    fold_where(node, |id| arguments.get(node.own_arguments().position(|argument| argument == id)?))
 }
 
 /// As [`fold`], where `constant` gives what an argument is.
@@ -36,7 +36,7 @@ pub(crate) fn fold_where<'a>(
     node: &Node,
     constant: impl Fn(NodeId) -> Option<&'a Const>,
 ) -> Option<Const> {
-    if node.arguments().any(|id| constant(id).is_none()) {
+    if node.own_arguments().any(|id| constant(id).is_none()) {
         return None;
     }
     let lanes = scalarise(&mut Folding, node, |id| match constant(id) {
@@ -48,7 +48,7 @@ pub(crate) fn fold_where<'a>(
     })?;
     if !lanes.as_slice().iter().all(|lane| lane.is_finite()) {
         let infinite = |value: &Const| value.lanes().iter().any(|lane| lane.is_infinite());
-        let from_infinity = node.arguments().filter_map(&constant).any(infinite);
+        let from_infinity = node.own_arguments().filter_map(&constant).any(infinite);
         if !from_infinity || lanes.as_slice().iter().any(|lane| lane.is_nan()) {
             return None;
         }

@@ -80,6 +80,8 @@ pub trait Number: Copy {
     fn atan2(self, x: Self) -> Self;
     /// 0 where x is less than this edge, else 1
     fn step(self, x: Self) -> Self;
+    /// 24 bits from 24 others and the whole part of x, as [`hash`](super::hash::hash) mixes them
+    fn hash(self, x: Self) -> Self;
     /// A component of a vector of the given length, divided by that length; 0 where the length is 0
     fn direction(self, length: Self) -> Self;
     /// `x < y`
@@ -103,6 +105,12 @@ pub trait Number: Copy {
     fn smoothstep(self, hi: Self, x: Self) -> Self;
     /// `yes` where this truth value holds, else `no`
     fn select(self, yes: Self, no: Self) -> Self;
+
+    /// Whether this truth value is false for certain: a loop that it keeps running ends
+    fn is_never(self) -> bool;
+
+    /// The element of a list at a position, rounded down; the first before the first, the last past the last
+    fn element(self, list: &[f64]) -> Self;
 
     /// `x * y` for a y known to be `c * (1 - x)`: the dip of a quadratic blend
     fn parabola(self, y: Self, c: Self) -> Self {

@@ -75,6 +75,7 @@ operations! {
         Pow = pow,
         Atan2 = atan2,
         Step = step,
+        Hash = hash,
         Direction = direction,
         Lt = lt,
         Le = le,

@@ -35,6 +35,14 @@ macro_rules! lanewise {
             fn constant(value: f64) -> Self {
                 Self([N::constant(value); B])
             }
+            #[inline]
+            fn is_never(self) -> bool {
+                self.0.into_iter().all(N::is_never)
+            }
+            #[inline]
+            fn element(self, list: &[f64]) -> Self {
+                self.map(|at| at.element(list))
+            }
             $(#[inline] fn $unary(self) -> Self { self.map(N::$unary) })*
             $(#[inline] fn $binary(self, y: Self) -> Self { self.map2(y, N::$binary) })*
             $(#[inline] fn $ternary(self, y: Self, z: Self) -> Self { self.map3(y, z, N::$ternary) })*
@@ -47,6 +55,6 @@ lanewise! {
         neg abs sign floor ceil round trunc fract square sqrt inverse_sqrt exp exp2 log log2
         sin cos tan asin acos atan sinh cosh tanh not saturate
     }
-    binary { add sub mul div rem min max pow atan2 step direction lt le eq ne and or }
+    binary { add sub mul div rem min max pow atan2 step hash direction lt le eq ne and or }
     ternary { mix clamp smoothstep select parabola excess }
 }

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::op::Op;
 use super::scalarise::{Lanes, Machine};
-use super::tape::{Definition, Instruction, POINT_LANES, Tape};
+use super::tape::{Code, Definition, Instruction, LoopCode, POINT_LANES, StateCode, Tape};
 use crate::graph::result_type;
 use crate::{FrameInput, Node, Type};
 
@@ -15,8 +15,116 @@ pub(super) struct Recorder {
     /// Whether each value depends on the point.
     varying: Vec<bool>,
     constants: FxHashMap<u64, u32>,
+    lists: Vec<Vec<f64>>,
+    loops: Vec<Repeated>,
+    /// The loops that have begun and not ended.
+    open: Vec<usize>,
+    /// Of each value the loops around it.
+    around: Vec<Option<usize>>,
     /// If given, points are unknown and samples are params, by position.
     samples: Option<FxHashMap<Node, u32>>,
+}
+
+/// A loop by positions of values.
+struct Repeated {
+    cap: u32,
+    count: Option<u32>,
+    /// The loop around it.
+    outer: Option<usize>,
+    round: u32,
+    start: Vec<u32>,
+    variables: Vec<u32>,
+    copies: Vec<u32>,
+    results: Vec<u32>,
+    condition: Option<u32>,
+    next: Vec<u32>,
+    end: u32,
+}
+
+/// What a body may read of the loop that has just begun.
+pub(super) struct Entered {
+    /// Names the loop to the recorder.
+    pub(super) id: usize,
+    pub(super) round: u32,
+    pub(super) state: Vec<Lanes<u32>>,
+    /// What remains of the state when the loop has ended.
+    pub(super) results: Vec<Lanes<u32>>,
+}
+
+/// Loops and lists.
+impl Recorder {
+    /// An element of a list.
+    pub(super) fn lookup(&mut self, list: Vec<f64>, at: u32) -> u32 {
+        let known = self.lists.iter().position(|known| *known == list);
+        let list = known.unwrap_or_else(|| {
+            self.lists.push(list);
+            self.lists.len() - 1
+        });
+        self.define(Definition::Lookup(list, at), self.varying[at as usize])
+    }
+
+    /// Begins a loop whose state starts as these values.
+    pub(super) fn enter(&mut self, cap: u32, count: Option<u32>, start: &[Lanes<u32>]) -> Entered {
+        let (id, outer) = (self.loops.len(), self.open.last().copied());
+        // What a loop writes is its own, and lives as long as it.
+        self.open.push(id);
+        self.define(Definition::Enter(id), true);
+        let round = self.define(Definition::Register, true);
+        let mut registers = || {
+            let lanes = start.iter().map(|lanes| {
+                Lanes::new(lanes.as_slice().len(), |_| self.define(Definition::Register, true))
+            });
+            lanes.collect::<Vec<_>>()
+        };
+        let (state, results, copies) = (registers(), registers(), registers());
+        for result in results.iter().flat_map(Lanes::as_slice) {
+            self.around[*result as usize] = outer;
+        }
+        self.loops.push(Repeated {
+            cap,
+            count,
+            outer,
+            round,
+            start: flat(start),
+            variables: flat(&state),
+            copies: flat(&copies),
+            results: flat(&results),
+            condition: None,
+            next: Vec::new(),
+            end: 0,
+        });
+        Entered { id, round, state, results }
+    }
+
+    /// Ends the rounds of the loop where the value is false.
+    pub(super) fn test(&mut self, id: usize, condition: u32) {
+        self.loops[id].condition = Some(condition);
+        self.define(Definition::Test(id), true);
+    }
+
+    /// Ends the loop's body, which makes these values of its state.
+    pub(super) fn leave(&mut self, id: usize, next: &[Lanes<u32>]) {
+        self.loops[id].next = flat(next);
+        self.loops[id].end = self.define(Definition::Leave(id), true);
+        self.open.pop();
+    }
+
+    /// Where a value read at a place is needed for the last time: one from outside a loop at the loop's end, since there
+    /// may be another round.
+    fn read_until(&self, value: u32, place: usize) -> u32 {
+        let home = self.around[value as usize];
+        let (mut until, mut at) = (place as u32, self.around[place]);
+        while at != home {
+            let Some(inner) = at else { return until };
+            until = self.loops[inner].end;
+            at = self.loops[inner].outer;
+        }
+        until
+    }
+}
+
+fn flat(lanes: &[Lanes<u32>]) -> Vec<u32> {
+    lanes.iter().flat_map(Lanes::as_slice).copied().collect()
 }
 
 impl Recorder {
@@ -28,6 +136,7 @@ impl Recorder {
     fn define(&mut self, definition: Definition, varying: bool) -> u32 {
         self.definitions.push(definition);
         self.varying.push(varying);
+        self.around.push(self.open.last().copied());
         self.definitions.len() as u32 - 1
     }
 
@@ -127,6 +236,9 @@ impl Machine for Recorder {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => None,
         }
@@ -134,7 +246,7 @@ impl Machine for Recorder {
 }
 
 /// When the body reads a value for the last time.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum LastRead {
     Never,
     By(u32),
@@ -160,29 +272,66 @@ impl Recorder {
             .iter()
             .map(|lanes| Lanes::new(lanes.as_slice().len(), |i| places[lanes.get(i) as usize]))
             .collect();
-        Tape { prelude, kept, body, registers, outputs }
+        Tape { prelude, kept, body, lists: self.lists, registers, outputs }
     }
 
     fn liveness(&self, outputs: &[Lanes<u32>]) -> Liveness {
         let count = self.definitions.len();
-        let (mut needed, mut last_read) = (vec![false; count], vec![LastRead::Never; count]);
+        let (needed, last_read) = (vec![false; count], vec![LastRead::Never; count]);
+        let mut liveness = Liveness { needed, last_read };
         for &value in outputs.iter().flat_map(Lanes::as_slice) {
-            needed[value as usize] = true;
-            last_read[value as usize] = LastRead::AfterEnd;
+            liveness.needed[value as usize] = true;
+            liveness.last_read[value as usize] = LastRead::AfterEnd;
         }
-        for value in (0..count).rev() {
-            let Definition::Apply(op, arguments) = self.definitions[value] else { continue };
-            if !needed[value] {
-                continue;
-            }
-            for &a in &arguments[..op.arity()] {
-                needed[a as usize] = true;
-                if self.varying[value] && last_read[a as usize] == LastRead::Never {
-                    last_read[a as usize] = LastRead::By(value as u32);
+        for place in (0..count).rev() {
+            let needed = match self.definitions[place] {
+                // A loop runs if anything of its result is read, and then all its registers are in use.
+                Definition::Leave(id) => {
+                    self.loops[id].results.iter().any(|&id| liveness.needed[id as usize])
+                }
+                Definition::Test(id) | Definition::Enter(id) => {
+                    liveness.needed[self.loops[id].end as usize]
+                }
+                Definition::Constant(_)
+                | Definition::Input(..)
+                | Definition::Point(_)
+                | Definition::Apply(..)
+                | Definition::Lookup(..)
+                | Definition::Register => liveness.needed[place],
+            };
+            liveness.needed[place] = needed;
+            if needed {
+                for value in self.reads(place) {
+                    liveness.needed[value as usize] = true;
+                    if self.varying[place] {
+                        let last = LastRead::By(self.read_until(value, place));
+                        let before = &mut liveness.last_read[value as usize];
+                        *before = last.max(*before);
+                    }
                 }
             }
         }
-        Liveness { needed, last_read }
+        liveness
+    }
+
+    /// What is read at a place, or must keep its register until then.
+    fn reads(&self, place: usize) -> Vec<u32> {
+        match self.definitions[place] {
+            Definition::Apply(op, arguments) => arguments[..op.arity()].to_vec(),
+            Definition::Lookup(_, at) => vec![at],
+            Definition::Enter(id) => self.loops[id].start.clone(),
+            Definition::Test(id) => self.loops[id].condition.into_iter().collect(),
+            Definition::Leave(id) => {
+                let Repeated { count, round, variables, copies, results, next, .. } =
+                    &self.loops[id];
+                let lists = [variables, copies, results, next].into_iter().flatten();
+                lists.chain(count).chain([round]).copied().collect()
+            }
+            Definition::Constant(_)
+            | Definition::Input(..)
+            | Definition::Point(_)
+            | Definition::Register => Vec::new(),
+        }
     }
 
     /// What no point changes, in order; `places` then holds positions in it.
@@ -197,9 +346,14 @@ impl Recorder {
                 Definition::Apply(op, arguments) => {
                     Definition::Apply(op, arguments.map(|a| places[a as usize]))
                 }
-                Definition::Constant(_) | Definition::Input(..) | Definition::Point(_) => {
-                    definition
-                }
+                Definition::Lookup(list, at) => Definition::Lookup(list, places[at as usize]),
+                Definition::Constant(_)
+                | Definition::Input(..)
+                | Definition::Point(_)
+                | Definition::Enter(_)
+                | Definition::Test(_)
+                | Definition::Leave(_)
+                | Definition::Register => definition,
             });
         }
         prelude
@@ -217,53 +371,123 @@ impl Recorder {
         kept
     }
 
-    /// The instructions and how many registers they take. A result may take the register of an
+    /// What runs at a point and how many registers it takes. A result may take the register of an
     /// argument that dies there, since arguments are read before the result is written.
-    fn body(
-        &self,
-        liveness: &Liveness,
-        kept: usize,
-        places: &mut [u32],
-    ) -> (Vec<Instruction>, usize) {
-        let mut body = Vec::new();
-        let mut free: Vec<u32> = Vec::new();
-        let mut registers = kept + POINT_LANES;
+    fn body(&self, liveness: &Liveness, kept: usize, places: &mut [u32]) -> (Vec<Code>, usize) {
+        // The innermost loop under way is the last.
+        let mut bodies: Vec<Vec<Code>> = vec![Vec::new()];
+        let mut registers = Registers { free: Vec::new(), count: kept + POINT_LANES };
         for (value, &definition) in self.definitions.iter().enumerate() {
             if !self.varying[value] || !liveness.needed[value] {
                 continue;
             }
+            let released = self.released(value, liveness, places);
             match definition {
                 Definition::Point(lane) => places[value] = (kept + lane) as u32,
                 Definition::Apply(op, arguments) => {
-                    let sources = arguments.map(|a| places[a as usize]);
-                    free.extend(self.released(value, &arguments[..op.arity()], liveness, places));
-                    let result = free.pop().unwrap_or_else(|| {
-                        registers += 1;
-                        registers as u32 - 1
-                    });
+                    let arguments = arguments.map(|a| places[a as usize]);
+                    registers.free.extend(released);
+                    let result = registers.take();
                     places[value] = result;
-                    body.push(Instruction { op, result, arguments: sources });
+                    append(&mut bodies, Instruction { op, result, arguments });
+                }
+                Definition::Lookup(list, at) => {
+                    let at = places[at as usize];
+                    registers.free.extend(released);
+                    places[value] = registers.take();
+                    let lookup = Code::Lookup { list, at, result: places[value] };
+                    push(&mut bodies, lookup);
+                }
+                Definition::Register => places[value] = registers.take(),
+                Definition::Enter(_) => bodies.push(Vec::new()),
+                Definition::Test(id) => {
+                    let condition = self.loops[id].condition.unwrap_or_default();
+                    let test = Code::Test(places[condition as usize]);
+                    push(&mut bodies, test);
+                    registers.free.extend(released);
+                }
+                Definition::Leave(id) => {
+                    let body = bodies.pop().unwrap_or_default();
+                    let code = Code::Loop(self.loops[id].code(body, places));
+                    push(&mut bodies, code);
+                    registers.free.extend(released);
                 }
                 Definition::Constant(_) | Definition::Input(..) => {}
             }
         }
-        (body, registers)
+        (bodies.pop().unwrap_or_default(), registers.count)
     }
 
-    /// Registers of intermediate values that this value is the last to read, each once.
-    fn released<'a>(
-        &'a self,
-        value: usize,
-        arguments: &'a [u32],
-        liveness: &'a Liveness,
-        places: &'a [u32],
-    ) -> impl Iterator<Item = u32> + 'a {
-        arguments.iter().enumerate().filter_map(move |(position, &a)| {
-            let intermediate = self.varying[a as usize]
-                && matches!(self.definitions[a as usize], Definition::Apply(..));
-            let dies = liveness.last_read[a as usize] == LastRead::By(value as u32);
-            let repeated = arguments[..position].contains(&a);
-            (intermediate && dies && !repeated).then(|| places[a as usize])
+    /// Registers of values that are needed here for the last time, each once.
+    fn released(&self, place: usize, liveness: &Liveness, places: &[u32]) -> Vec<u32> {
+        let dies = |value: usize| {
+            let is_register = matches!(
+                self.definitions[value],
+                Definition::Apply(..) | Definition::Lookup(..) | Definition::Register
+            );
+            is_register
+                && self.varying[value]
+                && liveness.last_read[value] == LastRead::By(place as u32)
+        };
+        if let Definition::Leave(_) = self.definitions[place] {
+            // What the body reads from outside dies here too.
+            return (0..place).filter(|&value| dies(value)).map(|value| places[value]).collect();
+        }
+        let mut read = self.reads(place);
+        read.sort_unstable();
+        read.dedup();
+        let dying = read.into_iter().filter(|&value| dies(value as usize));
+        dying.map(|value| places[value as usize]).collect()
+    }
+}
+
+/// Registers that are free and how many there are.
+struct Registers {
+    free: Vec<u32>,
+    count: usize,
+}
+
+impl Registers {
+    fn take(&mut self) -> u32 {
+        self.free.pop().unwrap_or_else(|| {
+            self.count += 1;
+            self.count as u32 - 1
         })
+    }
+}
+
+fn push(bodies: &mut [Vec<Code>], code: Code) {
+    if let Some(body) = bodies.last_mut() {
+        body.push(code);
+    }
+}
+
+fn append(bodies: &mut [Vec<Code>], instruction: Instruction) {
+    let Some(body) = bodies.last_mut() else { return };
+    if let Some(Code::Straight(instructions)) = body.last_mut() {
+        instructions.push(instruction);
+    } else {
+        body.push(Code::Straight(vec![instruction]));
+    }
+}
+
+impl Repeated {
+    /// In registers.
+    fn code(&self, body: Vec<Code>, places: &[u32]) -> LoopCode {
+        let place = |value: u32| places[value as usize];
+        let state = (0..self.variables.len()).map(|i| StateCode {
+            start: place(self.start[i]),
+            variable: place(self.variables[i]),
+            next: place(self.next[i]),
+            copy: place(self.copies[i]),
+            result: place(self.results[i]),
+        });
+        LoopCode {
+            cap: self.cap,
+            count: self.count.map(place),
+            round: place(self.round),
+            state: state.collect(),
+            body,
+        }
     }
 }

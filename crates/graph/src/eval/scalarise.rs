@@ -17,7 +17,7 @@ pub(crate) trait Machine {
     /// The scalar that an operation yields; arguments beyond its arity repeat the first.
     fn apply(&mut self, op: Op, arguments: [Self::Value; 3]) -> Self::Value;
 
-    /// The lanes of a node that is no operation: a point, a per-frame input, a sample.
+    /// The lanes of a node that is no operation on scalars: a point, a per-frame input, a loop, a sample.
     /// `None` if the machine has no such thing.
     fn input(&mut self, node: &Node) -> Option<Lanes<Self::Value>>;
 }
@@ -66,7 +66,13 @@ pub(crate) fn scalarise<M: Machine>(
             let lanes = value.lanes();
             Lanes::new(value.ty().width(), |i| machine.constant(lanes[i]))
         }
-        Node::Point(..) | Node::Frame(..) | Node::Sample(..) | Node::MaterialAt(..) => {
+        Node::Point(..)
+        | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => {
             return machine.input(node);
         }
         Node::Unary(op, a) => unary(machine, op, argument(a)),
@@ -146,6 +152,7 @@ fn binary<M: Machine>(
         Binary::Pow => Op::Pow,
         Binary::Atan2 => Op::Atan2,
         Binary::Step => Op::Step,
+        Binary::Hash => Op::Hash,
         Binary::Lt => Op::Lt,
         Binary::Le => Op::Le,
         Binary::Eq => Op::Eq,

@@ -6,7 +6,7 @@ use super::op::Op;
 use super::record::Recorder;
 use super::scalarise::{Lanes, scalarise};
 use super::{FrameValues, Number};
-use crate::{FrameInput, Graph, Node, NodeId, reachable, reachable_where};
+use crate::{FrameInput, Graph, LoopId, Node, NodeId, Place, reachable, reachable_where};
 
 /// Why nodes cannot be evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,9 +41,50 @@ pub struct Tape {
     pub(super) prelude: Vec<Definition>,
     /// The prelude's values that points need: register i starts with prelude value `kept[i]`.
     pub(super) kept: Vec<u32>,
-    pub(super) body: Vec<Instruction>,
+    pub(super) body: Vec<Code>,
+    pub(super) lists: Vec<Vec<f64>>,
     pub(super) registers: usize,
     pub(super) outputs: Vec<Lanes<u32>>,
+}
+
+/// What runs at a point.
+#[derive(Clone, Debug)]
+pub(super) enum Code {
+    /// One instruction after the other.
+    Straight(Vec<Instruction>),
+    /// Looks up an element of a list.
+    Lookup {
+        list: usize,
+        at: u32,
+        result: u32,
+    },
+    /// Ends the rounds of the loop that it stands in where the register holds false.
+    Test(u32),
+    Loop(LoopCode),
+}
+
+/// A loop, in registers.
+#[derive(Clone, Debug)]
+pub(super) struct LoopCode {
+    pub(super) cap: u32,
+    pub(super) count: Option<u32>,
+    pub(super) round: u32,
+    pub(super) state: Vec<StateCode>,
+    pub(super) body: Vec<Code>,
+}
+
+/// One scalar of a loop's state, in registers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StateCode {
+    pub(super) start: u32,
+    /// What the body reads.
+    pub(super) variable: u32,
+    /// What the body yields.
+    pub(super) next: u32,
+    /// Where `next` waits until all variables may change.
+    pub(super) copy: u32,
+    /// The variable as it was when the loop ended.
+    pub(super) result: u32,
 }
 
 /// An instruction, in registers.
@@ -61,6 +102,14 @@ pub(super) enum Definition {
     Input(FrameInput, usize),
     Point(usize),
     Apply(Op, [u32; 3]),
+    /// An element of a list, by the list's position in the recorder.
+    Lookup(usize, u32),
+    /// The begin of a loop, its condition, its end; by the position of the loop in the recorder.
+    Enter(usize),
+    Test(usize),
+    Leave(usize),
+    /// A register that a loop writes.
+    Register,
 }
 
 /// Registers that hold the point, after those that hold the prelude's values.
@@ -98,20 +147,16 @@ impl Tape {
         order: &[NodeId],
         roots: &[NodeId],
     ) -> Result<Self, TapeError> {
-        let mut lanes: FxHashMap<NodeId, Lanes<u32>> = FxHashMap::default();
-        for &id in order {
-            let node = graph.node(id);
-            let value = scalarise(&mut recorder, &node, |argument| lanes[&argument])
-                .ok_or_else(|| unavailable(id, &node))?;
-            lanes.insert(id, value);
-        }
-        let outputs = roots.iter().map(|root| lanes[root]).collect();
+        let outside = order.iter().copied().filter(|&id| graph.loops(id) == 0);
+        let mut recording = Recording::new(graph, &mut recorder);
+        recording.nodes(outside)?;
+        let outputs = roots.iter().map(|root| recording.lanes[root]).collect();
         Ok(recorder.finish(outputs))
     }
 
-    /// How many scalar operations run at each point.
+    /// How many scalar operations run at each point, if all loops run as often as they may.
     pub fn operations(&self) -> usize {
-        self.body.len()
+        operations(&self.body)
     }
 
     /// How many registers an evaluator has.
@@ -143,6 +188,12 @@ impl Tape {
                 Definition::Input(input, lane) => frame.lane(input, lane),
                 Definition::Point(_) => F::constant(f64::NAN), // never in a prelude
                 Definition::Apply(op, arguments) => op.apply(|i| values[arguments[i] as usize]),
+                Definition::Lookup(list, at) => values[at as usize].element(&self.lists[list]),
+                // Loops run at points.
+                Definition::Enter(_)
+                | Definition::Test(_)
+                | Definition::Leave(_)
+                | Definition::Register => F::constant(f64::NAN),
             });
         }
         let zero = N::constant(0.0);
@@ -187,10 +238,168 @@ impl<N: Number> Evaluator<'_, N> {
         let registers = self.registers.as_mut_slice();
         let first = self.tape.kept.len();
         registers[first..first + POINT_LANES].copy_from_slice(&point);
-        for instruction in &self.tape.body {
-            let result = instruction.op.apply(|i| registers[instruction.arguments[i] as usize]);
-            registers[instruction.result as usize] = result;
+        for code in &self.tape.body {
+            code.run(registers, &self.tape.lists);
         }
+    }
+}
+
+impl Code {
+    /// The condition, of a test.
+    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>]) -> Option<N> {
+        match self {
+            Self::Straight(instructions) => {
+                for instruction in instructions {
+                    let result =
+                        instruction.op.apply(|i| registers[instruction.arguments[i] as usize]);
+                    registers[instruction.result as usize] = result;
+                }
+            }
+            Self::Lookup { list, at, result } => {
+                registers[*result as usize] = registers[*at as usize].element(&lists[*list]);
+            }
+            Self::Test(condition) => return Some(registers[*condition as usize]),
+            Self::Loop(code) => code.run(registers, lists),
+        }
+        None
+    }
+}
+
+impl LoopCode {
+    /// Runs rounds until none can follow. Where a domain cannot tell whether one does, the variables go on and the
+    /// result is both what they were and what they become.
+    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>]) {
+        for state in &self.state {
+            let start = registers[state.start as usize];
+            registers[state.variable as usize] = start;
+            registers[state.result as usize] = start;
+        }
+        let mut running = N::constant(1.0);
+        for round in 0..self.cap {
+            let round = N::constant(f64::from(round));
+            registers[self.round as usize] = round;
+            if let Some(count) = self.count {
+                running = running.and(round.lt(registers[count as usize]));
+                if running.is_never() {
+                    return;
+                }
+            }
+            for code in &self.body {
+                if let Some(condition) = code.run(registers, lists) {
+                    running = running.and(condition);
+                    if running.is_never() {
+                        return;
+                    }
+                }
+            }
+            for state in &self.state {
+                registers[state.copy as usize] = registers[state.next as usize];
+            }
+            for state in &self.state {
+                let next = registers[state.copy as usize];
+                registers[state.variable as usize] = next;
+                let before = registers[state.result as usize];
+                registers[state.result as usize] = running.select(next, before);
+            }
+        }
+    }
+}
+
+fn operations(body: &[Code]) -> usize {
+    let of = |code: &Code| match code {
+        Code::Straight(instructions) => instructions.len(),
+        Code::Lookup { .. } | Code::Test(_) => 1,
+        Code::Loop(code) => (code.cap as usize).saturating_mul(operations(&code.body) + 1),
+    };
+    body.iter().map(of).fold(0, usize::saturating_add)
+}
+
+/// Nodes on their way into a recorder.
+struct Recording<'a> {
+    graph: &'a Graph,
+    recorder: &'a mut Recorder,
+    lanes: FxHashMap<NodeId, Lanes<u32>>,
+    /// The states after the loops met so far.
+    loops: FxHashMap<LoopId, Vec<Lanes<u32>>>,
+}
+
+impl<'a> Recording<'a> {
+    fn new(graph: &'a Graph, recorder: &'a mut Recorder) -> Self {
+        Self { graph, recorder, lanes: FxHashMap::default(), loops: FxHashMap::default() }
+    }
+
+    fn nodes(&mut self, order: impl Iterator<Item = NodeId>) -> Result<(), TapeError> {
+        for id in order {
+            let node = self.graph.node(id);
+            let value = match node {
+                Node::Loop(repeated, position, _) => {
+                    self.repeat(repeated)?;
+                    self.loops[&repeated][usize::from(position)]
+                }
+                Node::Element(table, at, ty) => {
+                    let (at, table) = (self.lanes[&at].get(0), self.graph.table(table));
+                    Lanes::new(ty.width(), |lane| self.recorder.lookup(table.lane(lane), at))
+                }
+                Node::Variable(..) => continue, // known since its loop began
+                Node::Const(_)
+                | Node::Point(..)
+                | Node::Frame(..)
+                | Node::Unary(..)
+                | Node::Binary(..)
+                | Node::Ternary(..)
+                | Node::Splat(..)
+                | Node::Compose(..)
+                | Node::Swizzle(..)
+                | Node::Transform(..)
+                | Node::Sample(..)
+                | Node::MaterialAt(..) => {
+                    let lanes = &self.lanes;
+                    scalarise(self.recorder, &node, |argument| lanes[&argument])
+                        .ok_or_else(|| unavailable(id, &node))?
+                }
+            };
+            self.lanes.insert(id, value);
+        }
+        Ok(())
+    }
+
+    /// Records a loop, unless that was done. Loops nest as deep as [`crate::MAX_LOOP_DEPTH`].
+    fn repeat(&mut self, id: LoopId) -> Result<(), TapeError> {
+        if self.loops.contains_key(&id) {
+            return Ok(());
+        }
+        let (repeated, body) = (self.graph.repeated(id), self.graph.body(id));
+        let starts: Vec<Lanes<u32>> = repeated.start.iter().map(|id| self.lanes[id]).collect();
+        let count = repeated.count.map(|count| self.lanes[&count].get(0));
+        let entered = self.recorder.enter(repeated.cap, count, &starts);
+        for &id in body.condition.iter().chain(&body.round) {
+            if let Node::Variable(_, place, _) = self.graph.node(id) {
+                self.lanes.insert(
+                    id,
+                    match place {
+                        Place::Round => Lanes::scalar(entered.round),
+                        Place::State(position) => entered.state[usize::from(position)],
+                    },
+                );
+            }
+        }
+        self.nodes(body.condition.iter().copied())?;
+        if let Some(go_on) = repeated.go_on {
+            self.recorder.test(entered.id, self.lanes[&go_on].get(0));
+        }
+        self.nodes(body.round.iter().copied())?;
+        let next: Vec<Lanes<u32>> = repeated.next.iter().map(|id| self.lanes[id]).collect();
+        self.recorder.leave(entered.id, &next);
+        // Another loop of this depth may share the body's nodes, not their values.
+        let inside = body.condition.iter().chain(&body.round);
+        for id in inside {
+            self.lanes.remove(id);
+            if let Node::Loop(within, ..) = self.graph.node(*id) {
+                self.loops.remove(&within);
+            }
+        }
+        self.loops.insert(id, entered.results);
+        Ok(())
     }
 }
 

@@ -127,8 +127,8 @@ impl<'a> Selection<'a> {
     fn new(graph: &'a mut Graph, order: &[NodeId], first: Fields) -> Self {
         let mut live = IdSet::default();
         for &id in order {
-            let node = graph.node(id);
-            if is_sample(graph, id) || node.arguments().any(|argument| live.contains(argument)) {
+            let mut arguments = graph.arguments(id);
+            if is_sample(graph, id) || arguments.any(|argument| live.contains(argument)) {
                 live.insert(id);
             }
         }
@@ -212,6 +212,9 @@ impl<'a> Selection<'a> {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::MaterialAt(..) => None,
         }
     }

@@ -180,6 +180,7 @@ impl Graph {
             | Binary::Pow
             | Binary::Atan2
             | Binary::Step
+            | Binary::Hash
             | Binary::Dot
             | Binary::Cross
             | Binary::Eq

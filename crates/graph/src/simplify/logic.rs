@@ -111,6 +111,7 @@ impl Graph {
             | Binary::Pow
             | Binary::Atan2
             | Binary::Step
+            | Binary::Hash
             | Binary::Dot
             | Binary::Cross
             | Binary::And

@@ -19,7 +19,7 @@ mod logic;
 mod vector;
 
 use crate::eval::fold_where;
-use crate::{Binary, Const, Graph, Node, NodeId, Stage, Ternary, Type, Unary};
+use crate::{Binary, Const, Graph, Node, NodeId, Place, Stage, Ternary, Type, Unary};
 
 impl Graph {
     /// The node for an operation: a constant, a simpler equal, or the operation itself.
@@ -41,9 +41,11 @@ impl Graph {
 
     fn folded(&self, node: &Node) -> Option<Const> {
         // Most nodes depend on something, and stages are smaller to look at than nodes.
-        if node.arguments().any(|argument| self.stage(argument) > Stage::Const) {
+        if node.own_arguments().any(|argument| self.stage(argument) > Stage::Const) {
             return None;
         }
+        // A loop, or what only it knows, is no constant.
+        node.own_arguments().next()?;
         fold_where(node, |argument| self.const_at(argument))
     }
 
@@ -52,6 +54,9 @@ impl Graph {
             Node::Const(_)
             | Node::Point(..)
             | Node::Frame(..)
+            | Node::Variable(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => None,
             Node::Unary(op, a) => self.simplified_unary(op, a),
@@ -125,7 +130,7 @@ impl Graph {
             Binary::Le => self.simplified_le(a, b),
             Binary::Eq | Binary::Ne => self.simplified_equality(op, a, b),
             Binary::And | Binary::Or => self.simplified_connective(op, a, b),
-            Binary::Rem | Binary::Atan2 => None,
+            Binary::Rem | Binary::Atan2 | Binary::Hash => None,
         }
     }
 
@@ -164,8 +169,11 @@ impl Graph {
             | Node::Compose(..)
             | Node::Swizzle(..)
             | Node::Transform(..)
+            | Node::Loop(..)
+            | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => false,
+            Node::Variable(_, place, _) => place == Place::Round,
         }
     }
 
@@ -294,7 +302,8 @@ fn is_lanewise(op: Binary) -> bool {
         | Binary::Max
         | Binary::Pow
         | Binary::Atan2
-        | Binary::Step => true,
+        | Binary::Step
+        | Binary::Hash => true,
         Binary::Dot
         | Binary::Cross
         | Binary::Lt

@@ -188,6 +188,9 @@ pub(super) fn form(
         | Node::Unary(..)
         | Node::Binary(..)
         | Node::Ternary(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => None,
     }

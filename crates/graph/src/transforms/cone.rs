@@ -47,7 +47,10 @@ impl Cones {
                 sum.numbers += numbers;
             }
             let used = if cost.is_some() { Use::By(head) } else { Use::Shared };
-            for argument in graph.node(id).arguments() {
+            for argument in graph.arguments(id) {
+                // What a loop does not change is computed outside it.
+                let outside = graph.loops(argument) != graph.loops(id);
+                let used = if outside { Use::Shared } else { used };
                 let known = uses.slot(argument).get_or_insert(used);
                 if *known != used {
                     *known = Use::Shared;
@@ -123,7 +126,7 @@ fn joined_sources(graph: &Graph, id: NodeId, sources: &IdMap<Sources>) -> Option
     }
     let mut joined = Sources { list: [None; 3], bare: false };
     let mut bare = 0;
-    for argument in node.arguments().filter_map(|argument| sources.get(argument)) {
+    for argument in graph.arguments(id).filter_map(|argument| sources.get(argument)) {
         bare += usize::from(argument.bare);
         if !joined.include(&argument) {
             return None;
@@ -150,6 +153,9 @@ fn affine_cost(graph: &Graph, id: NodeId) -> Option<usize> {
         | Node::Unary(..)
         | Node::Binary(..)
         | Node::Ternary(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => None,
     }

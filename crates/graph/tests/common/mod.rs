@@ -32,7 +32,7 @@ pub const UNARY: [Unary; 25] = [
     Unary::Normalize,
 ];
 
-pub const BINARY: [Binary; 10] = [
+pub const BINARY: [Binary; 11] = [
     Binary::Add,
     Binary::Sub,
     Binary::Mul,
@@ -43,6 +43,7 @@ pub const BINARY: [Binary; 10] = [
     Binary::Pow,
     Binary::Atan2,
     Binary::Step,
+    Binary::Hash,
 ];
 
 const COMPARISONS: [Binary; 4] = [Binary::Lt, Binary::Le, Binary::Eq, Binary::Ne];
@@ -118,12 +119,12 @@ impl Build {
         let graph = &mut self.graph;
         match kind {
             0 | 1 => self.scalars.push(graph.unary(UNARY[op % 24], s[0])),
-            2 | 3 => self.scalars.push(graph.binary(BINARY[op % 10], s[0], s[1])),
+            2 | 3 => self.scalars.push(graph.binary(BINARY[op % 11], s[0], s[1])),
             4 => self.scalars.push(graph.number(CONSTANTS[op % 16])),
             5 => self.vectors.push(graph.unary(UNARY[op % 25], v[0])),
             6 => self.vectors.push(match op % 3 {
-                0 => graph.binary(BINARY[op % 10], v[0], s[1]),
-                1 => graph.binary(BINARY[op % 10], v[0], v[1]),
+                0 => graph.binary(BINARY[op % 11], v[0], s[1]),
+                1 => graph.binary(BINARY[op % 11], v[0], v[1]),
                 _ => graph.binary(Binary::Cross, v[0], v[1]),
             }),
             7 => self.scalars.push(match op % 4 {
@@ -174,7 +175,7 @@ pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const
             None
         };
         let arguments: Option<Vec<Const>> =
-            node.arguments().map(|argument| values[argument.index()]).collect();
+            graph.arguments(id).map(|argument| values[argument.index()]).collect();
         let value = input.or_else(|| fold(&node, &arguments?));
         values.push(value);
     }

@@ -94,7 +94,7 @@ impl<'p> Elaborator<'p> {
             Kernel::Len => self.len(env, at),
             Kernel::Iterate => self.iterate(env, at.args, at.span),
             Kernel::Bounds => self.bounds(env, at),
-            Kernel::Gradient => Err(self.not_yet(at.span, "`gradient`")),
+            Kernel::Gradient => self.gradient(env, at),
             Kernel::Material => self.new_material(env, at),
             Kernel::MaterialAt => self.material_at(env, at),
             Kernel::Rgb => self.rgb(env, at),

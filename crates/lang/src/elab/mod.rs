@@ -7,7 +7,7 @@
 //!
 //! # Limits
 //!
-//! [`MAX_NODES`], [`MAX_STEPS`], [`MAX_RECURSION`], [`MAX_DEPTH`] and [`MAX_ROUNDS`]. The first
+//! [`MAX_NODES`], [`MAX_STEPS`], [`MAX_RECURSION`], [`MAX_DEPTH`], [`MAX_ROUNDS`] and [`MAX_NESTED_ROUNDS`]. The first
 //! four end elaboration, since what follows would only repeat the message.
 
 // A value of any other type than the one that is wanted is refused alike.
@@ -48,6 +48,8 @@ pub const MAX_RECURSION: u32 = 64;
 pub const MAX_DEPTH: u32 = 1024;
 /// Rounds of one `iterate` over a count or a range; over a list there is one per element.
 pub const MAX_ROUNDS: usize = 4096;
+/// Rounds of loops within loops, multiplied.
+pub const MAX_NESTED_ROUNDS: usize = 65_536;
 
 /// A scene's graph with the way back to its text.
 #[derive(Clone, Debug, Default)]
@@ -185,6 +187,10 @@ struct Elaborator<'p> {
     asked_bounds: bool,
     /// Params that stand for literals.
     offer: Offer,
+    /// How many loops the body at hand lies in.
+    loop_depth: u8,
+    /// How often their rounds run it.
+    loop_rounds: usize,
 }
 
 impl<'p> Elaborator<'p> {
@@ -209,6 +215,8 @@ impl<'p> Elaborator<'p> {
             in_clause: false,
             asked_bounds: false,
             offer: Offer::new(first_literal),
+            loop_depth: 0,
+            loop_rounds: 1,
         }
     }
 }

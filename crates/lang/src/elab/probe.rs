@@ -88,7 +88,7 @@ impl Elaborator<'_> {
             if let Node::Frame(input, _) = self.graph.node(node) {
                 found.push(input);
             }
-            stack.extend(self.graph.node(node).arguments());
+            stack.extend(self.graph.arguments(node));
         }
         found.sort_unstable();
         found

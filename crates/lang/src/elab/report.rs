@@ -1,5 +1,6 @@
 //! Errors of elaboration: where they are shown, and the limits that end it.
 
+use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 use sdfc_graph::{FrameInput, Node, NodeId, Stage};
 
@@ -15,6 +16,14 @@ pub(super) struct Frame<'p> {
     pub name: &'p str,
     /// The call.
     pub span: Span,
+}
+
+/// See [`Elaborator::attempt`].
+pub(super) struct Attempt {
+    diagnostics: usize,
+    reported: FxHashSet<Span>,
+    sites: usize,
+    in_clause: bool,
 }
 
 impl<'p> Elaborator<'p> {
@@ -57,6 +66,26 @@ impl<'p> Elaborator<'p> {
             self.diagnostics.push(found);
         }
         Poison
+    }
+
+    /// What an elaboration that may fail without a word can be taken back to.
+    pub(super) fn attempt(&self) -> Attempt {
+        Attempt {
+            diagnostics: self.diagnostics.len(),
+            reported: self.reported.clone(),
+            sites: self.sites.len(),
+            in_clause: self.in_clause,
+        }
+    }
+
+    /// Forgets what was reported and recorded since.
+    pub(super) fn take_back(&mut self, attempt: Attempt) {
+        self.diagnostics.truncate(attempt.diagnostics);
+        self.reported = attempt.reported;
+        for site in self.sites.drain(attempt.sites..) {
+            self.seen_sites.remove(&(site.shape, site.span));
+        }
+        self.in_clause = attempt.in_clause;
     }
 
     /// Reports that a limit is reached and ends elaboration.
@@ -128,7 +157,7 @@ impl<'p> Elaborator<'p> {
                 };
             }
             // A node of stage `Frame` has an argument of that stage, so this follows one path.
-            let arguments = self.graph.node(node).arguments();
+            let arguments = self.graph.arguments(node);
             stack.extend(arguments.filter(|&a| self.graph.stage(a) == Stage::Frame).take(1));
         }
         "this is not".to_owned()

@@ -8,6 +8,9 @@ use super::value::Value;
 use super::{Elaborator, Env, MAX_NODES, Outcome, Poison};
 use crate::hir::{Comprehension, Element, Expr};
 
+/// Elements of a list up to this many are selected by comparisons, more are looked up.
+const SELECTED: usize = 4;
+
 impl<'p> Elaborator<'p> {
     /// The values of a list's elements, comprehensions unrolled.
     pub(super) fn elements(
@@ -156,6 +159,11 @@ impl<'p> Elaborator<'p> {
                 ));
             };
             nodes.push(*node);
+        }
+        if items.len() > SELECTED
+            && let Some(table) = self.table(items)
+        {
+            return Ok(Value::Node(self.graph.element(table, at)));
         }
         let Some(mut result) = nodes.pop() else {
             return Err(self.no_such_index(0.0, 0, span));

@@ -286,7 +286,7 @@ fn survey(graph: &Graph, root: NodeId) -> Formula {
         {
             found.children.push(child);
         }
-        let arguments: Vec<NodeId> = node.arguments().collect();
+        let arguments: Vec<NodeId> = graph.arguments(id).collect();
         stack.extend(arguments.into_iter().rev());
     }
     found

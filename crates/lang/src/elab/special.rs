@@ -1,10 +1,14 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
-use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Bounds, Dim, MaterialField, NodeId, ShapeId, Ternary, Type};
+use sdfc_diagnostics::{Code as ErrorCode, Span};
+use sdfc_graph::eval::HASHES;
+use sdfc_graph::{
+    Binary, Bounds, Dim, Expander, MaterialField, Node, NodeId, ShapeId, Ternary, Type, Unary,
+    reachable,
+};
 
-use super::kernel::{Application, name};
-use super::value::Value;
+use super::kernel::Application;
+use super::value::{Closure, Value};
 use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir;
 
@@ -44,33 +48,103 @@ impl<'p> Elaborator<'p> {
     pub(super) fn bounds(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         self.asked_bounds = true;
         let over = at.args.first().ok_or(Poison)?;
-        let mut value = self.eval(env, over)?;
-        if let (Value::Closure(closure), hir::Type::Fn(takes, _)) = (&value, &over.ty) {
-            let anything = takes.iter().map(|ty| Value::Node(self.anything(ty))).collect();
-            value = self.apply(closure, anything, at.span)?;
-        }
-        match value {
+        match self.eval(env, over)? {
             Value::Shape(shape) => {
                 let [lo, hi] = self.shape_bounds(shape);
                 Ok(Value::Range(lo, hi))
             }
+            Value::Closure(closure) => self.bounds_of_all(&closure, at),
             other => Err(self.unexpected(at.span, "a shape", &other)),
         }
     }
 
-    /// A number or vector that can have any value: a shape made of it stands for all such shapes. Indices beyond
-    /// what 32-bit floats count exactly are left out, since no remainder of those is known.
-    fn anything(&mut self, ty: &hir::Type) -> NodeId {
-        let any = match ty {
-            hir::Type::Vec(2) => self.graph.point(0, Dim::Two),
-            _ => self.graph.point(0, Dim::Three),
+    /// The hull of the bounds of all shapes that a function gives.
+    fn bounds_of_all(&mut self, closure: &Closure<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        let takes = match at.args.first().map(|arg| &arg.ty) {
+            Some(hir::Type::Fn(takes, _)) => takes.clone(),
+            _ => return Err(Poison),
         };
-        let [lo, hi] = [-MAX_INDEX, MAX_INDEX].map(|end| self.graph.number(end));
-        let any = self.graph.ternary(Ternary::Clamp, any, lo, hi);
-        match ty {
-            hir::Type::Vec(_) => any,
-            _ => self.graph.component(any, 0),
+        // A shape whose arguments depend on an outer point has bounds that hold for all of them.
+        let before = self.attempt();
+        let mut anything = Vec::with_capacity(takes.len());
+        for ty in &takes {
+            anything.push(self.anything(ty, closure.levels, at.span)?);
         }
+        let shape = self.apply(closure, anything, at.span)?;
+        self.take_back(before);
+        let Value::Shape(shape) = shape else {
+            return Err(self.unexpected(at.span, "a shape", &shape));
+        };
+        let [lo, hi] = self.shape_bounds(shape);
+        Ok(Value::Range(lo, hi))
+    }
+
+    /// A value of a type that no point outside decides: a shape made of it stands for all such shapes. Indices
+    /// beyond what 32-bit floats count exactly are left out, since no remainder of those is known.
+    fn anything(&mut self, ty: &hir::Type, level: u16, span: Span) -> Outcome<Value<'p>> {
+        let point = self.graph.point(level, Dim::Three);
+        let [lo, hi] = [-MAX_INDEX, MAX_INDEX].map(|end| self.graph.number(end));
+        let point = self.graph.ternary(Ternary::Clamp, point, lo, hi);
+        let node = match ty {
+            hir::Type::Number | hir::Type::Angle => self.graph.component(point, 0),
+            hir::Type::Int => {
+                let number = self.graph.component(point, 0);
+                self.graph.unary(Unary::Floor, number)
+            }
+            hir::Type::Vec(width @ 2..=3) => {
+                let lanes: Vec<u8> = (0..*width).collect();
+                self.graph.swizzle(point, &lanes)
+            }
+            _ => {
+                let message = "`bounds` of a function needs one of numbers or points";
+                return Err(self.fail(ErrorCode::TYPE_MISMATCH, span, message));
+            }
+        };
+        Ok(Value::Node(node))
+    }
+
+    /// `gradient(shape, point)`: the shape's formula, those of its parts put in, differentiated.
+    pub(super) fn gradient(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+    ) -> Outcome<Value<'p>> {
+        let [shape, place] = at.args else { return Err(Poison) };
+        let (shape, place) = (self.shape(env, shape), self.number(env, place));
+        let (shape, place) = (shape?, place?);
+        let (level, dim) = (self.graph.shape(shape).level, self.graph.shape(shape).dim);
+        // Points of the formulas around it stay; its own is replaced by the place in the end.
+        let mut points: Vec<NodeId> =
+            (0..level).map(|outer| self.outer_point(shape, outer)).collect();
+        let own = self.graph.point(level, dim);
+        let mut expander = Expander::new();
+        let gradient =
+            expander.field_under(&mut self.graph, shape, &points, own).and_then(|field| {
+                let gradient = sdfc_graph::gradient(&mut self.graph, field, own);
+                points.push(place);
+                expander.node(&mut self.graph, gradient, &points)
+            });
+        gradient.map(Value::Node).map_err(|error| {
+            self.fail(ErrorCode::TOO_MANY_NODES, at.span, format!("`gradient`: {error}"))
+        })
+    }
+
+    /// The point of a formula around a shape, as the shape's formulas speak of it.
+    fn outer_point(&mut self, shape: ShapeId, level: u16) -> NodeId {
+        let mut pending = vec![shape];
+        let mut seen = rustc_hash::FxHashSet::default();
+        while let Some(shape) = pending.pop() {
+            if !seen.insert(shape) {
+                continue;
+            }
+            for id in reachable(&self.graph, &[self.graph.shape(shape).formula]) {
+                if matches!(self.graph.node(id), Node::Point(at, _) if at == level) {
+                    return id;
+                }
+            }
+            pending.extend(self.graph.shape(shape).children.iter().copied());
+        }
+        self.graph.point(level, Dim::Three) // no formula speaks of it
     }
 
     /// Derived once per shape. All params are known by then: only they stand before shapes.
@@ -105,50 +179,38 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Material(fields))
     }
 
-    /// `hash(...)` of constants.
+    /// `hash(...)`: a number in 0..1.
     pub(super) fn hash(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let words = self.words(env, at)?;
-        Ok(Value::Node(self.graph.number(hash_words(0, &words))))
+        let start = self.graph.number(HASH_STARTS[0]);
+        self.hashed(env, at, start)
     }
 
-    /// `hash3(...)` of constants.
+    /// `hash3(...)`: three numbers in 0..1.
     pub(super) fn hash3(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        let words = self.words(env, at)?;
-        let lanes = [0, 1, 2].map(|seed| hash_words(seed, &words));
-        Ok(Value::Node(self.graph.constant(Type::Vec3, &lanes)))
+        let start = self.graph.constant(Type::Vec3, &HASH_STARTS);
+        self.hashed(env, at, start)
     }
 
-    /// The whole parts of all arguments' lanes.
-    fn words(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Vec<u32>> {
-        let mut words = Vec::new();
-        for arg in at.args {
-            let node = self.number(env, arg)?;
-            let Some((lanes, width)) = self.as_lanes(node) else {
-                self.decides(node);
-                let what = format!("`{}` of a value that is not constant", name(at.op));
-                return Err(self.not_yet(arg.span, &what));
+    /// The lanes of all arguments, hashed one after the other.
+    fn hashed(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+        mut state: NodeId,
+    ) -> Outcome<Value<'p>> {
+        for value in self.all(env, at.args)? {
+            let Value::Node(node) = value else {
+                return Err(self.unexpected(at.span, "a number", &value));
             };
-            words.extend(lanes[..width].iter().map(|&lane| lane.floor() as i64 as u32));
+            for lane in 0..self.graph.ty(node).width() as u8 {
+                let part = self.graph.component(node, lane);
+                state = self.graph.binary(Binary::Hash, state, part);
+            }
         }
-        Ok(words)
-    }
-
-    /// Refuses what the specification has and this version has not.
-    pub(super) fn not_yet(&mut self, span: Span, what: &str) -> Poison {
-        let message = format!("{what} is not in this version");
-        self.report(Diagnostic::error(ErrorCode::NOT_YET, span, message))
+        let scale = self.graph.number(1.0 / HASHES);
+        Ok(Value::Node(self.graph.mul(state, scale)))
     }
 }
 
-/// A number in 0..1 from whole numbers: each word is mixed in by one round of PCG
-/// (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020); 24 bits survive, which f32 holds.
-fn hash_words(seed: u32, words: &[u32]) -> f64 {
-    let mixed = words.iter().fold(seed, |state, &word| pcg(state ^ pcg(word)));
-    f64::from(pcg(mixed) >> 8) / f64::from(1 << 24)
-}
-
-fn pcg(word: u32) -> u32 {
-    let state = word.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    (word >> 22) ^ word
-}
+/// Where the three numbers of `hash3` start: far apart, since a start and a coordinate are added.
+const HASH_STARTS: [f64; 3] = [0.0, 10_368_889.0, 4_370_562.0];

@@ -41,6 +41,14 @@ fn program(build: impl FnOnce(&mut Graph) -> Field) -> Program {
     program
 }
 
+/// A program of which only the distance is asked.
+pub fn program_of(build: impl FnOnce(&mut Graph, NodeId) -> NodeId) -> Program {
+    let mut program = Program::default();
+    let p = point(&mut program.graph);
+    program.distance = Some(build(&mut program.graph, p));
+    program
+}
+
 /// A unit sphere about the origin, seen from [0, 0, 5] with 40 degrees.
 pub fn sphere() -> Program {
     let mut program = program(|graph| sphere_field(graph, [0.0; 3], 1.0));

@@ -1,7 +1,9 @@
 //! Functions that state how fast they change: blends, and functions of a point.
 
-use sdfc::graph::eval::{FrameValues, Tape};
-use sdfc::graph::{NodeId, Scene};
+use std::collections::HashMap;
+
+use sdfc::graph::eval::{FrameValues, HASHES, Tape};
+use sdfc::graph::{Binary, Dim, FrameInput, Node, NodeId, Scene, gradient, reachable};
 use sdfc::lang::library::Entry;
 
 use crate::contract::{self, Outcome};
@@ -14,6 +16,9 @@ const TRIES: usize = 80;
 /// Rounding of f64, in the values that are compared.
 const ROUNDING: f64 = 1e-12;
 const SMALLER: f64 = 0.9;
+/// Searches for the hashes of the steepest slope, and steps of each.
+const CLIMBS: usize = 24;
+const STEPS: usize = 600;
 
 /// Whether there is anything to check: a function that states a constant, or gives a blend.
 pub fn states_something(entry: &Entry) -> bool {
@@ -99,5 +104,63 @@ fn measured(scene: &Scene) -> Option<(f64, f64)> {
             steepest = steepest.max(rise / run);
         }
     }
-    Some((stated, steepest))
+    Some((stated, steepest.max(steepest_of_all_hashes(scene, formula)?)))
+}
+
+/// The steepest slope found, whatever the hashes in the formula were: a constant holds for all of them, and
+/// those of a few cells seldom come near it. 0 without hashes.
+fn steepest_of_all_hashes(scene: &Scene, formula: NodeId) -> Option<f64> {
+    let mut graph = scene.graph.clone();
+    let mut new: HashMap<NodeId, NodeId> = HashMap::new();
+    let mut hashes = 0;
+    for id in reachable(&graph, &[formula]) {
+        let rebuilt = if let Node::Binary(Binary::Hash, ..) = graph.node(id) {
+            hashes += 1;
+            graph.frame_input(FrameInput::Param(hashes - 1), graph.ty(id))
+        } else {
+            graph.rebuild(id, |old| new.get(&old).copied().unwrap_or(old))
+        };
+        new.insert(id, rebuilt);
+    }
+    if hashes == 0 {
+        return Some(0.0);
+    }
+    let point = graph.point(0, Dim::Three);
+    let slope = gradient(&mut graph, *new.get(&formula)?, point);
+    let tape = Tape::new(&graph, &[slope]).ok()?;
+    let slope_at = |place: [f64; 3], params: &[[f64; 4]]| {
+        let frame = FrameValues { params: params.to_vec(), ..FrameValues::default() };
+        tape.prepare::<f64>(&frame).eval(place)[0].iter().map(|x| x * x).sum::<f64>().sqrt()
+    };
+    let mut random = Random(3);
+    let mut steepest = 0.0f64;
+    for _ in 0..CLIMBS {
+        let mut place = [0; 3].map(|_| 0.5 + 0.5 * random.signed());
+        let mut params: Vec<[f64; 4]> =
+            (0..hashes).map(|_| [0; 4].map(|_| any_hash(&mut random))).collect();
+        let mut best = slope_at(place, &params);
+        for step in 0..STEPS {
+            let (old_place, old_params) = (place, params.clone());
+            if step % 2 == 0 {
+                let reach = 0.3 * 0.98_f64.powi(step as i32);
+                place = place.map(|x| x + reach * random.signed());
+            } else {
+                let at = (random.signed().abs() * f64::from(hashes)) as usize % params.len();
+                params[at] = [0; 4].map(|_| any_hash(&mut random));
+            }
+            let slope = slope_at(place, &params);
+            if slope > best {
+                best = slope;
+            } else {
+                (place, params) = (old_place, old_params);
+            }
+        }
+        steepest = steepest.max(best);
+    }
+    Some(steepest)
+}
+
+/// Often one of the ends.
+fn any_hash(random: &mut Random) -> f64 {
+    ((0.5 + random.signed()).clamp(0.0, 1.0) * (HASHES - 1.0)).floor()
 }

@@ -4,6 +4,7 @@ mod arithmetic;
 mod elementary;
 
 use super::Number;
+use super::hash::{HASHES, hash};
 
 /// All numbers from `lo` to `hi`, in f64.
 ///
@@ -232,6 +233,13 @@ impl Number for Interval {
     fn step(self, x: Self) -> Self {
         Self::truth(x.lo >= self.hi, x.hi < self.lo)
     }
+    fn hash(self, x: Self) -> Self {
+        let whole = x.floor();
+        if self.lo == self.hi && whole.lo == whole.hi {
+            return Self::constant(hash(self.lo, whole.lo));
+        }
+        Self { lo: 0.0, hi: HASHES - 1.0 }
+    }
     fn direction(self, length: Self) -> Self {
         self.component(length)
     }
@@ -253,6 +261,17 @@ impl Number for Interval {
     }
     fn or(self, y: Self) -> Self {
         Number::max(self, y)
+    }
+
+    fn is_never(self) -> bool {
+        self.hi == 0.0
+    }
+    fn element(self, list: &[f64]) -> Self {
+        let last = list.len().saturating_sub(1);
+        let place = |end: f64| (end.max(0.0) as usize).min(last);
+        let found = list.get(place(self.lo)..=place(self.hi)).unwrap_or_default();
+        let values = found.iter().map(|&value| Self::constant(value));
+        values.reduce(Self::hull).unwrap_or(Self::ENTIRE)
     }
 
     fn mix(self, y: Self, t: Self) -> Self {

@@ -110,7 +110,13 @@ pub(super) fn steps(graph: &Graph, id: NodeId) -> Result<Vec<Step>, Inexpressibl
             }
             steps
         }
-        Node::Const(_) | Node::Frame(..) | Node::Sample(..) | Node::MaterialAt(..) => {
+        Node::Const(_)
+        | Node::Frame(..)
+        | Node::Variable(..)
+        | Node::Loop(..)
+        | Node::Element(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => {
             return Err(lacks(&node));
         }
     })
@@ -194,7 +200,7 @@ fn binary(op: Binary, a: NodeId, b: NodeId, width: usize) -> Result<Vec<Step>, I
         Binary::Dot => both(Operation::Dot, width),
         Binary::Lt => both(Operation::Less, 0),
         Binary::Le => not_less(b, a),
-        Binary::Pow | Binary::Atan2 | Binary::Cross | Binary::Eq | Binary::Ne => {
+        Binary::Pow | Binary::Atan2 | Binary::Hash | Binary::Cross | Binary::Eq | Binary::Ne => {
             return Err(lacks(&op));
         }
     })

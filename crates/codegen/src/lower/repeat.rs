@@ -1,0 +1,134 @@
+//! Loops and lists.
+
+use naga::{BinaryOperator, Expression, MathFunction, ScalarKind, UnaryOperator};
+use sdfc_graph::{LoopId, Node, NodeId, Place, TableId, Type};
+
+use super::{Lowering, Value, hint};
+use crate::{Error, types};
+
+/// What a round reads: its number, and the state.
+pub(super) struct Round {
+    number: Value,
+    state: Vec<Value>,
+}
+
+impl Lowering<'_> {
+    /// A part of the state after a loop. The loop is written where the first part is needed.
+    pub(super) fn after_loop(&mut self, id: LoopId, position: u16) -> Result<Value, Error> {
+        if !self.loops.contains_key(&id) {
+            let results = self.repeat(id)?;
+            self.loops.insert(id, results);
+        }
+        Ok(self.loops[&id][usize::from(position)])
+    }
+
+    /// What a variable of a body holds in the round at hand.
+    pub(super) fn variable(&self, id: NodeId, depth: u8, place: Place) -> Result<Value, Error> {
+        let round = self.rounds.get(usize::from(depth)).and_then(Option::as_ref);
+        let round = round.ok_or(Error::NotFlat(id))?;
+        match place {
+            Place::Round => Ok(round.number),
+            Place::State(position) => {
+                round.state.get(usize::from(position)).copied().ok_or(Error::NotFlat(id))
+            }
+        }
+    }
+
+    /// Writes a loop. Its state is in variables, which each round reads first and sets last.
+    fn repeat(&mut self, id: LoopId) -> Result<Vec<Value>, Error> {
+        let graph = &self.program.graph;
+        let (repeated, body) = (graph.repeated(id).clone(), graph.body(id));
+        let limit = self.limit(repeated.cap, repeated.count)?;
+        let ty = types::value(self.types, Type::Scalar);
+        let counter = self.body.variable("round", ty);
+        let nought = self.body.literal(0.0);
+        self.body.store(counter, nought);
+        let state = self.state(&repeated.start)?;
+
+        self.body.open_loop();
+        let matrices = self.matrices.clone();
+        let number = self.body.load(counter, "i");
+        let past = self.body.binary(BinaryOperator::GreaterEqual, number, limit);
+        self.body.break_if(past);
+        let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
+        let depth = usize::from(repeated.depth);
+        self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
+        self.rounds[depth] = Some(Round { number, state: read });
+        self.visit_needed(&body.condition)?;
+        if let Some(go_on) = repeated.go_on {
+            let go_on = self.value(go_on)?;
+            let not = Expression::Unary { op: UnaryOperator::LogicalNot, expr: go_on };
+            let ends = self.body.compute(not, &[go_on]);
+            self.body.break_if(ends);
+        }
+        self.visit_needed(&body.round)?;
+        let next = repeated.next.iter().map(|&part| self.value(part));
+        let next: Vec<Value> = next.collect::<Result<_, _>>()?;
+        for (&(variable, _), next) in state.iter().zip(next) {
+            self.body.store(variable, next);
+        }
+        let one = self.body.literal(1.0);
+        let following = self.body.binary(BinaryOperator::Add, number, one);
+        self.body.store(counter, following);
+        self.body.close_loop();
+
+        self.rounds[depth] = None;
+        self.matrices = matrices;
+        self.forget(body.condition.iter().chain(&body.round));
+        Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
+    }
+
+    /// Variables that hold the start, and names for what is read from them.
+    fn state(&mut self, start: &[NodeId]) -> Result<Vec<(Value, &'static str)>, Error> {
+        let mut state = Vec::with_capacity(start.len());
+        for &part in start {
+            let ty = self.program.graph.ty(part);
+            let ty_handle = types::value(self.types, ty);
+            let variable = self.body.variable("state", ty_handle);
+            let start = self.value(part)?;
+            self.body.store(variable, start);
+            state.push((variable, hint(ty)));
+        }
+        Ok(state)
+    }
+
+    /// What was computed in a body is out of reach after it.
+    fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
+        for id in nodes {
+            self.values.remove(id);
+            self.words.remove(id);
+            if let Node::Loop(within, ..) = self.program.graph.node(*id) {
+                self.loops.remove(&within);
+            }
+        }
+    }
+
+    fn visit_needed(&mut self, nodes: &[NodeId]) -> Result<(), Error> {
+        let needed = nodes.iter().copied().filter(|&id| self.uses.contains(id));
+        let needed: Vec<NodeId> = needed.collect();
+        self.visit(needed.into_iter())
+    }
+
+    /// The number of rounds, never more than the cap.
+    fn limit(&mut self, cap: u32, count: Option<NodeId>) -> Result<Value, Error> {
+        let cap = self.body.literal(cap as f32);
+        let Some(count) = count else { return Ok(cap) };
+        let count = self.value(count)?;
+        let limit = self.body.call2(MathFunction::Min, count, cap);
+        self.body.name(limit, "rounds");
+        Ok(limit)
+    }
+
+    /// An element of a list.
+    pub(super) fn element(&mut self, id: TableId, at: NodeId, ty: Type) -> Result<Value, Error> {
+        let (variable, last) = self.inputs.tables.get(id).ok_or(Error::NotFlat(at))?;
+        let at = self.value(at)?;
+        let (nought, last) = (self.body.literal(0.0), self.body.literal(last as f32));
+        let raised = self.body.call2(MathFunction::Max, at, nought);
+        let place = self.body.call2(MathFunction::Min, raised, last);
+        let index = self.body.cast(place, ScalarKind::Uint, Some(4));
+        let base = self.body.declare(Expression::GlobalVariable(variable));
+        let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
+        Ok(self.body.load(pointer, hint(ty)))
+    }
+}

@@ -1,0 +1,69 @@
+//! Noises keep their ranges and constants, across the walls of cells too.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod support;
+
+use support::Field;
+
+/// A generator of numbers in 0..1 (Steele and others, "SplitMix").
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+struct Noise {
+    formula: &'static str,
+    range: [f64; 2],
+    lipschitz: f64,
+}
+
+const NOISES: [Noise; 7] = [
+    Noise { formula: "value_noise(p)", range: [-1.0, 1.0], lipschitz: 3.75 },
+    Noise { formula: "gradient_noise(p)", range: [-1.0, 1.0], lipschitz: 3.2243 },
+    Noise { formula: "simplex_noise(p)", range: [-1.0, 1.0], lipschitz: 7.81 },
+    Noise { formula: "voronoi(p)", range: [0.0, 1.0], lipschitz: 1.0 },
+    Noise { formula: "voronoi_walls(p)", range: [0.0, 1.0], lipschitz: 2.0 },
+    // Five octaves whose weights sum to 1, each as steep as the first.
+    Noise { formula: "fbm(p)", range: [-1.0, 1.0], lipschitz: 8.321 },
+    Noise { formula: "turbulence(p)", range: [0.0, 1.0], lipschitz: 8.321 },
+];
+
+/// Pairs of near points find jumps at the walls of cells as well as slopes.
+#[test]
+fn no_pair_of_points_is_farther_apart_than_the_constant_allows() {
+    for Noise { formula, range, lipschitz } in NOISES {
+        let field = Field::drawn(&format!("solid it() = {formula}\nit()"));
+        let mut value = field.evaluator();
+        let mut random = Random(7);
+        let mut steepest = 0.0f64;
+        for _ in 0..30_000 {
+            let a = [0; 3].map(|_| 40.0 * (random.next() - 0.5));
+            let step = [0; 3].map(|_| random.next() - 0.5);
+            let length = step.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let distance = 1e-3 * random.next() + 1e-6;
+            let b = [0, 1, 2].map(|i| a[i] + step[i] / length * distance);
+            let (x, y) = (value.scalar(a), value.scalar(b));
+            assert!((range[0]..=range[1]).contains(&x), "{formula} is {x} at {a:?}");
+            steepest = steepest.max((x - y).abs() / distance);
+        }
+        assert!(steepest <= lipschitz * (1.0 + 1e-6), "{formula} has a slope of {steepest}");
+    }
+}
+
+#[test]
+fn a_constant_coordinate_leaves_half_of_the_corners() {
+    let nodes = |formula: &str| {
+        let scene = support::elaborated(&format!("solid it() = {formula}\nit()")).scene;
+        sdfc_graph::operation_count(&scene.graph, &[support::root(&scene).formula])
+    };
+    let (flat, full) = (nodes("gradient_noise([p.x, p.z, 0])"), nodes("gradient_noise(p)"));
+    assert!(flat * 3 < full * 2, "{flat} of {full}");
+}
