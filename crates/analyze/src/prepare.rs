@@ -1,5 +1,6 @@
 //! The passes, in order, from a scene to a flat program.
 
+use rustc_hash::FxHashSet;
 use sdfc_graph::{
     Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, fold_transforms, gradient,
     uniforms,
@@ -124,6 +125,7 @@ fn shape_reports(
     root: ShapeId,
     divided: &[ShapeId],
 ) -> Vec<ShapeReport> {
+    let divided: FxHashSet<ShapeId> = divided.iter().copied().collect();
     let mut shapes = Vec::new();
     for shape in shapes_below(graph, root) {
         let Some(quality) = qualities.get(shape) else { continue };

@@ -38,8 +38,8 @@ pub struct Claim {
 pub struct Graph {
     nodes: Vec<Node>,
     facts: Vec<Facts>,
-    /// By the node's hash; the nodes themselves are looked up, which keeps the table small.
-    ids: HashTable<NodeId>,
+    /// By the node's hash, half of which stands beside the id, so that few nodes are looked up.
+    ids: HashTable<(u32, NodeId)>,
     shapes: Vec<Shape>,
     shape_ids: FxHashMap<u64, Vec<ShapeId>>,
     claims: FxHashMap<NodeId, Claim>,
@@ -183,15 +183,18 @@ impl Graph {
 
     /// The id of a node exactly as given: no folding. Callers use the typed builders.
     pub(crate) fn intern(&mut self, node: Node) -> NodeId {
-        let hash = hash_of(&node);
-        if let Some(&id) = self.ids.find(hash, |id| self.nodes[id.index()] == node) {
+        let half = half_hash_of(&node);
+        let known = self.ids.find(whole_hash(half), |&(other, id)| {
+            other == half && self.nodes[id.index()] == node
+        });
+        if let Some(&(_, id)) = known {
             return id;
         }
         let facts = self.facts_of(&node);
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.facts.push(facts);
-        self.ids.insert_unique(hash, id, |id| hash_of(&self.nodes[id.index()]));
+        self.ids.insert_unique(whole_hash(half), (half, id), |&(half, _)| whole_hash(half));
         id
     }
 
@@ -405,8 +408,14 @@ pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
     }
 }
 
-fn hash_of(node: &Node) -> u64 {
-    BuildHasherDefault::<FxHasher>::default().hash_one(node)
+fn half_hash_of(node: &Node) -> u32 {
+    let hash = BuildHasherDefault::<FxHasher>::default().hash_one(node);
+    (hash ^ (hash >> 32)) as u32
+}
+
+/// A hash as the table wants it, which reads its highest and its lowest bits.
+fn whole_hash(half: u32) -> u64 {
+    u64::from(half) << 32 | u64::from(half)
 }
 
 fn shape_key(definition: &str, dim: crate::Dim, level: u16, args: &[Arg]) -> u64 {

@@ -5,15 +5,15 @@ use crate::NodeId;
 const SET_PAGE: usize = 1024;
 const MAP_PAGE: usize = 64;
 
-/// A set of nodes.
+/// A set of nodes of one arena.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct IdSet {
+pub struct IdSet {
     pages: Vec<Option<Box<[u64; SET_PAGE / 64]>>>,
 }
 
 impl IdSet {
-    /// Whether the node was not there before.
-    pub(crate) fn insert(&mut self, id: NodeId) -> bool {
+    /// Adds a node; whether it was not there before.
+    pub fn insert(&mut self, id: NodeId) -> bool {
         let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);
@@ -25,14 +25,15 @@ impl IdSet {
         new
     }
 
-    pub(crate) fn contains(&self, id: NodeId) -> bool {
+    /// Whether the node is there.
+    pub fn contains(&self, id: NodeId) -> bool {
         let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
         let page = self.pages.get(page).and_then(Option::as_ref);
         page.is_some_and(|words| words[place / 64] >> (place % 64) & 1 == 1)
     }
 
     /// All, ascending.
-    pub(crate) fn to_vec(&self) -> Vec<NodeId> {
+    pub fn to_vec(&self) -> Vec<NodeId> {
         let mut ids = Vec::new();
         for (page, words) in self.pages.iter().enumerate() {
             for (i, word) in words.iter().flat_map(|words| words.iter().enumerate()) {
@@ -58,9 +59,9 @@ impl FromIterator<NodeId> for IdSet {
     }
 }
 
-/// Values by node.
+/// Values of nodes of one arena.
 #[derive(Clone, Debug)]
-pub(crate) struct IdMap<T> {
+pub struct IdMap<T> {
     pages: Vec<Option<Box<[Option<T>; MAP_PAGE]>>>,
 }
 
@@ -71,17 +72,24 @@ impl<T> Default for IdMap<T> {
 }
 
 impl<T: Copy> IdMap<T> {
-    pub(crate) fn get(&self, id: NodeId) -> Option<T> {
+    /// The node's value.
+    pub fn get(&self, id: NodeId) -> Option<T> {
         let page = self.pages.get(id.index() / MAP_PAGE)?.as_ref()?;
         page[id.index() % MAP_PAGE]
     }
 
-    pub(crate) fn insert(&mut self, id: NodeId, value: T) {
+    /// Gives the node a value.
+    pub fn insert(&mut self, id: NodeId, value: T) {
         *self.slot(id) = Some(value);
     }
 
+    /// Takes the node's value away.
+    pub fn remove(&mut self, id: NodeId) {
+        self.slot(id).take();
+    }
+
     /// The place of a node's value.
-    pub(crate) fn slot(&mut self, id: NodeId) -> &mut Option<T> {
+    pub fn slot(&mut self, id: NodeId) -> &mut Option<T> {
         let page = id.index() / MAP_PAGE;
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);

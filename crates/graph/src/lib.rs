@@ -67,6 +67,7 @@ pub use dump::{dump, operation_count};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
 pub use graph::{Arguments, Claim, Graph};
 pub use hoist::uniforms;
+pub use ids::{IdMap, IdSet};
 pub use node::{
     Binary, Const, Dim, FrameInput, LoopId, MaterialField, Node, NodeId, Place, ShapeId, Stage,
     TableId, Ternary, Type, Unary,

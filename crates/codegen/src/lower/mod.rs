@@ -13,7 +13,7 @@ mod uses;
 use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
 use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Const, Dim, LoopId, Node, NodeId, Program, Type};
+use sdfc_graph::{Binary, Const, Dim, IdMap, LoopId, Node, NodeId, Program, Type};
 
 pub(crate) use body::Body;
 
@@ -85,7 +85,7 @@ struct Lowering<'a> {
     /// The argument, once it is used: not every function has one.
     point: Option<Value>,
     /// Values of the nodes visited so far, but for constants.
-    values: FxHashMap<NodeId, Value>,
+    values: IdMap<Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
     /// Hashes as words.
     words: FxHashMap<NodeId, Value>,
@@ -111,7 +111,7 @@ impl<'a> Lowering<'a> {
     /// Computes all nodes that the roots need.
     fn visit_all(&mut self) -> Result<(), Error> {
         let graph = &self.program.graph;
-        let outside = self.uses.order().into_iter().filter(|&id| graph.loops(id) == 0);
+        let outside = self.uses.take_order().into_iter().filter(|&id| graph.loops(id) == 0);
         self.visit(outside)
     }
 
@@ -152,7 +152,7 @@ impl<'a> Lowering<'a> {
         if let Node::Const(constant) = self.program.graph.node(id) {
             return self.constant(id, constant);
         }
-        self.values.get(&id).copied().ok_or(Error::NotFlat(id))
+        self.values.get(id).ok_or(Error::NotFlat(id))
     }
 
     fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {

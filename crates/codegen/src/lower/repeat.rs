@@ -95,7 +95,7 @@ impl Lowering<'_> {
     /// What was computed in a body is out of reach after it.
     fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
         for id in nodes {
-            self.values.remove(id);
+            self.values.remove(*id);
             self.words.remove(id);
             if let Node::Loop(within, ..) = self.program.graph.node(*id) {
                 self.loops.remove(&within);

@@ -1,7 +1,7 @@
 //! Which nodes a function needs, and how often each is written.
 
-use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{Binary, Graph, Node, NodeId, Type, Unary};
+use rustc_hash::FxHashSet;
+use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary};
 
 use super::hash::reads_word;
 use crate::inputs::Inputs;
@@ -9,7 +9,7 @@ use crate::inputs::Inputs;
 /// How often each node that the roots need is written in the text.
 #[derive(Debug)]
 pub(crate) struct Uses {
-    counts: FxHashMap<NodeId, u32>,
+    counts: IdMap<u32>,
     /// What loops read from outside: written out there it would be computed in each round.
     kept: FxHashSet<NodeId>,
     order: Vec<NodeId>,
@@ -19,23 +19,26 @@ impl Uses {
     /// Counts from the roots down. Nodes computed outside the shader need no operands.
     pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
         let order = needed(graph, roots, inputs);
-        let (mut counts, mut kept) = (FxHashMap::default(), FxHashSet::default());
+        let (mut counts, mut kept) = (IdMap::default(), FxHashSet::default());
+        let add = |counts: &mut IdMap<u32>, id, times| {
+            *counts.slot(id).get_or_insert_default() += times;
+        };
         for &root in roots {
-            *counts.entry(root).or_insert(0) += 1;
+            add(&mut counts, root, 1);
         }
         // Users have greater ids, so a node's count is complete when it is met.
         for &id in order.iter().rev().filter(|&&id| !inputs.is_slot(id)) {
             let node = graph.node(id);
             // A component is written out at each of its uses, and its vector with it.
             let times = if is_component(&node) {
-                counts.get(&id).copied().unwrap_or(1)
+                counts.get(id).unwrap_or(1)
             } else {
                 repeats(&node)
             };
-            for (position, operand) in operands(graph, id).into_iter().enumerate() {
+            for (position, operand) in operands(graph, id).enumerate() {
                 let as_word =
                     position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
-                *counts.entry(operand).or_insert(0) += if as_word { 0 } else { times };
+                add(&mut counts, operand, if as_word { 0 } else { times });
                 if graph.loops(id) & !graph.loops(operand) != 0 {
                     keep(graph, operand, &mut kept);
                 }
@@ -46,12 +49,12 @@ impl Uses {
 
     /// How often the node is written.
     pub(crate) fn of(&self, id: NodeId) -> u32 {
-        self.counts.get(&id).copied().unwrap_or(0)
+        self.counts.get(id).unwrap_or(0)
     }
 
     /// Whether the roots need the node.
     pub(crate) fn contains(&self, id: NodeId) -> bool {
-        self.counts.contains_key(&id)
+        self.counts.get(id).is_some()
     }
 
     /// Whether the node needs a name however seldom it is written.
@@ -59,9 +62,9 @@ impl Uses {
         self.kept.contains(&id)
     }
 
-    /// All nodes, operands before their uses.
-    pub(crate) fn order(&self) -> Vec<NodeId> {
-        self.order.clone()
+    /// All nodes, operands before their uses; to be asked for once.
+    pub(crate) fn take_order(&mut self) -> Vec<NodeId> {
+        std::mem::take(&mut self.order)
     }
 }
 
@@ -117,14 +120,20 @@ fn filling(graph: &Graph, id: NodeId) -> Option<Filling> {
 }
 
 /// The nodes that the lowering of a node reads.
-fn operands(graph: &Graph, id: NodeId) -> Vec<NodeId> {
-    let Node::Binary(Binary::Mul, left, right) = graph.node(id) else {
-        return graph.arguments(id).collect();
+fn operands(graph: &Graph, id: NodeId) -> impl Iterator<Item = NodeId> {
+    let (factors, arguments) = if let Node::Binary(Binary::Mul, left, right) = graph.node(id) {
+        (factors(graph, left, right), None)
+    } else {
+        ([None; 2], Some(graph.arguments(id)))
     };
+    factors.into_iter().flatten().chain(arguments.into_iter().flatten())
+}
+
+fn factors(graph: &Graph, left: NodeId, right: NodeId) -> [Option<NodeId>; 2] {
     match product(graph, left, right) {
-        Product::Plain => vec![left, right],
-        Product::LeftFilled(filling) => filling.node().into_iter().chain([right]).collect(),
-        Product::RightFilled(filling) => [left].into_iter().chain(filling.node()).collect(),
+        Product::Plain => [Some(left), Some(right)],
+        Product::LeftFilled(filling) => [filling.node(), Some(right)],
+        Product::RightFilled(filling) => [Some(left), filling.node()],
     }
 }
 
@@ -166,14 +175,12 @@ fn repeats(node: &Node) -> u32 {
 
 /// The nodes that the lowering of the roots reads, operands first.
 fn needed(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Vec<NodeId> {
-    let mut seen = FxHashSet::default();
+    let mut seen = IdSet::default();
     let mut pending = roots.to_vec();
     while let Some(id) = pending.pop() {
         if seen.insert(id) && !inputs.is_slot(id) {
             pending.extend(operands(graph, id));
         }
     }
-    let mut order: Vec<NodeId> = seen.into_iter().collect();
-    order.sort_unstable();
-    order
+    seen.to_vec()
 }
