@@ -184,9 +184,9 @@ impl Graph {
     /// The id of a node exactly as given: no folding. Callers use the typed builders.
     pub(crate) fn intern(&mut self, node: Node) -> NodeId {
         let half = half_hash_of(&node);
-        let known = self.ids.find(whole_hash(half), |&(other, id)| {
-            other == half && self.nodes[id.index()] == node
-        });
+        let known = self
+            .ids
+            .find(whole_hash(half), |&(other, id)| other == half && self.nodes[id.index()] == node);
         if let Some(&(_, id)) = known {
             return id;
         }

@@ -30,11 +30,8 @@ impl Uses {
         for &id in order.iter().rev().filter(|&&id| !inputs.is_slot(id)) {
             let node = graph.node(id);
             // A component is written out at each of its uses, and its vector with it.
-            let times = if is_component(&node) {
-                counts.get(id).unwrap_or(1)
-            } else {
-                repeats(&node)
-            };
+            let times =
+                if is_component(&node) { counts.get(id).unwrap_or(1) } else { repeats(&node) };
             for (position, operand) in operands(graph, id).enumerate() {
                 let as_word =
                     position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
