@@ -1,12 +1,13 @@
 //! Arguments find their parameters.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
-use sdfc_syntax::ast::Name;
+use sdfc_syntax::ast::{self, Name};
 
 use super::call::{Callee, Given, Value, count, is_lambda};
 use super::coerce::Role;
 use super::decl::Slot;
 use super::types::{self, show};
+use super::written::written;
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
 use crate::spelling::nearest;
@@ -140,7 +141,7 @@ impl<'a> Checker<'a> {
                 Value::Expr(e) => {
                     let value = self.infer(e);
                     match later.iter().find(|later| meant_for(&value.ty, later, want)) {
-                        Some(later) => Element::One(self.needs_name(value.span, slot, later)),
+                        Some(later) => Element::One(self.needs_name(e, slot, later)),
                         None => self.spread(Element::One(value), want, role),
                     }
                 }
@@ -153,12 +154,11 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports an argument that only a name brings to its parameter.
-    fn needs_name(&mut self, span: Span, slot: &Slot<'a>, later: &Slot<'a>) -> Expr {
+    fn needs_name(&mut self, given: &ast::Expr, slot: &Slot<'a>, later: &Slot<'a>) -> Expr {
         let message = format!("what follows `{}` is named", slot.name);
-        self.report(
-            Diagnostic::error(Code::ARGUMENTS, span, message).help(format!("{}: ...", later.name)),
-        );
-        poison(span)
+        let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
+        self.report(found.help(format!("{}: {}", later.name, written(given))));
+        poison(given.span)
     }
 
     /// A list among the arguments of a variadic parameter gives its elements.
@@ -214,7 +214,7 @@ fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
     Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
 }
 
-/// How to call it: `capsule(a: vec3, b: vec3, r: number = ...)`
+/// How to call it: `capsule(a: vec3, b: vec3, r: number = 0.5)`
 fn signature(name: &str, slots: &[Slot]) -> String {
     let slots: Vec<String> = slots
         .iter()
@@ -223,7 +223,11 @@ fn signature(name: &str, slots: &[Slot]) -> String {
                 Type::List(of) if slot.variadic => format!("{}...", show(of)),
                 ty => show(ty),
             };
-            let default = if slot.optional { " = ..." } else { "" };
+            let default = match slot.default {
+                Some(default) => format!(" = {}", written(default)),
+                None if slot.optional => " = ...".to_owned(),
+                None => String::new(),
+            };
             format!("{}: {ty}{default}", slot.name)
         })
         .collect();

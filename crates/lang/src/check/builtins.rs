@@ -22,7 +22,7 @@ const FIELDS: [(&str, MaterialField, Type); 5] = [
 
 /// A parameter of a kernel function.
 pub(super) fn slot(name: &str, ty: Type, optional: bool) -> Slot<'_> {
-    Slot { name, ty, variadic: false, optional }
+    Slot { name, ty, variadic: false, optional, default: None }
 }
 
 /// An operation of the kernel.

@@ -281,9 +281,11 @@ fn way_out(have: &Type, want: &Type) -> Option<String> {
             Some(format!("add what is missing: vec{want}(v, 0)"))
         }
         (Type::Vec(3) | Type::Vec(4), Type::Color) => Some("rgb(v.x, v.y, v.z), or a literal: #d94f30".into()),
-        (Type::Number | Type::Int, Type::Color) => Some("a colour is written #d94f30, or made by rgb, hsv, oklch".into()),
+        (Type::Number | Type::Int | Type::Text, Type::Color) => Some("a colour is written #d94f30, or made by rgb, hsv, oklch".into()),
         (Type::Color, Type::Vec(3)) => Some("take its components: .rgb".into()),
-        (Type::Color, Type::Material) => Some("material(color: ...)".into()),
+        (Type::Color | Type::Text, Type::Material) => {
+            Some("a material is made of a colour: material(color: #d94f30)".into())
+        }
         (Type::Number | Type::Int, Type::Bool) => Some("compare it: x > 0".into()),
         (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; `for` makes a list of its components: [for c in v: c]".into()),
         _ => None,

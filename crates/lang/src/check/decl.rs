@@ -22,6 +22,8 @@ pub(super) struct Slot<'a> {
     pub ty: Type,
     pub variadic: bool,
     pub optional: bool,
+    /// As written; kernel functions and settings have it in words.
+    pub default: Option<&'a ast::Expr>,
 }
 
 /// What a call makes.
@@ -249,6 +251,7 @@ impl<'a> Checker<'a> {
                 ty: parameter.ty.clone(),
                 variadic: parm.variadic,
                 optional: parameter.default.is_some(),
+                default: parm.default.as_ref(),
             });
             parameters.push(parameter);
         }

@@ -35,6 +35,7 @@ mod overload;
 mod top;
 pub(crate) mod types;
 mod value;
+mod written;
 
 use std::rc::Rc;
 

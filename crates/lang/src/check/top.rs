@@ -203,6 +203,7 @@ impl<'a> Checker<'a> {
                 ty: parameter.ty.clone(),
                 variadic: false,
                 optional: parameter.optional,
+                default: None,
             })
             .collect();
         let given = args.iter().map(Given::of).collect();
