@@ -1,9 +1,7 @@
 //! The first root of the field along a ray, isolated by intervals.
 
-use std::collections::HashSet;
-
-use sdfc_graph::eval::{Evaluator, FrameValues, Interval, Number, Tape, TapeError};
-use sdfc_graph::{Binary, Graph, Node, NodeId, Place, Program, Ternary, Unary, reachable};
+use sdfc_graph::Program;
+use sdfc_graph::eval::{Evaluator, FrameValues, Interval, Number, Path, Tape, TapeError};
 
 /// A stretch this short, in parts of the distance, is not cut again.
 const FINEST: f64 = 1e-9;
@@ -14,6 +12,11 @@ const SEARCH: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
 /// A root counts although something before it is not proven, if that is nearer to it than this part of
 /// the distance: a ten-thousandth of a pixel.
 const DOUBT: f64 = 1e-7;
+
+/// On a stretch with more jumps the ways through them are not told apart: it is cut first.
+const FEW_JUMPS: usize = 2;
+/// As many are told apart on a stretch that is not cut again.
+const MOST_JUMPS: usize = 12;
 
 /// A ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +86,6 @@ impl From<TapeError> for OracleError {
 #[derive(Clone, Debug)]
 pub struct Oracle {
     field: Tape,
-    /// Distance and gradient, for fields that the gradient describes everywhere.
-    slopes: Option<Tape>,
     gradient: Option<Tape>,
 }
 
@@ -98,108 +99,19 @@ impl Oracle {
         let distance = program.distance.ok_or(OracleError::NothingDrawn)?;
         let tape = |root| Tape::new(&program.graph, &[root]);
         let gradient = program.gradient.map(tape).transpose()?;
-        let slopes = if jumps(program, distance) { None } else { gradient.clone() };
-        Ok(Self { field: tape(distance)?, slopes, gradient })
-    }
-
-    /// Whether derivatives help to decide: not where the formula can jump.
-    pub fn uses_derivatives(&self) -> bool {
-        self.slopes.is_some()
+        Ok(Self { field: tape(distance)?, gradient })
     }
 
     /// Ready for the rays of one frame; threads each take their own.
     pub fn prober(&self, frame: &FrameValues) -> Prober<'_> {
         Prober {
             range: self.field.prepare(frame),
-            slopes: self.slopes.as_ref().map(|tape| tape.prepare(frame)),
+            slopes: self.gradient.as_ref().map(|tape| tape.prepare(frame)),
+            path: Path::default(),
             value: self.field.prepare(frame),
             gradient: self.gradient.as_ref().map(|tape| tape.prepare(frame)),
             evaluations: 0,
         }
-    }
-}
-
-/// Whether the formula has an operation that jumps at a point: there its gradient does not tell how
-/// it changes.
-fn jumps(program: &Program, distance: NodeId) -> bool {
-    let graph = &program.graph;
-    // The number of a loop's round is the same at every point, and so is what follows from it.
-    let mut moving = HashSet::new();
-    reachable(graph, &[distance]).into_iter().any(|id| {
-        let node = graph.node(id);
-        let moves = matches!(node, Node::Point(..) | Node::Variable(_, Place::State(_), _))
-            || graph.arguments(id).any(|argument| moving.contains(&argument));
-        if moves {
-            moving.insert(id);
-        }
-        moves && may_jump(graph, &node)
-    })
-}
-
-/// Poles count as smooth: about one the interval of the derivative is infinite, which proves nothing.
-fn may_jump(graph: &Graph, node: &Node) -> bool {
-    match node {
-        Node::Unary(op, _) => match op {
-            Unary::Sign
-            | Unary::Floor
-            | Unary::Ceil
-            | Unary::Round
-            | Unary::Trunc
-            | Unary::Fract
-            | Unary::Normalize => true,
-            Unary::Neg
-            | Unary::Abs
-            | Unary::Sqrt
-            | Unary::InverseSqrt
-            | Unary::Exp
-            | Unary::Exp2
-            | Unary::Log
-            | Unary::Log2
-            | Unary::Sin
-            | Unary::Cos
-            | Unary::Tan
-            | Unary::Asin
-            | Unary::Acos
-            | Unary::Atan
-            | Unary::Sinh
-            | Unary::Cosh
-            | Unary::Tanh
-            | Unary::Saturate
-            | Unary::Length
-            | Unary::Not => false,
-        },
-        Node::Binary(op, ..) => match op {
-            Binary::Rem | Binary::Step | Binary::Hash | Binary::Atan2 => true,
-            Binary::Add
-            | Binary::Sub
-            | Binary::Mul
-            | Binary::Div
-            | Binary::Min
-            | Binary::Max
-            | Binary::Pow
-            | Binary::Dot
-            | Binary::Cross
-            | Binary::Lt
-            | Binary::Le
-            | Binary::Eq
-            | Binary::Ne
-            | Binary::And
-            | Binary::Or => false,
-        },
-        Node::Ternary(op, _) => match op {
-            Ternary::Select => true,
-            Ternary::Mix | Ternary::Clamp | Ternary::Smoothstep => false,
-        },
-        Node::Loop(id, ..) => graph.repeated(*id).go_on.is_some(),
-        Node::Element(..) | Node::Sample(..) | Node::MaterialAt(..) => true,
-        Node::Const(_)
-        | Node::Point(..)
-        | Node::Frame(..)
-        | Node::Variable(..)
-        | Node::Splat(..)
-        | Node::Compose(..)
-        | Node::Swizzle(..)
-        | Node::Transform(..) => false,
     }
 }
 
@@ -208,6 +120,7 @@ fn may_jump(graph: &Graph, node: &Node) -> bool {
 pub struct Prober<'o> {
     range: Evaluator<'o, Interval>,
     slopes: Option<Evaluator<'o, Interval>>,
+    path: Path,
     value: Evaluator<'o, f64>,
     gradient: Option<Evaluator<'o, f64>>,
     evaluations: u32,
@@ -275,9 +188,11 @@ impl Prober<'_> {
 
     /// What intervals say of a stretch.
     fn look(&mut self, ray: &Ray, from: f64, to: f64) -> Found {
-        let range = self.over(ray, from, to);
-        if !range.contains(0.0) {
+        if self.is_free(ray, from, to) {
             return Found::Nothing;
+        }
+        if !self.path.is_empty() || self.path.is_open() {
+            return Found::Maybe;
         }
         let Some(slope) = self.slope_over(ray, from, to) else { return Found::Maybe };
         let half = 0.5 * (to - from);
@@ -295,6 +210,25 @@ impl Prober<'_> {
             (Some(first), Some(last)) if first == last => Found::Nothing,
             (Some(_), Some(_)) => Found::OneRoot,
             _ => Found::Maybe,
+        }
+    }
+
+    /// Whether the field has one sign on a stretch, on all paths through its jumps there. If it may not have, the path tells
+    /// whether the stretch has jumps.
+    fn is_free(&mut self, ray: &Ray, from: f64, to: f64) -> bool {
+        let most = if to - from > FINEST * to { FEW_JUMPS } else { MOST_JUMPS };
+        let mut side = None;
+        self.path.clear();
+        loop {
+            self.evaluations += 1;
+            let range = self.range.scalar_along(stretch(ray, from, to), &mut self.path);
+            match sign(range) {
+                None if self.path.fork(most) => {}
+                None => return false,
+                found if side.is_some() && side != found => return false,
+                found if self.path.advance() => side = found,
+                Some(_) => return true,
+            }
         }
     }
 

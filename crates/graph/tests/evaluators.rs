@@ -4,7 +4,7 @@ mod common;
 
 use common::{each_node, graph, steps};
 use proptest::prelude::*;
-use sdfc_graph::eval::{FrameValues, Interval, Number, Packet, Tape};
+use sdfc_graph::eval::{FrameValues, Interval, Number, Packet, Path, Tape};
 use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
 
 /// Coordinates of all sizes, whole and half ones among them.
@@ -94,6 +94,46 @@ proptest! {
                         id.index(), graph.node(id),
                     );
                 }
+            }
+        }
+    }
+
+    /// Whichever way a field goes through its jumps at a point of a box, some path went that way.
+    #[test]
+    fn paths_hold_every_sample(
+        steps in steps(24),
+        ranges in prop::array::uniform3(range()),
+        param in range(),
+        fractions in prop::collection::vec(prop::array::uniform3(0.0..1.0), 12),
+    ) {
+        let graph = graph(&steps);
+        let param = param[0];
+        let roots: Vec<NodeId> = graph.ids().collect();
+        for root in roots {
+            let tape = Tape::new(&graph, &[root]).unwrap();
+            let mut evaluator = tape.prepare::<Interval>(&frame(param));
+            let region = ranges.map(|[lo, hi]| Interval::new(lo, hi));
+            let (mut path, mut found) = (Path::default(), Vec::new());
+            loop {
+                let range = evaluator.scalar_along(region, &mut path);
+                if path.fork(4) {
+                    continue;
+                }
+                found.push(range);
+                if !path.advance() {
+                    break;
+                }
+            }
+            for fraction in &fractions {
+                let point = [0, 1, 2].map(|i| within(ranges[i], fraction[i]));
+                let values = each_node(&graph, point, param);
+                let Some(Some(value)) = values.get(root.index()) else { continue };
+                let value = value.lanes()[0];
+                prop_assert!(
+                    found.iter().any(|range| range.contains(value)),
+                    "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
+                    root.index(), graph.node(root),
+                );
             }
         }
     }

@@ -73,9 +73,6 @@ impl Number for Dual {
     fn trunc(self) -> Self {
         Self::flat(self.value.trunc())
     }
-    fn fract(self) -> Self {
-        self.chain(Number::fract(self.value), 1.0)
-    }
     fn square(self) -> Self {
         self.chain(self.value * self.value, 2.0 * self.value)
     }
@@ -146,10 +143,6 @@ impl Number for Dual {
     fn div(self, y: Self) -> Self {
         let value = self.value / y.value;
         self.chain2(y, value, [1.0 / y.value, -value / y.value])
-    }
-    fn rem(self, y: Self) -> Self {
-        let whole = (self.value / y.value).floor();
-        self.chain2(y, self.value.rem(y.value), [1.0, -whole])
     }
     fn min(self, y: Self) -> Self {
         if y.value < self.value { y } else { self }

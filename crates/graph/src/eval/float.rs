@@ -51,10 +51,6 @@ macro_rules! float {
                 self.trunc()
             }
             #[inline]
-            fn fract(self) -> Self {
-                self - self.floor()
-            }
-            #[inline]
             fn square(self) -> Self {
                 self * self
             }
@@ -138,10 +134,6 @@ macro_rules! float {
             #[inline]
             fn div(self, y: Self) -> Self {
                 self / y
-            }
-            #[inline]
-            fn rem(self, y: Self) -> Self {
-                self - y * (self / y).floor()
             }
             #[inline]
             fn min(self, y: Self) -> Self {

@@ -46,12 +46,13 @@ mod packet;
 mod record;
 mod scalarise;
 mod tape;
+mod watch;
 
 pub use dual::Dual;
 pub use fold::fold;
 pub(crate) use fold::fold_where;
 pub use hash::{HASHES, hash};
-pub use interval::Interval;
+pub use interval::{Interval, Path};
 pub use number::Number;
 pub use packet::Packet;
 pub use tape::{Evaluator, Tape, TapeError};

@@ -23,8 +23,6 @@ pub trait Number: Copy {
     fn round(self) -> Self;
     /// The next whole number towards 0
     fn trunc(self) -> Self;
-    /// `x - floor(x)`
-    fn fract(self) -> Self;
     /// `x * x`, for two factors known to be one value
     fn square(self) -> Self;
     /// Square root; undefined below 0
@@ -68,8 +66,6 @@ pub trait Number: Copy {
     fn mul(self, y: Self) -> Self;
     /// `x / y`; undefined where y is 0
     fn div(self, y: Self) -> Self;
-    /// `x - y * floor(x / y)`; undefined where y is 0
-    fn rem(self, y: Self) -> Self;
     /// The lesser; x on a tie
     fn min(self, y: Self) -> Self;
     /// The greater; x on a tie
@@ -111,6 +107,26 @@ pub trait Number: Copy {
 
     /// The element of a list at a position, rounded down; the first before the first, the last past the last
     fn element(self, list: &[f64]) -> Self;
+
+    /// `x - floor(x)`
+    fn fract(self) -> Self {
+        self.beyond(self.floor())
+    }
+
+    /// `x - y * floor(x / y)`; undefined where y is 0
+    fn rem(self, y: Self) -> Self {
+        self.left(y, self.div(y).floor())
+    }
+
+    /// `x - whole` for the whole number known to be `floor(x)`
+    fn beyond(self, whole: Self) -> Self {
+        self.sub(whole)
+    }
+
+    /// `x - y * whole` for the whole number known to be `floor(x / y)`
+    fn left(self, y: Self, whole: Self) -> Self {
+        self.sub(y.mul(whole))
+    }
 
     /// `x * y` for a y known to be `c * (1 - x)`: the dip of a quadratic blend
     fn parabola(self, y: Self, c: Self) -> Self {

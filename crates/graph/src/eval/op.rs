@@ -77,6 +77,7 @@ operations! {
         Step = step,
         Hash = hash,
         Direction = direction,
+        Beyond = beyond,
         Lt = lt,
         Le = le,
         Eq = eq,
@@ -91,5 +92,19 @@ operations! {
         Select = select,
         Parabola = parabola,
         Excess = excess,
+        Left = left,
+    }
+}
+
+impl Op {
+    /// Whether the result can jump where the arguments do not: then whoever watches an evaluation is told.
+    pub(crate) fn jumps(self) -> bool {
+        self.is_whole() || matches!(self, Self::Atan2 | Self::Direction)
+    }
+
+    /// Whether the result is a whole number or a truth value.
+    pub(crate) fn is_whole(self) -> bool {
+        use Op::{Ceil, Eq, Floor, Le, Lt, Ne, Round, Sign, Step, Trunc};
+        matches!(self, Floor | Ceil | Round | Trunc | Sign | Step | Lt | Le | Eq | Ne)
     }
 }

@@ -55,6 +55,6 @@ lanewise! {
         neg abs sign floor ceil round trunc fract square sqrt inverse_sqrt exp exp2 log log2
         sin cos tan asin acos atan sinh cosh tanh not saturate
     }
-    binary { add sub mul div rem min max pow atan2 step hash direction lt le eq ne and or }
-    ternary { mix clamp smoothstep select parabola excess }
+    binary { add sub mul div rem min max pow atan2 step hash direction beyond lt le eq ne and or }
+    ternary { mix clamp smoothstep select parabola excess left }
 }

@@ -8,6 +8,9 @@ use super::tape::{Code, Definition, Instruction, LoopCode, POINT_LANES, StateCod
 use crate::graph::result_type;
 use crate::{FrameInput, Node, Type};
 
+/// How deep a sum of whole numbers is looked into.
+const DEEPEST_SUM: usize = 3;
+
 /// Collects definitions in order; equal constants become one.
 #[derive(Default)]
 pub(super) struct Recorder {
@@ -60,6 +63,8 @@ impl Recorder {
             self.lists.push(list);
             self.lists.len() - 1
         });
+        let whole = !self.varying[at as usize] || self.is_whole(at, DEEPEST_SUM);
+        let at = if whole { at } else { self.define_apply(Op::Floor, [at; 3]) };
         self.define(Definition::Lookup(list, at), self.varying[at as usize])
     }
 
@@ -176,6 +181,48 @@ impl Recorder {
         Some((Op::Excess, [x, range[0], range[1]]))
     }
 
+    fn define_apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
+        let varying = arguments.iter().take(op.arity()).any(|&a| self.varying[a as usize]);
+        self.define(Definition::Apply(op, arguments), varying)
+    }
+
+    /// An operation that jumps from one whole number to the next, with the whole number computed before it, where
+    /// intervals see it.
+    fn apart(&mut self, op: Op, [a, b, c]: [u32; 3]) -> (Op, [u32; 3]) {
+        if op == Op::Fract {
+            let whole = self.define_apply(Op::Floor, [a; 3]);
+            (Op::Beyond, [a, whole, a])
+        } else if op == Op::Rem {
+            let quotient = self.define_apply(Op::Div, [a, b, a]);
+            let whole = self.define_apply(Op::Floor, [quotient; 3]);
+            (Op::Left, [a, b, whole])
+        } else if op == Op::Hash && !self.is_whole(b, DEEPEST_SUM) {
+            let whole = self.define_apply(Op::Floor, [b; 3]);
+            (op, [a, whole, a])
+        } else {
+            (op, [a, b, c])
+        }
+    }
+
+    /// Whether a value is seen to be a whole number.
+    fn is_whole(&self, value: u32, depth: usize) -> bool {
+        match self.definitions[value as usize] {
+            Definition::Constant(value) => value.fract() == 0.0,
+            Definition::Apply(Op::Floor | Op::Ceil | Op::Round | Op::Trunc, _) => true,
+            Definition::Apply(Op::Add | Op::Sub, [a, b, _]) if depth > 0 => {
+                self.is_whole(a, depth - 1) && self.is_whole(b, depth - 1)
+            }
+            Definition::Apply(..)
+            | Definition::Input(..)
+            | Definition::Point(_)
+            | Definition::Lookup(..)
+            | Definition::Enter(_)
+            | Definition::Test(_)
+            | Definition::Leave(_)
+            | Definition::Register => false,
+        }
+    }
+
     /// Whether a is `1 - b`.
     fn is_complement(&self, a: u32, b: u32, one: u32) -> bool {
         matches!(self.definitions[a as usize], Definition::Apply(Op::Sub, [x, y, _]) if x == one && y == b)
@@ -195,16 +242,14 @@ impl Machine for Recorder {
     }
 
     fn apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
-        let told = if op == Op::Mul {
-            self.parabola(arguments)
+        let (op, arguments) = if op == Op::Mul {
+            self.parabola(arguments).unwrap_or((op, arguments))
         } else if op == Op::Sub {
-            self.excess(arguments)
+            self.excess(arguments).unwrap_or((op, arguments))
         } else {
-            None
+            self.apart(op, arguments)
         };
-        let (op, arguments) = told.unwrap_or((op, arguments));
-        let varying = arguments.iter().take(op.arity()).any(|&a| self.varying[a as usize]);
-        self.define(Definition::Apply(op, arguments), varying)
+        self.define_apply(op, arguments)
     }
 
     fn input(&mut self, node: &Node) -> Option<Lanes<u32>> {
@@ -389,7 +434,12 @@ impl Recorder {
                     registers.free.extend(released);
                     let result = registers.take();
                     places[value] = result;
-                    append(&mut bodies, Instruction { op, result, arguments });
+                    let instruction = Instruction { op, result, arguments };
+                    if op.jumps() {
+                        push(&mut bodies, Code::Jump(instruction));
+                    } else {
+                        append(&mut bodies, instruction);
+                    }
                 }
                 Definition::Lookup(list, at) => {
                     let at = places[at as usize];

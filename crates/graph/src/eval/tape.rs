@@ -5,7 +5,8 @@ use rustc_hash::FxHashMap;
 use super::op::Op;
 use super::record::Recorder;
 use super::scalarise::{Lanes, scalarise};
-use super::{FrameValues, Number};
+use super::watch::{Unwatched, Watch};
+use super::{FrameValues, Interval, Number, Path};
 use crate::{FrameInput, Graph, LoopId, Node, NodeId, Place, reachable, reachable_where};
 
 /// Why nodes cannot be evaluated.
@@ -52,6 +53,8 @@ pub struct Tape {
 pub(super) enum Code {
     /// One instruction after the other.
     Straight(Vec<Instruction>),
+    /// One that jumps.
+    Jump(Instruction),
     /// Looks up an element of a list.
     Lookup {
         list: usize,
@@ -218,7 +221,7 @@ impl<N: Number> Evaluator<'_, N> {
     /// The roots' values at a point, in the roots' order; lanes beyond a root's width are 0. For
     /// regions the point's last lane is ignored.
     pub fn eval(&mut self, point: [N; 3]) -> &[[N; 4]] {
-        self.run(point);
+        self.run(point, &mut Unwatched);
         for (output, lanes) in self.outputs.iter_mut().zip(&self.tape.outputs) {
             for (place, &register) in output.iter_mut().zip(lanes.as_slice()) {
                 *place = self.registers[register as usize];
@@ -229,24 +232,42 @@ impl<N: Number> Evaluator<'_, N> {
 
     /// The first lane of the first root at a point; 0 without roots.
     pub fn scalar(&mut self, point: [N; 3]) -> N {
-        self.run(point);
+        self.run(point, &mut Unwatched);
+        self.first()
+    }
+
+    fn first(&self) -> N {
         let first = self.tape.outputs.first();
         first.map_or(N::constant(0.0), |lanes| self.registers[lanes.get(0) as usize])
     }
 
-    fn run(&mut self, point: [N; 3]) {
+    fn run(&mut self, point: [N; 3], watch: &mut impl Watch<N>) {
         let registers = self.registers.as_mut_slice();
         let first = self.tape.kept.len();
         registers[first..first + POINT_LANES].copy_from_slice(&point);
         for code in &self.tape.body {
-            code.run(registers, &self.tape.lists);
+            code.run(registers, &self.tape.lists, watch);
         }
+    }
+}
+
+impl Evaluator<'_, Interval> {
+    /// The first lane of the first root over a box, on a path through its jumps. The path learns what it leaves open.
+    pub fn scalar_along(&mut self, point: [Interval; 3], path: &mut Path) -> Interval {
+        path.begin();
+        self.run(point, &mut { path });
+        self.first()
     }
 }
 
 impl Code {
     /// The condition, of a test.
-    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>]) -> Option<N> {
+    fn run<N: Number>(
+        &self,
+        registers: &mut [N],
+        lists: &[Vec<f64>],
+        watch: &mut impl Watch<N>,
+    ) -> Option<N> {
         match self {
             Self::Straight(instructions) => {
                 for instruction in instructions {
@@ -255,11 +276,16 @@ impl Code {
                     registers[instruction.result as usize] = result;
                 }
             }
+            Self::Jump(Instruction { op, result, arguments }) => {
+                let arguments = arguments.map(|argument| registers[argument as usize]);
+                let value = op.apply(|i| arguments[i]);
+                registers[*result as usize] = watch.jumped(*op, arguments, value);
+            }
             Self::Lookup { list, at, result } => {
                 registers[*result as usize] = registers[*at as usize].element(&lists[*list]);
             }
             Self::Test(condition) => return Some(registers[*condition as usize]),
-            Self::Loop(code) => code.run(registers, lists),
+            Self::Loop(code) => code.run(registers, lists, watch),
         }
         None
     }
@@ -268,7 +294,7 @@ impl Code {
 impl LoopCode {
     /// Runs rounds until none can follow. Where a domain cannot tell whether one does, the variables go on and the
     /// result is both what they were and what they become.
-    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>]) {
+    fn run<N: Number>(&self, registers: &mut [N], lists: &[Vec<f64>], watch: &mut impl Watch<N>) {
         for state in &self.state {
             let start = registers[state.start as usize];
             registers[state.variable as usize] = start;
@@ -285,7 +311,7 @@ impl LoopCode {
                 }
             }
             for code in &self.body {
-                if let Some(condition) = code.run(registers, lists) {
+                if let Some(condition) = code.run(registers, lists, watch) {
                     running = running.and(condition);
                     if running.is_never() {
                         return;
@@ -308,7 +334,7 @@ impl LoopCode {
 fn operations(body: &[Code]) -> usize {
     let of = |code: &Code| match code {
         Code::Straight(instructions) => instructions.len(),
-        Code::Lookup { .. } | Code::Test(_) => 1,
+        Code::Jump(_) | Code::Lookup { .. } | Code::Test(_) => 1,
         Code::Loop(code) => (code.cap as usize).saturating_mul(operations(&code.body) + 1),
     };
     body.iter().map(of).fold(0, usize::saturating_add)

@@ -27,6 +27,13 @@ impl Interval {
     }
 
     fn quotient_by_positive(self, y: Self) -> Self {
+        if self.lo == self.hi && y.lo == y.hi && y.lo > 0.0 {
+            // Counting relies on quotients of whole numbers.
+            let exact = self.lo / y.lo;
+            if exact.mul_add(-y.lo, self.lo) == 0.0 {
+                return Self { lo: exact, hi: exact };
+            }
+        }
         if y.lo > 0.0 {
             let ends = [
                 quotient(self.lo, y.lo),
@@ -46,13 +53,12 @@ impl Interval {
         }
     }
 
-    /// `x - y * n` while the quotient's floor is one whole number n, else the range between 0 and y.
+    /// `x - y * n` where the quotient's floor is one whole number n, else the range between 0 and y.
     /// As x grows, so does the error by which `x - y * floor(x / y)` misses that range in f64.
-    pub(super) fn remainder(self, y: Self) -> Self {
+    pub(super) fn remainder(self, y: Self, whole: Self) -> Self {
         if y.contains(0.0) {
             return Self::ENTIRE;
         }
-        let whole = self.quotient(y).floor();
         if whole.lo == whole.hi {
             return self.sub(y.product(whole));
         }

@@ -2,6 +2,9 @@
 
 mod arithmetic;
 mod elementary;
+mod path;
+
+pub use path::Path;
 
 use super::Number;
 use super::hash::{HASHES, hash};
@@ -145,10 +148,6 @@ impl Number for Interval {
     fn trunc(self) -> Self {
         Self { lo: self.lo.trunc(), hi: self.hi.trunc() }
     }
-    fn fract(self) -> Self {
-        let whole = self.floor();
-        if whole.lo == whole.hi { self.sub(whole).clipped(0.0, 1.0) } else { Self::UNDECIDED }
-    }
     fn square(self) -> Self {
         let Self { lo, hi } = self.abs();
         // The square of 0 is 0.
@@ -215,9 +214,6 @@ impl Number for Interval {
     fn div(self, y: Self) -> Self {
         self.quotient(y)
     }
-    fn rem(self, y: Self) -> Self {
-        self.remainder(y)
-    }
     fn min(self, y: Self) -> Self {
         Self { lo: self.lo.min(y.lo), hi: self.hi.min(y.hi) }
     }
@@ -274,6 +270,12 @@ impl Number for Interval {
         values.reduce(Self::hull).unwrap_or(Self::ENTIRE)
     }
 
+    fn beyond(self, whole: Self) -> Self {
+        self.sub(whole).clipped(0.0, 1.0)
+    }
+    fn left(self, y: Self, whole: Self) -> Self {
+        self.remainder(y, whole)
+    }
     fn mix(self, y: Self, t: Self) -> Self {
         self.mixture(y, t)
     }
