@@ -106,7 +106,7 @@ fn blocks_have_the_layout_of_the_shader() {
     assert_eq!(
         layout(module, "View"),
         block!(ViewBlock: eye pixel_radius right t_max up epsilon forward steps size tile_origin
-            tile_size light_count pad ambient reflections background reflection_strength
+            tile_size light_count tolerance ambient reflections background reflection_strength
             zenith fog_density horizon occlusion_radius fog_color occlusion_strength lights)
     );
     assert_eq!(

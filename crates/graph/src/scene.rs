@@ -224,10 +224,12 @@ pub enum Shadow {
 /// `march(...)`: `None` leaves the choice to the compiler.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct March {
-    /// At most so many steps (`fixed`, `sphere`).
+    /// At most so many steps a ray.
     pub steps: Option<u32>,
     /// A hit is nearer than this (`fixed`, `sphere`).
     pub epsilon: Option<f64>,
+    /// A hit is nearer than this, in widths of a pixel there (all other methods).
+    pub tolerance: Option<f64>,
     /// Rays end here.
     pub distance: Option<f64>,
     /// Name of the method.

@@ -2,6 +2,11 @@
 
 use crate::hir::{SettingKind, Type};
 
+/// What `march(method: ...)` may name, the default first: the ray methods of `sdfc-march`, save those that are
+/// there to compare with.
+pub const RAY_METHODS: [&str; 7] =
+    ["auto", "fixed", "sphere", "sphere-cone", "relaxed", "accelerated", "auto-relaxed"];
+
 /// One parameter of a setting.
 #[derive(Clone, Debug)]
 pub struct SettingParameter {
@@ -153,7 +158,7 @@ pub fn table() -> Vec<SettingRow> {
             "How rays find surfaces, where the compiler shall not choose.",
             "march(method: \"sphere\", steps: 200, epsilon: 0.001)",
             &[
-                ("steps", Int, true, "at most so many steps a ray, for `fixed` and `sphere`"),
+                ("steps", Int, true, "at most so many steps a ray; 256 if not given"),
                 (
                     "epsilon",
                     Number,
@@ -162,6 +167,12 @@ pub fn table() -> Vec<SettingRow> {
                 ),
                 ("distance", Number, true, "where rays end, in scene units"),
                 ("method", Text, true, "the ray method; \"auto\" if not given"),
+                (
+                    "tolerance",
+                    Number,
+                    true,
+                    "nearer than this is a hit, in widths of a pixel there, for all other methods; 0.25 if not given",
+                ),
             ],
         ),
         row(

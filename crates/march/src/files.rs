@@ -1,7 +1,7 @@
 //! The table of ray methods, and which files make a picture's shader.
 
 /// A ray method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
     /// What scenes and the command line call it.
     pub name: &'static str,
@@ -11,35 +11,123 @@ pub struct Method {
     pub source: &'static str,
     /// Text of a file with a gradient that belongs to it; none: any will do.
     pub gradient: Option<&'static str>,
+    /// What trades its cost for its error; none: nothing does.
+    pub knob: Option<Knob>,
+    /// Values of the knob that a chart shows, in parts of what the scene states or else of its default.
+    pub charted: &'static [f64],
+}
+
+/// What trades the cost of a ray for its error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Knob {
+    /// How many steps a ray may take.
+    Steps,
+    /// How near to the surface a hit is, in scene units.
+    Epsilon,
+    /// The same in widths of a pixel there.
+    Tolerance,
+}
+
+impl Knob {
+    /// What a scene's `march(...)` calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Steps => "steps",
+            Self::Epsilon => "epsilon",
+            Self::Tolerance => "tolerance",
+        }
+    }
+
+    /// What its values count.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Steps => "steps",
+            Self::Epsilon => "scene units",
+            Self::Tolerance => "widths of a pixel",
+        }
+    }
+
+    /// Its value where a scene states none; of [`Self::Epsilon`], for what is looked at from 1 away.
+    pub fn default_value(self) -> f64 {
+        match self {
+            Self::Steps => 256.0,
+            // About 100 times the rounding of f32 there.
+            Self::Epsilon => 5e-5,
+            Self::Tolerance => 0.25,
+        }
+    }
 }
 
 /// All ray methods, the default first.
-pub const METHODS: [Method; 4] = [
+pub const METHODS: [Method; 8] = [
     Method {
         name: "auto",
         summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
         source: include_str!("wgsl/auto.wgsl"),
         gradient: None,
-    },
-    Method {
-        name: "sphere",
-        summary: "Sphere tracing to an absolute distance.",
-        source: include_str!("wgsl/sphere.wgsl"),
-        gradient: None,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
     },
     Method {
         name: "fixed",
         summary: "Constant steps, halved once the sign changes.",
         source: include_str!("wgsl/fixed.wgsl"),
         gradient: None,
+        knob: Some(Knob::Steps),
+        charted: &[0.25, 0.5, 1.0, 2.0, 4.0],
+    },
+    Method {
+        name: "sphere",
+        summary: "Sphere tracing to an absolute distance.",
+        source: include_str!("wgsl/sphere.wgsl"),
+        gradient: None,
+        knob: Some(Knob::Epsilon),
+        charted: &[100.0, 10.0, 1.0, 0.1],
+    },
+    Method {
+        name: "sphere-cone",
+        summary: "Sphere tracing to a part of the pixel.",
+        source: include_str!("wgsl/sphere_cone.wgsl"),
+        gradient: None,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
+    },
+    Method {
+        name: "relaxed",
+        summary: "Steps longer than the distance, taken back where the balls of free space do not meet.",
+        source: include_str!("wgsl/relaxed.wgsl"),
+        gradient: None,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
+    },
+    Method {
+        name: "accelerated",
+        summary: "Steps to where the next ball would touch, were the surface flat, taken back where it does not meet.",
+        source: include_str!("wgsl/accelerated.wgsl"),
+        gradient: None,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
+    },
+    Method {
+        name: "auto-relaxed",
+        summary: "The same with the slope averaged over the steps.",
+        source: include_str!("wgsl/auto_relaxed.wgsl"),
+        gradient: None,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
     },
     Method {
         name: "practical",
         summary: "A classroom practical's march and normals, faults and all: to compare with.",
         source: include_str!("wgsl/baseline/practical.wgsl"),
         gradient: Some(include_str!("wgsl/baseline/central.wgsl")),
+        knob: None,
+        charted: &[1.0],
     },
 ];
+
+/// Of a quarter of a pixel: from the radius of a pixel down to a hundredth of its width.
+const PIXELS: [f64; 4] = [2.0, 1.0, 0.2, 0.04];
 
 /// The method of that name.
 pub fn method(name: &str) -> Option<&'static Method> {

@@ -19,7 +19,7 @@
 //!
 //! A ray method is `fn trace(ray: Ray) -> Trace` and `fn tolerance(ray: Ray, t: f32) -> f32`
 //! (`ray.wgsl`), in a file of its own and a row of [`METHODS`]. It calls `field` at one place, in a
-//! loop of at most `ray.steps` turns, and tells `passed` what it gave; it takes a sign change for a hit, so that a field that leads
+//! loop of at most `ray.steps` turns, and tells `passed` of each sample that it keeps; it takes a sign change for a hit, so that a field that leads
 //! through a surface does not walk away from it.
 //!
 //! The blocks below are what `view.wgsl` and `pixel.wgsl` declare; their layout is WGSL's.
@@ -27,7 +27,7 @@
 mod files;
 
 pub use files::{
-    Features, FieldSource, Form, METHODS, Method, SHADERTOY_HEAD, SHADERTOY_TAIL, method,
+    Features, FieldSource, Form, Knob, METHODS, Method, SHADERTOY_HEAD, SHADERTOY_TAIL, method,
     ray_source, source, source_over, stubs,
 };
 
@@ -108,8 +108,8 @@ pub struct ViewBlock {
     pub tile_size: [u32; 2],
     /// How many of `lights` are used.
     pub light_count: u32,
-    /// Unused.
-    pub pad: f32,
+    /// A hit is nearer than this, in widths of a pixel there (all methods but `fixed` and `sphere`).
+    pub tolerance: f32,
     /// Linear colour of light from everywhere.
     pub ambient: [f32; 3],
     /// How often a ray from the eye is mirrored.

@@ -48,7 +48,7 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
         tile_origin,
         tile_size,
         light_count,
-        pad,
+        tolerance,
         ambient,
         reflections,
         background,
@@ -67,7 +67,7 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     bytes.floats(up).floats(&[*epsilon]);
     bytes.floats(forward).words(&[*steps]);
     bytes.words(size).words(tile_origin).words(tile_size);
-    bytes.words(&[*light_count]).floats(&[*pad]);
+    bytes.words(&[*light_count]).floats(&[*tolerance]);
     bytes.floats(ambient).words(&[*reflections]);
     bytes.floats(background).floats(&[*reflection_strength]);
     bytes.floats(zenith).floats(&[*fog_density]);

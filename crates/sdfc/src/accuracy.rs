@@ -8,6 +8,7 @@ use sdfc_accuracy::chart::{Chart, FrameMs, Row};
 use sdfc_accuracy::{Camera, Oracle, OracleError, PixelSample, Status, Truth, compare};
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
+use sdfc_march::{METHODS, Method, method};
 use sdfc_render::{
     Clock, FrameTimes, Gpu, HIT, Image, MISS, OnProgress, Pipeline, Progress, RenderOptions, View,
     uniform_values,
@@ -22,6 +23,8 @@ pub struct ChartOptions {
     pub size: [u32; 2],
     /// Names of the ray methods; empty for all.
     pub methods: Vec<String>,
+    /// Whether methods are charted at their defaults only.
+    pub defaults_only: bool,
     /// Frames that are timed, after one that is not; at least 1.
     pub repetitions: u32,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
@@ -31,12 +34,10 @@ pub struct ChartOptions {
 impl Default for ChartOptions {
     /// 320 by 180, all methods, three frames each.
     fn default() -> Self {
-        Self { size: [320, 180], methods: Vec::new(), repetitions: 3, frame: None }
+        let (size, methods) = ([320, 180], Vec::new());
+        Self { size, methods, defaults_only: false, repetitions: 3, frame: None }
     }
 }
-
-/// A setting of a method: its name, its value in the view's units, and whether it is the default.
-type Setting = (&'static str, f64, bool);
 
 impl Scene {
     /// What the oracle says of a view of the scene. `progress` counts pixels; it cannot cancel.
@@ -101,10 +102,12 @@ impl Scene {
         let truth = self.truth(&view, &frame, on_truth)?;
         let oracle = self.oracle()?;
 
-        let all = || sdfc_march::METHODS.iter().map(|method| method.name.to_owned()).collect();
-        let names: Vec<String> =
-            if options.methods.is_empty() { all() } else { options.methods.clone() };
-        let total = names.iter().map(|name| settings(name, &view).len() as u64).sum();
+        let methods = methods(&options.methods)?;
+        let parts = |method: &'static Method| {
+            let all = method.charted.iter().copied();
+            all.filter(|part| !options.defaults_only || *part == 1.0)
+        };
+        let total = methods.iter().map(|method| parts(method).count() as u64).sum();
         let mut chart = Chart {
             scene: name.to_owned(),
             leaves: self.report.leaves,
@@ -114,19 +117,22 @@ impl Scene {
             oracle: truth.counts(),
             methods: Vec::new(),
         };
-        for method in &names {
-            let shader = render_module(&self.program, method)?;
+        for method in methods {
+            let shader = render_module(&self.program, method.name)?;
             let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
-            let mut settings = settings(method, &view);
-            settings.sort_by(|a, b| b.1.total_cmp(&a.1));
-            for setting in settings {
-                let view = with(&view, setting);
+            for part in parts(method) {
+                let view = match method.knob {
+                    Some(knob) => view.with_knob(knob, part * view.knob(knob)),
+                    None => view.clone(),
+                };
                 let (image, frame_ms) =
                     self.timed(&pipeline, &view, &frame, options.repetitions)?;
                 let metrics = compare(&oracle, &frame, &truth, &samples(&image));
-                let settings = BTreeMap::from([(setting.0, setting.1)]);
+                let set = method.knob.map(|knob| (knob.name(), view.knob(knob)));
+                let settings = BTreeMap::from_iter(set);
                 let operations = self.report.distance.operations;
-                let row = Row::new(method, settings, setting.2, &metrics, operations, frame_ms);
+                let default = part == 1.0;
+                let row = Row::new(method.name, settings, default, &metrics, operations, frame_ms);
                 chart.methods.push(row);
                 let done = chart.methods.len() as u64;
                 if let ControlFlow::Break(()) = progress(Progress { done, total }) {
@@ -165,27 +171,14 @@ impl Scene {
     }
 }
 
-/// The settings at which a method is charted. The values are those that the view takes.
-fn settings(method: &str, view: &View) -> Vec<Setting> {
-    let steps = f64::from(view.steps);
-    match method {
-        "fixed" => [0.25, 0.5, 1.0, 2.0, 4.0]
-            .map(|factor| ("steps", (steps * factor).round(), factor == 1.0))
-            .to_vec(),
-        "sphere" => [100.0, 10.0, 1.0, 0.1]
-            .map(|factor| ("epsilon", view.epsilon * factor, factor == 1.0))
-            .to_vec(),
-        _ => vec![("steps", steps, true)],
+/// The methods of those names; all for none.
+fn methods(names: &[String]) -> Result<Vec<&'static Method>, Error> {
+    if names.is_empty() {
+        return Ok(METHODS.iter().collect());
     }
-}
-
-fn with(view: &View, (name, value, _): Setting) -> View {
-    let mut view = view.clone();
-    match name {
-        "epsilon" => view.epsilon = value,
-        _ => view.steps = value as u32,
-    }
-    view
+    let unknown = |name: &String| sdfc_codegen::Error::UnknownMethod(name.clone());
+    let found = |name: &String| method(name).ok_or_else(|| Error::Codegen(unknown(name)));
+    names.iter().map(found).collect()
 }
 
 fn camera(view: &View) -> Camera {
@@ -214,4 +207,26 @@ fn samples(image: &Image) -> Vec<PixelSample> {
             evaluations: pixel.primary_evaluations,
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_lang::settings::RAY_METHODS;
+
+    use super::*;
+
+    /// The language cannot ask the crate that has the methods.
+    #[test]
+    fn a_scene_may_name_every_method_but_the_practical() {
+        let known: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
+        let named: Vec<&str> = RAY_METHODS.into_iter().chain(["practical"]).collect();
+        assert_eq!(named, known);
+    }
+
+    #[test]
+    fn a_chart_shows_every_knob_at_its_default_too() {
+        for method in METHODS {
+            assert!(method.charted.contains(&1.0), "{}", method.name);
+        }
+    }
 }

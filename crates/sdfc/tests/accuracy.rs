@@ -33,7 +33,8 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let scene = sdfc::compile(name, text).scene.ok_or("the scene does not compile")?;
     let gpu = Gpu::new()?;
     let methods = vec!["auto".to_owned()];
-    let options = ChartOptions { size: SIZE, methods, repetitions: 1, ..ChartOptions::default() };
+    let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
+    let options = ChartOptions { size: SIZE, methods, ..once };
     let chart = scene.chart(name, &gpu, &options, &|_| (), &mut unwatched)?;
     let undecided = chart.oracle.undecided as f64 / f64::from(SIZE[0] * SIZE[1]);
     if undecided > UNDECIDED {

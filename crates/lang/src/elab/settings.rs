@@ -6,6 +6,7 @@ use sdfc_graph::{Camera, Fog, Lens, March, NodeId, Occlusion, Reflections, Setti
 use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir::{Expr, Setting, SettingKind};
+use crate::settings::RAY_METHODS;
 
 /// Field of view without `fov`: 40 degrees.
 const DEFAULT_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
@@ -28,8 +29,6 @@ const MAX_MIRRORS: f64 = 8.0;
 const DEFAULT_SAMPLES: u32 = 4;
 /// As many as the renderer takes.
 const MAX_SAMPLES: f64 = 1024.0;
-/// Ray methods of this version.
-const METHODS: [&str; 3] = ["auto", "fixed", "sphere"];
 /// Most steps of a ray: some drivers end a loop silently at 65,535 rounds.
 const MAX_MARCH_STEPS: f64 = 65_535.0;
 /// Lengths and other numbers that must be above 0.
@@ -184,9 +183,11 @@ impl<'p> Elaborator<'p> {
         let epsilon = self.known_within(setting, 1, "`epsilon`", POSITIVE);
         let distance = self.known_within(setting, 2, "`distance`", POSITIVE);
         let method = self.argument(setting, 3).map(|expr| self.method(expr)).transpose();
+        let tolerance = self.known_within(setting, 4, "`tolerance`", POSITIVE);
         Ok(March {
             steps: steps?.map(|steps| steps as u32),
             epsilon: epsilon?,
+            tolerance: tolerance?,
             distance: distance?,
             method: method?,
         })
@@ -200,11 +201,11 @@ impl<'p> Elaborator<'p> {
             }
             return Err(self.unexpected(expr.span, "a text", &value));
         };
-        if METHODS.contains(&&**text) {
+        if RAY_METHODS.contains(&&**text) {
             return Ok(text.to_string());
         }
         let message = format!("there is no ray method \"{text}\" in this version");
-        let help = format!("the methods are {}", METHODS.join(", "));
+        let help = format!("the methods are {}", RAY_METHODS.join(", "));
         let error = Diagnostic::error(ErrorCode::NOT_YET, expr.span, message);
         Err(self.report(error.help(help)))
     }

@@ -1,5 +1,4 @@
-// Sphere tracing to a fraction of a pixel, wherever on the ray that is. Within a quarter of a pixel of a
-// surface the ray closes in by secants, so that a ray that only passes by an edge is not taken for a hit
+// Sphere tracing to a part of a pixel, wherever on the ray that is. That near to a surface the ray closes in by secants, so that a ray that only passes by an edge is not taken for a hit
 // on it; where the field led through the surface it closes in on the bracket.
 
 // A hit is nearer than this part of the tolerance.
@@ -8,9 +7,8 @@ const HIT_PART: f32 = 0.00390625;
 // times the distance.
 const LEAST_SLOPE: f32 = 0.125;
 
-// A quarter of a pixel's width, but no finer than what rounding allows.
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return max(0.5 * footprint(ray, t), rounding(ray, t));
+    return part_of_footprint(ray, t);
 }
 
 // How far along the ray the line through two samples reaches zero.

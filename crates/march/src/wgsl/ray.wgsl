@@ -1,6 +1,6 @@
 // What every ray method takes and gives: `fn trace(ray: Ray) -> Trace`.
 // Each method states beside it how near to the surface its hits are: `fn tolerance(ray: Ray, t: f32) -> f32`, and tells
-// each of its samples to `passed`.
+// `passed` of each sample that it keeps.
 
 const MISS: u32 = 0;
 const HIT: u32 = 1;
@@ -18,6 +18,8 @@ struct Ray {
     t_max: f32,
     // A hit is nearer than this, absolute (`fixed`, `sphere`).
     epsilon: f32,
+    // A hit is nearer than this, in widths of the footprint there (all others).
+    tolerance: f32,
     // At most so many steps.
     steps: u32,
 }
@@ -41,6 +43,11 @@ fn ray_point(ray: Ray, t: f32) -> vec3f {
 // Radius of the ray's footprint at a distance: half a pixel for rays from the eye.
 fn footprint(ray: Ray, t: f32) -> f32 {
     return ray.radius + ray.spread * t;
+}
+
+// A part of the footprint's width, but no finer than what rounding allows.
+fn part_of_footprint(ray: Ray, t: f32) -> f32 {
+    return max(2.0 * ray.tolerance * footprint(ray, t), rounding(ray, t));
 }
 
 // What rounding alone may do to a point on the ray.

@@ -1,5 +1,8 @@
 // Rays that start on a surface.
 
+// Of a ray to a lamp, whose footprint is as wide as it starts above the surface.
+const SHADOW_TOLERANCE: f32 = 0.25;
+
 // How far a hit may be from it.
 fn nearness(seen: Ray, t: f32) -> f32 {
     return max(tolerance(seen, t), rounding(seen, t));
@@ -19,7 +22,8 @@ fn shadow_ray(surface: Surface, seen: Ray, t: f32, lamp: Lamp) -> Ray {
     if SOFT_SHADOWS {
         open_penumbra();
     }
-    return Ray(origin, 0.5 * lift, lamp.direction, 0.0, lamp.reach, seen.epsilon, seen.steps);
+    let radius = 0.5 * lift;
+    return Ray(origin, radius, lamp.direction, 0.0, lamp.reach, seen.epsilon, SHADOW_TOLERANCE, seen.steps);
 }
 
 // From a surface to what it mirrors, less far off, since that moves the image. The footprint goes on growing
@@ -28,5 +32,5 @@ fn mirrored_ray(surface: Surface, seen: Ray, t: f32) -> Ray {
     let origin = start_at(surface, seen, t, 1.5 * nearness(seen, t));
     let direction = reflect(seen.direction, surface.normal);
     let radius = footprint(seen, t);
-    return Ray(origin, radius, direction, seen.spread, seen.t_max, seen.epsilon, seen.steps);
+    return Ray(origin, radius, direction, seen.spread, seen.t_max, seen.epsilon, seen.tolerance, seen.steps);
 }

@@ -37,7 +37,7 @@ struct View {
     tile_origin: vec2u,
     tile_size: vec2u,
     light_count: u32,
-    pad: f32,
+    tolerance: f32,
     ambient: vec3f,
     reflections: u32,
     background: vec3f,
@@ -55,7 +55,7 @@ struct View {
 fn camera_ray(pixel: vec2u) -> Ray {
     let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
     let aside = place.x * view.right - place.y * view.up;
-    var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.steps);
+    var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.tolerance, view.steps);
     if PARALLEL {
         ray.origin += aside;
         ray.radius = view.pixel_radius;

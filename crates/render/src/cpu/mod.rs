@@ -36,6 +36,8 @@ use trace::{Batch, Limits, Method, Ray, Trace, trace, values_at};
 const GROUP: usize = 512;
 /// Places above a surface at which it is asked what takes its light.
 const OCCLUSION_SAMPLES: u32 = 5;
+/// Tolerance of a ray to a lamp, whose footprint is as wide as it starts above the surface.
+const SHADOW_TOLERANCE: f64 = 0.25;
 /// Most pixels of a tile; threads wait for each other at its end.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 
@@ -310,6 +312,7 @@ impl<T: Real> Wave<'_, T> {
             t_max: T::constant(self.view.t_max),
             radius: T::constant(radius),
             spread: T::constant(spread),
+            tolerance: T::constant(self.view.tolerance),
         }
     }
 
@@ -382,6 +385,7 @@ impl<T: Real> Wave<'_, T> {
             t_max: T::constant(lamp.reach.unwrap_or(self.view.t_max)),
             radius: T::constant(0.5) * lift,
             spread: T::constant(0.0),
+            tolerance: T::constant(SHADOW_TOLERANCE),
         }
     }
 
@@ -396,6 +400,7 @@ impl<T: Real> Wave<'_, T> {
             t_max: T::constant(self.view.t_max),
             radius: sight.ray.footprint(*t),
             spread: sight.ray.spread,
+            tolerance: sight.ray.tolerance,
         };
         let weight = sight.weight * self.view.reflection_strength;
         Sight { pixel: sight.pixel, ray, weight }

@@ -60,6 +60,8 @@ pub(super) struct Ray<T> {
     /// Radius of the cone at the origin, and its growth per length.
     pub(super) radius: T,
     pub(super) spread: T,
+    /// How near to the surface a hit is, in widths of the cone there (`auto`).
+    pub(super) tolerance: T,
 }
 
 /// Rounding of a point relative to its distance from the scene's origin: eight units in the last
@@ -105,8 +107,8 @@ impl<T: Real> Limits<T> {
         match self.method {
             Method::Sphere => self.epsilon,
             Method::Auto => {
-                let quarter = T::constant(0.5) * ray.footprint(t);
-                quarter.max(ray.rounding(t))
+                let part = T::constant(2.0) * ray.tolerance * ray.footprint(t);
+                part.max(ray.rounding(t))
             }
         }
     }

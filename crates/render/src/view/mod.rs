@@ -12,7 +12,7 @@ use sdfc_graph::{
     Fog, March, NodeId, Occlusion, Program, Settings, Sky,
     eval::{FrameValues, evaluate_frame},
 };
-use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, ViewBlock};
+use sdfc_march::{Knob, LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, ViewBlock};
 
 use crate::tiles::Tile;
 pub use error::ViewError;
@@ -20,11 +20,6 @@ use light::lights;
 pub use light::{ViewLight, ViewShadow, ViewSource};
 use pose::Pose;
 
-/// Steps of a ray where the scene states none.
-const DEFAULT_STEPS: u32 = 256;
-/// Tolerance of a hit in parts of the distance from eye to target, where the scene states none:
-/// about 100 times the rounding of f32 there.
-const DEFAULT_EPSILON: f64 = 5e-5;
 /// Length of a ray in distances from eye to target, where neither scene nor bounds limit it.
 const DEFAULT_DISTANCE: f64 = 200.0;
 /// A ray that is limited by the bounds goes past them by so much, for the rounding of the bounds.
@@ -53,6 +48,8 @@ pub struct View {
     pub t_max: f64,
     /// A hit is nearer than this (`fixed`, `sphere`).
     pub epsilon: f64,
+    /// A hit is nearer than this, in widths of a pixel there (all other methods).
+    pub tolerance: f64,
     /// At most so many steps a ray.
     pub steps: u32,
     /// The lights, at most [`MAX_LIGHTS`].
@@ -174,6 +171,7 @@ impl View {
             forward,
             t_max: limits.t_max,
             epsilon: limits.epsilon,
+            tolerance: limits.tolerance,
             steps: limits.steps,
             lights: lights(&settings.lights, forward, value)?,
             ambient: ambient.transpose()?.unwrap_or_default(),
@@ -183,6 +181,26 @@ impl View {
             reflections,
             reflection_strength,
         })
+    }
+
+    /// The value of a knob.
+    pub fn knob(&self, knob: Knob) -> f64 {
+        match knob {
+            Knob::Steps => f64::from(self.steps),
+            Knob::Epsilon => self.epsilon,
+            Knob::Tolerance => self.tolerance,
+        }
+    }
+
+    /// The view with another value of a knob; steps are whole, and at least one.
+    pub fn with_knob(&self, knob: Knob, value: f64) -> Self {
+        let mut view = self.clone();
+        match knob {
+            Knob::Steps => view.steps = value.round().max(1.0) as u32,
+            Knob::Epsilon => view.epsilon = value,
+            Knob::Tolerance => view.tolerance = value,
+        }
+        view
     }
 
     /// The view whose rays pass so many pixels to the right of the centres of pixels and below them.
@@ -245,7 +263,7 @@ impl View {
             tile_origin: tile.origin,
             tile_size: tile.size,
             light_count: self.lights.len().min(MAX_LIGHTS) as u32,
-            pad: 0.0,
+            tolerance: self.tolerance as f32,
             ambient: single(self.ambient),
             reflections: self.reflections,
             background: single(background),
@@ -265,20 +283,24 @@ impl View {
 struct Limits {
     t_max: f64,
     epsilon: f64,
+    tolerance: f64,
     steps: u32,
 }
 
 impl Limits {
     fn new(march: &March, pose: &Pose, bounds: Option<Bounds>) -> Result<Self, ViewError> {
         let reach = (pose.target - pose.eye).length();
-        let steps = march.steps.unwrap_or(DEFAULT_STEPS);
+        let steps = march.steps.unwrap_or(Knob::Steps.default_value() as u32);
         if steps == 0 {
             return Err(ViewError::NotPositive("march's steps", 0.0));
         }
         Ok(Self {
             t_max: stated(march.distance, "march's distance")?
                 .unwrap_or_else(|| derived_distance(pose.eye, reach, bounds)),
-            epsilon: stated(march.epsilon, "march's epsilon")?.unwrap_or(DEFAULT_EPSILON * reach),
+            epsilon: stated(march.epsilon, "march's epsilon")?
+                .unwrap_or(Knob::Epsilon.default_value() * reach),
+            tolerance: stated(march.tolerance, "march's tolerance")?
+                .unwrap_or(Knob::Tolerance.default_value()),
             steps,
         })
     }
@@ -479,10 +501,16 @@ mod tests {
         assert_eq!(camera().view(None, [10, 10]).unwrap().t_max, 1000.0);
 
         let mut stated = camera();
-        stated.0.settings.march =
-            March { steps: Some(50), epsilon: Some(0.01), distance: Some(20.0), method: None };
+        stated.0.settings.march = March {
+            steps: Some(50),
+            epsilon: Some(0.01),
+            tolerance: Some(0.5),
+            distance: Some(20.0),
+            method: None,
+        };
         let stated = stated.view(Some(UNIT), [10, 10]).unwrap();
-        assert_eq!((stated.steps, stated.epsilon, stated.t_max), (50, 0.01, 20.0));
+        assert_eq!((stated.steps, stated.epsilon), (50, 0.01));
+        assert_eq!((stated.tolerance, stated.t_max), (0.5, 20.0));
     }
 
     #[test]

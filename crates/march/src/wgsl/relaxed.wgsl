@@ -1,0 +1,39 @@
+// Steps longer than the distance. Where the balls of free space about both ends of a step do not meet, something
+// may lie between them: the step is taken back to the end of the first ball, and the ray goes on by plain
+// steps. B. Keinert et al., Enhanced sphere tracing (STAG 2014).
+
+// Steps as long as so many distances.
+const RELAXATION: f32 = 1.2;
+
+fn tolerance(ray: Ray, t: f32) -> f32 {
+    return part_of_footprint(ray, t);
+}
+
+fn trace(ray: Ray) -> Trace {
+    var t = 0.0;
+    // Distance at t, and the step to take from there.
+    var radius = 0.0;
+    var stride = 0.0;
+    var relaxation = RELAXATION;
+    for (var step = 0u; step < ray.steps; step++) {
+        let next = t + stride;
+        let distance = field(ray_point(ray, next));
+        // A step as long as the distance is never taken back.
+        if stride > radius + abs(distance) {
+            stride = radius;
+            relaxation = 1.0;
+            continue;
+        }
+        passed(next, distance);
+        t = next;
+        radius = distance;
+        if distance < tolerance(ray, t) {
+            return Trace(t, HIT, step + 1u);
+        }
+        if !(t + distance <= ray.t_max) {
+            return Trace(t + distance, MISS, step + 1u);
+        }
+        stride = min(relaxation * distance, ray.t_max - t);
+    }
+    return Trace(t, CAPPED, ray.steps);
+}
