@@ -194,7 +194,7 @@ fn camera(view: &View) -> Camera {
     }
 }
 
-fn samples(image: &Image) -> Vec<PixelSample> {
+pub(crate) fn samples(image: &Image) -> Vec<PixelSample> {
     let pixels = image.pixels().iter();
     pixels
         .map(|pixel| PixelSample {

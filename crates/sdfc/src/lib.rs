@@ -37,6 +37,7 @@ mod error;
 mod explain;
 mod faults;
 mod findings;
+mod judged;
 mod params;
 mod picture;
 mod reflection;

@@ -1,0 +1,155 @@
+//! `docs/stability.md`: what each ray method does on each case.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use libtest_mimic::Failed;
+use sdfc::FrameValues;
+use sdfc::accuracy_data::{Metrics, Truth};
+use sdfc::render::{AdapterInfo, Gpu, View};
+
+use crate::case::Case;
+
+const HEAD: &str = "\
+# Where ray methods fail, and `auto` holds
+
+<!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc --test stability`; change the scenes' comments or the test. -->
+
+Each row is a scene of [tests/stability](../tests/stability) or [examples/faults](../examples/faults), made so that some way of marching
+it goes wrong; its comment says what fails and why. Every ray method draws it at 160x120 with its usual settings, at each of the scene's frames, and
+each picture is compared with the [oracle](accuracy.md).
+
+Figures are parts of the pixels in percent, to two digits, and left out where they are 0:
+**M** led through a surface, **F** ended where there is none, **C** out of steps, **N** not a number. **D** is the error in depth that 99 of
+100 pixels keep, in widths of a pixel; left out up to 0.05. Of several frames the shares are taken over all, and D is the worst.
+*good* is a row without any.
+
+";
+
+/// What a method does on a case: shares of the pixels in percent, and an error in depth.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    pub missed: f64,
+    pub false_hits: f64,
+    pub capped: f64,
+    pub nan: f64,
+    pub undecided: f64,
+    pub depth: f64,
+}
+
+impl Figures {
+    /// Over all frames.
+    pub fn of(views: &[(View, FrameValues, Truth)], metrics: &[Metrics]) -> Self {
+        let pixels: usize = views.iter().map(|(.., truth)| truth.verdicts.len()).sum();
+        let percent = |count: u64| 100.0 * count as f64 / pixels.max(1) as f64;
+        let sum = |of: fn(&Metrics) -> u64| percent(metrics.iter().map(of).sum());
+        Self {
+            missed: sum(|metrics| metrics.missed),
+            false_hits: sum(|metrics| metrics.false_hits),
+            capped: sum(|metrics| metrics.capped),
+            nan: sum(|metrics| metrics.nan),
+            undecided: percent(views.iter().map(|(.., truth)| truth.counts().undecided).sum()),
+            depth: metrics.iter().map(|metrics| metrics.depth.pixels.p99).fold(0.0, f64::max),
+        }
+    }
+
+    fn cell(&self) -> String {
+        let shares =
+            [("M", self.missed), ("F", self.false_hits), ("C", self.capped), ("N", self.nan)];
+        let seen = shares.iter().filter(|(_, share)| *share > 0.0);
+        let mut parts: Vec<String> =
+            seen.map(|(letter, share)| format!("{letter} {}", rounded(*share))).collect();
+        if self.depth > 0.05 {
+            parts.push(format!("D {}", rounded(self.depth)));
+        }
+        if parts.is_empty() { "*good*".to_owned() } else { parts.join(", ") }
+    }
+}
+
+/// To two digits.
+fn rounded(value: f64) -> String {
+    if !value.is_finite() || value == 0.0 {
+        return value.to_string();
+    }
+    let digits = 1 - value.abs().log10().floor() as i32;
+    let scale = 10f64.powi(digits);
+    let places = usize::try_from(digits).unwrap_or(0);
+    format!("{:.places$}", (value * scale).round() / scale)
+}
+
+/// The page as it stands.
+#[derive(Debug)]
+pub struct Page {
+    text: String,
+}
+
+impl Page {
+    fn path() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/stability.md")
+    }
+
+    pub fn read() -> Result<Self, Failed> {
+        Ok(Self { text: std::fs::read_to_string(Self::path())? })
+    }
+
+    /// Whether the page has this row; of another driver, whether it has the case at all.
+    pub fn tells(&self, case: &Case, row: &[Figures], adapter: &AdapterInfo) -> Result<(), Failed> {
+        let stale = |why: String| Err(format!("docs/stability.md is not up to date: {why}").into());
+        let line = line(case, row);
+        if self.text.contains(&driver(adapter)) && !self.text.contains(&line) {
+            return stale(format!("it has no line\n{line}"));
+        }
+        if !self.text.contains(&start(case)) {
+            return stale(format!("it lacks {}", case.name));
+        }
+        match &case.exempt {
+            Some(why) if !self.text.contains(&exempt(case, why)) => {
+                stale(format!("it does not tell why {} is exempt", case.name))
+            }
+            Some(_) | None => Ok(()),
+        }
+    }
+
+    /// Writes the page, with the rows that it has of cases that were not measured.
+    pub fn write(cases: &[Case], measured: &BTreeMap<String, Vec<Figures>>) -> Result<(), Failed> {
+        let before = std::fs::read_to_string(Self::path()).unwrap_or_default();
+        let mut text = HEAD.to_owned();
+        let _ = writeln!(text, "{}\n", driver(Gpu::new()?.info()));
+        let names: Vec<&str> = sdfc::march::METHODS.iter().map(|method| method.name).collect();
+        let _ = writeln!(text, "| scene | `{}` |", names.join("` | `"));
+        let _ = writeln!(text, "|---|{}", "---|".repeat(names.len()));
+        for case in cases {
+            let old = || before.lines().find(|line| line.starts_with(&start(case)));
+            let row = measured.get(&case.name).map(|row| line(case, row));
+            if let Some(row) = row.or_else(|| old().map(ToOwned::to_owned)) {
+                let _ = writeln!(text, "{row}");
+            }
+        }
+        text += "\n## Scenes with bounds of their own\n\nNothing is promised of a field that is uncertified, or finer than numbers of 32 bits.\n\n";
+        for case in cases {
+            if let Some(why) = &case.exempt {
+                let _ = writeln!(text, "{}", exempt(case, why));
+            }
+        }
+        Ok(std::fs::write(Self::path(), text)?)
+    }
+}
+
+fn driver(adapter: &AdapterInfo) -> String {
+    format!("Measured on {}, {}.", adapter.name, adapter.driver)
+}
+
+fn start(case: &Case) -> String {
+    format!("| [{}](../{} \"{}\") |", case.name, case.path, case.title)
+}
+
+fn line(case: &Case, row: &[Figures]) -> String {
+    let cells: Vec<String> = row.iter().map(Figures::cell).collect();
+    format!("{} {} |", start(case), cells.join(" | "))
+}
+
+fn exempt(case: &Case, why: &str) -> String {
+    let bounds = case.text.lines().find_map(|line| line.strip_prefix("// Auto: "));
+    format!("- `{}`: {why}. `auto` holds: {}", case.name, bounds.unwrap_or_default())
+}
