@@ -90,6 +90,17 @@ impl Linear {
         &self.rows[..self.lanes]
     }
 
+    fn is_identity(&self) -> bool {
+        let unit = |lane: usize, i: usize| if lane == i { 1.0 } else { 0.0 };
+        let mut rows = self.rows().iter().enumerate();
+        self.lanes == 3
+            && rows.all(|(lane, row)| {
+                row.iter().enumerate().all(|(i, coefficient)| {
+                    matches!(coefficient, Coefficient::Number(value) if *value == unit(lane, i))
+                })
+            })
+    }
+
     /// Each row's coefficients changed.
     fn map(&self, mut change: impl FnMut(usize, Coefficient) -> Coefficient) -> Self {
         Self::new(self.lanes, |lane| self.rows[lane].map(|coefficient| change(lane, coefficient)))
@@ -216,6 +227,18 @@ fn weighted_sum(graph: &mut Graph, rows: &[Row], weights: &[Coefficient]) -> Row
             sum.plus(graph, term)
         })
     })
+}
+
+/// The map without its offset, of a vector.
+pub(crate) fn applied(graph: &mut Graph, linear: &Linear, vector: NodeId) -> NodeId {
+    if linear.is_identity() {
+        return vector;
+    }
+    let columns = [0, 1, 2].map(|i| {
+        let parts: Vec<NodeId> = linear.rows().iter().map(|row| row[i].node(graph)).collect();
+        graph.compose(&parts)
+    });
+    graph.transform(columns, vector)
 }
 
 /// The largest factor by which the map stretches distances; `None` where it cannot be told.

@@ -17,7 +17,10 @@
 //! the point has no such constant; its shape is uncertified unless it states one.
 
 mod affine;
+mod clip;
+mod closed;
 mod cost;
+mod form;
 mod leaves;
 mod lipschitz;
 mod polynomial;
@@ -25,6 +28,7 @@ mod prepare;
 mod quality;
 mod refute;
 mod sound;
+mod spans;
 mod uneven;
 
 pub use cost::{Cost, cost};

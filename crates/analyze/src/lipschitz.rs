@@ -186,6 +186,14 @@ impl Slopes {
         self.is_similarity(graph, q, one)
     }
 
+    /// What the affine map of the point that a node is makes of a direction; the direction itself for another node.
+    pub(crate) fn direction(&self, graph: &mut Graph, q: NodeId, direction: NodeId) -> NodeId {
+        match self.linear.get(&q) {
+            Some(linear) => affine::applied(graph, linear, direction),
+            None => direction,
+        }
+    }
+
     /// Whether the node shrinks all distances of the point by `factor`: one that then stretches a
     /// sampled distance by it gives a distance again.
     pub(crate) fn is_similarity(&self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {

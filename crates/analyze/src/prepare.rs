@@ -2,13 +2,16 @@
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{
-    Dim, ExpandError, Expander, Graph, NodeId, Program, Scene, ShapeId, fold_transforms, gradient,
-    uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, ShapeId,
+    fold_transforms, gradient, uniforms,
 };
 
+use crate::clip::clip;
+use crate::closed::{Parts, parts, rest};
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::quality::{Qualities, Sides, shapes_below};
+use crate::spans::first;
 use crate::sound::{Uncertified, sound_field};
 use crate::uneven::{Uneven, uneven};
 
@@ -30,6 +33,14 @@ pub struct Report {
     pub distance: Cost,
     /// Cost of the gradient, what it shares with the distance included.
     pub gradient: Cost,
+    /// Cost of what a ray is asked before it is marched.
+    pub ray: Cost,
+    /// Cost of the distance to what is left to march.
+    pub marched: Cost,
+    /// What rays meet without marching.
+    pub closed: Vec<ShapeId>,
+    /// What is left to march.
+    pub open: Vec<ShapeId>,
     /// Every shape of the scene, children before parents.
     pub shapes: Vec<ShapeReport>,
     /// Parts that no Lipschitz constant covers; empty for a certified scene.
@@ -91,32 +102,98 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
     let qualities = Qualities::of_scene(graph, root);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
+    let apart = parts(graph, &mut expander, &qualities, root)?;
     let mut flat = vec![field.distance];
+    if !apart.closed.is_empty() {
+        flat.extend(least(graph, apart.closed.iter().map(|part| part.value)));
+        flat.extend(least(graph, apart.open.iter().map(|part| part.value)));
+    }
+    let fields = flat.len();
     if painted {
         flat.extend(expander.material(graph, root, point)?);
     }
     let folded = fold_transforms(graph, &flat);
     program.names = folded.names(graph, &expander.names());
-    let [distance, material @ ..] = &folded.roots[..] else { return Ok(Report::default()) };
-    let distance = *distance;
+    let (fields, material) = folded.roots.split_at(fields);
+    let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, point));
+    let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
+    program.rays = rays(&apart, fields, asked);
+    let Rays { hits, marched, clip, .. } = program.rays;
+    let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
         leaves,
         distance: cost(graph, &[distance]),
         gradient: cost(graph, program.gradient.as_slice()),
+        ray: cost(graph, &asked),
+        marched: cost(graph, marched.as_slice()),
+        closed: apart.closed.iter().map(|part| part.shape).collect(),
+        open: apart.open.iter().map(|part| part.shape).collect(),
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         uneven: uneven(graph, &qualities, root),
     })
 }
 
+fn least(graph: &mut Graph, values: impl Iterator<Item = NodeId>) -> Option<NodeId> {
+    values.reduce(|a, b| graph.min(a, b))
+}
+
+/// What a ray is asked before it is marched.
+#[derive(Clone, Copy, Debug, Default)]
+struct Asked {
+    hits: Option<NodeId>,
+    clip: Option<NodeId>,
+}
+
+/// The first hit of what is closed, and the way through the bounds of what is left.
+fn asked_of_rays(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    apart: &Parts,
+    params: &[Param],
+) -> Result<Asked, ExpandError> {
+    let spans: Vec<_> = apart.closed.iter().flat_map(|part| part.spans.iter().copied()).collect();
+    let mut roots = Vec::new();
+    if !spans.is_empty() {
+        roots.push(first(graph, &spans));
+    }
+    let hits = roots.len();
+    if let Some(rest) = rest(graph, &apart.open) {
+        let corners = Bounds::new(params).of(graph, rest);
+        let ray = [0, 1].map(|level| graph.point(level, Dim::Three));
+        let lo = expander.node(graph, corners[0], &ray)?;
+        let hi = expander.node(graph, corners[1], &ray)?;
+        if let Some(ends) = clip(graph, ray, [lo, hi]) {
+            roots.push(graph.compose(&ends));
+        }
+    }
+    let folded = fold_transforms(graph, &roots).roots;
+    let (hits, clip) = folded.split_at(hits);
+    Ok(Asked { hits: hits.first().copied(), clip: clip.first().copied() })
+}
+
+/// The functions of rays, from the fields of the whole, of what is closed and of what is left, as far as there are such.
+fn rays(apart: &Parts, fields: &[NodeId], Asked { hits, clip }: Asked) -> Rays {
+    let (whole, parts) = (fields.first().copied(), fields.get(1..).unwrap_or_default());
+    match (apart.closed.is_empty(), apart.open.is_empty()) {
+        (true, _) => Rays { hits, closed: None, marched: whole, clip },
+        (false, is_all) => {
+            let marched = parts.get(1).copied().filter(|_| !is_all);
+            Rays { hits, closed: parts.first().copied(), marched, clip }
+        }
+    }
+}
+
 /// Everything that a shader of the program computes at its points, and the settings.
 fn roots(program: &Program) -> Vec<NodeId> {
     let field = program.distance.into_iter().chain(program.gradient);
     let material = program.material.into_iter().flatten();
-    field.chain(material).collect()
+    // Taken apart so that a new function does not compile until it is thought of here.
+    let Rays { hits, closed, marched, clip } = program.rays;
+    field.chain(material).chain([hits, closed, marched, clip].into_iter().flatten()).collect()
 }
 
 fn shape_reports(

@@ -7,13 +7,12 @@
 //! A constant that is stated with bounds and not known to hold beyond them is used there: the field is continued
 //! ([`sdfc_graph::Graph::continued`]).
 
-use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{
-    Binary, ExpandError, Expander, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary,
-};
+use rustc_hash::FxHashMap;
+use sdfc_graph::{ExpandError, Expander, Graph, Node, NodeId, ShapeId, Stage};
 
+use crate::form::{self, Form};
 use crate::lipschitz::{Constant, Reason, Slopes};
-use crate::quality::{Qualities, scaled_sample};
+use crate::quality::Qualities;
 
 /// A part of the scene that no constant covers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -138,9 +137,9 @@ impl Pass<'_> {
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
         let mut sound: FxHashMap<NodeId, NodeId> = FxHashMap::default();
-        for node in self.chain_below(formula, slopes) {
+        for node in form::chain_below(self.graph, formula, slopes) {
             let of = |id: NodeId| sound.get(&id).copied().unwrap_or(id);
-            let value = match self.form(node, slopes) {
+            let value = match form::form(self.graph, node, slopes) {
                 Form::Whole => self.divided(shape, node, slopes, points)?,
                 Form::Least(a, b) => self.graph.min(of(a), of(b)),
                 Form::Greatest(a, b) => self.graph.max(of(a), of(b)),
@@ -165,64 +164,6 @@ impl Pass<'_> {
         match sound.get(&formula) {
             Some(&value) => Ok(value),
             None => self.expander.node(self.graph, formula, points),
-        }
-    }
-
-    /// The nodes that the descent visits, arguments before uses.
-    fn chain_below(&mut self, formula: NodeId, slopes: &Slopes) -> Vec<NodeId> {
-        let mut seen = FxHashSet::default();
-        let mut pending = vec![formula];
-        while let Some(node) = pending.pop() {
-            if !seen.insert(node) {
-                continue;
-            }
-            match self.form(node, slopes) {
-                Form::Least(a, b) | Form::Greatest(a, b) | Form::Chosen(_, a, b) => {
-                    pending.extend([a, b]);
-                }
-                Form::Negative(a) => pending.push(a),
-                Form::Whole | Form::Sampled(..) | Form::Scaled(..) => {}
-            }
-        }
-        let mut order: Vec<NodeId> = seen.into_iter().collect();
-        order.sort_unstable();
-        order
-    }
-
-    /// How the descent goes on at a node of a formula.
-    fn form(&mut self, node: NodeId, slopes: &Slopes) -> Form {
-        let scalar = self.graph.ty(node) == Type::Scalar;
-        match self.graph.node(node) {
-            Node::Binary(Binary::Min, a, b) if scalar => Form::Least(a, b),
-            Node::Binary(Binary::Max, a, b) if scalar => Form::Greatest(a, b),
-            Node::Unary(Unary::Neg, a) if scalar => Form::Negative(a),
-            Node::Ternary(Ternary::Select, [condition, a, b])
-                if scalar && self.graph.stage(condition) < Stage::Point =>
-            {
-                Form::Chosen(condition, a, b)
-            }
-            Node::Sample(child, q) if slopes.is_isometry(self.graph, q) => Form::Sampled(child, q),
-            Node::Binary(Binary::Mul, a, b) => match scaled_sample(self.graph, a, b) {
-                Some((factor, child, q)) if slopes.is_similarity(self.graph, q, factor) => {
-                    Form::Scaled(factor, child, q)
-                }
-                Some(_) | None => Form::Whole,
-            },
-            Node::Const(_)
-            | Node::Point(..)
-            | Node::Frame(..)
-            | Node::Unary(..)
-            | Node::Binary(..)
-            | Node::Ternary(..)
-            | Node::Splat(..)
-            | Node::Compose(..)
-            | Node::Swizzle(..)
-            | Node::Transform(..)
-            | Node::Variable(..)
-            | Node::Loop(..)
-            | Node::Element(..)
-            | Node::Sample(..)
-            | Node::MaterialAt(..) => Form::Whole,
         }
     }
 
@@ -302,15 +243,4 @@ impl Pass<'_> {
         let one = self.graph.number(1.0);
         Ok(self.graph.continued(point, nearest, inside, one))
     }
-}
-
-/// How a node of a formula passes its value on.
-enum Form {
-    Least(NodeId, NodeId),
-    Greatest(NodeId, NodeId),
-    Negative(NodeId),
-    Chosen(NodeId, NodeId, NodeId),
-    Sampled(ShapeId, NodeId),
-    Scaled(NodeId, ShapeId, NodeId),
-    Whole,
 }

@@ -5,9 +5,9 @@ use sdfc_graph::{MaterialField, Program, Type};
 use sdfc_march::{Features, Method, ray_source, stubs};
 
 use crate::inputs::{declare_members, raw_inputs};
-use crate::lower::{struct_function, value_function};
+use crate::lower::struct_function;
 use crate::names::{check_prefix, make_public};
-use crate::picture::known_method;
+use crate::picture::{Filling, ahead, known_method, ray_features};
 use crate::reflect::{Parts, Role};
 use crate::{Error, Shader, link, types};
 
@@ -69,17 +69,19 @@ fn functions(
 ) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
-    let mut roots = vec![(Role::Distance, stubs::FIELD, distance)];
+    let features = ray_features(program, method.is_some_and(|method| method.looks_ahead));
+    let mut fillings = vec![Filling::of_point(Some(Role::Distance), stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        roots.push((Role::Gradient, stubs::GRADIENT, gradient));
+        fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
     }
+    fillings.extend(ahead(program, features));
     let material = program.material.filter(|_| options.material);
-    let mut nodes: Vec<_> = roots.iter().map(|&(.., root)| root).collect();
+    let mut nodes: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
     nodes.extend(material.into_iter().flatten());
 
     let mut module = match method {
-        Some(method) => link::skeleton(&ray_source(method), &[], &[stubs::PASSED])?,
+        Some(method) => link::skeleton(&ray_source(method), &features.overrides(), &[stubs::PASSED])?,
         None => Module::default(),
     };
     module.entry_points.clear();
@@ -90,9 +92,10 @@ fn functions(
 
     let (uniform, prefix) = (inputs.buffer, options.prefix.clone());
     let mut parts = Parts { members, uniform, prefix, ..Default::default() };
-    for (role, stub, root) in roots {
-        let function = value_function(program, &inputs, &mut module.types, stub, root)?;
-        parts.functions.push((role, fill_or_add(&mut module, stub, function)?));
+    for filling in fillings {
+        let function = filling.function(program, &inputs, &mut module.types)?;
+        let place = fill_or_add(&mut module, filling.stub, function)?;
+        parts.functions.extend(filling.role.map(|role| (role, place)));
     }
     if let Some(fields) = material {
         let structure = material_type(&mut module);
@@ -102,7 +105,7 @@ fn functions(
     }
     parts.functions.extend(link::find_function(&module, stubs::TRACE).map(|f| (Role::Trace, f)));
     make_public(&mut module, &parts, &options.prefix);
-    Shader::new(module, parts, Features { materials: material.is_some(), ..Features::default() })
+    Shader::new(module, parts, Features { materials: material.is_some(), ..features })
 }
 
 /// Replaces the stub of that name where a ray method calls it, else adds the function.

@@ -1,12 +1,12 @@
 //! The shader of a picture: a scene's functions linked into a ray method and shading.
 
-use naga::{Module, ResourceBinding};
+use naga::{Function, Module, ResourceBinding, UniqueArena};
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Lens, LightSource, NodeId, Program, Shadow, reachable_where};
+use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Shadow, reachable_where};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
-use crate::lower::{store_function, struct_function, value_function};
+use crate::lower::{ray_function, store_function, struct_function, value_function};
 use crate::names::{check_prefix, make_public};
 use crate::reflect::{Parts, Role};
 use crate::{Error, Shader, link};
@@ -52,7 +52,8 @@ pub fn measured_module(
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
         FieldSource::Units | FieldSource::Tape => None,
     };
-    let features = Features { materials: false, ..features(program) };
+    // All of the field is marched.
+    let features = Features { materials: false, ..features(program, false) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let source = source_over(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;
@@ -163,8 +164,7 @@ fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
 /// A picture's shader while the scene's parts are put into it.
 pub(crate) struct Picture<'p> {
     program: &'p Program,
-    /// What fills the stubs; not the gradient of a method that has its own.
-    filled: Vec<(Role, &'static str, NodeId)>,
+    fillings: Vec<Filling>,
     features: Features,
     /// Positions in `Program::uniforms` of those that the scene's functions read.
     used: Vec<usize>,
@@ -183,18 +183,21 @@ impl<'p> Picture<'p> {
     ) -> Result<Self, Error> {
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        let features = features(program);
-        let mut filled = vec![(Role::Distance, stubs::FIELD, distance)];
-        if method.gradient.is_none() {
-            filled.push((Role::Gradient, stubs::GRADIENT, gradient));
+        let features = features(program, method.looks_ahead);
+        let mut fillings = ahead(program, features);
+        if !features.closed || features.occlusion {
+            fillings.push(Filling::of_point(Some(Role::Distance), stubs::FIELD, distance));
         }
-        let mut roots: Vec<_> = filled.iter().map(|&(.., root)| root).collect();
+        if method.gradient.is_none() {
+            fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
+        }
+        let mut roots: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);
         let source = source_over(FieldSource::Scene, form, method, features);
         let module = skeleton(&source, features, &used, unused)?;
         let (inputs, parts) = Default::default();
-        Ok(Self { program, filled, features, used, module, inputs, parts })
+        Ok(Self { program, fillings, features, used, module, inputs, parts })
     }
 
     pub(crate) fn slot_nodes(&self) -> Vec<NodeId> {
@@ -221,14 +224,15 @@ impl<'p> Picture<'p> {
     /// Fills the stubs with the scene's functions.
     pub(crate) fn fill(&mut self) -> Result<(), Error> {
         self.parts.uniform = self.inputs.buffer;
-        let mut roots: Vec<_> = self.filled.iter().map(|&(.., root)| root).collect();
+        let mut roots: Vec<_> = self.fillings.iter().map(|filling| filling.root).collect();
         roots.extend(self.program.material.into_iter().flatten());
         self.inputs.tables.declare(&mut self.module, self.program, &roots)?;
         let (module, inputs) = (&mut self.module, &self.inputs);
-        for &(role, stub, root) in &self.filled {
-            let function = value_function(self.program, inputs, &mut module.types, stub, root)?;
-            link::fill(module, stub, function)?;
-            self.parts.functions.extend(link::find_function(module, stub).map(|f| (role, f)));
+        for filling in &self.fillings {
+            let function = filling.function(self.program, inputs, &mut module.types)?;
+            link::fill(module, filling.stub, function)?;
+            let place = link::find_function(module, filling.stub);
+            self.parts.functions.extend(filling.role.zip(place));
         }
         let Some(fields) = self.program.material else { return Ok(()) };
         let stub = stubs::MATERIAL;
@@ -245,6 +249,53 @@ impl<'p> Picture<'p> {
     pub(crate) fn finish(self) -> Result<Shader, Error> {
         Shader::new(self.module, self.parts, self.features)
     }
+}
+
+/// What fills a stub.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Filling {
+    /// What it is to those who embed it; none: nothing.
+    pub role: Option<Role>,
+    pub stub: &'static str,
+    pub root: NodeId,
+    /// Whether it is a function of a ray, not of a point.
+    of_ray: bool,
+}
+
+impl Filling {
+    pub(crate) fn of_point(role: Option<Role>, stub: &'static str, root: NodeId) -> Self {
+        Self { role, stub, root, of_ray: false }
+    }
+
+    fn of_ray(stub: &'static str, root: NodeId) -> Self {
+        Self { role: None, stub, root, of_ray: true }
+    }
+
+    pub(crate) fn function(
+        &self,
+        program: &Program,
+        inputs: &Inputs,
+        types: &mut UniqueArena<naga::Type>,
+    ) -> Result<Function, Error> {
+        let lower = if self.of_ray { ray_function } else { value_function };
+        lower(program, inputs, types, self.stub, self.root)
+    }
+}
+
+/// What fills the stubs of `rays.wgsl` that are called.
+pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
+    if !features.closed && !features.clipped {
+        return Vec::new();
+    }
+    let Rays { hits, closed, marched, clip } = program.rays;
+    let closed = closed.filter(|_| features.soft_shadows);
+    let marched = marched.filter(|_| features.closed);
+    let of_ray = [(stubs::HITS, hits), (stubs::CLIP, clip)].into_iter();
+    let of_point = [(stubs::CLOSED, closed), (stubs::MARCHED, marched)].into_iter();
+    of_ray
+        .filter_map(|(stub, root)| Some(Filling::of_ray(stub, root?)))
+        .chain(of_point.filter_map(|(stub, root)| Some(Filling::of_point(None, stub, root?))))
+        .collect()
 }
 
 /// The ray method of that name.
@@ -265,8 +316,19 @@ fn skeleton(
     link::skeleton(source, &features.overrides(), &unused)
 }
 
+/// What of a scene's rays is known before they are marched, for a method that asks for it.
+pub(crate) fn ray_features(program: &Program, looks_ahead: bool) -> Features {
+    let Rays { hits, closed: _, marched, clip } = program.rays;
+    Features {
+        closed: looks_ahead && hits.is_some(),
+        marched: !looks_ahead || marched.is_some(),
+        clipped: looks_ahead && clip.is_some(),
+        ..Features::default()
+    }
+}
+
 /// What a scene's picture needs beyond the least.
-fn features(program: &Program) -> Features {
+fn features(program: &Program, looks_ahead: bool) -> Features {
     let settings = &program.settings;
     let mut features = Features {
         materials: program.material.is_some(),
@@ -276,7 +338,7 @@ fn features(program: &Program) -> Features {
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
         parallel: matches!(settings.camera.map(|camera| camera.lens), Some(Lens::Height(_))),
-        ..Features::default()
+        ..ray_features(program, looks_ahead)
     };
     for light in &settings.lights {
         match light.source {

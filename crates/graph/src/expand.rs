@@ -63,6 +63,7 @@ impl std::error::Error for ExpandError {}
 ///     args: Vec::new(),
 ///     formula,
 ///     contract: Contract::default(),
+///     hits: Vec::new(),
 ///     material: MaterialRule::Shares(formula),
 ///     children: children.to_vec(),
 ///     depth: 1,

@@ -72,13 +72,13 @@ pub use node::{
     Binary, Const, Dim, FrameInput, LoopId, MaterialField, Node, NodeId, Place, ShapeId, Stage,
     TableId, Ternary, Type, Unary,
 };
-pub use program::Program;
+pub use program::{Program, Rays};
 pub use range::Range;
 pub use repeat::{Loop, LoopBody, MAX_LOOP_DEPTH, Table};
 pub use scene::{
     Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
     Settings, Shadow, Sky,
 };
-pub use shape::{Arg, Contract, MaterialRule, Shape, SidePromise};
+pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};
 pub use walk::{reachable, reachable_where};

@@ -2,6 +2,9 @@
 
 use crate::{Dim, NodeId, ShapeId};
 
+/// Where a ray ends that does not end, in place of infinity, which shaders need not know.
+pub const FAR: f64 = 1e30;
+
 /// What a shape instance was made from; equal arguments make the same instance.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Arg {
@@ -69,6 +72,10 @@ pub struct Shape {
     pub formula: NodeId,
     /// What its clauses state.
     pub contract: Contract,
+    /// Where it states that a ray is inside: pairs of scalars, enter and exit, in `Point(level)` for the ray's origin and
+    /// `Point(level + 1)` for its direction, of unit length; ends that lie nowhere are at -[`FAR`] and [`FAR`]. The
+    /// ray is inside nowhere else, and nowhere in a pair whose first is above its second. Empty: not stated.
+    pub hits: Vec<[NodeId; 2]>,
     /// Its material.
     pub material: MaterialRule,
     /// The shapes that its formula samples, in order of first use.

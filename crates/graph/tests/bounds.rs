@@ -28,6 +28,7 @@ impl Scene {
             args: Vec::new(),
             formula,
             contract,
+            hits: Vec::new(),
             material: MaterialRule::Shares(formula),
             children: children.to_vec(),
             depth: 1 + deepest.unwrap_or(0),

@@ -28,6 +28,7 @@ fn shape_at(
         args: vec![Arg::Node(formula)],
         formula,
         contract: Contract::default(),
+        hits: Vec::new(),
         material: MaterialRule::Shares(formula),
         children: children.to_vec(),
         depth,

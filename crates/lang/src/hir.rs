@@ -177,10 +177,23 @@ pub struct ShapeDef {
     pub bounds: Option<Expr>,
     /// `material e`: a material, or a number made of samples.
     pub material: Option<Expr>,
+    /// `hits e`.
+    pub hits: Option<Hits>,
     /// The formula: a number.
     pub body: Expr,
     /// Documentation lines.
     pub docs: Vec<String>,
+}
+
+/// Where a ray is inside a solid.
+#[derive(Clone, Debug)]
+pub struct Hits {
+    /// The ray's origin `o`, a point.
+    pub origin: LocalId,
+    /// Its direction `d`, of unit length.
+    pub direction: LocalId,
+    /// Where it enters and leaves: a vector of two numbers, or a list of such.
+    pub value: Expr,
 }
 
 /// A checked `param`.

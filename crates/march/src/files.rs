@@ -11,6 +11,8 @@ pub struct Method {
     pub source: &'static str,
     /// Text of a file with a gradient that belongs to it; none: any will do.
     pub gradient: Option<&'static str>,
+    /// Whether it asks what the scene knows of a ray before it is marched (`ahead.wgsl`).
+    pub looks_ahead: bool,
     /// What trades its cost for its error; none: nothing does.
     pub knob: Option<Knob>,
     /// Values of the knob that a chart shows, in parts of what the scene states or else of its default.
@@ -58,6 +60,16 @@ impl Knob {
     }
 }
 
+impl Method {
+    /// Its own file, and those that it calls.
+    fn files(&self) -> Vec<&'static str> {
+        const AHEAD: [&str; 2] = [include_str!("wgsl/rays.wgsl"), include_str!("wgsl/ahead.wgsl")];
+        let mut files = if self.looks_ahead { AHEAD.to_vec() } else { Vec::new() };
+        files.push(self.source);
+        files
+    }
+}
+
 /// All ray methods, the default first.
 pub const METHODS: [Method; 8] = [
     Method {
@@ -65,6 +77,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
         source: include_str!("wgsl/auto.wgsl"),
         gradient: None,
+        looks_ahead: true,
         knob: Some(Knob::Tolerance),
         charted: &PIXELS,
     },
@@ -73,6 +86,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Constant steps, halved once the sign changes.",
         source: include_str!("wgsl/fixed.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Steps),
         charted: &[0.25, 0.5, 1.0, 2.0, 4.0],
     },
@@ -81,6 +95,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Sphere tracing to an absolute distance.",
         source: include_str!("wgsl/sphere.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Epsilon),
         charted: &[100.0, 10.0, 1.0, 0.1],
     },
@@ -89,6 +104,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Sphere tracing to a part of the pixel.",
         source: include_str!("wgsl/sphere_cone.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Tolerance),
         charted: &PIXELS,
     },
@@ -97,6 +113,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Steps longer than the distance, taken back where the balls of free space do not meet.",
         source: include_str!("wgsl/relaxed.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Tolerance),
         charted: &PIXELS,
     },
@@ -105,6 +122,7 @@ pub const METHODS: [Method; 8] = [
         summary: "Steps to where the next ball would touch, were the surface flat, taken back where it does not meet.",
         source: include_str!("wgsl/accelerated.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Tolerance),
         charted: &PIXELS,
     },
@@ -113,6 +131,7 @@ pub const METHODS: [Method; 8] = [
         summary: "The same with the slope averaged over the steps.",
         source: include_str!("wgsl/auto_relaxed.wgsl"),
         gradient: None,
+        looks_ahead: false,
         knob: Some(Knob::Tolerance),
         charted: &PIXELS,
     },
@@ -121,6 +140,7 @@ pub const METHODS: [Method; 8] = [
         summary: "A classroom practical's march and normals, faults and all: to compare with.",
         source: include_str!("wgsl/baseline/practical.wgsl"),
         gradient: Some(include_str!("wgsl/baseline/central.wgsl")),
+        looks_ahead: false,
         knob: None,
         charted: &[1.0],
     },
@@ -139,6 +159,12 @@ pub fn method(name: &str) -> Option<&'static Method> {
 pub struct Features {
     /// Something is painted.
     pub materials: bool,
+    /// Some of the scene is met without marching.
+    pub closed: bool,
+    /// Some is left to march.
+    pub marched: bool,
+    /// That lies in a box.
+    pub clipped: bool,
     /// Some light casts a shadow.
     pub shadows: bool,
     /// Some light's shadow is soft.
@@ -163,11 +189,14 @@ pub struct Features {
 
 impl Features {
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 10] {
+    pub fn overrides(self) -> [(&'static str, bool); 15] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
             materials: _,
+            closed,
+            marched,
+            clipped,
             shadows,
             soft_shadows,
             lamps,
@@ -180,6 +209,11 @@ impl Features {
             parallel,
         } = self;
         [
+            ("CLOSED", closed),
+            ("MARCHED", marched),
+            ("CLIPPED", clipped),
+            ("LOOKS_AHEAD", closed || clipped),
+            ("ANY_MARCHED", marched || soft_shadows),
             ("SHADOWS", shadows),
             ("SOFT_SHADOWS", soft_shadows),
             ("LAMPS", lamps),
@@ -279,7 +313,9 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         include_str!("wgsl/frame.wgsl"),
         RAY,
         PASSED,
-        method.source,
+    ];
+    files.extend(method.files());
+    files.extend([
         include_str!("wgsl/lamp.wgsl"),
         include_str!("wgsl/occlusion.wgsl"),
         include_str!("wgsl/shade.wgsl"),
@@ -288,7 +324,7 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         include_str!("wgsl/behind.wgsl"),
         include_str!("wgsl/pixel.wgsl"),
         include_str!("wgsl/picture.wgsl"),
-    ];
+    ]);
     files.extend(form.files());
     files.join("\n")
 }
@@ -297,7 +333,11 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
 /// reach `trace`.
 pub fn ray_source(method: &Method) -> String {
     let [field, _] = FieldSource::Scene.files();
-    [field, RAY, PASSED, method.source, include_str!("wgsl/anchor.wgsl")].join("\n")
+    let features = include_str!("wgsl/features.wgsl");
+    let mut files = vec![features, field, RAY, PASSED];
+    files.extend(method.files());
+    files.push(include_str!("wgsl/anchor.wgsl"));
+    files.join("\n")
 }
 
 const RAY: &str = include_str!("wgsl/ray.wgsl");
@@ -314,6 +354,16 @@ pub mod stubs {
     pub const FIELD: &str = "field";
     /// `fn field_gradient(p: vec3f) -> vec3f`, its spatial derivative, unless the method has its own.
     pub const GRADIENT: &str = "field_gradient";
+    /// `fn hits(origin: vec3f, direction: vec3f) -> f32`, where a ray is first inside what is not marched, where
+    /// [`super::Features::closed`] is set.
+    pub const HITS: &str = "hits";
+    /// `fn closed(p: vec3f) -> f32`, distance to that.
+    pub const CLOSED: &str = "closed";
+    /// `fn marched(p: vec3f) -> f32`, distance to all else, where there is some.
+    pub const MARCHED: &str = "marched";
+    /// `fn clip(origin: vec3f, direction: vec3f) -> vec2f`, where a ray passes a box around what is marched, where
+    /// [`super::Features::clipped`] is set.
+    pub const CLIP: &str = "clip";
     /// `fn material(p: vec3f) -> Material`, where [`super::Features::materials`] is set.
     pub const MATERIAL: &str = "material";
     /// `fn load_frame()`; calls to it are dropped where nothing is known per frame.

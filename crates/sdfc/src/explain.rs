@@ -40,6 +40,9 @@ pub struct Explanation {
 pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let Features {
         materials,
+        closed,
+        marched,
+        clipped,
         shadows,
         soft_shadows,
         lamps,
@@ -53,6 +56,9 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     } = features;
     let names = [
         ("material", materials),
+        ("closed form", closed),
+        ("march", marched),
+        ("clip", clipped),
         ("shadow", shadows),
         ("soft shadow", soft_shadows),
         ("point light", lamps),

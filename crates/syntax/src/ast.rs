@@ -170,6 +170,8 @@ pub enum ClauseKind {
     Bounds(Expr),
     /// `material e`
     Material(Expr),
+    /// `hits e`
+    Hits(Expr),
     /// `require condition, "message"`; the message unescaped.
     Require(Expr, Name),
 }

@@ -40,6 +40,22 @@ pub(crate) fn value_function(
     Ok(lowering.finish(name, value, result))
 }
 
+/// A function of a ray's origin and direction that yields one node's value.
+pub(crate) fn ray_function(
+    program: &Program,
+    inputs: &Inputs,
+    types: &mut UniqueArena<naga::Type>,
+    name: &str,
+    root: NodeId,
+) -> Result<Function, Error> {
+    let lowering = Lowering::new(program, inputs, types, &[root]);
+    let mut lowering = Lowering { arguments: &["origin", "direction"], ..lowering };
+    lowering.visit_all()?;
+    let value = lowering.value(root)?;
+    let result = types::value(lowering.types, program.graph.ty(root));
+    Ok(lowering.finish(name, value, result))
+}
+
 /// A function of the point that yields several nodes' values in a structure.
 pub(crate) fn struct_function(
     program: &Program,
@@ -82,8 +98,8 @@ struct Lowering<'a> {
     types: &'a mut UniqueArena<naga::Type>,
     uses: Uses,
     body: Body,
-    /// The argument, once it is used: not every function has one.
-    point: Option<Value>,
+    /// The points that the function is of, by level.
+    arguments: &'static [&'static str],
     /// Values of the nodes visited so far, but for constants.
     values: IdMap<Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
@@ -104,8 +120,20 @@ impl<'a> Lowering<'a> {
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
         let (body, values, matrices, words, loops, rounds) = Default::default();
-        let point = None;
-        Self { program, inputs, types, uses, body, point, values, matrices, words, loops, rounds }
+        let arguments = &["p"];
+        Self {
+            program,
+            inputs,
+            types,
+            uses,
+            body,
+            arguments,
+            values,
+            matrices,
+            words,
+            loops,
+            rounds,
+        }
     }
 
     /// Computes all nodes that the roots need.
@@ -158,10 +186,8 @@ impl<'a> Lowering<'a> {
     fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {
         match node {
             Node::Const(constant) => self.constant(id, constant),
-            Node::Point(0, Dim::Three) => {
-                let body = &mut self.body;
-                let argument = || body.declare(Expression::FunctionArgument(0));
-                Ok(*self.point.get_or_insert_with(argument))
+            Node::Point(level, Dim::Three) if usize::from(level) < self.arguments.len() => {
+                Ok(self.body.declare(Expression::FunctionArgument(u32::from(level))))
             }
             Node::Point(..) | Node::Sample(..) | Node::MaterialAt(..) => Err(Error::NotFlat(id)),
             Node::Frame(input, _) => {
@@ -292,11 +318,14 @@ impl<'a> Lowering<'a> {
     }
 
     fn finish(self, name: &str, value: Value, result: Handle<naga::Type>) -> Function {
-        let point = types::value(self.types, Type::Vec3);
+        let (point, arguments) = (types::value(self.types, Type::Vec3), self.arguments);
         let mut function = self.body.finish(Some(value));
         function.name = Some(name.to_owned());
-        function.arguments =
-            vec![FunctionArgument { name: Some("p".to_owned()), ty: point, binding: None }];
+        let argument = |&name: &&str| {
+            let name = Some(name.to_owned());
+            FunctionArgument { name, ty: point, binding: None }
+        };
+        function.arguments = arguments.iter().map(argument).collect();
         function.result = Some(FunctionResult { ty: result, binding: None });
         function
     }

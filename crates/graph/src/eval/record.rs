@@ -24,6 +24,8 @@ pub(super) struct Recorder {
     open: Vec<usize>,
     /// Of each value the loops around it.
     around: Vec<Option<usize>>,
+    /// Points with a value are those of levels below this, and of the outermost.
+    levels: u16,
     /// If given, points are unknown and samples are params, by position.
     samples: Option<FxHashMap<Node, u32>>,
 }
@@ -136,6 +138,11 @@ impl Recorder {
     /// One that reads samples as params and knows no point.
     pub(super) fn of_operator(samples: FxHashMap<Node, u32>) -> Self {
         Self { samples: Some(samples), ..Self::default() }
+    }
+
+    /// One that knows the points of so many levels.
+    pub(super) fn of_levels(levels: u16) -> Self {
+        Self { levels, ..Self::default() }
     }
 
     fn define(&mut self, definition: Definition, varying: bool) -> u32 {
@@ -265,9 +272,9 @@ impl Machine for Recorder {
                 };
                 Some(Lanes::new(width, |_| value))
             }
-            Node::Point(0, dim) => {
-                let width = dim.point_type().width();
-                Some(Lanes::new(width, |i| self.define(Definition::Point(i), true)))
+            Node::Point(level, dim) if level < self.levels.max(1) => {
+                let (width, first) = (dim.point_type().width(), usize::from(level) * POINT_LANES);
+                Some(Lanes::new(width, |i| self.define(Definition::Point(first + i), true)))
             }
             Node::Frame(input, ty) => {
                 Some(Lanes::new(ty.width(), |i| self.define(Definition::Input(input, i), false)))
@@ -421,7 +428,8 @@ impl Recorder {
     fn body(&self, liveness: &Liveness, kept: usize, places: &mut [u32]) -> (Vec<Code>, usize) {
         // The innermost loop under way is the last.
         let mut bodies: Vec<Vec<Code>> = vec![Vec::new()];
-        let mut registers = Registers { free: Vec::new(), count: kept + POINT_LANES };
+        let points = usize::from(self.levels.max(1)) * POINT_LANES;
+        let mut registers = Registers { free: Vec::new(), count: kept + points };
         for (value, &definition) in self.definitions.iter().enumerate() {
             if !self.varying[value] || !liveness.needed[value] {
                 continue;

@@ -115,7 +115,7 @@ pub(super) enum Definition {
     Register,
 }
 
-/// Registers that hold the point, after those that hold the prelude's values.
+/// Registers that hold a point, after those that hold the prelude's values.
 pub(super) const POINT_LANES: usize = 3;
 
 impl Tape {
@@ -125,6 +125,14 @@ impl Tape {
     /// Where a root depends on anything but operations, per-frame inputs and the outermost point.
     pub fn new(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
         Self::record(graph, Recorder::default(), &reachable(graph, roots), roots)
+    }
+
+    /// The tape that computes functions of a ray: the outermost point is its origin, that of level 1 its direction.
+    ///
+    /// # Errors
+    /// Where a root depends on anything but operations, per-frame inputs and these.
+    pub fn of_rays(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
+        Self::record(graph, Recorder::of_levels(2), &reachable(graph, roots), roots)
     }
 
     /// The tape of an operator as a function of what it samples, whatever the point: its samples are read
@@ -221,7 +229,17 @@ impl<N: Number> Evaluator<'_, N> {
     /// The roots' values at a point, in the roots' order; lanes beyond a root's width are 0. For
     /// regions the point's last lane is ignored.
     pub fn eval(&mut self, point: [N; 3]) -> &[[N; 4]] {
-        self.run(point, &mut Unwatched);
+        self.run(&[point], &mut Unwatched);
+        self.read()
+    }
+
+    /// As [`Self::eval`], of a tape of [`Tape::of_rays`].
+    pub fn eval_ray(&mut self, origin: [N; 3], direction: [N; 3]) -> &[[N; 4]] {
+        self.run(&[origin, direction], &mut Unwatched);
+        self.read()
+    }
+
+    fn read(&mut self) -> &[[N; 4]] {
         for (output, lanes) in self.outputs.iter_mut().zip(&self.tape.outputs) {
             for (place, &register) in output.iter_mut().zip(lanes.as_slice()) {
                 *place = self.registers[register as usize];
@@ -232,7 +250,7 @@ impl<N: Number> Evaluator<'_, N> {
 
     /// The first lane of the first root at a point; 0 without roots.
     pub fn scalar(&mut self, point: [N; 3]) -> N {
-        self.run(point, &mut Unwatched);
+        self.run(&[point], &mut Unwatched);
         self.first()
     }
 
@@ -241,10 +259,12 @@ impl<N: Number> Evaluator<'_, N> {
         first.map_or(N::constant(0.0), |lanes| self.registers[lanes.get(0) as usize])
     }
 
-    fn run(&mut self, point: [N; 3], watch: &mut impl Watch<N>) {
+    fn run(&mut self, points: &[[N; POINT_LANES]], watch: &mut impl Watch<N>) {
         let registers = self.registers.as_mut_slice();
-        let first = self.tape.kept.len();
-        registers[first..first + POINT_LANES].copy_from_slice(&point);
+        let lanes = registers[self.tape.kept.len()..].iter_mut();
+        for (register, &lane) in lanes.zip(points.as_flattened()) {
+            *register = lane;
+        }
         for code in &self.tape.body {
             code.run(registers, &self.tape.lists, watch);
         }
@@ -255,7 +275,7 @@ impl Evaluator<'_, Interval> {
     /// The first lane of the first root over a box, on a path through its jumps. The path learns what it leaves open.
     pub fn scalar_along(&mut self, point: [Interval; 3], path: &mut Path) -> Interval {
         path.begin();
-        self.run(point, &mut { path });
+        self.run(&[point], &mut { path });
         self.first()
     }
 }

@@ -11,7 +11,7 @@ use super::coerce::Role;
 use super::order::Node;
 use super::{Checker, DeclIndex, Shared, poison, types};
 use crate::hir::{
-    Expr, FnId, Function, LocalId, Parameter, Promise, Require, ShapeDef, ShapeDefId, Type,
+    Expr, FnId, Function, Hits, LocalId, Parameter, Promise, Require, ShapeDef, ShapeDefId, Type,
 };
 
 /// One parameter, as calls see it.
@@ -71,6 +71,7 @@ struct Clauses {
     everywhere: bool,
     bounds: Option<Expr>,
     material: Option<Expr>,
+    hits: Option<Hits>,
 }
 
 impl<'a> Checker<'a> {
@@ -203,6 +204,7 @@ impl<'a> Checker<'a> {
                     everywhere: false,
                     bounds: None,
                     material: None,
+                    hits: None,
                     body,
                     docs,
                 });
@@ -321,7 +323,7 @@ impl<'a> Checker<'a> {
         let ty = formula.ty.clone();
         let body = std::mem::replace(&mut self.body, outer);
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
-        let Clauses { requires, promises, lipschitz, everywhere, bounds, material } = clauses;
+        let Clauses { requires, promises, lipschitz, everywhere, bounds, material, hits } = clauses;
         match signature.target {
             Target::Fn(FnId(id)) => {
                 if let Some(function) = self.program.functions.get_mut(id as usize) {
@@ -342,6 +344,7 @@ impl<'a> Checker<'a> {
                     shape.everywhere = everywhere;
                     shape.bounds = bounds;
                     shape.material = material;
+                    shape.hits = hits;
                     shape.body = formula;
                 }
             }
@@ -388,6 +391,28 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// `hits e`: an interval `[enter, exit]`, or a list of such, in terms of the ray's origin `o` and direction `d`.
+    fn check_hits(&mut self, kind: DeclKind, e: &'a ast::Expr) -> Hits {
+        if kind != DeclKind::Solid {
+            let message = "`hits` speaks of rays in space, so only a solid can state it";
+            self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, e.span, message));
+        }
+        let mark = self.body.enter();
+        let space = types::point(Dim::Three);
+        let origin = self.body.declare("o", space.clone(), e.span);
+        let direction = self.body.declare("d", space, e.span);
+        let value = self.infer(e);
+        let interval = Type::Vec(2);
+        let intervals = Type::List(Box::new(interval.clone()));
+        let value = if value.ty == intervals {
+            value
+        } else {
+            self.coerce(value, &interval, Role::The("what `hits` states"))
+        };
+        self.body.leave(mark);
+        Hits { origin, direction, value }
+    }
+
     fn check_clauses(&mut self, decl: &'a ast::Decl) -> Clauses {
         let mut clauses = Clauses::default();
         let mut material = false;
@@ -419,6 +444,10 @@ impl<'a> Checker<'a> {
                     clauses.bounds.replace(bounds).is_some()
                 }
                 ClauseKind::Material(_) => std::mem::replace(&mut material, true),
+                ClauseKind::Hits(e) => {
+                    let hits = self.check_hits(decl.kind, e);
+                    clauses.hits.replace(hits).is_some()
+                }
                 ClauseKind::Require(condition, message) => {
                     clauses.requires.push(self.check_require(condition, message, clause.span));
                     false
@@ -469,6 +498,7 @@ fn belongs_to_functions(clause: &ClauseKind) -> bool {
         ClauseKind::Exact(..)
         | ClauseKind::Bound(..)
         | ClauseKind::Bounds(_)
-        | ClauseKind::Material(_) => false,
+        | ClauseKind::Material(_)
+        | ClauseKind::Hits(_) => false,
     }
 }

@@ -113,7 +113,8 @@ impl<'a> Checker<'a> {
                 ClauseKind::Exact(..)
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
-                | ClauseKind::Material(_) => {} // reported by the parser
+                | ClauseKind::Material(_)
+                | ClauseKind::Hits(_) => {} // reported by the parser
             }
         }
         (lipschitz, requires)
@@ -167,7 +168,8 @@ impl<'a> Names<'a> {
                 ClauseKind::Exact(..)
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
-                | ClauseKind::Material(_) => {}
+                | ClauseKind::Material(_)
+                | ClauseKind::Hits(_) => {}
             }
         }
     }

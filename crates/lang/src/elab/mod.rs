@@ -16,6 +16,7 @@
 mod call;
 mod color;
 mod expr;
+mod hits;
 mod iterate;
 mod kernel;
 mod lights;

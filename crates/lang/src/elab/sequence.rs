@@ -286,6 +286,7 @@ impl<'p> Elaborator<'p> {
             args,
             formula,
             contract: Contract::default(),
+            hits: Vec::new(),
             material: MaterialRule::Shares(formula),
             children: Vec::new(),
             depth: 1,

@@ -111,6 +111,7 @@ impl<'p> Elaborator<'p> {
         if let Some((_, constant)) = continuation {
             formula = self.graph.continued(point, nearest, formula, constant);
         }
+        let hits = self.hits(&mut env, definition, level)?;
         let shape = Shape {
             definition: name,
             dim: definition.dim,
@@ -118,6 +119,7 @@ impl<'p> Elaborator<'p> {
             args,
             formula,
             contract,
+            hits,
             material,
             children: Vec::new(),
             depth: 1,

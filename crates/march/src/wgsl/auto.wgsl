@@ -18,13 +18,24 @@ fn secant(before: vec2f, t: f32, distance: f32) -> f32 {
 }
 
 fn trace(ray: Ray) -> Trace {
+    let ahead = look_ahead(ray);
+    var found = Trace(ahead.start, MISS, 0u);
+    if ANY_MARCHED {
+        if ahead.start <= ahead.end {
+            found = march(ray, ahead);
+        }
+    }
+    return with_ahead(ray, ahead, found);
+}
+
+fn march(ray: Ray, ahead: Ahead) -> Trace {
     // Last sample outside and first sample inside, as (t, distance).
-    var outside = vec2f(-1.0, 0.0);
+    var outside = vec2f(ahead.start - 1.0, 0.0);
     var inside = vec2f(0.0);
     var crossed = false;
-    var t = 0.0;
+    var t = ahead.start;
     for (var step = 0u; step < ray.steps; step++) {
-        let distance = field(ray_point(ray, t));
+        let distance = along(ray_point(ray, t));
         passed(t, distance);
         // A ray that starts inside is at its hit.
         if step == 0u && distance < 0.0 {
@@ -53,10 +64,12 @@ fn trace(ray: Ray) -> Trace {
             let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
             t = mix(outside.x, inside.x, part);
         } else {
-            t += stride;
-            if !(t <= ray.t_max) {
-                return Trace(t, MISS, step + 1u);
+            // Only the distance is known to be free.
+            let free = t + distance;
+            if !(free <= ahead.end) {
+                return Trace(free, MISS, step + 1u);
             }
+            t = min(t + stride, ahead.end);
         }
     }
     return Trace(t, CAPPED, ray.steps);

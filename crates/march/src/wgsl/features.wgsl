@@ -1,6 +1,13 @@
 // What a scene needs beyond the least. Known when it is linked: of a branch on one of these, the side that is taken
 // stays and the other goes, with all that only it reached.
 
+// Some of the scene is met without marching; some is left to march; that lies in a box.
+override CLOSED: bool;
+override MARCHED: bool;
+override CLIPPED: bool;
+// Either of the first and the last; some rays are marched, be it to see how narrowly they pass.
+override LOOKS_AHEAD: bool;
+override ANY_MARCHED: bool;
 // Some light throws a shadow; some light's shadow is soft.
 override SHADOWS: bool;
 override SOFT_SHADOWS: bool;

@@ -3,6 +3,8 @@
 // away from. S. Aaltonen, GPU-based clay simulation and ray-tracing tech in Claybook (GDC 2018), there for
 // steps as long as the distance; here for steps of any length, and for no place outside the step.
 
+// Whether the ray at hand leads to a lamp with a soft shadow.
+var<private> watched: bool;
 // Distance from the ray over distance along it, the least of all places.
 var<private> clearance: f32;
 // Last place, and the distance there.

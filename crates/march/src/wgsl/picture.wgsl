@@ -63,6 +63,9 @@ fn picture(pixel: vec2u) -> Pixel {
     var lamp_part = vec3f();
     let light_count = min(view.light_count, MAX_LIGHTS);
     loop {
+        if SOFT_SHADOWS {
+            watched = asked > 0u && view.lights[max(asked, 1u) - 1u].shadow == SHADOW_SOFT;
+        }
         let found = trace(ray);
         if REFLECTIONS {
             if evaluations == 0u {

@@ -5,6 +5,7 @@
 //! pixels from the eye, then normals and materials of all hits, then all rays to a lamp; and the
 //! same again for all rays from a mirror.
 
+mod ahead;
 mod shade;
 mod surroundings;
 mod trace;
@@ -28,6 +29,7 @@ use crate::{
     image::{HIT, check_size},
     tiles::Tiler,
 };
+use ahead::{Ahead, AheadBatch, AheadTapes};
 use shade::{Paint, Surface};
 use surroundings::{Lamp, behind, through_fog, unshaded};
 use trace::{Batch, Limits, Method, Ray, Trace, trace, values_at};
@@ -45,6 +47,8 @@ const MAX_TILE_PIXELS: u32 = 1 << 20;
 #[derive(Clone, Debug)]
 pub struct CpuScene {
     field: Tape,
+    /// What is known of rays, for methods that ask.
+    ahead: Option<AheadTapes>,
     gradient: Option<Tape>,
     material: Option<Tape>,
 }
@@ -61,6 +65,7 @@ impl CpuScene {
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
         Ok(Self {
             field: tape(&[distance])?,
+            ahead: AheadTapes::new(&program.graph, program.rays).map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: program.material.map(|fields| tape(&fields)).transpose()?,
         })
@@ -137,6 +142,7 @@ impl CpuScene {
                 clearance,
             },
             field: prepare(&self.field),
+            ahead: self.ahead.as_ref().filter(|_| method.looks_ahead()).map(|a| a.prepare(frame)),
             gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
             material: self.material.as_ref().filter(|_| shaded).map(prepare),
         }
@@ -190,6 +196,7 @@ struct Wave<'a, T> {
     view: &'a View,
     limits: Limits<T>,
     field: Batch<'a, T>,
+    ahead: Option<AheadBatch<'a, T>>,
     /// `None`: depths only.
     gradient: Option<Batch<'a, T>>,
     material: Option<Batch<'a, T>>,
@@ -247,11 +254,22 @@ impl<T: Real> Wave<'_, T> {
 
     fn traced(&mut self, sights: &[Sight<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
         let rays: Vec<Ray<T>> = sights.iter().map(|sight| sight.ray).collect();
-        let traces = trace(&mut self.field, &rays, &self.limits);
+        let traces = self.traces(&rays, false);
         for (sight, trace) in sights.iter().zip(&traces) {
             shades[sight.pixel].evaluations += trace.evaluations;
         }
         traces
+    }
+
+    /// Marches rays; those that are watched through the whole field, so that it is known how narrowly they pass.
+    fn traces(&mut self, rays: &[Ray<T>], watched: bool) -> Vec<Trace<T>> {
+        let known = match &mut self.ahead {
+            Some(ahead) => ahead.look(rays, watched),
+            None => rays.iter().map(Ahead::nothing).collect(),
+        };
+        let rays: Vec<_> = rays.iter().copied().zip(known).collect();
+        let marched = self.ahead.as_mut().filter(|_| !watched).and_then(|a| a.marched.as_mut());
+        trace(marched.unwrap_or(&mut self.field), &rays, &self.limits)
     }
 
     /// Adds what lies behind where sights met nothing, and what lights what they met.
@@ -351,7 +369,8 @@ impl<T: Real> Wave<'_, T> {
         }
         let rays: Vec<Ray<T>> =
             asked.iter().map(|(meeting, lamp, _)| self.lamp_ray(meeting, lamp)).collect();
-        let traces = trace(&mut self.field, &rays, &self.limits);
+        let watched = matches!(light.shadow, ViewShadow::Soft(_));
+        let traces = self.traces(&rays, watched);
         for ((meeting, _, lit), trace) in asked.into_iter().zip(traces) {
             let shade = &mut shades[meeting.sight.pixel];
             shade.evaluations += trace.evaluations;

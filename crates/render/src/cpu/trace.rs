@@ -8,6 +8,7 @@ use crate::{
     RenderError,
     image::{CAPPED, HIT, MISS},
 };
+use super::ahead::Ahead;
 
 /// Points evaluated together: enough that decoding an instruction costs little beside running it.
 pub(super) const LANES: usize = 8;
@@ -46,6 +47,14 @@ impl Method {
             "sphere" => Ok(Self::Sphere),
             "auto" => Ok(Self::Auto),
             _ => Err(RenderError::MethodNotOnCpu(name.to_owned())),
+        }
+    }
+
+    /// Whether it asks what is known of rays before they are marched.
+    pub(super) fn looks_ahead(self) -> bool {
+        match self {
+            Self::Sphere => false,
+            Self::Auto => true,
         }
     }
 }
@@ -129,6 +138,7 @@ pub(super) struct Trace<T> {
 #[derive(Clone, Copy)]
 struct Walk<T> {
     ray: Ray<T>,
+    ahead: Ahead<T>,
     t: T,
     evaluations: u32,
     clearance: T,
@@ -146,11 +156,12 @@ enum Turn<T> {
 }
 
 impl<T: Real> Walk<T> {
-    fn new(ray: Ray<T>) -> Self {
+    fn new(ray: Ray<T>, ahead: Ahead<T>) -> Self {
         let zero = T::constant(0.0);
         Self {
             ray,
-            t: zero,
+            ahead,
+            t: ahead.start,
             evaluations: 0,
             clearance: T::constant(f64::INFINITY),
             before: (zero, zero),
@@ -160,7 +171,17 @@ impl<T: Real> Walk<T> {
     }
 
     fn ends(&self, t: T, status: u32) -> Option<Trace<T>> {
-        Some(Trace { t, status, evaluations: self.evaluations, clearance: self.clearance })
+        let evaluations = self.evaluations + self.ahead.evaluations;
+        Some(Trace { t, status, evaluations, clearance: self.clearance })
+    }
+
+    /// How a ray ends that has met nothing on its march; a place that is no number stays one.
+    fn unmet(&self) -> Option<Trace<T>> {
+        match self.ahead.hit(&self.ray) {
+            Some(met) if self.t > self.ahead.end => self.ends(met, HIT),
+            Some(_) | None if self.t <= self.ray.t_max => self.ends(self.ray.t_max, MISS),
+            Some(_) | None => self.ends(self.t, MISS),
+        }
     }
 
     /// Takes the distance at the current place: either the ray has ended, or it has moved.
@@ -179,9 +200,9 @@ impl<T: Real> Walk<T> {
             Turn::Onward(t) => self.t = t,
         }
         // A place that is no number ends the ray too.
-        let within = self.inside.is_some() || self.t <= self.ray.t_max;
+        let within = self.inside.is_some() || self.t <= self.ahead.end;
         if !within {
-            self.ends(self.t, MISS)
+            self.unmet()
         } else if self.evaluations >= limits.steps {
             self.ends(self.t, CAPPED)
         } else {
@@ -224,7 +245,11 @@ impl<T: Real> Walk<T> {
             self.outside = Some((self.t, distance));
         }
         let (Some((last, above)), Some((first, below))) = (self.outside, self.inside) else {
-            return Turn::Onward(self.t + stride);
+            // Only the distance is known to be free.
+            let free = self.t + distance;
+            let leaves = !(free <= self.ahead.end);
+            let onward = (self.t + stride).min(self.ahead.end);
+            return Turn::Onward(if leaves { free } else { onward });
         };
         if first - last < hit {
             return Turn::Hit(first);
@@ -236,7 +261,8 @@ impl<T: Real> Walk<T> {
 
     /// How far along the ray a line through the last sample outside and this one reaches zero.
     fn secant(&self, here: T) -> T {
-        let (t, before) = self.outside.unwrap_or((T::constant(-1.0), T::constant(0.0)));
+        let one = T::constant(1.0);
+        let (t, before) = self.outside.unwrap_or((self.ahead.start - one, T::constant(0.0)));
         let slope = (before - here).div(self.t - t);
         here.div(slope.max(T::constant(LEAST_SLOPE)))
     }
@@ -245,13 +271,18 @@ impl<T: Real> Walk<T> {
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
 pub(super) fn trace<T: Real>(
     field: &mut Batch<'_, T>,
-    rays: &[Ray<T>],
+    rays: &[(Ray<T>, Ahead<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
     let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
     let lost = Trace { t, status: MISS, evaluations: 0, clearance };
     let mut traces = vec![lost; rays.len()];
-    let mut waiting = rays.iter().copied().map(Walk::new).enumerate();
+    let walks = rays.iter().map(|&(ray, ahead)| Walk::new(ray, ahead)).enumerate();
+    let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.ahead.leads_on());
+    for (index, walk) in ended {
+        traces[index] = walk.unmet().unwrap_or(lost);
+    }
+    let mut waiting = onward.into_iter();
     let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());
     let mut points = [[T::constant(0.0); 3]; LANES];
     while lanes.iter().any(Option::is_some) {
@@ -289,6 +320,6 @@ pub(super) fn values_at<T: Real>(
     values
 }
 
-fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
+pub(super) fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
     std::array::from_fn(|axis| Packet(points.map(|point| point[axis])))
 }

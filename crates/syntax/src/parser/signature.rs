@@ -8,7 +8,7 @@ use crate::ast::{
 };
 use crate::token::TokenKind;
 
-/// The words that clauses start with. `hits` is specified but not read by this version.
+/// The words that clauses start with.
 const CLAUSES: [&str; 7] = ["exact", "bound", "lipschitz", "bounds", "material", "require", "hits"];
 
 impl Parser<'_> {
@@ -54,7 +54,7 @@ impl Parser<'_> {
             return self
                 .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
         }
-        let help = "the clauses are exact, bound, lipschitz, bounds, material and require";
+        let help = "the clauses are exact, bound, lipschitz, bounds, material, hits and require";
         if self.kind() == TokenKind::Name && !self.at_new_item() {
             let word = self.slice(self.span());
             let message = format!("expected `=` or a clause, found `{word}`");
@@ -126,11 +126,8 @@ impl Parser<'_> {
             }
             "bounds" => ClauseKind::Bounds(self.expr()?),
             "material" => ClauseKind::Material(self.expr()?),
-            "require" => self.requirement()?,
-            _ => {
-                let message = "closed-form intersections (`hits`) cannot be stated yet";
-                return self.fail(Diagnostic::error(Code::NOT_YET, start, message));
-            }
+            "hits" => ClauseKind::Hits(self.expr()?),
+            _ => self.requirement()?,
         };
         Ok(Clause { kind, span: self.since(start) })
     }

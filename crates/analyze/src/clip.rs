@@ -1,0 +1,79 @@
+//! Where a ray enters and leaves a box.
+
+use sdfc_graph::{FAR, Graph, NodeId, Stage};
+
+/// Part of its own size by which the box is made larger: more than rounding in f32 takes from it.
+const MARGIN: f64 = 1e-5;
+/// No component of a direction is taken to be less than this.
+const LEAST_SLOPE: f64 = 1e-12;
+
+/// Enter and exit, of a ray of this origin and direction: the first above the second where the ray misses the box.
+/// `None` for a box without a wall. A wall that is not known to be finite is none.
+pub(crate) fn clip(
+    graph: &mut Graph,
+    [origin, direction]: [NodeId; 2],
+    [lo, hi]: [NodeId; 2],
+) -> Option<[NodeId; 2]> {
+    let (mut enter, mut exit) = (graph.number(-FAR), graph.number(FAR));
+    let (first, last) = (enter, exit);
+    for lane in 0..3 {
+        let [origin, direction] = [origin, direction].map(|v| graph.component(v, lane));
+        let [lo, hi] = [lo, hi].map(|v| graph.component(v, lane));
+        let walls = [lo, hi].map(|wall| is_finite(graph, wall));
+        if walls == [false, false] {
+            continue;
+        }
+        let zero = graph.number(0.0);
+        let rises = graph.le(zero, direction);
+        let inverse = inverse(graph, direction, rises);
+        let margin = margin(graph, [lo, hi], walls);
+        let crossing = |graph: &mut Graph, wall: NodeId| {
+            let away = graph.sub(wall, origin);
+            graph.mul(away, inverse)
+        };
+        let below = walls[0].then(|| {
+            let wall = graph.sub(lo, margin);
+            crossing(graph, wall)
+        });
+        let above = walls[1].then(|| {
+            let wall = graph.add(hi, margin);
+            crossing(graph, wall)
+        });
+        let [near, far] = match (below, above) {
+            (Some(a), Some(b)) => [graph.min(a, b), graph.max(a, b)],
+            (Some(a), None) => [graph.select(rises, a, first), graph.select(rises, last, a)],
+            (None, Some(b)) => [graph.select(rises, first, b), graph.select(rises, b, last)],
+            (None, None) => [first, last],
+        };
+        enter = graph.max(enter, near);
+        exit = graph.min(exit, far);
+    }
+    ([enter, exit] != [first, last]).then_some([enter, exit])
+}
+
+/// 1 over a component, whose least size keeps it finite.
+fn inverse(graph: &mut Graph, component: NodeId, rises: NodeId) -> NodeId {
+    let (least, one) = (graph.number(LEAST_SLOPE), graph.number(1.0));
+    let size = graph.abs(component);
+    let size = graph.max(size, least);
+    let negative = graph.neg(size);
+    let slope = graph.select(rises, size, negative);
+    graph.div(one, slope)
+}
+
+fn is_finite(graph: &Graph, wall: NodeId) -> bool {
+    match graph.as_number(wall) {
+        Some(value) => value.is_finite(),
+        None => graph.stage(wall) == Stage::Frame && graph.is_finite(wall),
+    }
+}
+
+fn margin(graph: &mut Graph, ends: [NodeId; 2], walls: [bool; 2]) -> NodeId {
+    let mut size = graph.number(0.0);
+    for (end, _) in ends.into_iter().zip(walls).filter(|(_, wall)| *wall) {
+        let end = graph.abs(end);
+        size = graph.max(size, end);
+    }
+    let part = graph.number(MARGIN);
+    graph.mul(size, part)
+}

@@ -1,0 +1,21 @@
+// What the scene supplies of rays. The bodies are replaced when the scene is linked. Directions are of unit length.
+
+// Where a ray is first inside what needs no march: 0 for one that starts there, FAR for one that never is.
+fn hits(origin: vec3f, direction: vec3f) -> f32 {
+    return 0.0;
+}
+
+// Signed distance to what needs no march.
+fn closed(p: vec3f) -> f32 {
+    return 0.0;
+}
+
+// Signed distance to all else.
+fn marched(p: vec3f) -> f32 {
+    return 0.0;
+}
+
+// Where a ray enters and leaves a box around what is marched; the first above the second where it misses it.
+fn clip(origin: vec3f, direction: vec3f) -> vec2f {
+    return vec2f();
+}

@@ -1,0 +1,122 @@
+//! What is known of rays before they are marched: what they meet without steps, and where they pass the rest.
+
+use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
+use sdfc_graph::{FAR, Graph, Rays};
+
+use super::trace::{Batch, LANES, Ray, Real, packed};
+
+/// Functions of rays, made ready for the CPU.
+#[derive(Clone, Debug)]
+pub(super) struct AheadTapes {
+    /// First hits and ways through the box, as far as there are such, in this order.
+    asked: Tape,
+    has_hits: bool,
+    has_clip: bool,
+    /// The field of what is left to march; `None`: nothing is.
+    marched: Option<Tape>,
+}
+
+impl AheadTapes {
+    /// `None` where nothing is known of rays.
+    pub(super) fn new(graph: &Graph, rays: Rays) -> Result<Option<Self>, TapeError> {
+        let asked: Vec<_> = rays.hits.into_iter().chain(rays.clip).collect();
+        if asked.is_empty() {
+            return Ok(None);
+        }
+        let (has_hits, has_clip) = (rays.hits.is_some(), rays.clip.is_some());
+        let asked = Tape::of_rays(graph, &asked)?;
+        let marched = rays.marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
+        Ok(Some(Self { asked, has_hits, has_clip, marched }))
+    }
+
+    pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> AheadBatch<'_, T> {
+        AheadBatch {
+            asked: self.asked.prepare::<Packet<T, LANES>>(frame),
+            has_hits: self.has_hits,
+            has_clip: self.has_clip,
+            marched: self.marched.as_ref().map(|tape| tape.prepare(frame)),
+        }
+    }
+}
+
+/// The same, for one frame.
+#[derive(Clone)]
+pub(super) struct AheadBatch<'t, T> {
+    asked: Batch<'t, T>,
+    has_hits: bool,
+    has_clip: bool,
+    pub(super) marched: Option<Batch<'t, T>>,
+}
+
+/// What is known of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead<T> {
+    /// Where it meets something without steps; beyond all rays' ends where it does not.
+    met: T,
+    /// Where its march begins and ends: before it begins, if there is nothing to march.
+    pub(super) start: T,
+    pub(super) end: T,
+    /// Evaluations that it took to know.
+    pub(super) evaluations: u32,
+}
+
+impl<T: Real> Ahead<T> {
+    /// Nothing: the ray is marched from end to end.
+    pub(super) fn nothing(ray: &Ray<T>) -> Self {
+        let (met, start) = (T::constant(FAR), T::constant(0.0));
+        Self { met, start, end: ray.t_max, evaluations: 0 }
+    }
+
+    /// Where the ray meets something within its length, if the march has met nothing.
+    pub(super) fn hit(&self, ray: &Ray<T>) -> Option<T> {
+        (self.met <= ray.t_max).then_some(self.met)
+    }
+
+    /// Whether there is something to march.
+    pub(super) fn leads_on(&self) -> bool {
+        self.start <= self.end
+    }
+}
+
+impl<T: Real> AheadBatch<'_, T> {
+    /// Of rays, in their order. Those that are watched are marched through all there is, unless they end anyway.
+    pub(super) fn look(&mut self, rays: &[Ray<T>], watched: bool) -> Vec<Ahead<T>> {
+        let mut known = Vec::with_capacity(rays.len());
+        for group in rays.chunks(LANES) {
+            let mut ends = [[[T::constant(0.0); 3]; LANES]; 2];
+            for (lane, ray) in group.iter().enumerate() {
+                ends[0][lane] = ray.origin;
+                ends[1][lane] = ray.direction;
+            }
+            let asked = self.asked.eval_ray(packed(&ends[0]), packed(&ends[1])).to_vec();
+            for (lane, ray) in group.iter().enumerate() {
+                let of = |root: usize, part: usize| {
+                    let Packet(lanes) = asked[root][part];
+                    lanes[lane]
+                };
+                let met = self.has_hits.then(|| of(0, 0));
+                let way = self.has_clip.then(|| [0, 1].map(|end| of(usize::from(self.has_hits), end)));
+                known.push(self.ahead(ray, met, way, watched));
+            }
+        }
+        known
+    }
+
+    fn ahead(&self, ray: &Ray<T>, met: Option<T>, way: Option<[T; 2]>, watched: bool) -> Ahead<T> {
+        let mut ahead = Ahead { evaluations: 1, ..Ahead::nothing(ray) };
+        ahead.met = met.unwrap_or(ahead.met);
+        let nowhere = T::constant(-1.0);
+        if watched {
+            if ahead.met <= ray.t_max {
+                ahead.end = nowhere;
+            }
+            return ahead;
+        }
+        ahead.end = if self.marched.is_some() { ray.t_max.min(ahead.met) } else { nowhere };
+        if let Some([enter, exit]) = way {
+            ahead.start = enter.max(T::constant(0.0));
+            ahead.end = ahead.end.min(exit);
+        }
+        ahead
+    }
+}
