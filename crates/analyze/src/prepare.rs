@@ -11,8 +11,8 @@ use crate::closed::{Parts, parts, rest};
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::quality::{Qualities, Sides, shapes_below};
-use crate::spans::first;
 use crate::sound::{Uncertified, sound_field};
+use crate::spans::first;
 use crate::uneven::{Uneven, uneven};
 
 /// A scene ready for code generation, and what was found on the way.

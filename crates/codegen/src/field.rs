@@ -81,7 +81,9 @@ fn functions(
     nodes.extend(material.into_iter().flatten());
 
     let mut module = match method {
-        Some(method) => link::skeleton(&ray_source(method), &features.overrides(), &[stubs::PASSED])?,
+        Some(method) => {
+            link::skeleton(&ray_source(method), &features.overrides(), &[stubs::PASSED])?
+        }
         None => Module::default(),
     };
     module.entry_points.clear();

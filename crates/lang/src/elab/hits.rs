@@ -41,7 +41,8 @@ impl<'p> Elaborator<'p> {
     fn interval(&mut self, interval: NodeId, span: Span) -> Outcome<[NodeId; 2]> {
         let finite = without_infinity(&mut self.graph, interval);
         let ends = [0, 1].map(|lane| self.graph.component(finite, lane));
-        let undefined = |id: &NodeId| self.graph.as_const(*id).is_some_and(|c| c.lanes()[0].is_nan());
+        let undefined =
+            |id: &NodeId| self.graph.as_const(*id).is_some_and(|c| c.lanes()[0].is_nan());
         if ends.iter().any(undefined) {
             let message = "this interval has an end without a value here";
             let help = "the compiler reckons with `inf` and `-inf`, but not with their difference";

@@ -30,7 +30,7 @@ fn trace(ray: Ray) -> Trace {
 
 fn march(ray: Ray, ahead: Ahead) -> Trace {
     // Last sample outside and first sample inside, as (t, distance).
-    var outside = vec2f(ahead.start - 1.0, 0.0);
+    var outside = vec2f(0.0);
     var inside = vec2f(0.0);
     var crossed = false;
     var t = ahead.start;
@@ -44,7 +44,7 @@ fn march(ray: Ray, ahead: Ahead) -> Trace {
         let near = tolerance(ray, t);
         let hit = max(HIT_PART * near, rounding(ray, t));
         var stride = distance;
-        if abs(distance) < near {
+        if abs(distance) < near && step > 0u {
             stride = secant(outside, t, distance);
         }
         if abs(distance) < hit {

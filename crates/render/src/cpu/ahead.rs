@@ -95,7 +95,8 @@ impl<T: Real> AheadBatch<'_, T> {
                     lanes[lane]
                 };
                 let met = self.has_hits.then(|| of(0, 0));
-                let way = self.has_clip.then(|| [0, 1].map(|end| of(usize::from(self.has_hits), end)));
+                let way =
+                    self.has_clip.then(|| [0, 1].map(|end| of(usize::from(self.has_hits), end)));
                 known.push(self.ahead(ray, met, way, watched));
             }
         }

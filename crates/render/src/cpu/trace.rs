@@ -4,11 +4,11 @@ use std::ops::{Add, Mul, Sub};
 
 use sdfc_graph::eval::{Evaluator, Number, Packet};
 
+use super::ahead::Ahead;
 use crate::{
     RenderError,
     image::{CAPPED, HIT, MISS},
 };
-use super::ahead::Ahead;
 
 /// Points evaluated together: enough that decoding an instruction costs little beside running it.
 pub(super) const LANES: usize = 8;
@@ -261,8 +261,7 @@ impl<T: Real> Walk<T> {
 
     /// How far along the ray a line through the last sample outside and this one reaches zero.
     fn secant(&self, here: T) -> T {
-        let one = T::constant(1.0);
-        let (t, before) = self.outside.unwrap_or((self.ahead.start - one, T::constant(0.0)));
+        let Some((t, before)) = self.outside else { return here };
         let slope = (before - here).div(self.t - t);
         here.div(slope.max(T::constant(LEAST_SLOPE)))
     }
