@@ -49,6 +49,18 @@ pub struct Report {
     pub uneven: Vec<Uneven>,
 }
 
+impl Report {
+    /// Operations that a ray takes on average, by a method that looks ahead or not, from the mean of evaluations, of which
+    /// looking ahead is one.
+    pub fn operations(&self, evaluations: f64, looks_ahead: bool) -> f64 {
+        if looks_ahead && self.ray.operations > 0 {
+            let steps = (evaluations - 1.0).max(0.0);
+            return self.ray.operations as f64 + steps * self.marched.operations as f64;
+        }
+        evaluations * self.distance.operations as f64
+    }
+}
+
 /// What is known of one shape.
 #[derive(Clone, Debug)]
 pub struct ShapeReport {

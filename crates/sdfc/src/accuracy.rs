@@ -130,7 +130,8 @@ impl Scene {
                 let metrics = compare(&oracle, &frame, &truth, &samples(&image));
                 let set = method.knob.map(|knob| (knob.name(), view.knob(knob)));
                 let settings = BTreeMap::from_iter(set);
-                let operations = self.report.distance.operations;
+                let evaluations = metrics.evaluations.mean;
+                let operations = self.report.operations(evaluations, method.looks_ahead);
                 let default = part == 1.0;
                 let row = Row::new(method.name, settings, default, &metrics, operations, frame_ms);
                 chart.methods.push(row);

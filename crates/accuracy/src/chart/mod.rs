@@ -84,7 +84,7 @@ impl Row {
         settings: BTreeMap<&'static str, f64>,
         default: bool,
         metrics: &Metrics,
-        operations: usize,
+        ops_per_pixel: f64,
         frame_ms: FrameMs,
     ) -> Self {
         let evaluations = metrics.evaluations;
@@ -94,7 +94,7 @@ impl Row {
             default,
             pareto: false,
             evals_per_pixel: Evals { mean: evaluations.mean, p99: evaluations.p99 },
-            ops_per_pixel: evaluations.mean * operations as f64,
+            ops_per_pixel,
             frame_ms,
             missed: metrics.missed,
             false_hits: metrics.false_hits,
@@ -135,7 +135,7 @@ mod tests {
 
     fn row(ops: f64, missed: u64, p99: f64) -> Row {
         let frame_ms = FrameMs { median: 1.0, clock: "wall" };
-        let mut row = Row::new("m", BTreeMap::new(), false, &Metrics::default(), 1, frame_ms);
+        let mut row = Row::new("m", BTreeMap::new(), false, &Metrics::default(), 1.0, frame_ms);
         row.ops_per_pixel = ops;
         row.missed = missed;
         row.depth_px.p99 = p99;

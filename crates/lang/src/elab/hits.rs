@@ -24,7 +24,11 @@ impl<'p> Elaborator<'p> {
         env.set(stated.origin.0 as usize, Value::Node(origin));
         env.set(stated.direction.0 as usize, Value::Node(direction));
         let span = stated.value.span;
-        match self.eval(env, &stated.value)? {
+        // Both sides of its choices stand in the shader: a literal in a condition may still move.
+        let decisive = self.offer.decisive.clone();
+        let value = self.eval(env, &stated.value)?;
+        self.offer.decisive = decisive;
+        match value {
             Value::Node(interval) => Ok(vec![self.interval(interval, span)?]),
             Value::List(intervals) => {
                 let ends = intervals.iter().map(|interval| match interval {

@@ -247,9 +247,8 @@ impl<T: Real> Walk<T> {
         let (Some((last, above)), Some((first, below))) = (self.outside, self.inside) else {
             // Only the distance is known to be free.
             let free = self.t + distance;
-            let leaves = !(free <= self.ahead.end);
             let onward = (self.t + stride).min(self.ahead.end);
-            return Turn::Onward(if leaves { free } else { onward });
+            return Turn::Onward(if free <= self.ahead.end { onward } else { free });
         };
         if first - last < hit {
             return Turn::Hit(first);
