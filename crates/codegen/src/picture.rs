@@ -321,7 +321,7 @@ pub(crate) fn ray_features(program: &Program, looks_ahead: bool) -> Features {
     let Rays { hits, closed: _, marched, clip } = program.rays;
     Features {
         closed: looks_ahead && hits.is_some(),
-        marched: !looks_ahead || marched.is_some(),
+        marched: !looks_ahead || hits.is_none() || marched.is_some(),
         clipped: looks_ahead && clip.is_some(),
         ..Features::default()
     }

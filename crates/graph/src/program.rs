@@ -12,7 +12,7 @@ pub struct Rays {
     pub hits: Option<NodeId>,
     /// Signed distance to what `hits` is about.
     pub closed: Option<NodeId>,
-    /// Signed distance to all else, `distance` itself without `hits`; `None`: nothing is left.
+    /// Signed distance to all else; `None`: nothing is left. Without `hits` that is `distance`, whatever stands here.
     pub marched: Option<NodeId>,
     /// Of a ray: a vector of where it enters and leaves a box around what is left to march, the first above
     /// the second where it misses the box. `None`: there is no box.

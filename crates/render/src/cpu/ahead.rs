@@ -1,7 +1,7 @@
 //! What is known of rays before they are marched: what they meet without steps, and where they pass the rest.
 
 use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
-use sdfc_graph::{FAR, Graph, Rays};
+use sdfc_graph::{FAR, Program};
 
 use super::trace::{Batch, LANES, Ray, Real, packed};
 
@@ -18,14 +18,16 @@ pub(super) struct AheadTapes {
 
 impl AheadTapes {
     /// `None` where nothing is known of rays.
-    pub(super) fn new(graph: &Graph, rays: Rays) -> Result<Option<Self>, TapeError> {
+    pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
+        let Program { graph, rays, distance, .. } = program;
+        let marched = if rays.hits.is_some() { rays.marched } else { *distance };
         let asked: Vec<_> = rays.hits.into_iter().chain(rays.clip).collect();
         if asked.is_empty() {
             return Ok(None);
         }
         let (has_hits, has_clip) = (rays.hits.is_some(), rays.clip.is_some());
         let asked = Tape::of_rays(graph, &asked)?;
-        let marched = rays.marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
+        let marched = marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
         Ok(Some(Self { asked, has_hits, has_clip, marched }))
     }
 

@@ -65,7 +65,7 @@ impl CpuScene {
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
         Ok(Self {
             field: tape(&[distance])?,
-            ahead: AheadTapes::new(&program.graph, program.rays).map_err(refused)?,
+            ahead: AheadTapes::new(program).map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: program.material.map(|fields| tape(&fields)).transpose()?,
         })
