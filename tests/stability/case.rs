@@ -8,7 +8,8 @@
 //! // Auto: missed 1 %, depth 0.05 px.
 //! ```
 //!
-//! What `Auto` does not name is 0. Without `Frames` the case is one frame, params at their defaults.
+//! What `Auto` does not name is 0; of normals it is 0.001 degrees. Without `Frames` the case is one frame, params at
+//! their defaults.
 
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,8 @@ use sdfc::{FrameValues, Scene};
 
 /// Most error in depth that a case may allow unless it is exempt, in widths of a pixel.
 const MOST_DEPTH: f64 = 0.1;
+/// Error of a normal in degrees that 99 of 100 pixels on smooth surfaces keep.
+const NORMAL: f64 = 0.001;
 
 /// One file.
 #[derive(Clone, Debug)]
@@ -52,6 +55,8 @@ pub struct Bounds {
     pub undecided: f64,
     /// In widths of a pixel, 99 of 100 pixels.
     pub depth: f64,
+    /// In degrees, on smooth surfaces, 99 of 100 pixels.
+    pub normal: f64,
 }
 
 /// The cases, by name.
@@ -78,16 +83,18 @@ impl Case {
 
     fn parse(name: &str, path: &str, text: String) -> Result<Self, String> {
         let lines: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//")).collect();
-        let title = lines.first().map(|line| line.trim().trim_end_matches('.').to_owned());
+        let comment = lines.iter().map(|line| line.trim()).take_while(|line| !line.is_empty());
+        let comment = comment.collect::<Vec<_>>().join(" ");
+        let title = comment.split(". ").next().map(|title| title.trim_end_matches('.').to_owned());
         let keyed = |key: &str| {
             let mut values = lines.iter().filter_map(|line| line.trim().strip_prefix(key));
             values.next().map(|value| value.trim().trim_end_matches('.').to_owned())
         };
         let exempt = keyed("Exempt:");
         let auto = Bounds::parse(&keyed("Auto:").ok_or("no line `Auto:`")?)?;
-        if exempt.is_none()
-            && auto != (Bounds { depth: auto.depth.min(MOST_DEPTH), ..Bounds::default() })
-        {
+        let general =
+            Bounds { depth: auto.depth.min(MOST_DEPTH), normal: NORMAL, ..Bounds::default() };
+        if exempt.is_none() && auto != general {
             return Err("weaker bounds than all cases hold, and no line `Exempt:`".to_owned());
         }
         let frames = keyed("Frames:").map_or_else(|| Ok(vec![Vec::new()]), |all| frames(&all))?;
@@ -127,7 +134,7 @@ fn frames(text: &str) -> Result<Vec<Vec<(String, String)>>, String> {
 impl Bounds {
     /// `missed 1 %, depth 0.05 px`
     fn parse(text: &str) -> Result<Self, String> {
-        let mut bounds = Self::default();
+        let mut bounds = Self { normal: NORMAL, ..Self::default() };
         for part in text.split(',') {
             let mut words = part.split_whitespace();
             let (name, value) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
@@ -138,6 +145,7 @@ impl Bounds {
                 "nan" => (&mut bounds.nan, "%"),
                 "undecided" => (&mut bounds.undecided, "%"),
                 "depth" => (&mut bounds.depth, "px"),
+                "normal" => (&mut bounds.normal, "degrees"),
                 _ => return Err(format!("`{name}` is no bound")),
             };
             *place = value.parse().map_err(|_| format!("`{value}` is no number"))?;

@@ -17,8 +17,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use case::{Bounds, Case, cases};
 use libtest_mimic::{Arguments, Failed, Trial};
 use page::{Figures, Page};
+use sdfc::accuracy_data::{Truth, compare};
 use sdfc::render::{Gpu, View, testing};
-use sdfc::{FrameValues, Scene, accuracy_data::Truth};
+use sdfc::{FrameValues, Scene};
 
 /// Width and height in pixels of the pictures that the page is about.
 const SIZE: [u32; 2] = [160, 120];
@@ -69,10 +70,14 @@ fn holds(case: &Case, size: [u32; 2], update: bool, measured: &Measured) -> Resu
         return Err("the scene is uncertified, and its comment has no line `Exempt:`".into());
     }
     let views = views(case, &scene, size)?;
-    let gpu = Gpu::new()?;
+    let (gpu, oracle) = (Gpu::new()?, scene.oracle()?);
     let mut row = Vec::new();
     for method in sdfc::march::METHODS {
-        let metrics = scene.judged(&gpu, method.name, &views)?;
+        let sampler = scene.sampler(&gpu, &method)?;
+        let judge = |(view, frame, truth): &(View, FrameValues, Truth)| {
+            Ok(compare(&oracle, frame, truth, &sampler.samples(view, frame)?))
+        };
+        let metrics = views.iter().map(judge).collect::<Result<Vec<_>, Failed>>()?;
         row.push(Figures::of(&views, &metrics));
     }
     let verdict =
@@ -113,6 +118,10 @@ fn held(auto: &Figures, bounds: &Bounds) -> Result<(), Failed> {
         .collect();
     if auto.depth > bounds.depth {
         wrong.push(format!("depths off by {:.4} px, {} px allowed", auto.depth, bounds.depth));
+    }
+    if auto.normal > bounds.normal {
+        let (found, most) = (auto.normal, bounds.normal);
+        wrong.push(format!("normals off by {found:.5} degrees, {most} allowed"));
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("; ").into()) }
 }

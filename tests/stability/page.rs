@@ -36,6 +36,7 @@ pub struct Figures {
     pub nan: f64,
     pub undecided: f64,
     pub depth: f64,
+    pub normal: f64,
 }
 
 impl Figures {
@@ -44,13 +45,15 @@ impl Figures {
         let pixels: usize = views.iter().map(|(.., truth)| truth.verdicts.len()).sum();
         let percent = |count: u64| 100.0 * count as f64 / pixels.max(1) as f64;
         let sum = |of: fn(&Metrics) -> u64| percent(metrics.iter().map(of).sum());
+        let worst = |of: fn(&Metrics) -> f64| metrics.iter().map(of).fold(0.0, f64::max);
         Self {
             missed: sum(|metrics| metrics.missed),
             false_hits: sum(|metrics| metrics.false_hits),
             capped: sum(|metrics| metrics.capped),
             nan: sum(|metrics| metrics.nan),
             undecided: percent(views.iter().map(|(.., truth)| truth.counts().undecided).sum()),
-            depth: metrics.iter().map(|metrics| metrics.depth.pixels.p99).fold(0.0, f64::max),
+            depth: worst(|metrics| metrics.depth.pixels.p99),
+            normal: worst(|metrics| metrics.normal.p99),
         }
     }
 

@@ -44,6 +44,7 @@
 pub mod chart;
 mod edges;
 mod metrics;
+mod normals;
 mod oracle;
 mod truth;
 

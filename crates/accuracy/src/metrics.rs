@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use sdfc_graph::eval::FrameValues;
 
+use crate::normals::normal_error;
 use crate::oracle::{Oracle, Prober, Verdict};
 use crate::truth::{Kind, Truth};
 
@@ -32,6 +33,8 @@ pub struct PixelSample {
     pub t: f64,
     /// Evaluations of the field for the ray from the eye.
     pub evaluations: u32,
+    /// Outward normal of what was hit, of any length; `None` where the picture does not tell.
+    pub normal: Option<[f64; 3]>,
 }
 
 /// Of a sorted list: the middle, the 99th of 100, the last; 0 for an empty one.
@@ -74,6 +77,11 @@ pub struct Metrics {
     pub false_hits: u64,
     /// Errors in depth.
     pub depth: Depth,
+    /// Angle in degrees between the picture's normal and the field's gradient in f64 at the picture's own hit, over plain
+    /// pixels where the surface is smooth.
+    pub normal: Quantiles,
+    /// What is hit in the picture or in truth but not in both, as a part of what is hit in either.
+    pub silhouette: f64,
     /// Rays out of steps.
     pub capped: u64,
     /// Rays that ended nowhere.
@@ -90,13 +98,17 @@ pub fn compare(
     picture: &[PixelSample],
 ) -> Metrics {
     let count = truth.verdicts.len().min(picture.len());
-    let judged: Vec<Judgement> = (0..count)
+    let judged: Vec<(Judgement, Option<f64>)> = (0..count)
         .into_par_iter()
         .map_init(
             || oracle.prober(frame),
-            |prober, pixel| judge(prober, truth, pixel, picture[pixel]),
+            |prober, pixel| {
+                let angle = angle(prober, truth, pixel, picture[pixel]);
+                (judge(prober, truth, pixel, picture[pixel]), angle)
+            },
         )
         .collect();
+    let (judged, angles): (Vec<Judgement>, Vec<Option<f64>>) = judged.into_iter().unzip();
     let number = |judgement: Judgement| {
         judged
             .iter()
@@ -117,6 +129,8 @@ pub fn compare(
             pixels: errors(|pixels, _| pixels),
             relative: errors(|_, relative| relative),
         },
+        normal: quantiles(angles.into_iter().flatten().collect()),
+        silhouette: silhouette(truth, picture),
         capped: picture.iter().filter(|pixel| pixel.status == Status::Capped).count() as u64,
         nan: number(Judgement::Nan),
         evaluations: evaluations(picture),
@@ -177,6 +191,30 @@ fn judge(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
             }
         }
     }
+}
+
+/// By how much the normal of a plain pixel's hit is off.
+fn angle(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample) -> Option<f64> {
+    let is_plain = truth.kinds[pixel] == Kind::Plain && seen.status == Status::Hit;
+    let is_hit = matches!(truth.verdicts[pixel], Verdict::Hit(_)) && is_plain;
+    let normal = seen.normal.filter(|_| is_hit)?;
+    normal_error(prober, &truth.camera, &truth.camera.ray(pixel), seen.t, normal)
+}
+
+/// 1 - the intersection over the union of what is hit in truth and in the picture.
+fn silhouette(truth: &Truth, picture: &[PixelSample]) -> f64 {
+    let known = truth.verdicts.iter().zip(picture);
+    let hits = known.filter_map(|(verdict, seen)| match verdict {
+        Verdict::Hit(_) => Some([true, seen.status == Status::Hit]),
+        Verdict::Miss => Some([false, seen.status == Status::Hit]),
+        Verdict::Undecided(_) => None,
+    });
+    let (mut either, mut both) = (0u64, 0u64);
+    for [real, seen] in hits {
+        either += u64::from(real || seen);
+        both += u64::from(real && seen);
+    }
+    if either == 0 { 0.0 } else { (either - both) as f64 / either as f64 }
 }
 
 /// Of a ray that ended at a distance where the truth has no surface.

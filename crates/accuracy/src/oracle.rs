@@ -39,7 +39,7 @@ impl Ray {
 /// What a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The surface, first at this distance. A ray that starts inside is there at once.
+    /// The surface, first at this distance. A ray that starts inside, or on the surface as far as f64 tells, is there at once.
     Hit(f64),
     /// Nothing.
     Miss,
@@ -150,7 +150,7 @@ impl Prober<'_> {
     }
 
     fn search(&mut self, ray: &Ray) -> Verdict {
-        if self.over(ray, 0.0, 0.0).hi() <= 0.0 {
+        if self.over(ray, 0.0, 0.0).lo() <= 0.0 {
             return Verdict::Hit(0.0);
         }
         // Stretches that may hold the root, the nearest on top.

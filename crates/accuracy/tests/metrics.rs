@@ -38,7 +38,7 @@ fn perfect(truth: &Truth) -> Vec<PixelSample> {
             Verdict::Hit(t) => (Status::Hit, t),
             Verdict::Miss | Verdict::Undecided(_) => (Status::Miss, 20.0),
         };
-        PixelSample { status, t, evaluations: 10 }
+        PixelSample { status, t, evaluations: 10, normal: None }
     };
     truth.verdicts.iter().map(sample).collect()
 }
@@ -106,8 +106,9 @@ fn a_perfect_picture_has_no_errors() {
 fn each_error_is_counted_for_what_it_is() {
     let mut case = Case::new();
     let [hit, miss] = [true, false].map(|hit| case.pixel(Kind::Plain, hit));
-    case.picture[hit] = PixelSample { status: Status::Miss, t: 20.0, evaluations: 10 };
-    case.picture[miss] = PixelSample { status: Status::Hit, t: 4.0, evaluations: 10 };
+    case.picture[hit] =
+        PixelSample { status: Status::Miss, t: 20.0, evaluations: 10, normal: None };
+    case.picture[miss] = PixelSample { status: Status::Hit, t: 4.0, evaluations: 10, normal: None };
     let metrics = case.metrics();
     assert_eq!((metrics.missed, metrics.false_hits), (1, 1));
 
@@ -137,10 +138,39 @@ fn an_edge_excuses_a_quarter_of_a_pixel() {
         let t = -4.0 * camera().ray(pixel).direction[2];
         let clearance = (16.0 - t * t).sqrt() - 1.0;
         let mut case = Case { truth: case.truth.clone(), picture: case.picture.clone() };
-        case.picture[pixel] = PixelSample { status: Status::Hit, t, evaluations: 10 };
+        case.picture[pixel] = PixelSample { status: Status::Hit, t, evaluations: 10, normal: None };
         let near = clearance <= 0.25 * camera().pixel_width(t);
         assert_eq!(case.metrics().false_hits, u64::from(!near), "{clearance}");
         excused += u32::from(near);
     }
     assert!(excused > 0, "no pixel is that near");
+}
+
+#[test]
+fn a_normal_is_held_against_the_gradient_where_the_ray_ended() {
+    let mut case = Case::new();
+    let hit = case.pixel(Kind::Plain, true);
+    let ray = camera().ray(hit);
+    // Not at the ball: a sample deeper has another normal.
+    case.picture[hit].t += 0.1;
+    let [x, y, z] = ray.at(case.picture[hit].t);
+    case.picture[hit].normal = Some([x, y, z]);
+    assert!(case.metrics().normal.max < 1e-9);
+    // Turned about y by half a degree, at most.
+    let (sine, cosine) = 0.5f64.to_radians().sin_cos();
+    case.picture[hit].normal = Some([cosine * x + sine * z, y, cosine * z - sine * x]);
+    let off = case.metrics().normal.max;
+    assert!(off > 0.4 && off < 0.5 + 1e-9, "{off}");
+    case.picture[hit].normal = Some([f64::NAN; 3]);
+    assert_eq!(case.metrics().normal.max, 180.0);
+}
+
+#[test]
+fn a_silhouette_is_as_wrong_as_its_pixels() {
+    let mut case = Case::new();
+    assert_eq!(case.metrics().silhouette, 0.0);
+    let hits = case.picture.iter().filter(|pixel| pixel.status == Status::Hit).count();
+    let hit = case.pixel(Kind::Plain, true);
+    case.picture[hit].status = Status::Miss;
+    assert!((case.metrics().silhouette - 1.0 / hits as f64).abs() < 1e-12);
 }

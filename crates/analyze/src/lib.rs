@@ -20,6 +20,7 @@ mod affine;
 mod clip;
 mod closed;
 mod cost;
+mod fault;
 mod form;
 mod leaves;
 mod lipschitz;
@@ -32,6 +33,8 @@ mod spans;
 mod uneven;
 
 pub use cost::{Cost, cost};
+#[cfg(feature = "faults")]
+pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
 pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare};
 pub use quality::{Promise, Qualities, Quality, Sides};

@@ -9,6 +9,7 @@ use sdfc_graph::{
 };
 
 use crate::affine::{self, Linear};
+use crate::fault::{self, Rule};
 use crate::polynomial::Polynomial;
 
 /// Why no constant could be derived.
@@ -127,6 +128,7 @@ impl Slopes {
             (None, _) => self.by_rule(graph, node, level, shapes),
         };
         let constant = self.with_claim(graph, node, constant);
+        let constant = fault::weakened(graph, node, stretch.is_some(), constant);
         self.constants.insert(node, constant);
     }
 
@@ -197,6 +199,9 @@ impl Slopes {
     /// Whether the node shrinks all distances of the point by `factor`: one that then stretches a
     /// sampled distance by it gives a distance again.
     pub(crate) fn is_similarity(&self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {
+        if Rule::Similarity.is_broken() {
+            return true;
+        }
         let Some(linear) = self.linear.get(&q) else { return false };
         let Some(stretch) = affine::similarity(graph, linear) else { return false };
         let product = graph.mul(stretch, factor);
@@ -431,6 +436,9 @@ impl Slopes {
         let seen = |node: &NodeId| {
             self.seen.get(node).unwrap_or(&ANY).iter().fold(0, |all, lane| all | lane)
         };
+        if Rule::Apart.is_broken() {
+            return true;
+        }
         let counted: u32 = nodes.iter().map(|node| seen(node).count_ones()).sum();
         counted == nodes.iter().fold(0, |all, node| all | seen(node)).count_ones()
     }

@@ -10,6 +10,7 @@
 use rustc_hash::FxHashMap;
 use sdfc_graph::{ExpandError, Expander, Graph, Node, NodeId, ShapeId, Stage};
 
+use crate::fault::Rule;
 use crate::form::{self, Form};
 use crate::lipschitz::{Constant, Reason, Slopes};
 use crate::quality::Qualities;
@@ -77,7 +78,9 @@ impl Pass<'_> {
             return self.expander.field_under(self.graph, shape, outer, point);
         };
         let (everywhere, constant) = (quality.everywhere, quality.lipschitz.clone());
-        if everywhere && self.is_at_most_one(&constant) {
+        // What never exceeds the distance needs no constant.
+        let is_bound = constant.is_err() && quality.sides.is_bound();
+        if everywhere && (is_bound || self.is_at_most_one(&constant)) {
             return self.expander.field_under(self.graph, shape, outer, point);
         }
         let level = usize::from(self.graph.shape(shape).level).min(outer.len());
@@ -89,7 +92,9 @@ impl Pass<'_> {
             self.trust_children(shape, self.graph.shape(shape).formula);
         }
         let value = match (constant, contract.lipschitz, contract.bounds) {
-            (Ok(constant), Some(_), Some(bounds)) if !everywhere => {
+            (Ok(constant), Some(_), Some(bounds))
+                if !everywhere && !Rule::Continuation.is_broken() =>
+            {
                 self.drawn_into(shape, constant, bounds, &points)?
             }
             (constant, Some(_), _) => self.by_constant(shape, constant, &points)?,
@@ -194,6 +199,9 @@ impl Pass<'_> {
 
     /// `value / max(constant, 1)`
     fn quotient(&mut self, shape: ShapeId, value: NodeId, constant: NodeId) -> NodeId {
+        if Rule::Division.is_broken() {
+            return value;
+        }
         let one = self.graph.number(1.0);
         let constant = self.graph.max(constant, one);
         if constant != one {
@@ -204,7 +212,9 @@ impl Pass<'_> {
 
     /// Tells if `node` rests on a child whose constant holds only within bounds.
     fn trust_children(&mut self, shape: ShapeId, node: NodeId) {
-        if let Some(child) = self.child_within_bounds(node) {
+        if let Some(child) = self.child_within_bounds(node)
+            && !Rule::Within.is_broken()
+        {
             let name = self.graph.shape(child).definition.clone();
             self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
         }

@@ -57,7 +57,9 @@ mod types;
 pub use error::Error;
 pub use field::{FieldOptions, field_module, march_module};
 pub use instructions::FunctionCost;
-pub use picture::{PictureOptions, Stage, measured_module, picture_module, render_module};
+pub use picture::{
+    PictureOptions, Stage, measured_module, normals_module, picture_module, render_module,
+};
 pub use reflect::{
     Buffer, BufferRole, Entry, FunctionInfo, Member, Reflection, Role, Structure, StructureMember,
     Uniform,

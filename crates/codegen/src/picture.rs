@@ -29,7 +29,18 @@ const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// has no distance or no gradient; others where its nodes cannot be lowered.
 pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
-    link_picture(program, method)
+    link_picture(program, Form::Compute, method)
+}
+
+/// As [`render_module`], with the unit normals of what rays from the eye meet for colours, and no other rays: what
+/// the normals of pictures are measured by. The method may be one that is not in the table.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn normals_module(program: &Program, method: &Method) -> Result<Shader, Error> {
+    let unpainted = Program { material: None, ..program.clone() };
+    link_picture(&unpainted, Form::Normals, method)
 }
 
 /// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an
@@ -48,7 +59,7 @@ pub fn measured_module(
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let distance = match field {
-        FieldSource::Scene => return link_picture(program, method),
+        FieldSource::Scene => return link_picture(program, Form::Compute, method),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
         FieldSource::Units | FieldSource::Tape => None,
     };
@@ -150,8 +161,8 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
     picture.finish()
 }
 
-fn link_picture(program: &Program, method: &Method) -> Result<Shader, Error> {
-    let mut picture = Picture::skeleton(program, Form::Compute, method, &[])?;
+fn link_picture(program: &Program, form: Form, method: &Method) -> Result<Shader, Error> {
+    let mut picture = Picture::skeleton(program, form, method, &[])?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;

@@ -271,6 +271,8 @@ pub enum Form {
     /// A compute stage, one invocation for each pixel of a tile, into a buffer.
     #[default]
     Compute,
+    /// As [`Form::Compute`], with the normals of what rays from the eye meet for colours, and no other rays.
+    Normals,
     /// A triangle over the target and a fragment stage, the target's first row topmost.
     Fragment,
     /// As [`Form::Fragment`], the target's first row lowest.
@@ -281,13 +283,16 @@ pub enum Form {
 
 impl Form {
     fn files(self) -> &'static [&'static str] {
+        const PICTURE: &str = include_str!("wgsl/picture.wgsl");
         const BUFFER: &str = include_str!("wgsl/view_buffer.wgsl");
+        const COMPUTE: &str = include_str!("wgsl/compute.wgsl");
         const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
         match self {
-            Self::Compute => &[BUFFER, include_str!("wgsl/compute.wgsl")],
-            Self::Fragment => &[BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
-            Self::FragmentUp => &[BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
-            Self::Shadertoy => &[include_str!("wgsl/shadertoy.wgsl")],
+            Self::Compute => &[PICTURE, BUFFER, COMPUTE],
+            Self::Normals => &[include_str!("wgsl/normals.wgsl"), BUFFER, COMPUTE],
+            Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
+            Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
+            Self::Shadertoy => &[PICTURE, include_str!("wgsl/shadertoy.wgsl")],
         }
     }
 }
@@ -323,7 +328,6 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         include_str!("wgsl/secondary.wgsl"),
         include_str!("wgsl/behind.wgsl"),
         include_str!("wgsl/pixel.wgsl"),
-        include_str!("wgsl/picture.wgsl"),
     ]);
     files.extend(form.files());
     files.join("\n")

@@ -5,13 +5,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sdfc_accuracy::chart::{Chart, FrameMs, Row};
-use sdfc_accuracy::{Camera, Oracle, OracleError, PixelSample, Status, Truth, compare};
+use sdfc_accuracy::{Camera, Oracle, OracleError, Truth, compare};
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
 use sdfc_march::{METHODS, Method, method};
 use sdfc_render::{
-    Clock, FrameTimes, Gpu, HIT, Image, MISS, OnProgress, Pipeline, Progress, RenderOptions, View,
-    uniform_values,
+    Clock, FrameTimes, Gpu, OnProgress, Pipeline, Progress, RenderOptions, View, uniform_values,
 };
 
 use crate::{Error, Scene};
@@ -120,14 +119,15 @@ impl Scene {
         for method in methods {
             let shader = render_module(&self.program, method.name)?;
             let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
+            let sampler = self.sampler(gpu, method)?;
             for part in parts(method) {
                 let view = match method.knob {
                     Some(knob) => view.with_knob(knob, part * view.knob(knob)),
                     None => view.clone(),
                 };
-                let (image, frame_ms) =
-                    self.timed(&pipeline, &view, &frame, options.repetitions)?;
-                let metrics = compare(&oracle, &frame, &truth, &samples(&image));
+                let frame_ms = self.timed(&pipeline, &view, &frame, options.repetitions)?;
+                let samples = sampler.samples(&view, &frame)?;
+                let metrics = compare(&oracle, &frame, &truth, &samples);
                 let set = method.knob.map(|knob| (knob.name(), view.knob(knob)));
                 let settings = BTreeMap::from_iter(set);
                 let evaluations = metrics.evaluations.mean;
@@ -145,14 +145,14 @@ impl Scene {
         Ok(chart)
     }
 
-    /// A picture and the time that it takes.
+    /// The time that a picture takes.
     fn timed(
         &self,
         pipeline: &Pipeline,
         view: &View,
         frame: &FrameValues,
         repetitions: u32,
-    ) -> Result<(Image, FrameMs), Error> {
+    ) -> Result<FrameMs, Error> {
         let uniforms = uniform_values(&self.program, frame);
         let draw = || {
             let options = RenderOptions::default();
@@ -168,7 +168,7 @@ impl Scene {
             Clock::Gpu => "gpu",
             Clock::Wall => "wall",
         };
-        Ok((first.image, FrameMs { median: times.median, clock }))
+        Ok(FrameMs { median: times.median, clock })
     }
 }
 
@@ -193,21 +193,6 @@ fn camera(view: &View) -> Camera {
         t_max: view.t_max,
         pixel_radius: view.footprint().at(1.0),
     }
-}
-
-pub(crate) fn samples(image: &Image) -> Vec<PixelSample> {
-    let pixels = image.pixels().iter();
-    pixels
-        .map(|pixel| PixelSample {
-            status: match pixel.status {
-                HIT => Status::Hit,
-                MISS => Status::Miss,
-                _ => Status::Capped,
-            },
-            t: f64::from(pixel.depth),
-            evaluations: pixel.primary_evaluations,
-        })
-        .collect()
 }
 
 #[cfg(test)]

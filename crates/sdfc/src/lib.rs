@@ -37,10 +37,10 @@ mod error;
 mod explain;
 mod faults;
 mod findings;
-mod judged;
 mod params;
 mod picture;
 mod reflection;
+mod sampler;
 mod scene;
 mod shader;
 
@@ -58,6 +58,7 @@ pub use reflection::{
     BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
     StructRow, UniformRow,
 };
+pub use sampler::Sampler;
 pub use shader::{Emit, ShaderOptions};
 
 pub use sdfc_accuracy as accuracy_data;

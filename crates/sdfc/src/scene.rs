@@ -164,6 +164,9 @@ impl Scene {
         };
         let why = match (&shape.lipschitz, uncertified) {
             (_, Some(found)) => Some(found.reason.to_string()),
+            (Lipschitz::Unknown(_), None) if shape.sides.is_bound() => {
+                Some("a bound, which needs no constant".to_owned())
+            }
             (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
             (_, None) if shape.divided => Some("divided by its constant".to_owned()),
             (_, None) => None,
@@ -175,7 +178,8 @@ impl Scene {
             outside: shape.sides.outside.to_string(),
             inside: shape.sides.inside.to_string(),
             lipschitz,
-            certified: !matches!(shape.lipschitz, Lipschitz::Unknown(_)) && uncertified.is_none(),
+            certified: uncertified.is_none()
+                && (shape.sides.is_bound() || !matches!(shape.lipschitz, Lipschitz::Unknown(_))),
             why,
         }
     }

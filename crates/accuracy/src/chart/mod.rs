@@ -53,6 +53,10 @@ pub struct Row {
     pub false_hits: u64,
     /// Error in depth in widths of a pixel.
     pub depth_px: Quantiles,
+    /// Error of the normal in degrees, on smooth surfaces.
+    pub normal_deg: Quantiles,
+    /// What is hit in the picture or in truth but not in both, as a part of what is hit in either.
+    pub silhouette: f64,
     /// Rays out of steps.
     pub capped: u64,
     /// Rays that ended nowhere.
@@ -99,6 +103,8 @@ impl Row {
             missed: metrics.missed,
             false_hits: metrics.false_hits,
             depth_px: metrics.depth.pixels,
+            normal_deg: metrics.normal,
+            silhouette: metrics.silhouette,
             capped: metrics.capped,
             nan: metrics.nan,
         }
