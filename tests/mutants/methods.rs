@@ -14,12 +14,7 @@ const MUTANTS: [Mutant; 7] = [
     ("relaxed", TAKEN_BACK, "if false {", "stability/plates"),
     ("accelerated", TAKEN_BACK, "if false {", "stability/thin_shell"),
     ("auto-relaxed", TAKEN_BACK, "if false {", "stability/thin_shell"),
-    (
-        "sphere",
-        "distance < tolerance(ray, t)",
-        "abs(distance) < tolerance(ray, t)",
-        "../examples/faults/overshoot",
-    ),
+    ("sphere", "t += distance;", "t += 2.0 * distance;", "stability/thin_shell"),
     (
         "sphere-cone",
         "distance < tolerance(ray, t)",

@@ -193,9 +193,10 @@ fn judge(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
     }
 }
 
-/// By how much the normal of a plain pixel's hit is off.
+/// By how much the normal of a plain pixel's hit is off. A ray that starts inside is at its hit at once, and meets no
+/// surface.
 fn angle(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample) -> Option<f64> {
-    let is_plain = truth.kinds[pixel] == Kind::Plain && seen.status == Status::Hit;
+    let is_plain = truth.kinds[pixel] == Kind::Plain && seen.status == Status::Hit && seen.t > 0.0;
     let is_hit = matches!(truth.verdicts[pixel], Verdict::Hit(_)) && is_plain;
     let normal = seen.normal.filter(|_| is_hit)?;
     normal_error(prober, &truth.camera, &truth.camera.ray(pixel), seen.t, normal)

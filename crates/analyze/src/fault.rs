@@ -15,10 +15,8 @@ pub enum Rule {
     Affine,
     /// The slope of a sum.
     Sum,
-    /// The slope of a product.
+    /// The slope of a product, also with the inverse of what does not vary.
     Product,
-    /// The slope of a quotient by what does not vary.
-    Quotient,
     /// The slope of a dot or cross product.
     Dot,
     /// The slope of minima and maxima.
@@ -128,8 +126,7 @@ fn rule_of(graph: &Graph, node: NodeId, affine: bool) -> Option<Rule> {
         Node::Unary(op, _) => (op != Unary::Neg).then_some(Rule::Map),
         Node::Binary(op, ..) => match op {
             Binary::Add | Binary::Sub => Some(Rule::Sum),
-            Binary::Mul => Some(Rule::Product),
-            Binary::Div => Some(Rule::Quotient),
+            Binary::Mul | Binary::Div => Some(Rule::Product),
             Binary::Dot | Binary::Cross => Some(Rule::Dot),
             Binary::Min | Binary::Max => Some(Rule::Extreme),
             Binary::Rem

@@ -42,5 +42,6 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Bench(args) => commands::bench::run(args, console),
         Command::Doc(args) => commands::doc::run(args, console),
         Command::Chart(args) => commands::chart::run(args, console),
+        Command::Tune(args) => commands::tune::run(args, console),
     }
 }

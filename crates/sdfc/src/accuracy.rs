@@ -113,6 +113,7 @@ impl Scene {
             adapter: gpu.info().name.clone(),
             driver: gpu.info().driver.clone(),
             size: options.size,
+            made: None,
             oracle: truth.counts(),
             methods: Vec::new(),
         };

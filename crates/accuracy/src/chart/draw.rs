@@ -28,6 +28,12 @@ const COLORS: [RGBColor; 8] = [
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DrawError(String);
 
+impl DrawError {
+    pub(super) fn new(why: &dyn std::fmt::Display) -> Self {
+        Self(why.to_string())
+    }
+}
+
 impl std::fmt::Display for DrawError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "the chart cannot be drawn: {}", self.0)
@@ -45,7 +51,7 @@ pub fn svg(chart: &Chart) -> Result<String, DrawError> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        draw(chart, &root).map_err(|error| DrawError(error.to_string()))?;
+        draw(chart, &root).map_err(|error| DrawError::new(&error))?;
     }
     Ok(text)
 }
@@ -122,11 +128,12 @@ fn header<B: DrawingBackend>(
     head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &INK)))?;
     let counts = chart.oracle;
     let line = format!(
-        "{} leaves, {width}x{height}, on {}, {}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
+        "{} leaves, {width}x{height}, on {}, {}{}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
          Disc: no wrong pixel. Large: the default. Grey: nothing is cheaper and better.",
         chart.leaves,
         chart.adapter,
         chart.driver,
+        chart.made.iter().map(|made| format!(", {made}")).collect::<String>(),
         counts.hit,
         counts.miss,
         counts.edge,

@@ -1,6 +1,7 @@
 //! Cost against error: every method at several settings, on one scene.
 
 mod draw;
+mod tune;
 
 use std::collections::BTreeMap;
 
@@ -24,6 +25,9 @@ pub struct Chart {
     pub driver: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// When and from what it was made, if that is to be told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub made: Option<String>,
     /// What the oracle found.
     pub oracle: Counts,
     /// One for each method and setting, methods together, from coarse to fine.
@@ -157,6 +161,7 @@ mod tests {
             adapter: String::new(),
             driver: String::new(),
             size: [1, 1],
+            made: None,
             oracle: Counts::default(),
             methods: rows.to_vec(),
         };

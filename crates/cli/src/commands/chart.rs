@@ -1,10 +1,11 @@
 //! `sdfc chart`: every ray method against the oracle.
 
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use sdfc::accuracy_data::chart::{Chart as Figures, Row, svg};
 use sdfc::render::Gpu;
-use sdfc::{ChartOptions, Error};
+use sdfc::{ChartOptions, Error, Scene};
 
 use crate::args::Chart;
 use crate::console::Console;
@@ -18,7 +19,6 @@ use crate::output::{self, Output};
 /// The scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write.
 pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
     let scene = super::scene(&args.file, sdfc::lang::Options::default(), console)?;
-    let failed = |error: Error| super::lowering(&error, console);
     let [picture, json] = [&args.output, &args.json].map(|path| path.as_deref().map(Output::new));
     let paths: Vec<_> =
         [&args.output, &args.json].into_iter().filter_map(|path| path.as_deref()).collect();
@@ -27,23 +27,9 @@ pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
         output.check()?;
     }
 
-    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
     let options =
         ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
-    let truth = console.progress("oracle");
-    let pictures = console.progress("methods");
-    let chart = scene.chart(
-        &args.file.display().to_string(),
-        &gpu,
-        &options,
-        &|part| truth.set(part.done, part.total),
-        &mut |part| {
-            pictures.set(part.done, part.total);
-            ControlFlow::Continue(())
-        },
-    );
-    drop((truth, pictures));
-    let chart = chart.map_err(failed)?;
+    let chart = figures(&args.file, &scene, &options, console)?;
     if ![&picture, &json].contains(&&Some(Output::Stdout)) {
         output::to_stdout(table(&chart).as_bytes())?;
     }
@@ -52,6 +38,31 @@ pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
         picture.write(text.as_bytes())?;
     }
     json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
+}
+
+/// Draws and compares, with bars of progress.
+pub(super) fn figures(
+    file: &Path,
+    scene: &Scene,
+    options: &ChartOptions,
+    console: &Console,
+) -> Result<Figures, Failure> {
+    let failed = |error: Error| super::lowering(&error, console);
+    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
+    let truth = console.progress("oracle");
+    let pictures = console.progress("methods");
+    let chart = scene.chart(
+        &file.display().to_string(),
+        &gpu,
+        options,
+        &|part| truth.set(part.done, part.total),
+        &mut |part| {
+            pictures.set(part.done, part.total);
+            ControlFlow::Continue(())
+        },
+    );
+    drop((truth, pictures));
+    chart.map_err(failed)
 }
 
 /// The chart for people who read figures.
@@ -69,7 +80,7 @@ fn table(chart: &Figures) -> String {
         counts.edge,
         counts.undecided,
     );
-    text += "  method         setting            evals/px   p99    ops/px  frame ms  missed  false   depth px p50      p99      max  capped  nan\n";
+    text += "  method         setting            evals/px   p99    ops/px  frame ms  missed  false   depth px p50      p99      max  normal deg p99  capped  nan\n";
     chart.methods.iter().for_each(|row| text += &line(row));
     text += "\n*: the default; +: no other is cheaper and better.\n";
     text
@@ -79,7 +90,7 @@ fn line(row: &Row) -> String {
     let settings = row.settings.iter().map(|(name, value)| format!("{name} {value:.3e}"));
     let depth = row.depth_px;
     format!(
-        "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12.5}  {:>7.4}  {:>7.3}  {:>6}  {:>3}\n",
+        "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12.5}  {:>7.4}  {:>7.3}  {:>14.5}  {:>6}  {:>3}\n",
         if row.default { '*' } else { ' ' },
         if row.pareto { '+' } else { ' ' },
         row.method,
@@ -93,6 +104,7 @@ fn line(row: &Row) -> String {
         depth.p50,
         depth.p99,
         depth.max,
+        row.normal_deg.p99,
         row.capped,
         row.nan,
     )

@@ -9,6 +9,7 @@ pub mod explain;
 mod faults;
 pub mod format;
 pub mod render;
+pub mod tune;
 
 use std::path::{Path, PathBuf};
 

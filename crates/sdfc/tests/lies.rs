@@ -1,0 +1,105 @@
+//! Scenes whose fields lie: `check` says so at the place, or, where a lie is too small for samples to find, the chart's
+//! figures do.
+
+#![allow(clippy::expect_used, reason = "a test stops where it fails")]
+
+use sdfc::accuracy_data::compare;
+use sdfc::diagnostics::Severity;
+use sdfc::lang::NoFiles;
+use sdfc::render::{Gpu, testing};
+use sdfc::{Compiled, FrameValues, check, compile};
+
+/// Each finding's code, and the text that it points at.
+fn findings(text: &str) -> Vec<(String, String, Severity)> {
+    let found = check("lie.sdf", text, &NoFiles);
+    let told = |diagnostic: &sdfc::diagnostics::Diagnostic| {
+        let span = diagnostic.span;
+        let place = text.get(span.start as usize..span.end as usize).unwrap_or_default();
+        (diagnostic.code.0.to_owned(), place.to_owned(), diagnostic.severity)
+    };
+    found.diagnostics.iter().map(told).collect()
+}
+
+/// The one finding, its code and where it points.
+fn told(text: &str, code: &str, place: &str) {
+    let found = findings(text);
+    let is_told = |(c, p, _): &(String, String, Severity)| c == code && p == place;
+    assert!(found.iter().any(is_told), "{code} at `{place}` is wanted in\n{text}\n{found:?}");
+}
+
+#[test]
+fn a_constant_stated_too_small() {
+    let text = "solid a() lipschitz 1 bounds -1..1 = 3 * (length(p) - 0.5)\na()";
+    told(text, "E0502", "1");
+}
+
+#[test]
+fn a_field_that_exceeds_the_distance() {
+    told("solid a() bound = 3 * (length(p) - 0.5)\na()", "E0502", "bound");
+    told("solid a() exact = 0.5 * (length(p) - 0.5)\na()", "E0502", "exact");
+}
+
+#[test]
+fn a_jump_that_is_stated_not_to_be_one() {
+    let text = "solid a() lipschitz 1 = length([p.x - floor(p.x), p.y, p.z]) - 0.3\na()";
+    told(text, "E0502", "1");
+}
+
+#[test]
+fn a_jump_of_which_nothing_is_stated() {
+    let text = "solid a() = length([p.x - floor(p.x), p.y, p.z]) - 0.3\na()";
+    told(text, "W0602", "a()");
+}
+
+#[test]
+fn a_slope_without_end() {
+    told("solid a() = exp(length(p)) - 2\na()", "W0602", "a()");
+    told("solid a() = p.y - p.x * p.x * p.x\na()", "W0602", "a()");
+}
+
+#[test]
+fn bounds_that_cut_the_surface_off() {
+    told("solid a() lipschitz 1 bounds -0.4..0.4 = length(p) - 0.5\na()", "E0502", "-0.4..0.4");
+}
+
+#[test]
+fn an_even_wall_of_a_field_that_is_no_distance() {
+    told("ellipsoid([1, 0.4, 0.4]).shell(0.05)", "W0601", "ellipsoid([1, 0.4, 0.4]).shell(0.05)");
+}
+
+#[test]
+fn a_function_that_understates_its_slope() {
+    let text = "fn steep(t) lipschitz 1 = if t > 0 { 4 * t } else { t }\nsolid a() = steep(length(p) - 0.5)\na()";
+    let Compiled { scene, diagnostics, .. } = compile("lie.sdf", text);
+    let caught = diagnostics.iter().any(|found| found.code.0 == "E0502");
+    assert!(caught || misses(&scene.expect("compiles")), "neither told nor seen");
+}
+
+/// A spike far thinner than samples lie apart: nothing but the rays that meet it can tell.
+#[test]
+fn a_lie_between_the_samples_shows_in_the_chart() {
+    let text = "\
+solid a() lipschitz 1 bounds -1..1 =
+  if abs(p.x) < 0.002 { 30 * (length(p) - 0.5) } else { length(p) - 0.5 }
+a()
+camera(eye: [0, 0, 3], target: 0, fov: 1deg)";
+    let Compiled { scene, diagnostics, .. } = compile("lie.sdf", text);
+    let caught = diagnostics.iter().any(|found| found.code.0 == "E0502");
+    assert!(caught || misses(&scene.expect("compiles")), "neither told nor seen");
+}
+
+/// Whether plain steps by the field lead through the surface; `true` without an adapter, where no chart is drawn.
+fn misses(scene: &sdfc::Scene) -> bool {
+    if testing::without_gpu() {
+        return true;
+    }
+    let gpu = Gpu::new().expect("an adapter");
+    let frame = FrameValues::defaults(scene.params());
+    let view = scene.view(&frame, [96, 72]).expect("a view");
+    let truth = scene.truth(&view, &frame, &|_| ()).expect("a truth");
+    let sphere = sdfc::march::method("sphere").expect("a method");
+    let sampler = scene.sampler(&gpu, sphere).expect("a shader");
+    let samples = sampler.samples(&view, &frame).expect("a picture");
+    let metrics = compare(&scene.oracle().expect("an oracle"), &frame, &truth, &samples);
+    metrics.missed + metrics.false_hits > 0 || metrics.depth.pixels.p99 > 1.0
+}
