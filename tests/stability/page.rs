@@ -120,8 +120,8 @@ impl Page {
         let mut text = HEAD.to_owned();
         let _ = writeln!(text, "{}\n", driver(Gpu::new()?.info()));
         let names: Vec<&str> = sdfc::march::METHODS.iter().map(|method| method.name).collect();
-        let _ = writeln!(text, "| scene | `{}` |", names.join("` | `"));
-        let _ = writeln!(text, "|---|{}", "---|".repeat(names.len()));
+        let _ = writeln!(text, "| scene | | `{}` |", names.join("` | `"));
+        let _ = writeln!(text, "|---|---|{}", "---|".repeat(names.len()));
         for case in cases {
             let old = || before.lines().find(|line| line.starts_with(&start(case)));
             let row = measured.get(&case.name).map(|row| line(case, row));
@@ -144,7 +144,7 @@ fn driver(adapter: &AdapterInfo) -> String {
 }
 
 fn start(case: &Case) -> String {
-    format!("| [{}](../{} \"{}\") |", case.name, case.path, case.title)
+    format!("| [{}](../{}) | {} |", case.name, case.path, case.title)
 }
 
 fn line(case: &Case, row: &[Figures]) -> String {
