@@ -1,6 +1,6 @@
 //! Every rule that the steps of rays rest on is broken on purpose, one at a time, and a picture has to show it.
 //!
-//! A rule of the analysis: the scene that stands for it, drawn by `auto`, is right, or the analysis says that
+//! A rule of the analysis: the scene that stands for it, drawn by plain steps, is right, or the analysis says that
 //! nothing is promised; with the rule broken it promises as before, or more, and the picture is wrong. A rule of a ray method: the
 //! method's own text with a line changed does worse on its scene than as it stands.
 

@@ -109,6 +109,8 @@ pub(crate) fn weakened(
             let part = graph.number(PART);
             Ok(graph.mul(part, constant))
         }
+        // As its derivative says.
+        Err(Reason::Jump(_)) if broken => Ok(graph.number(0.0)),
         Err(_) if broken => Ok(graph.number(1.0)),
         whole => whole,
     }

@@ -34,7 +34,7 @@ mod tests {
     fn row(method: &str, ops: f64, p99: f64) -> Row {
         let frame_ms = FrameMs { median: 1.0, clock: "wall" };
         let settings = BTreeMap::from([("tolerance", 0.05)]);
-        let mut row = Row::new(method, settings, false, &Metrics::default(), 1, frame_ms);
+        let mut row = Row::new(method, settings, false, &Metrics::default(), 1.0, frame_ms);
         (row.ops_per_pixel, row.depth_px.p99) = (ops, p99);
         row
     }
