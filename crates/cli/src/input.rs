@@ -69,6 +69,16 @@ impl sdfc::Resolver for Folder {
             Err(failure) => Err(failure.to_string()),
         }
     }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        let place = self.place(path).map_err(|e| e.to_string())?;
+        let file = std::fs::File::open(place).map_err(|e| e.to_string())?;
+        let bytes = read_all(file).map_err(|e| e.to_string())?;
+        if bytes.len() as u64 > MAX_BYTES {
+            return Err(format!("it is larger than {} MiB", MAX_BYTES >> 20));
+        }
+        Ok(bytes)
+    }
 }
 
 fn read_all(from: impl Read) -> std::io::Result<Vec<u8>> {

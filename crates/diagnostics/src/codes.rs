@@ -159,6 +159,9 @@ codes! {
     TOO_MANY_LIGHTS "E0412" "More lights than are drawn"
         "A scene has at most 8 lights, those of all kinds counted: each is asked for at every point that is seen."
         "remove one, or let `ambient` stand for the weakest";
+    TEXT "E0413" "A text whose letters cannot be drawn"
+        "Letters are the outlines of a font: the one called `sans`, which comes with sdfc, or a TrueType or OpenType file in the folder of the scene. Each character must be in the font, and all outlines of one text together have at most 4,096 curves."
+        "write letters that the font has, or name a font file that has them";
 
     PROMISE_BROKEN "E0502" "A promise that sampling refutes"
         "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."

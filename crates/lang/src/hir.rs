@@ -481,6 +481,8 @@ pub enum Kernel {
     Oklch,
     /// A shadow without penumbra.
     Hard,
+    /// Text, font, alignment, spacing, leading: a list of curves, each a list of three points.
+    GlyphCurves,
     /// Argument: sharpness.
     Soft,
 }

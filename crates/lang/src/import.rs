@@ -18,6 +18,15 @@ pub trait Resolver {
     ///
     /// Why there is none, in one line: `no such file`.
     fn read(&self, path: &str) -> Result<String, String>;
+
+    /// The bytes of a file, by its path as in [`Resolver::read`]: a font.
+    ///
+    /// # Errors
+    ///
+    /// Why there are none, in one line.
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.read(path).map(String::into_bytes)
+    }
 }
 
 const WITHOUT_FILES: &str = "this scene was opened without access to files";

@@ -33,6 +33,7 @@
 
 mod check;
 pub mod elab;
+pub mod font;
 pub mod hir;
 pub mod import;
 pub mod library;
@@ -95,10 +96,11 @@ pub fn front_with(
     if has_errors(&found) {
         return (None, found);
     }
+    let fonts = font::Fonts::new(resolver);
     let (elaborated, of_elaboration) = if options.slots {
-        slots::elaborate(&program, sources, file)
+        slots::elaborate(&program, &fonts, sources, file)
     } else {
-        elab::elaborate(&program)
+        elab::elaborate(&program, &fonts)
     };
     found.extend(of_elaboration);
     (elaborated, found)

@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 
 use crate::elab::{self, Elaborated};
+use crate::font::Fonts;
 use crate::hir::{self, Element, Expr, ExprKind, ParamId, Program};
 
 /// How often a scene is elaborated before its literals are left as they are.
@@ -38,10 +39,11 @@ struct Known {
 /// Elaborates a checked scene with as many of its literals as possible as params.
 pub(crate) fn elaborate(
     program: &Program,
+    fonts: &Fonts<'_>,
     sources: &Sources,
     file: FileId,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let plain = elab::elaborate(program);
+    let plain = elab::elaborate(program, fonts);
     if plain.0.is_none() {
         return plain;
     }
@@ -52,7 +54,7 @@ pub(crate) fn elaborate(
         if slots.is_empty() {
             return plain;
         }
-        let (elaborated, _, offer) = elab::elaborate_with(&moving, program.params.len());
+        let (elaborated, _, offer) = elab::elaborate_with(&moving, fonts, program.params.len());
         let span = |param: &usize| slots.iter().find(|s| s.param == *param).map(|s| s.span);
         let mut learned = known.clone();
         learned.decisive.extend(offer.decisive.iter().filter_map(span));

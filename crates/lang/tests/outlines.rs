@@ -7,7 +7,8 @@ mod support;
 
 use std::f64::consts::{PI, TAU};
 
-use sdfc_lang::library;
+use sdfc_lang::font::{Fonts, Setting};
+use sdfc_lang::{NoFiles, library};
 use support::Field;
 
 type Point = [f64; 2];
@@ -448,8 +449,43 @@ impl Expected {
     }
 }
 
+/// Outlines of letters, as the font has them, in which every curve is drawn by points.
+fn letters(words: &str, size: f64, setting: Setting) -> Expected {
+    let curves = Fonts::new(&NoFiles).curves(words, "sans", setting).expect("the font has them");
+    let mut outlines: Vec<Vec<Point>> = Vec::new();
+    let mut last = None;
+    for ends in curves {
+        let [a, b, c] = ends.map(|point| point.map(|place| size * place));
+        if last != Some(a) {
+            outlines.push(Vec::new());
+        }
+        last = Some(c);
+        let piece = (0..400).map(|i| {
+            let t = f64::from(i) / 400.0;
+            [0, 1].map(|i| {
+                let (from, to) = (a[i] + (b[i] - a[i]) * t, b[i] + (c[i] - b[i]) * t);
+                from + (to - from) * t
+            })
+        });
+        outlines.last_mut().expect("one was begun").extend(piece);
+    }
+    Filled(outlines)
+}
+
+fn texts() -> Vec<Case> {
+    let left = Setting { align: 0.0, spacing: 0.0, leading: 1.2 };
+    let wide = Setting { align: 1.0, spacing: 0.1, leading: 0.9 };
+    vec![
+        Case { text: "text(\"sdf\", size: 0.8)", expected: letters("sdf", 0.8, left) },
+        Case {
+            text: "text(\"B8&\\nAV\", align: \"right\", spacing: 0.1, leading: 0.9)",
+            expected: letters("B8&\nAV", 1.0, wide),
+        },
+    ]
+}
+
 fn cases() -> Vec<Case> {
-    plain().into_iter().chain(round()).collect()
+    plain().into_iter().chain(round()).chain(texts()).collect()
 }
 
 #[test]

@@ -87,12 +87,29 @@ impl<'a> Checker<'a> {
                 let arguments = self.all_arguments(callee, &slots, given);
                 kernel(Kernel::Soft, arguments, Type::Shadow, callee.span)
             }
-            Builtin::GlyphCurves => {
-                let message = "this version has no fonts, and so no `glyph_curves`";
-                self.report(Diagnostic::error(Code::NOT_YET, callee.at, message));
-                self.give_up(given, callee.span)
-            }
+            Builtin::GlyphCurves => self.glyph_curves(callee, given),
         }
+    }
+
+    /// `glyph_curves(text, font: "sans", align: "left", spacing: 0, leading: 1.2)`
+    fn glyph_curves(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
+        let span = callee.span;
+        let text =
+            |value: &str| Expr { kind: ExprKind::Text(value.to_owned()), ty: Type::Text, span };
+        let slots = [
+            slot("text", Type::Text, false),
+            slot("font", Type::Text, true),
+            slot("align", Type::Text, true),
+            slot("spacing", Type::Number, true),
+            slot("leading", Type::Number, true),
+        ];
+        let defaults =
+            [poison(span), text("sans"), text("left"), number(0.0, span), number(1.2, span)];
+        let arguments = self.arguments(callee, &slots, given);
+        let arguments = arguments.into_iter().zip(defaults);
+        let arguments = arguments.map(|(value, default)| value.unwrap_or(default)).collect();
+        let curve = Type::List(Box::new(Type::Vec(2)));
+        kernel(Kernel::GlyphCurves, arguments, Type::List(Box::new(curve)), span)
     }
 
     /// Arguments of which none may be missing; those that are were reported.

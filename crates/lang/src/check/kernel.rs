@@ -182,7 +182,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "soft" Builtin::Soft, "soft(sharpness)", "A shadow with penumbra, for a light's `shadow`.", "soft(8)";
     }
     "text" {
-        "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font)", "The outlines of a text.", "glyph_curves(\"a\")";
+        "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font: \"sans\", align: \"left\", spacing: 0, leading: 1.2)", "The outlines of a text in ems, inside on the left, the first baseline at y = 0: a list of quadratic curves, each a list of start, control point and end.", "len(glyph_curves(\"a\"))";
     }
 };
 

@@ -101,6 +101,7 @@ impl<'p> Elaborator<'p> {
             Kernel::Hsv => self.hsv(env, at),
             Kernel::Oklch => self.oklch(env, at),
             Kernel::Hard => Ok(Value::Shadow(Shadow::Hard)),
+            Kernel::GlyphCurves => self.glyph_curves(env, at),
             Kernel::Soft => {
                 let [sharpness] = self.numbers(env, at.args)?;
                 Ok(Value::Shadow(Shadow::Soft(sharpness)))

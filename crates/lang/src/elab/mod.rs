@@ -28,12 +28,14 @@ mod settings;
 mod shape;
 mod slots;
 mod special;
+mod text;
 mod value;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
 use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
 
+use crate::font::Fonts;
 use crate::hir;
 use report::Frame;
 use slots::Offer;
@@ -105,8 +107,11 @@ pub struct Site {
 
 /// Elaborates a checked scene. Without a scene there is at least one error; with one there may
 /// still be warnings.
-pub fn elaborate(program: &hir::Program) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let (elaborated, diagnostics, _) = elaborate_with(program, program.params.len());
+pub fn elaborate(
+    program: &hir::Program,
+    fonts: &Fonts<'_>,
+) -> (Option<Elaborated>, Vec<Diagnostic>) {
+    let (elaborated, diagnostics, _) = elaborate_with(program, fonts, program.params.len());
     (elaborated, diagnostics)
 }
 
@@ -114,9 +119,10 @@ pub fn elaborate(program: &hir::Program) -> (Option<Elaborated>, Vec<Diagnostic>
 /// out about these.
 pub(crate) fn elaborate_with(
     program: &hir::Program,
+    fonts: &Fonts<'_>,
     first_literal: usize,
 ) -> (Option<Elaborated>, Vec<Diagnostic>, Offer) {
-    let mut elaborator = Elaborator::new(program, first_literal);
+    let mut elaborator = Elaborator::new(program, fonts, first_literal);
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
@@ -161,6 +167,7 @@ impl<'p> Env<'p> {
 
 struct Elaborator<'p> {
     program: &'p hir::Program,
+    fonts: &'p Fonts<'p>,
     graph: Graph,
     params: Vec<sdfc_graph::Param>,
     globals: Vec<Option<Value<'p>>>,
@@ -195,9 +202,10 @@ struct Elaborator<'p> {
 }
 
 impl<'p> Elaborator<'p> {
-    fn new(program: &'p hir::Program, first_literal: usize) -> Self {
+    fn new(program: &'p hir::Program, fonts: &'p Fonts<'p>, first_literal: usize) -> Self {
         Self {
             program,
+            fonts,
             graph: Graph::new(),
             params: Vec::new(),
             globals: vec![None; program.globals.len()],

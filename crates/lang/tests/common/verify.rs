@@ -319,6 +319,9 @@ impl Verifier<'_> {
             }
             Kernel::Hard => assert!(types.is_empty()),
             Kernel::Soft => assert_eq!(types, [Type::Number]),
+            Kernel::GlyphCurves => {
+                assert_eq!(types, [Type::Text, Type::Text, Type::Text, Type::Number, Type::Number]);
+            }
             // All others are componentwise, or vectors to vectors.
             _ => assert!(types.iter().all(|other| other == ty), "{kernel:?} {types:?} {ty:?}"),
         }

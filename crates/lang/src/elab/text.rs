@@ -1,0 +1,65 @@
+//! Letters: `glyph_curves`.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_graph::Type;
+
+use super::kernel::Application;
+use super::value::Value;
+use super::{Elaborator, Env, Outcome, Poison};
+use crate::font::Setting;
+use crate::hir::Expr;
+
+/// Values of `align`, and which part of a line each puts at x = 0.
+const ALIGNMENTS: [(&str, f64); 3] = [("left", 0.0), ("center", 0.5), ("right", 1.0)];
+
+impl<'p> Elaborator<'p> {
+    /// `glyph_curves(text, font, align, spacing, leading)`: known at compile time.
+    pub(super) fn glyph_curves(
+        &mut self,
+        env: &mut Env<'p>,
+        at: Application<'p>,
+    ) -> Outcome<Value<'p>> {
+        let [words, font, align, spacing, leading] = at.args else { return Err(Poison) };
+        let words = self.text(env, words, "the words of a text")?;
+        let font = self.text(env, font, "the font of a text")?;
+        let align = self.alignment(env, align)?;
+        let spacing = self.fixed(env, spacing, "the spacing of a text")?;
+        let leading = self.fixed(env, leading, "the leading of a text")?;
+        let curves = self.fonts.curves(&words, &font, Setting { align, spacing, leading });
+        let curves = curves.map_err(|why| {
+            let help = "write letters that the font has; `font:` names `sans` or a font file beside the scene";
+            self.report(Diagnostic::error(Code::TEXT, at.span, why).help(help))
+        })?;
+        self.steps += 3 * curves.len() as u64;
+        let curve = |points: [[f64; 2]; 3]| {
+            let points = points.map(|point| Value::Node(self.graph.constant(Type::Vec2, &point)));
+            Value::List(points.into())
+        };
+        Ok(Value::List(curves.into_iter().map(curve).collect()))
+    }
+
+    fn text(&mut self, env: &mut Env<'p>, e: &'p Expr, what: &str) -> Outcome<std::rc::Rc<str>> {
+        match self.eval(env, e)? {
+            Value::Text(text) => Ok(text),
+            Value::Choice(node, _) => Err(self.not_constant(e.span, what, node)),
+            other => Err(self.unexpected(e.span, "a text", &other)),
+        }
+    }
+
+    fn alignment(&mut self, env: &mut Env<'p>, e: &'p Expr) -> Outcome<f64> {
+        let name = self.text(env, e, "the alignment of a text")?;
+        let found = ALIGNMENTS.iter().find(|(known, _)| *known == &*name);
+        found.map(|(_, part)| *part).ok_or_else(|| self.unknown_alignment(&name, e.span))
+    }
+
+    fn unknown_alignment(&mut self, name: &str, span: Span) -> Poison {
+        let message = format!("a text is aligned `left`, `center` or `right`, not `{name}`");
+        self.fail(Code::TEXT, span, message)
+    }
+
+    /// A number known at compile time.
+    fn fixed(&mut self, env: &mut Env<'p>, e: &'p Expr, what: &str) -> Outcome<f64> {
+        let node = self.number(env, e)?;
+        self.graph.as_number(node).ok_or_else(|| self.not_constant(e.span, what, node))
+    }
+}

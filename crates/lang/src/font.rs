@@ -1,0 +1,277 @@
+//! Letters as curves: text laid out in an outline font.
+//!
+//! The font's own tables are read and its kerning, ligatures and scripts applied by `harfrust`; what is left
+//! here are the curves of the glyphs, all of them quadratic.
+//!
+//! Lengths are in ems; the first line's baseline is y = 0.
+
+use std::cell::RefCell;
+
+use harfrust::font::{Font, glyph::outline};
+use harfrust::{Buffer, GlyphId, ShapeOptions, ShaperFont, shape};
+use rustc_hash::FxHashMap;
+
+use crate::import::{self, Resolver};
+use outline::{DrawMemory, DrawOptions, PathElement};
+
+/// The font that comes with the library, and its name in scenes.
+const SANS: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
+const SANS_NAME: &str = "sans";
+/// Most curves of one text.
+pub const MAX_CURVES: usize = 4096;
+/// How far quadratic curves may be off the cubic ones that they stand for, in ems: 1/8 of a unit of most fonts.
+pub const TOLERANCE: f64 = 1.25e-4;
+/// Most quadratic curves for one cubic one.
+const MAX_PARTS: f64 = 16.0;
+
+/// A point in ems.
+type Point = [f64; 2];
+/// Start, control point, end. The control point of a straight one is its middle.
+pub type Curve = [Point; 3];
+
+/// Fonts by name, each read once.
+pub struct Fonts<'r> {
+    resolver: &'r dyn Resolver,
+    known: RefCell<FxHashMap<String, Result<Font, String>>>,
+}
+
+/// How lines are set.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Which part of a line lies at x = 0: 0 its start, 1 its end.
+    pub align: f64,
+    /// Added between letters.
+    pub spacing: f64,
+    /// From one baseline to the next.
+    pub leading: f64,
+}
+
+impl<'r> Fonts<'r> {
+    /// Fonts that are `"sans"` or files of the resolver's.
+    pub fn new(resolver: &'r dyn Resolver) -> Self {
+        Self { resolver, known: RefCell::default() }
+    }
+
+    fn font(&self, name: &str) -> Result<Font, String> {
+        let known = self.known.borrow().get(name).cloned();
+        known.unwrap_or_else(|| {
+            let font = self.read(name);
+            self.known.borrow_mut().insert(name.to_owned(), font.clone());
+            font
+        })
+    }
+
+    fn read(&self, name: &str) -> Result<Font, String> {
+        if name == SANS_NAME {
+            return Font::new(SANS, 0).ok_or_else(|| "the built-in font is damaged".to_owned());
+        }
+        let path = import::locate("", name)?;
+        let bytes = self
+            .resolver
+            .read_bytes(&path)
+            .map_err(|why| format!("the font `{path}` cannot be read: {why}"))?;
+        Font::new(bytes, 0)
+            .filter(|font| font.num_glyphs() > 0 && font.units_per_em() > 0)
+            .ok_or_else(|| format!("`{path}` is no TrueType or OpenType font"))
+    }
+
+    /// The outlines of a text, inside on the left of each curve. Lines end at `\n`.
+    ///
+    /// # Errors
+    ///
+    /// Why they cannot be had, in one sentence.
+    pub fn curves(&self, text: &str, font: &str, setting: Setting) -> Result<Vec<Curve>, String> {
+        let font = self.font(font)?;
+        let mut curves = Vec::new();
+        for (number, line) in text.split('\n').enumerate() {
+            let baseline = -(number as f64) * setting.leading;
+            set_line(&font, line, baseline, setting, &mut curves)?;
+        }
+        // TrueType has the inside on the right, PostScript on the left.
+        if curves.iter().map(doubled_area).sum::<f64>() < 0.0 {
+            curves.reverse();
+            curves.iter_mut().for_each(|curve| curve.reverse());
+        }
+        Ok(curves)
+    }
+}
+
+/// Adds the outlines of one line.
+fn set_line(
+    font: &Font,
+    line: &str,
+    baseline: f64,
+    setting: Setting,
+    curves: &mut Vec<Curve>,
+) -> Result<(), String> {
+    let mut buffer = Buffer::new();
+    buffer.push_str(line);
+    buffer.guess_segment_properties();
+    shape(&ShaperFont::new(font), &mut buffer, ShapeOptions::default())
+        .map_err(|why| format!("the text cannot be laid out: {why}"))?;
+    let em = f64::from(font.units_per_em());
+    let first = curves.len();
+    let mut pen: f64 = 0.0;
+    for (info, place) in buffer.glyph_infos().iter().zip(buffer.glyph_positions()) {
+        if info.glyph_id == 0 {
+            let character = line.get(info.cluster as usize..).and_then(|rest| rest.chars().next());
+            let character = character.unwrap_or('\u{fffd}');
+            let code = u32::from(character);
+            return Err(format!("the font has no letter for `{character}` (U+{code:04X})"));
+        }
+        let origin =
+            [pen + f64::from(place.x_offset) / em, baseline + f64::from(place.y_offset) / em];
+        draw(font, GlyphId::new(info.glyph_id), origin, curves)?;
+        pen += f64::from(place.x_advance) / em + setting.spacing;
+    }
+    let shift = -setting.align * (pen - setting.spacing).max(0.0);
+    for point in curves[first..].as_flattened_mut() {
+        point[0] += shift;
+    }
+    Ok(())
+}
+
+/// Adds a glyph's outline; white space has none.
+fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> Result<(), String> {
+    let Some(outline) = font.outline_glyphs().get(glyph) else { return Ok(()) };
+    let mut path: Vec<PathElement> = Vec::new();
+    outline
+        .draw(&DrawOptions::new(), DrawMemory::default(), &mut path)
+        .map_err(|why| format!("a letter of the font cannot be read: {why}"))?;
+    let em = f64::from(font.units_per_em());
+    let place = |x: f32, y: f32| [origin[0] + f64::from(x) / em, origin[1] + f64::from(y) / em];
+    let (mut start, mut at) = (origin, origin);
+    for element in path {
+        let end = match element {
+            PathElement::MoveTo { x, y } => {
+                start = place(x, y);
+                start
+            }
+            PathElement::LineTo { x, y } => {
+                line(at, place(x, y), curves);
+                place(x, y)
+            }
+            PathElement::QuadTo { cx0, cy0, x, y } => {
+                curves.push([at, place(cx0, cy0), place(x, y)]);
+                place(x, y)
+            }
+            PathElement::CurveTo { cx0, cy0, cx1, cy1, x, y } => {
+                cubic([at, place(cx0, cy0), place(cx1, cy1), place(x, y)], curves);
+                place(x, y)
+            }
+            PathElement::Close => {
+                line(at, start, curves);
+                start
+            }
+        };
+        at = end;
+        if curves.len() > MAX_CURVES {
+            return Err(format!("the outlines of the text have more than {MAX_CURVES} curves"));
+        }
+    }
+    Ok(())
+}
+
+fn mix(a: Point, b: Point, t: f64) -> Point {
+    [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
+}
+
+fn line(from: Point, to: Point, curves: &mut Vec<Curve>) {
+    if from != to {
+        curves.push([from, mix(from, to, 0.5), to]);
+    }
+}
+
+/// As many quadratic curves as keep within [`TOLERANCE`]: one is off by at most sqrt(3) / 36 of the third
+/// difference of the control points, which falls with the cube of their number.
+fn cubic([a, b, c, d]: [Point; 4], curves: &mut Vec<Curve>) {
+    let third = [0, 1].map(|axis| d[axis] - 3.0 * c[axis] + 3.0 * b[axis] - a[axis]);
+    let off = 3f64.sqrt() / 36.0 * third[0].hypot(third[1]);
+    let parts = (off / TOLERANCE).cbrt().ceil().clamp(1.0, MAX_PARTS);
+    // The part from s to t in Bernstein form, by blossoming: its control points are the values at (s, s, t), ...
+    let blossom = |r: f64, s: f64, t: f64| {
+        let (ab, bc, cd) = (mix(a, b, r), mix(b, c, r), mix(c, d, r));
+        mix(mix(ab, bc, s), mix(bc, cd, s), t)
+    };
+    for part in 0..parts as u32 {
+        let (s, t) = (f64::from(part) / parts, f64::from(part + 1) / parts);
+        let (from, to) = (blossom(s, s, s), blossom(t, t, t));
+        let (first, second) = (blossom(s, s, t), blossom(s, t, t));
+        let control = [0, 1].map(|i| (3.0 * (first[i] + second[i]) - from[i] - to[i]) / 4.0);
+        curves.push([from, control, to]);
+    }
+}
+
+/// Twice the area between the curve's control points and the origin, positive if it turns left about it.
+fn doubled_area([a, b, c]: &Curve) -> f64 {
+    let cross = |p: &Point, q: &Point| p[0] * q[1] - p[1] * q[0];
+    cross(a, b) + cross(b, c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::import::NoFiles;
+
+    const LEFT: Setting = Setting { align: 0.0, spacing: 0.0, leading: 1.2 };
+
+    fn extent(curves: &[Curve]) -> [f64; 2] {
+        let places = curves.as_flattened().iter().map(|point| point[0]);
+        [places.clone().fold(f64::INFINITY, f64::min), places.fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    #[test]
+    fn letters_are_set_with_kerning_spacing_and_alignment() {
+        let fonts = Fonts::new(&NoFiles);
+        let width = |text: &str, setting| {
+            let [left, right] = extent(&fonts.curves(text, "sans", setting).unwrap_or_default());
+            right - left
+        };
+        // A and V move towards each other.
+        let apart = width("A", LEFT) + width("V", LEFT);
+        assert!(width("AV", LEFT) < apart, "{} and {apart}", width("AV", LEFT));
+        let wider = width("AV", Setting { spacing: 0.1, ..LEFT });
+        assert!((wider - width("AV", LEFT) - 0.1).abs() < 1e-9);
+        let middle =
+            fonts.curves("HoH", "sans", Setting { align: 0.5, ..LEFT }).unwrap_or_default();
+        let [left, right] = extent(&middle);
+        assert!((left + right).abs() < 0.01, "{left} {right}");
+    }
+
+    #[test]
+    fn cubic_curves_become_quadratic_ones_within_the_tolerance() {
+        let ends = [[0.0, 0.0], [0.1, 0.9], [0.9, -0.5], [1.0, 0.3]];
+        let mut curves = Vec::new();
+        cubic(ends, &mut curves);
+        assert!(curves.len() > 3);
+        let points: Vec<Point> = (0..=20_000)
+            .map(|i| {
+                let t = f64::from(i) / 20_000.0;
+                let s = 1.0 - t;
+                [0, 1].map(|axis| {
+                    let [a, b, c, d] = ends.map(|end| end[axis]);
+                    s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d
+                })
+            })
+            .collect();
+        for [a, b, c] in curves {
+            for i in 0..=20 {
+                let t = f64::from(i) / 20.0;
+                let p = mix(mix(a, b, t), mix(b, c, t), t);
+                let far = |q: &Point| (p[0] - q[0]).hypot(p[1] - q[1]);
+                let nearest = points.iter().map(far).fold(f64::INFINITY, f64::min);
+                assert!(nearest < TOLERANCE + 1e-5, "{nearest}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_said() {
+        let fonts = Fonts::new(&NoFiles);
+        let why = |text: &str, font: &str| fonts.curves(text, font, LEFT).err().unwrap_or_default();
+        assert!(why("a\u{2603}", "sans").contains("U+2603"));
+        assert!(why("a", "missing.ttf").contains("missing.ttf"));
+        assert!(why("a", "../up.ttf").contains("leaves the folder"));
+        assert!(why(&"ø".repeat(500), "sans").contains("4096"));
+    }
+}
