@@ -21,6 +21,8 @@ const SANS_NAME: &str = "sans";
 pub const MAX_CURVES: usize = 4096;
 /// How far quadratic curves may be off the cubic ones that they stand for, in ems: 1/8 of a unit of most fonts.
 pub const TOLERANCE: f64 = 1.25e-4;
+/// A curve whose control point is as near as this to the line between its ends is that line.
+const STRAIGHT: f64 = 1e-6;
 /// Most quadratic curves for one cubic one.
 const MAX_PARTS: f64 = 16.0;
 
@@ -152,7 +154,7 @@ fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> 
                 place(x, y)
             }
             PathElement::QuadTo { cx0, cy0, x, y } => {
-                curves.push([at, place(cx0, cy0), place(x, y)]);
+                quadratic(at, place(cx0, cy0), place(x, y), curves);
                 place(x, y)
             }
             PathElement::CurveTo { cx0, cy0, cx1, cy1, x, y } => {
@@ -174,6 +176,10 @@ fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> 
 
 fn mix(a: Point, b: Point, t: f64) -> Point {
     [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [0, 1].map(|axis| a[axis] - b[axis])
 }
 
 fn line(from: Point, to: Point, curves: &mut Vec<Curve>) {
@@ -198,6 +204,17 @@ fn cubic([a, b, c, d]: [Point; 4], curves: &mut Vec<Curve>) {
         let (from, to) = (blossom(s, s, s), blossom(t, t, t));
         let (first, second) = (blossom(s, s, t), blossom(s, t, t));
         let control = [0, 1].map(|i| (3.0 * (first[i] + second[i]) - from[i] - to[i]) / 4.0);
+        quadratic(from, control, to, curves);
+    }
+}
+
+/// A curve, or the line that it cannot be told from.
+fn quadratic(from: Point, control: Point, to: Point, curves: &mut Vec<Curve>) {
+    let (chord, bend) = (sub(to, from), sub(control, from));
+    let off = (bend[0] * chord[1] - bend[1] * chord[0]).abs();
+    if off <= STRAIGHT * chord[0].hypot(chord[1]) {
+        line(from, to, curves);
+    } else {
         curves.push([from, control, to]);
     }
 }
