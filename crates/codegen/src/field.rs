@@ -9,7 +9,8 @@ use crate::lower::struct_function;
 use crate::names::{check_prefix, make_public};
 use crate::picture::{Filling, ahead, known_method, ray_features};
 use crate::reflect::{Parts, Role};
-use crate::{Error, Shader, link, types};
+use crate::tables::Tables;
+use crate::{Error, Lists, Shader, link, types};
 
 /// What the functions of a scene hold and how they are named.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,14 +23,17 @@ pub struct FieldOptions {
     pub material: bool,
     /// Bind group of the uniform structure.
     pub group: u32,
-    /// Its binding in the group.
+    /// Its binding in the group; lists have the next one.
     pub binding: u32,
+    /// Where long lists are.
+    pub lists: Lists,
 }
 
 impl Default for FieldOptions {
     fn default() -> Self {
         let prefix = "sdf_".to_owned();
-        Self { prefix, gradient: true, material: true, group: 0, binding: 0 }
+        let lists = Lists::default();
+        Self { prefix, gradient: true, material: true, group: 0, binding: 0, lists }
     }
 }
 
@@ -90,6 +94,8 @@ fn functions(
     let binding = ResourceBinding { group: options.group, binding: options.binding };
     let used = raw_inputs(program, &nodes);
     let (mut inputs, members) = declare_members(&mut module, program, &used, binding);
+    let after = ResourceBinding { binding: binding.binding.saturating_add(1), ..binding };
+    inputs.tables = Tables::new(options.lists, after);
     inputs.tables.declare(&mut module, program, &nodes)?;
 
     let (uniform, prefix) = (inputs.buffer, options.prefix.clone());
@@ -106,6 +112,7 @@ fn functions(
         parts.functions.push((Role::Material, fill_or_add(&mut module, stub, function)?));
     }
     parts.functions.extend(link::find_function(&module, stubs::TRACE).map(|f| (Role::Trace, f)));
+    parts.lists = inputs.tables.into_buffer();
     make_public(&mut module, &parts, &options.prefix);
     Shader::new(module, parts, Features { materials: material.is_some(), ..features })
 }

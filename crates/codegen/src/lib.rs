@@ -67,4 +67,5 @@ pub use reflect::{
 pub use sdfc_march::{Features, FieldSource};
 pub use shader::{Shader, Written};
 pub use shadertoy::shadertoy_module;
+pub use tables::{Lists, MAX_CONSTANT_LIST};
 pub use target::{Code, Target};

@@ -9,17 +9,21 @@ use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, ra
 use crate::lower::{ray_function, store_function, struct_function, value_function};
 use crate::names::{check_prefix, make_public};
 use crate::reflect::{Parts, Role};
-use crate::{Error, Shader, link};
+use crate::tables::Tables;
+use crate::{Error, Lists, Shader, link};
 
 /// Where the per-frame slots are bound.
 const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
+/// Where long lists are bound.
+const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
 
 /// The compute shader of a program's picture, entry point `main`, workgroups of 8x8 pixels.
 ///
-/// Group 0 has three bindings. 0: uniform `sdfc_march::ViewBlock`. 1: uniform array with one
+/// Group 0 has these bindings. 0: uniform `sdfc_march::ViewBlock`. 1: uniform array with one
 /// `vec4<f32>` for each of `Program::uniforms`, a value in its first lanes, a truth value as 0 or 1;
 /// absent where the functions use none of them ([`crate::Reflection::uniform`] is `None`). 2: storage
-/// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row.
+/// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row. 3: storage array of what
+/// [`Shader::lists`] gives; absent if that is empty.
 ///
 /// Of shading, what the settings and the program need is linked and nothing else: [`Shader::features`] tells.
 ///
@@ -69,6 +73,7 @@ pub fn measured_module(
     let source = source_over(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    inputs.tables = Tables::in_buffer(LISTS);
     inputs.tables.declare(&mut module, program, distance.as_slice())?;
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
@@ -78,7 +83,8 @@ pub fn measured_module(
         let function = value_function(program, &inputs, types, stubs::FIELD, distance)?;
         link::fill(&mut module, stubs::FIELD, function)?;
     }
-    Shader::new(module, Parts::default(), features)
+    let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
+    Shader::new(module, parts, features)
 }
 
 /// The stages of a picture's shader.
@@ -117,8 +123,10 @@ pub struct PictureOptions {
     pub prefix: String,
     /// Bind group of the buffers.
     pub group: u32,
-    /// Binding of the view; params have the next one, and pixels the one after that.
+    /// Binding of the view; params have the next one, then pixels, then lists.
     pub binding: u32,
+    /// Where long lists are.
+    pub lists: Lists,
 }
 
 /// The shader of a program's picture, for an engine of someone else's: it needs no values but those of params,
@@ -151,8 +159,9 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
         }
     }
     let raw = raw_inputs(program, &picture.slot_nodes());
-    let (inputs, members) =
+    let (mut inputs, members) =
         declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
+    inputs.tables = Tables::new(options.lists, place(LISTS.binding));
     picture.parts.members = members;
     picture.parts.prefix.clone_from(&options.prefix);
     picture.compute_slots(inputs)?;
@@ -168,6 +177,7 @@ fn link_picture(program: &Program, form: Form, method: &Method) -> Result<Shader
         link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
     }
     picture.inputs = inputs;
+    picture.inputs.tables = Tables::in_buffer(LISTS);
     picture.fill()?;
     picture.finish()
 }
@@ -257,7 +267,8 @@ impl<'p> Picture<'p> {
         Ok(())
     }
 
-    pub(crate) fn finish(self) -> Result<Shader, Error> {
+    pub(crate) fn finish(mut self) -> Result<Shader, Error> {
+        self.parts.lists = self.inputs.tables.into_buffer();
         Shader::new(self.module, self.parts, self.features)
     }
 }

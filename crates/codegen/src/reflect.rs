@@ -89,6 +89,8 @@ pub enum BufferRole {
     Params,
     /// The pixels of a tile, written.
     Pixels,
+    /// Long lists, which the scene's functions look up.
+    Lists,
 }
 
 /// A buffer that the host binds.
@@ -144,7 +146,7 @@ pub struct Entry {
 }
 
 /// What a shader offers. Names are those of the written text.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reflection {
     /// Functions that a host may call.
     pub functions: Vec<FunctionInfo>,
@@ -154,6 +156,8 @@ pub struct Reflection {
     pub uniform: Option<Uniform>,
     /// All buffers.
     pub buffers: Vec<Buffer>,
+    /// What the buffer of the role [`BufferRole::Lists`] holds.
+    pub lists: Vec<[f32; 4]>,
     /// The structures of functions and buffers, members before what holds them.
     pub structures: Vec<Structure>,
     /// The entry points that are written.
@@ -166,6 +170,8 @@ pub(crate) struct Parts {
     pub(crate) functions: Vec<(Role, Handle<naga::Function>)>,
     pub(crate) members: Vec<Member>,
     pub(crate) uniform: Option<Handle<GlobalVariable>>,
+    /// The buffer of long lists, and what it holds.
+    pub(crate) lists: Option<(Handle<GlobalVariable>, Vec<[f32; 4]>)>,
     /// Start of the names that are no one else's.
     pub(crate) prefix: String,
 }
@@ -243,6 +249,7 @@ fn describe(module: &Module, parts: &Parts, names: &Names) -> Reflection {
         add_structures(module, module.global_variables[handle].ty, &mut structures);
         reflection.buffers.push(buffer(module, names, handle, role));
     }
+    reflection.lists = parts.lists.as_ref().map_or_else(Vec::new, |(_, lists)| lists.clone());
     reflection.structures =
         structures.into_iter().filter_map(|ty| structure(module, names, ty)).collect();
     reflection.entries = module
@@ -268,6 +275,8 @@ fn buffers<'a>(
             == AddressSpace::Storage { access: StorageAccess::LOAD | StorageAccess::STORE };
         let role = if Some(handle) == parts.uniform {
             BufferRole::Params
+        } else if parts.lists.as_ref().is_some_and(|(lists, _)| *lists == handle) {
+            BufferRole::Lists
         } else if variable.space == AddressSpace::Uniform {
             BufferRole::View
         } else if is_written {

@@ -12,7 +12,7 @@ use crate::reflect::{Parts, Reflection, reflect, reflect_written};
 use crate::target::{self, Code, Target};
 
 /// A shader in a target's language, and what it offers by the names that it has there.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// Text or words.
     pub code: Code,
@@ -50,6 +50,11 @@ impl Shader {
     /// The module.
     pub fn module(&self) -> &Module {
         &self.module
+    }
+
+    /// What the buffer of long lists is to hold; empty if there is none.
+    pub fn lists(&self) -> &[[f32; 4]] {
+        self.parts.lists.as_ref().map_or(&[], |(_, contents)| contents)
     }
 
     /// What of `march` was linked.

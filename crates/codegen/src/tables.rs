@@ -1,24 +1,70 @@
 //! Lists of constants that a program looks up.
+//!
+//! A shader may hold a list itself, as a constant, or read it from a buffer that holds all its long lists one after
+//! the other. Drivers take long over constants: `docs/benchmarks.md` has figures.
 
-use std::collections::hash_map::Entry;
 use std::num::NonZeroU32;
 
 use naga::{
     AddressSpace, ArraySize, Expression, GlobalVariable, Handle, Literal, MemoryDecorations,
-    Module, Span, TypeInner,
+    Module, ResourceBinding, Span, StorageAccess, TypeInner,
 };
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Const, Node, NodeId, Program, Table, TableId, Type, reachable};
 
 use crate::{Error, types};
 
-/// The global variables that hold a program's lists.
+/// Lists up to this many elements are constants of a shader for an engine of someone else's.
+pub const MAX_CONSTANT_LIST: usize = 64;
+
+/// Where the lists of a shader for an engine of someone else's are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Lists {
+    /// Those of more than [`MAX_CONSTANT_LIST`] elements are in a storage buffer, all one after the other:
+    /// [`crate::Shader::lists`] is what it holds.
+    #[default]
+    Buffer,
+    /// All are constants in the shader, for languages without such buffers.
+    Constants,
+}
+
+/// Where a program's lists are.
 #[derive(Debug, Default)]
 pub(crate) struct Tables {
-    of: FxHashMap<TableId, (Handle<GlobalVariable>, u32)>,
+    of: FxHashMap<TableId, List>,
+    /// Where the buffer is bound, and how long a list must at least be to be in it.
+    binding: Option<(ResourceBinding, usize)>,
+    buffer: Option<Handle<GlobalVariable>>,
+    contents: Vec<[f32; 4]>,
+}
+
+/// Where a list is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct List {
+    /// An array of the elements' type, or the buffer.
+    pub(crate) variable: Handle<GlobalVariable>,
+    /// The position of its first element there, which fills up to four lanes, if that is the buffer.
+    pub(crate) first: Option<u32>,
+    /// The number of its last element.
+    pub(crate) last: u32,
 }
 
 impl Tables {
+    /// All are to be in a storage buffer at this place.
+    pub(crate) fn in_buffer(binding: ResourceBinding) -> Self {
+        Self { binding: Some((binding, 0)), ..Self::default() }
+    }
+
+    /// The long ones are to be in a storage buffer at this place, or none.
+    pub(crate) fn new(lists: Lists, binding: ResourceBinding) -> Self {
+        match lists {
+            Lists::Buffer => {
+                Self { binding: Some((binding, MAX_CONSTANT_LIST + 1)), ..Self::default() }
+            }
+            Lists::Constants => Self::default(),
+        }
+    }
+
     /// Declares those that the roots look up, unless that was done.
     pub(crate) fn declare(
         &mut self,
@@ -28,19 +74,59 @@ impl Tables {
     ) -> Result<(), Error> {
         for node in reachable(&program.graph, roots) {
             let Node::Element(id, ..) = program.graph.node(node) else { continue };
-            if let Entry::Vacant(place) = self.of.entry(id) {
-                let table = program.graph.table(id);
-                let variable = declare(module, table, node)?;
-                place.insert((variable, table.elements.len().saturating_sub(1) as u32));
+            if self.of.contains_key(&id) {
+                continue;
             }
+            let table = program.graph.table(id);
+            let last = table.elements.len().saturating_sub(1) as u32;
+            let list = match self.binding.filter(|(_, least)| table.elements.len() >= *least) {
+                Some((binding, _)) => {
+                    let variable =
+                        *self.buffer.get_or_insert_with(|| declare_buffer(module, binding));
+                    let first = Some(self.contents.len() as u32);
+                    for element in &table.elements {
+                        self.contents.push(rounded(element, node)?);
+                    }
+                    List { variable, first, last }
+                }
+                None => List { variable: declare(module, table, node)?, first: None, last },
+            };
+            self.of.insert(id, list);
         }
+        self.resize_buffer(module);
         Ok(())
     }
 
-    /// The variable and the position of its last element.
-    pub(crate) fn get(&self, id: TableId) -> Option<(Handle<GlobalVariable>, u32)> {
+    /// Gives the buffer's type as many elements as it is to hold.
+    fn resize_buffer(&self, module: &mut Module) {
+        let size = u32::try_from(self.contents.len()).ok().and_then(NonZeroU32::new);
+        let (Some(buffer), Some(size)) = (self.buffer, size) else { return };
+        let base = types::value(&mut module.types, Type::Vec4);
+        let array = TypeInner::Array { base, size: ArraySize::Constant(size), stride: 16 };
+        module.global_variables[buffer].ty = types::add(&mut module.types, array);
+    }
+
+    /// Where a list is.
+    pub(crate) fn get(&self, id: TableId) -> Option<List> {
         self.of.get(&id).copied()
     }
+
+    /// The buffer and what it is to hold.
+    pub(crate) fn into_buffer(self) -> Option<(Handle<GlobalVariable>, Vec<[f32; 4]>)> {
+        Some((self.buffer?, self.contents))
+    }
+}
+
+fn declare_buffer(module: &mut Module, binding: ResourceBinding) -> Handle<GlobalVariable> {
+    let variable = GlobalVariable {
+        name: Some("lists".to_owned()),
+        space: AddressSpace::Storage { access: StorageAccess::LOAD },
+        binding: Some(binding),
+        ty: types::value(&mut module.types, Type::Vec4), // of one element, until their number is known
+        init: None,
+        memory_decorations: MemoryDecorations::empty(),
+    };
+    module.global_variables.append(variable, Span::UNDEFINED)
 }
 
 fn declare(
@@ -71,24 +157,37 @@ fn declare(
     Ok(module.global_variables.append(variable, Span::UNDEFINED))
 }
 
+/// The lanes in 32 bits; those beyond the width are 0.
+fn rounded(element: &Const, node: NodeId) -> Result<[f32; 4], Error> {
+    let mut lanes = [0.0; 4];
+    for (lane, &value) in lanes.iter_mut().zip(&element.lanes()[..element.ty().width()]) {
+        *lane = value as f32;
+        if !lane.is_finite() {
+            return Err(Error::NotFinite { node, value });
+        }
+    }
+    Ok(lanes)
+}
+
 fn constant(
     module: &mut Module,
     element: &Const,
     node: NodeId,
 ) -> Result<Handle<Expression>, Error> {
-    let mut components = Vec::new();
-    for &value in &element.lanes()[..element.ty().width()] {
-        let rounded = value as f32;
-        if !rounded.is_finite() {
-            return Err(Error::NotFinite { node, value });
-        }
-        let literal = Expression::Literal(Literal::F32(rounded));
-        components.push(module.global_expressions.append(literal, Span::UNDEFINED));
-    }
+    let ty = element.ty();
+    let literal = |value: &f32| match ty {
+        Type::Bool => Literal::Bool(*value != 0.0),
+        Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4 => Literal::F32(*value),
+    };
+    let literals: Vec<_> = rounded(element, node)?[..ty.width()].iter().map(literal).collect();
+    let append = |literal| {
+        module.global_expressions.append(Expression::Literal(literal), Span::UNDEFINED)
+    };
+    let components: Vec<_> = literals.into_iter().map(append).collect();
     if let [number] = components[..] {
         return Ok(number);
     }
-    let ty = types::value(&mut module.types, element.ty());
+    let ty = types::value(&mut module.types, ty);
     let vector = Expression::Compose { ty, components };
     Ok(module.global_expressions.append(vector, Span::UNDEFINED))
 }

@@ -8,10 +8,10 @@ use naga::{
 };
 use sdfc_march::{SHADERTOY_HEAD, SHADERTOY_TAIL, stubs};
 
-use crate::Error;
 use crate::link::find_function;
 use crate::picture::Stage;
 use crate::reflect::{Entry, final_names, stage_name};
+use crate::{Error, Lists};
 
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,6 +64,14 @@ impl Target {
         match self {
             Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => true,
             Self::GlslEs | Self::Shadertoy => false,
+        }
+    }
+
+    /// Where long lists are.
+    pub fn lists(self) -> Lists {
+        match self {
+            Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => Lists::Buffer,
+            Self::GlslEs | Self::Shadertoy => Lists::Constants,
         }
     }
 

@@ -12,6 +12,7 @@ use harfrust::{Buffer, GlyphId, ShapeOptions, ShaperFont, shape};
 use rustc_hash::FxHashMap;
 
 use crate::import::{self, Resolver};
+use crate::outline::{Curve, Piece, Point, boundary, mix, sub};
 use outline::{DrawMemory, DrawOptions, PathElement};
 
 /// The font that comes with the library, and its name in scenes.
@@ -25,11 +26,6 @@ pub const TOLERANCE: f64 = 1.25e-4;
 const STRAIGHT: f64 = 1e-6;
 /// Most quadratic curves for one cubic one.
 const MAX_PARTS: f64 = 16.0;
-
-/// A point in ems.
-type Point = [f64; 2];
-/// Start, control point, end. The control point of a straight one is its middle.
-pub type Curve = [Point; 3];
 
 /// Fonts by name, each read once.
 pub struct Fonts<'r> {
@@ -77,24 +73,19 @@ impl<'r> Fonts<'r> {
             .ok_or_else(|| format!("`{path}` is no TrueType or OpenType font"))
     }
 
-    /// The outlines of a text, inside on the left of each curve. Lines end at `\n`.
+    /// The boundary of a text. Lines end at `\n`.
     ///
     /// # Errors
     ///
     /// Why they cannot be had, in one sentence.
-    pub fn curves(&self, text: &str, font: &str, setting: Setting) -> Result<Vec<Curve>, String> {
+    pub fn curves(&self, text: &str, font: &str, setting: Setting) -> Result<Vec<Piece>, String> {
         let font = self.font(font)?;
         let mut curves = Vec::new();
         for (number, line) in text.split('\n').enumerate() {
             let baseline = -(number as f64) * setting.leading;
             set_line(&font, line, baseline, setting, &mut curves)?;
         }
-        // TrueType has the inside on the right, PostScript on the left.
-        if curves.iter().map(doubled_area).sum::<f64>() < 0.0 {
-            curves.reverse();
-            curves.iter_mut().for_each(|curve| curve.reverse());
-        }
-        Ok(curves)
+        Ok(boundary(&curves))
     }
 }
 
@@ -174,14 +165,6 @@ fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> 
     Ok(())
 }
 
-fn mix(a: Point, b: Point, t: f64) -> Point {
-    [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1].map(|axis| a[axis] - b[axis])
-}
-
 fn line(from: Point, to: Point, curves: &mut Vec<Curve>) {
     if from != to {
         curves.push([from, mix(from, to, 0.5), to]);
@@ -219,12 +202,6 @@ fn quadratic(from: Point, control: Point, to: Point, curves: &mut Vec<Curve>) {
     }
 }
 
-/// Twice the area between the curve's control points and the origin, positive if it turns left about it.
-fn doubled_area([a, b, c]: &Curve) -> f64 {
-    let cross = |p: &Point, q: &Point| p[0] * q[1] - p[1] * q[0];
-    cross(a, b) + cross(b, c)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,8 +209,8 @@ mod tests {
 
     const LEFT: Setting = Setting { align: 0.0, spacing: 0.0, leading: 1.2 };
 
-    fn extent(curves: &[Curve]) -> [f64; 2] {
-        let places = curves.as_flattened().iter().map(|point| point[0]);
+    fn extent(pieces: &[Piece]) -> [f64; 2] {
+        let places = pieces.iter().flat_map(|piece| piece.curve).map(|point| point[0]);
         [places.clone().fold(f64::INFINITY, f64::min), places.fold(f64::NEG_INFINITY, f64::max)]
     }
 

@@ -37,6 +37,7 @@ pub mod font;
 pub mod hir;
 pub mod import;
 pub mod library;
+pub mod outline;
 mod reach;
 pub mod reference;
 pub mod settings;

@@ -454,8 +454,8 @@ fn letters(words: &str, size: f64, setting: Setting) -> Expected {
     let curves = Fonts::new(&NoFiles).curves(words, "sans", setting).expect("the font has them");
     let mut outlines: Vec<Vec<Point>> = Vec::new();
     let mut last = None;
-    for ends in curves {
-        let [a, b, c] = ends.map(|point| point.map(|place| size * place));
+    for piece in curves {
+        let [a, b, c] = piece.curve.map(|point| point.map(|place| size * place));
         if last != Some(a) {
             outlines.push(Vec::new());
         }

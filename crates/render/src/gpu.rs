@@ -48,11 +48,11 @@ impl Pipeline {
         shader: sdfc_codegen::Shader,
         uniform_count: usize,
     ) -> Result<Self, RenderError> {
-        let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
-        Self::of_source(gpu, source, uniform_count, &[])
+        Self::with_tables(gpu, shader, uniform_count, &[])
     }
 
-    /// Of a shader that reads storage buffers at bindings 3, 4, ... of group 0, with what they hold.
+    /// Of a shader that reads storage buffers at bindings 3, 4, ... of group 0, with what they hold. Its own lists
+    /// are the first of them.
     ///
     /// # Errors
     ///
@@ -63,8 +63,10 @@ impl Pipeline {
         uniform_count: usize,
         tables: &[Vec<u8>],
     ) -> Result<Self, RenderError> {
+        let lists = Some(shader.lists()).filter(|lists| !lists.is_empty()).map(uniform_bytes);
+        let tables: Vec<_> = lists.into_iter().chain(tables.iter().cloned()).collect();
         let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
-        Self::of_source(gpu, source, uniform_count, tables)
+        Self::of_source(gpu, source, uniform_count, &tables)
     }
 
     /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform

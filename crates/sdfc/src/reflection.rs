@@ -28,6 +28,8 @@ pub struct ShaderReflection {
     pub uniform: Option<UniformRow>,
     /// All buffers that a host binds, that one included.
     pub buffers: Vec<BufferRow>,
+    /// What the buffer of the role `lists` holds: numbers of 32 bits, four to an element. Empty without one.
+    pub lists: Vec<f32>,
     /// The structures that functions take or give and buffers hold, members before what holds them.
     pub structs: Vec<StructRow>,
     /// The entry points.
@@ -91,7 +93,8 @@ pub struct UniformRow {
 /// A buffer that a host binds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BufferRow {
-    /// `view`: camera, limits and lights; `params`; or `pixels`, which the shader writes.
+    /// `view`: camera, limits and lights; `params`; `pixels`, which the shader writes; or `lists`, which a
+    /// host fills once with [`ShaderReflection::lists`].
     pub role: &'static str,
     /// Name of its variable.
     pub name: String,
@@ -200,6 +203,7 @@ impl Scene {
             params: found.members.iter().map(|member| self.param_row(member)).collect(),
             uniform,
             buffers: found.buffers.iter().map(buffer_row).collect(),
+            lists: found.lists.as_flattened().to_vec(),
             structs: found.structures.iter().map(struct_row).collect(),
             entry_points: entries.collect(),
             certificate: self.certificate(sources),
@@ -283,6 +287,7 @@ fn buffer_name(role: BufferRole) -> &'static str {
         BufferRole::View => "view",
         BufferRole::Params => "params",
         BufferRole::Pixels => "pixels",
+        BufferRole::Lists => "lists",
     }
 }
 

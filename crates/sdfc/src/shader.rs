@@ -114,9 +114,10 @@ impl Scene {
             let what = stage.name();
             return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }
+        let lists = target.lists();
         let functions = || {
             let prefix = prefix.clone();
-            FieldOptions { prefix, group, binding, ..FieldOptions::default() }
+            FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
         };
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
@@ -127,7 +128,8 @@ impl Scene {
             Emit::Render => {
                 let rows_up = target.counts_rows_upwards();
                 let method = method.to_owned();
-                let options = PictureOptions { method, stage, rows_up, prefix, group, binding };
+                let options =
+                    PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
                 picture_module(&self.program, &options)?
             }
         };

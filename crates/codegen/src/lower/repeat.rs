@@ -1,6 +1,8 @@
 //! Loops and lists.
 
-use naga::{BinaryOperator, Expression, MathFunction, ScalarKind, UnaryOperator};
+use naga::{
+    BinaryOperator, Expression, MathFunction, ScalarKind, SwizzleComponent, UnaryOperator, VectorSize,
+};
 use sdfc_graph::{LoopId, Node, NodeId, Place, TableId, Type};
 
 use super::{Lowering, Value, hint};
@@ -121,14 +123,37 @@ impl Lowering<'_> {
 
     /// An element of a list.
     pub(super) fn element(&mut self, id: TableId, at: NodeId, ty: Type) -> Result<Value, Error> {
-        let (variable, last) = self.inputs.tables.get(id).ok_or(Error::NotFlat(at))?;
+        let list = self.inputs.tables.get(id).ok_or(Error::NotFlat(at))?;
         let at = self.value(at)?;
-        let (nought, last) = (self.body.literal(0.0), self.body.literal(last as f32));
+        let (nought, last) = (self.body.literal(0.0), self.body.literal(list.last as f32));
         let raised = self.body.call2(MathFunction::Max, at, nought);
         let place = self.body.call2(MathFunction::Min, raised, last);
-        let index = self.body.cast(place, ScalarKind::Uint, Some(4));
-        let base = self.body.declare(Expression::GlobalVariable(variable));
+        let mut index = self.body.cast(place, ScalarKind::Uint, Some(4));
+        if let Some(first @ 1..) = list.first {
+            let first = self.body.word(first);
+            index = self.body.binary(BinaryOperator::Add, first, index);
+        }
+        let base = self.body.declare(Expression::GlobalVariable(list.variable));
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
-        Ok(self.body.load(pointer, hint(ty)))
+        let value = self.body.load(pointer, hint(ty));
+        Ok(if list.first.is_some() { self.narrowed(value, ty) } else { value })
+    }
+
+    /// The first lanes of four, as a value of a type.
+    fn narrowed(&mut self, vector: Value, ty: Type) -> Value {
+        let pattern = SwizzleComponent::XYZW;
+        let cut = |size| Expression::Swizzle { size, vector, pattern };
+        let first = Expression::AccessIndex { base: vector, index: 0 };
+        match ty {
+            Type::Bool => {
+                let number = self.body.compute(first, &[vector]);
+                let nought = self.body.literal(0.0);
+                self.body.binary(BinaryOperator::NotEqual, number, nought)
+            }
+            Type::Scalar => self.body.compute(first, &[vector]),
+            Type::Vec2 => self.body.compute(cut(VectorSize::Bi), &[vector]),
+            Type::Vec3 => self.body.compute(cut(VectorSize::Tri), &[vector]),
+            Type::Vec4 => vector,
+        }
     }
 }

@@ -8,6 +8,7 @@ use super::value::Value;
 use super::{Elaborator, Env, Outcome, Poison};
 use crate::font::Setting;
 use crate::hir::Expr;
+use crate::outline::Piece;
 
 /// Values of `align`, and which part of a line each puts at x = 0.
 const ALIGNMENTS: [(&str, f64); 3] = [("left", 0.0), ("center", 0.5), ("right", 1.0)];
@@ -25,17 +26,18 @@ impl<'p> Elaborator<'p> {
         let align = self.alignment(env, align)?;
         let spacing = self.fixed(env, spacing, "the spacing of a text")?;
         let leading = self.fixed(env, leading, "the leading of a text")?;
-        let curves = self.fonts.curves(&words, &font, Setting { align, spacing, leading });
-        let curves = curves.map_err(|why| {
+        let pieces = self.fonts.curves(&words, &font, Setting { align, spacing, leading });
+        let pieces = pieces.map_err(|why| {
             let help = "write letters that the font has; `font:` names `sans` or a font file beside the scene";
             self.report(Diagnostic::error(Code::TEXT, at.span, why).help(help))
         })?;
-        self.steps += 3 * curves.len() as u64;
-        let curve = |points: [[f64; 2]; 3]| {
-            let points = points.map(|point| Value::Node(self.graph.constant(Type::Vec2, &point)));
-            Value::List(points.into())
+        self.steps += 4 * pieces.len() as u64;
+        let piece = |Piece { curve: [start, control, end], corners }: Piece| {
+            let pairs = [start, control, end, corners];
+            let pairs = pairs.map(|pair| Value::Node(self.graph.constant(Type::Vec2, &pair)));
+            Value::List(pairs.into())
         };
-        Ok(Value::List(curves.into_iter().map(curve).collect()))
+        Ok(Value::List(pieces.into_iter().map(piece).collect()))
     }
 
     fn text(&mut self, env: &mut Env<'p>, e: &'p Expr, what: &str) -> Outcome<std::rc::Rc<str>> {
