@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use libtest_mimic::Failed;
-use sdfc::codegen::{PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
+use sdfc::codegen::{
+    Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module,
+};
 use sdfc::render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
 use sdfc::render::{linear_to_srgb8, uniform_values};
 use sdfc::{FrameValues, Scene, Stage, unwatched};
@@ -114,7 +116,8 @@ fn at_defaults(scene: &Scene) -> Result<(FrameValues, View), Failed> {
 
 fn embedded(scene: &Scene, stage: Stage, rows_up: bool) -> Result<Shader, Failed> {
     let (method, prefix) = (scene.method().to_owned(), String::new());
-    let options = PictureOptions { method, stage, rows_up, prefix, group: 0, binding: 0 };
+    let lists = Lists::Constants;
+    let options = PictureOptions { method, stage, rows_up, prefix, group: 0, binding: 0, lists };
     Ok(picture_module(scene.program(), &options)?)
 }
 

@@ -4,12 +4,12 @@
 
 mod common;
 
-use common::{FEATURES, blend, featured, lit, mirrored, painted, sphere, twisted};
+use common::{FEATURES, blend, featured, lit, mirrored, painted, program, sphere, twisted};
 use sdfc_codegen::{
-    Code, Error, FieldOptions, PictureOptions, Shader, Stage, Target, field_module, march_module,
-    picture_module, render_module, shadertoy_module,
+    BufferRole, Code, Error, FieldOptions, Lists, MAX_CONSTANT_LIST, PictureOptions, Shader, Stage,
+    Target, field_module, march_module, picture_module, render_module, shadertoy_module,
 };
-use sdfc_graph::{Program, Shadow};
+use sdfc_graph::{Const, Dim, Graph, Program, Shadow, Table, Type};
 use sdfc_march::{METHODS, ViewBlock};
 
 fn field(program: &Program) -> String {
@@ -127,6 +127,41 @@ fn a_march_in_every_text() {
     }
 }
 
+/// A radius out of so many, by the height of the point.
+fn looked_up(count: usize) -> Program {
+    let mut graph = Graph::new();
+    let p = graph.point(0, Dim::Three);
+    let (length, height) = (graph.length(p), graph.component(p, 1));
+    let elements = (0..count).map(|i| Const::new(Type::Scalar, &[i as f64 / 4.0])).collect();
+    let radius = graph.element(Table { ty: Type::Scalar, elements }, height);
+    let distance = graph.sub(length, radius);
+    program(graph, distance)
+}
+
+#[test]
+fn long_lists_are_in_a_buffer_where_the_language_has_such_buffers() {
+    for target in FUNCTIONS {
+        for count in [MAX_CONSTANT_LIST, MAX_CONSTANT_LIST + 1] {
+            let (lists, gradient) = (target.lists(), false);
+            let options = FieldOptions { group: 1, binding: 3, lists, gradient, ..Default::default() };
+            let shader = field_module(&looked_up(count), &options).expect("lowers");
+            let reflection = shader.write(target, "a").expect("is written").reflection;
+            if lists == Lists::Constants || count == MAX_CONSTANT_LIST {
+                assert_eq!((reflection.buffers.len(), shader.lists().len()), (0, 0), "{target:?}");
+                continue;
+            }
+            let [buffer] = &reflection.buffers[..] else { panic!("{target:?}") };
+            assert_eq!(buffer.role, BufferRole::Lists, "{target:?}");
+            assert_eq!((buffer.group, buffer.binding), (1, 4), "after the uniform's place");
+            assert_eq!(buffer.size as usize, 16 * count, "{target:?}");
+            assert_eq!(reflection.lists.len(), count);
+            assert_eq!(reflection.lists[5], [1.25, 0.0, 0.0, 0.0]);
+        }
+    }
+    let shader = render_module(&lit(looked_up(2), Shadow::Off), "sphere");
+    assert_eq!(shader.expect("links").lists().len(), 2, "the renderer keeps short ones there too");
+}
+
 #[test]
 fn the_fragment_form_binds_view_and_params_from_where_it_is_told() {
     let options = PictureOptions {
@@ -136,6 +171,7 @@ fn the_fragment_form_binds_view_and_params_from_where_it_is_told() {
         prefix: "a_".to_owned(),
         group: 2,
         binding: 5,
+        lists: Lists::Buffer,
     };
     let shader = picture_module(&blend(), &options).expect("links");
     let reflection = shader.reflection();
