@@ -3,9 +3,7 @@
 use std::borrow::Cow;
 
 use libtest_mimic::Failed;
-use sdfc::codegen::{
-    Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module,
-};
+use sdfc::codegen::{Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
 use sdfc::render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
 use sdfc::render::{linear_to_srgb8, uniform_values};
 use sdfc::{FrameValues, Scene, Stage, unwatched};

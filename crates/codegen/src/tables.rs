@@ -180,9 +180,8 @@ fn constant(
         Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4 => Literal::F32(*value),
     };
     let literals: Vec<_> = rounded(element, node)?[..ty.width()].iter().map(literal).collect();
-    let append = |literal| {
-        module.global_expressions.append(Expression::Literal(literal), Span::UNDEFINED)
-    };
+    let append =
+        |literal| module.global_expressions.append(Expression::Literal(literal), Span::UNDEFINED);
     let components: Vec<_> = literals.into_iter().map(append).collect();
     if let [number] = components[..] {
         return Ok(number);

@@ -11,8 +11,8 @@ use common::{
     twisted,
 };
 use sdfc_codegen::{
-    Error, FieldOptions, Lists, PictureOptions, Role, Stage, field_module, march_module, picture_module,
-    render_module, shadertoy_module,
+    Error, FieldOptions, Lists, PictureOptions, Role, Stage, field_module, march_module,
+    picture_module, render_module, shadertoy_module,
 };
 use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
 use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
@@ -43,7 +43,8 @@ fn every_method_links_with_every_kind_of_scene() {
             for stage in Stage::ALL {
                 let (method, prefix) = (method.name.to_owned(), "a_".to_owned());
                 let (rows_up, group, binding, lists) = (true, 0, 3, Lists::Buffer);
-                let options = PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
+                let options =
+                    PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
                 let shader = picture_module(&scene, &options).expect("links");
                 common::check(&shader.wgsl().expect("is written"));
                 common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");

@@ -143,7 +143,8 @@ fn long_lists_are_in_a_buffer_where_the_language_has_such_buffers() {
     for target in FUNCTIONS {
         for count in [MAX_CONSTANT_LIST, MAX_CONSTANT_LIST + 1] {
             let (lists, gradient) = (target.lists(), false);
-            let options = FieldOptions { group: 1, binding: 3, lists, gradient, ..Default::default() };
+            let options =
+                FieldOptions { group: 1, binding: 3, lists, gradient, ..Default::default() };
             let shader = field_module(&looked_up(count), &options).expect("lowers");
             let reflection = shader.write(target, "a").expect("is written").reflection;
             if lists == Lists::Constants || count == MAX_CONSTANT_LIST {

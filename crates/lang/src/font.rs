@@ -85,7 +85,7 @@ impl<'r> Fonts<'r> {
             let baseline = -(number as f64) * setting.leading;
             set_line(&font, line, baseline, setting, &mut curves)?;
         }
-        Ok(boundary(&curves))
+        Ok(boundary(curves))
     }
 }
 

@@ -31,8 +31,14 @@ const MAX_PAIRS: usize = 4096;
 /// Ends that turn by less, in radians, are smooth.
 const SMOOTH: f64 = 0.5;
 
-/// The boundary of what outlines go round.
-pub fn boundary(outlines: &[Curve]) -> Vec<Piece> {
+/// The boundary of what outlines go round, in the order of the outlines or its reverse.
+pub fn boundary(mut outlines: Vec<Curve>) -> Vec<Piece> {
+    // TrueType has the inside on the right, PostScript on the left.
+    if outlines.iter().map(doubled_area).sum::<f64>() < 0.0 {
+        outlines.reverse();
+        outlines.iter_mut().for_each(|curve| curve.reverse());
+    }
+    let outlines = &outlines[..];
     let mut pieces: Vec<Piece> = Vec::with_capacity(outlines.len());
     for (curve, cuts) in outlines.iter().zip(cuts(outlines)) {
         for ends in cuts.windows(2) {
@@ -42,6 +48,12 @@ pub fn boundary(outlines: &[Curve]) -> Vec<Piece> {
     }
     turn_corners(&mut pieces);
     pieces
+}
+
+/// Twice the area between the curve's control points and the origin, positive if it turns left about it.
+fn doubled_area([a, b, c]: &Curve) -> f64 {
+    let cross = |p: &Point, q: &Point| p[0] * q[1] - p[1] * q[0];
+    cross(a, b) + cross(b, c)
 }
 
 /// The curve with the inside on its left; none that has it on both sides or neither.
@@ -224,7 +236,7 @@ mod tests {
     fn a_square_keeps_its_sides_whichever_way_it_goes() {
         let mut square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         for _ in 0..2 {
-            let pieces = boundary(&polygon(&square));
+            let pieces = boundary(polygon(&square));
             assert_eq!(pieces.len(), 4);
             for piece in pieces {
                 assert_eq!(piece.corners, [1.0, 1.0]);
@@ -240,7 +252,7 @@ mod tests {
     fn what_lies_within_another_outline_is_dropped() {
         let mut outlines = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
         outlines.extend(polygon(&[[1.0, -0.5], [1.5, -0.5], [1.5, 0.5], [1.0, 0.5]]));
-        let pieces = boundary(&outlines);
+        let pieces = boundary(outlines);
         // The smaller one stands half a unit out below, and covers half a unit of the lower side.
         assert!((length(&pieces) - (6.0 - 0.5 + 0.5 + 0.5 + 0.5)).abs() < 1e-5);
         let reflex = pieces.iter().filter(|piece| piece.corners.contains(&-1.0)).count();
@@ -252,12 +264,12 @@ mod tests {
         let mut outlines = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
         let hole = polygon(&[[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5]]);
         outlines.extend(&hole);
-        let pieces = boundary(&outlines);
+        let pieces = boundary(outlines.clone());
         assert_eq!(pieces.len(), 8);
         assert!(pieces[4..].iter().all(|piece| piece.corners == [-1.0, -1.0]));
         outlines.truncate(4);
         outlines.extend(hole.iter().rev().map(|&[a, b, c]| [c, b, a]));
-        assert_eq!(boundary(&outlines).len(), 4, "one that goes round the same way adds nothing");
+        assert_eq!(boundary(outlines).len(), 4, "one that goes round the same way adds nothing");
     }
 
     #[test]
@@ -272,7 +284,7 @@ mod tests {
         };
         let mut outlines = lens(0.0);
         outlines.extend(lens(1.0));
-        let pieces = boundary(&outlines);
+        let pieces = boundary(outlines);
         assert_eq!(pieces.len(), 4);
         let meeting = pieces.iter().flat_map(|piece| [piece.curve[0], piece.curve[2]]);
         // y = (x² - 1) / 2 and its copy one to the right meet at x = 1/2.

@@ -1,7 +1,8 @@
 //! Loops and lists.
 
 use naga::{
-    BinaryOperator, Expression, MathFunction, ScalarKind, SwizzleComponent, UnaryOperator, VectorSize,
+    BinaryOperator, Expression, MathFunction, ScalarKind, SwizzleComponent, UnaryOperator,
+    VectorSize,
 };
 use sdfc_graph::{LoopId, Node, NodeId, Place, TableId, Type};
 
