@@ -49,14 +49,16 @@ pub(crate) struct Open {
     scale: NodeId,
 }
 
-/// Takes a scene apart; rays have their origin at the point of level 0, and as direction that of level 1.
+/// Takes a scene apart whose point is `point`, in terms of that of level 0, which is the origin of rays; their
+/// direction is that of level 1.
 pub(crate) fn parts(
     graph: &mut Graph,
     expander: &mut Expander,
     qualities: &Qualities,
     root: ShapeId,
+    point: NodeId,
 ) -> Result<Parts, ExpandError> {
-    let [point, direction] = [0, 1].map(|level| graph.point(level, Dim::Three));
+    let direction = graph.point(1, Dim::Three);
     let scale = graph.number(1.0);
     let mut pass = Pass { graph, expander, qualities };
     pass.shape(root, Place { point, direction, scale })

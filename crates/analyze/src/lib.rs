@@ -36,8 +36,8 @@ pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
-pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare};
+pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_about};
 pub use quality::{Promise, Qualities, Quality, Sides};
-pub use refute::{Clause, ParamEnd, Refuted, refute};
+pub use refute::{Clause, ParamEnd, RayFault, Refuted, refute, refute_hits};
 pub use sound::Uncertified;
 pub use uneven::Uneven;

@@ -92,7 +92,18 @@ pub enum Lipschitz {
 ///
 /// When expansion passes the graph's node limit.
 pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
+    prepare_about(scene, [0.0; 3])
+}
+
+/// As [`prepare`], with the flat math's point counted from a place in the scene. Where a solid is moved to, less that
+/// place, is computed in f64 here, so that near the place little is left for f32 to round.
+///
+/// # Errors
+///
+/// As [`prepare`].
+pub fn prepare_about(scene: &Scene, origin: [f64; 3]) -> Result<Prepared, ExpandError> {
     let mut program = Program {
+        origin,
         graph: scene.graph.clone(),
         params: scene.params.clone(),
         settings: scene.settings.clone(),
@@ -110,11 +121,13 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
 fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report, ExpandError> {
     let graph = &mut program.graph;
     let mut expander = Expander::new();
-    let point = graph.point(0, Dim::Three);
+    let own_point = graph.point(0, Dim::Three);
+    let origin = graph.constant(Dim::Three.point_type(), &program.origin);
+    let point = graph.add(own_point, origin);
     let qualities = Qualities::of_scene(graph, root);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
-    let apart = parts(graph, &mut expander, &qualities, root)?;
+    let apart = parts(graph, &mut expander, &qualities, root, point)?;
     let mut flat = vec![field.distance];
     if !apart.closed.is_empty() {
         flat.extend(least(graph, apart.closed.iter().map(|part| part.value)));
@@ -130,7 +143,7 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();
-    program.gradient = Some(gradient(graph, distance, point));
+    program.gradient = Some(gradient(graph, distance, own_point));
     let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
     program.rays = rays(&apart, fields, asked);
     let Rays { hits, marched, clip, .. } = program.rays;

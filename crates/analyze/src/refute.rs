@@ -7,12 +7,17 @@
 //! given children that keep the same promise.
 
 mod probe;
+mod rays;
 
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Bounds, Dim, Graph, Param, Scene, ShapeId};
 
 use self::probe::Probe;
+pub use self::rays::{RayFault, refute_hits};
 use crate::quality::{Promise, Qualities, Stated};
+
+/// What intervals of rays may be off, in parts of the lengths that they are computed from.
+const RAY_ROUNDING: f64 = 1e-8;
 
 /// A clause that does not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +57,8 @@ pub enum Clause {
     },
     /// `bounds`.
     Bounds,
+    /// `hits`.
+    Hits(RayFault),
 }
 
 /// Where the params stand in their ranges.
@@ -74,6 +81,10 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
     let mut found = Vec::new();
     for &shape in shapes.iter().filter(|&&shape| scene.graph.shape(shape).level == 0) {
         let stated = Qualities::of_scene(&mut graph, shape).stated(&mut graph, shape);
+        if let Some(refuted) = refuted_hits(scene, shape) {
+            found.push(refuted);
+            continue;
+        }
         if stated.says_nothing() {
             continue;
         }
@@ -86,6 +97,15 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
         found.extend(refuted);
     }
     found
+}
+
+/// A ray whose intervals do not hold.
+fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Refuted> {
+    frames(&scene.params).into_iter().find_map(|(params, frame)| {
+        let fault = refute_hits::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
+        let (at, field) = (fault.at().to_vec(), fault.field);
+        Some(Refuted { shape, clause: Clause::Hits(fault), at, field, params })
+    })
 }
 
 /// What a probe finds.

@@ -25,6 +25,8 @@ pub struct Rays {
 pub struct Program {
     /// The arena.
     pub graph: Graph,
+    /// Where in the scene the point of its math is 0. Settings are in the scene's own coordinates.
+    pub origin: [f64; 3],
     /// Signed distance, already divided where it must be. `None`: nothing is drawn.
     pub distance: Option<NodeId>,
     /// Spatial gradient of `distance`, a 3-vector.

@@ -65,7 +65,7 @@ impl Scene {
     ///
     /// [`Error::View`].
     pub fn view(&self, frame: &FrameValues, size: [u32; 2]) -> Result<View, Error> {
-        Ok(View::new(&self.program, frame, self.bounds_at(frame), size)?)
+        Ok(View::new(self.drawn(), frame, self.bounds_at(frame), size)?)
     }
 
     /// The scene's field, to be asked where rays meet it.
@@ -74,7 +74,7 @@ impl Scene {
     ///
     /// [`Error::NothingDrawn`], [`Error::Evaluate`].
     pub fn oracle(&self) -> Result<Oracle, Error> {
-        Oracle::new(&self.program).map_err(|error| match error {
+        Oracle::new(self.drawn()).map_err(|error| match error {
             OracleError::NothingDrawn => Error::NothingDrawn,
             OracleError::NotFlat(error) => Error::Evaluate(error),
         })
@@ -118,8 +118,8 @@ impl Scene {
             methods: Vec::new(),
         };
         for method in methods {
-            let shader = render_module(&self.program, method.name)?;
-            let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
+            let shader = render_module(self.drawn(), method.name)?;
+            let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
             let sampler = self.sampler(gpu, method)?;
             for part in parts(method) {
                 let view = match method.knob {
@@ -154,7 +154,7 @@ impl Scene {
         frame: &FrameValues,
         repetitions: u32,
     ) -> Result<FrameMs, Error> {
-        let uniforms = uniform_values(&self.program, frame);
+        let uniforms = uniform_values(self.drawn(), frame);
         let draw = || {
             let options = RenderOptions::default();
             pipeline.render(view, &uniforms, &options, &mut sdfc_render::unwatched)

@@ -53,6 +53,8 @@ pub struct Scene {
     pub(crate) elaborated: Elaborated,
     pub(crate) program: Program,
     pub(crate) report: Report,
+    /// The program about another place, if pictures are drawn by such; made when the first is.
+    pub(crate) rebased: OnceLock<Option<Program>>,
     /// Derived when first asked for; a shader needs none.
     pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
     pub(crate) times: FrontTimes,
@@ -201,7 +203,8 @@ fn finish(
         Ok(prepared) => {
             let times = FrontTimes { front, analyze: milliseconds(start) };
             let (program, report) = (prepared.program, prepared.report);
-            Some(Scene { elaborated, program, report, bounds: OnceLock::new(), times, origin })
+            let (rebased, bounds) = (OnceLock::new(), OnceLock::new());
+            Some(Scene { elaborated, program, report, rebased, bounds, times, origin })
         }
         Err(error) => {
             let span = Span::new(file, 0, 0);

@@ -16,6 +16,14 @@ pub struct Explanation {
     pub ops_per_gradient: usize,
     /// Arithmetic operations done once a frame on the CPU.
     pub ops_per_frame: usize,
+    /// Shapes that rays meet in closed form, by the methods that ask for it.
+    pub closed: Vec<String>,
+    /// Shapes that are left to march by these methods.
+    pub marched: Vec<String>,
+    /// Arithmetic operations of what such a method asks of a ray before it marches, and of each step of the march.
+    pub ops_per_ray: usize,
+    /// See [`Self::ops_per_ray`].
+    pub ops_per_step: usize,
     /// Instructions of the field's function in SPIR-V, all kinds, as emitted.
     pub spirv_instructions: usize,
     /// Arithmetic ones among them.
@@ -41,7 +49,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let Features {
         materials,
         closed,
-        marched,
+        marched: _,
         clipped,
         shadows,
         soft_shadows,
@@ -57,7 +65,6 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let names = [
         ("material", materials),
         ("closed form", closed),
-        ("march", marched),
         ("clip", clipped),
         ("shadow", shadows),
         ("soft shadow", soft_shadows),
@@ -120,6 +127,14 @@ impl std::fmt::Display for Explanation {
         writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
         writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
         writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
+        if !self.closed.is_empty() {
+            writeln!(f, "closed form         {}", listed(&self.closed))?;
+            writeln!(f, "marched             {}", listed(&self.marched))?;
+        }
+        if self.ops_per_ray > 0 {
+            writeln!(f, "operations of auto  {} per ray", self.ops_per_ray)?;
+            writeln!(f, "                    {} per step", self.ops_per_step)?;
+        }
         let (all, arithmetic) = (self.spirv_instructions, self.spirv_arithmetic);
         writeln!(f, "SPIR-V              {all} instructions, {arithmetic} of them arithmetic")?;
         let features =
@@ -153,6 +168,25 @@ impl std::fmt::Display for Explanation {
             }
         }
         Ok(())
+    }
+}
+
+/// Names, each once with how often it stands there.
+fn listed(names: &[String]) -> String {
+    let mut counts: Vec<(&String, usize)> = Vec::new();
+    for name in names {
+        match counts.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((name, 1)),
+        }
+    }
+    let of = |(name, count): &(&String, usize)| match count {
+        1 => (*name).clone(),
+        _ => format!("{count} {name}"),
+    };
+    match counts.is_empty() {
+        true => "nothing".to_owned(),
+        false => counts.iter().map(of).collect::<Vec<_>>().join(", "),
     }
 }
 

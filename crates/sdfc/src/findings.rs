@@ -109,6 +109,20 @@ fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
             let help = "state the largest slope within the bounds, or drop the clause";
             Some(error(declared.lipschitz?, message).help(help))
         }
+        Clause::Hits(fault) => {
+            let [origin, direction] = fault.ray.map(|vector| point(&vector));
+            let said = match fault.inside {
+                Some(true) => "be inside",
+                Some(false) => "be outside",
+                None => "enter or leave",
+            };
+            let message = format!(
+                "this states `hits` by which the ray o = {origin}, d = {direction} should {said} at {at}, but the \
+                 field there is {field}"
+            );
+            let help = "the intervals hold all of the ray that is inside, and begin and end where the field is 0";
+            Some(error(declared.hits?, message).help(help))
+        }
         Clause::Bounds => {
             let message = format!(
                 "this states bounds, but at p = {at}, which lies outside them, the field is {field}"

@@ -37,6 +37,7 @@ mod error;
 mod explain;
 mod faults;
 mod findings;
+mod origin;
 mod params;
 mod picture;
 mod reflection;

@@ -95,7 +95,7 @@ impl Scene {
         let method = options.method.as_deref().unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
         let samples = sample_places(samples)?;
-        let on_cpu = || CpuScene::new(&self.program).map(|scene| Engine::Cpu(Box::new(scene)));
+        let on_cpu = || CpuScene::new(self.drawn()).map(|scene| Engine::Cpu(Box::new(scene)));
         let (engine, compile, note) = match options.backend {
             Backend::Cpu => (on_cpu()?, cpu_times(start), None),
             Backend::Gpu => {
@@ -121,10 +121,10 @@ impl Scene {
 
     fn pipeline(&self, gpu: &Gpu, method: &str) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
-        let shader = render_module(&self.program, method)?;
+        let shader = render_module(self.drawn(), method)?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds(start) - validate;
-        let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
+        let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
         let compile = CompileTimes {
             lower: Some(lower),
             validate: Some(validate),
@@ -180,7 +180,7 @@ impl Painter<'_> {
         progress: &mut OnProgress<'_>,
     ) -> Result<Picture, Error> {
         let scene = self.scene;
-        let view = View::new(&scene.program, values, scene.bounds_at(values), self.size)?;
+        let view = View::new(scene.drawn(), values, scene.bounds_at(values), self.size)?;
         let repetitions = repetitions.max(1);
         let (frame, spent) =
             repeated(repetitions, || self.averaged(&view, values, &mut *progress))?;
@@ -239,7 +239,7 @@ impl Painter<'_> {
         let options = RenderOptions::default();
         match &self.engine {
             Engine::Gpu(pipeline) => {
-                let uniforms = uniform_values(&self.scene.program, values);
+                let uniforms = uniform_values(self.scene.drawn(), values);
                 pipeline.render(view, &uniforms, &options, progress)
             }
             Engine::Cpu(scene) => scene.render(view, values, &self.method, &options, progress),

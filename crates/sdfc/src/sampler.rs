@@ -23,8 +23,8 @@ impl Scene {
     ///
     /// [`Error::NothingDrawn`], [`Error::Codegen`], [`Error::Render`].
     pub fn sampler(&self, gpu: &Gpu, method: &Method) -> Result<Sampler<'_>, Error> {
-        let shader = normals_module(&self.program, method)?;
-        let pipeline = Pipeline::new(gpu, shader, self.program.uniforms.len())?;
+        let shader = normals_module(self.drawn(), method)?;
+        let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
         Ok(Sampler { scene: self, pipeline })
     }
 }

@@ -4,7 +4,7 @@ use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
-use sdfc_graph::{FrameInput, Graph, Node, NodeId, bounds, reachable};
+use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
 
 use crate::explain::{Bounds, Explanation, Knob, QualityRow, feature_names};
 use crate::{Error, Scene};
@@ -87,6 +87,10 @@ impl Scene {
             ops_per_eval: report.distance.operations,
             ops_per_gradient: report.gradient.operations,
             ops_per_frame: report.distance.per_frame,
+            closed: self.names(&report.closed),
+            marched: self.names(&report.open),
+            ops_per_ray: report.ray.operations,
+            ops_per_step: report.marched.operations,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
             features: feature_names(features),
@@ -97,6 +101,15 @@ impl Scene {
             knobs: self.knobs(),
             quality: self.quality_rows(sources),
         })
+    }
+
+    fn names(&self, shapes: &[ShapeId]) -> Vec<String> {
+        let shape = |&id: &ShapeId| self.graph().graph.shape(id);
+        let name = |id| {
+            let Shape { name, definition, .. } = shape(id);
+            name.as_ref().unwrap_or(definition).clone()
+        };
+        shapes.iter().map(name).collect()
     }
 
     pub(crate) fn finite_bounds(&self) -> Bounds {

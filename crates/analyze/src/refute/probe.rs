@@ -237,11 +237,16 @@ fn distance(a: Point, b: Point) -> f64 {
 }
 
 /// SplitMix64: the same numbers on every machine.
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
+    /// One of the first so many whole numbers.
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+
     /// In 0..1.
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -79,6 +79,8 @@ pub struct Declared {
     pub lipschitz: Option<Span>,
     /// Where it states its bounds.
     pub bounds: Option<Span>,
+    /// Where it states where rays are inside.
+    pub hits: Option<Span>,
 }
 
 /// `exact` or `bound`, and where it stands.

@@ -44,6 +44,7 @@ pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared
         promises: shape.promises.iter().map(promise).collect(),
         lipschitz: shape.lipschitz.as_ref().map(|stated| stated.span),
         bounds: shape.bounds.as_ref().map(|stated| stated.span),
+        hits: shape.hits.as_ref().map(|stated| stated.value.span),
     })
     .collect()
 }

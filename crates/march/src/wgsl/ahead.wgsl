@@ -1,24 +1,17 @@
 // What is known of a ray before it is marched: what it meets without steps, and where it passes the rest.
 
-// A ray that meets nothing meets it there.
-const FAR: f32 = 1e30;
-
 struct Ahead {
-    // Where the ray meets something without steps.
+    // Where the ray meets something without steps; FAR where it does not.
     met: f32,
     // Where the march begins and ends; it ends before it begins where there is nothing to march.
     start: f32,
     end: f32,
 }
 
-// Whether it is wanted how narrowly the ray passes what it does not meet: then it is marched through all there is.
-fn is_watched() -> bool {
-    var is = false;
-    if SOFT_SHADOWS {
-        is = watched;
-    }
-    return is;
-}
+// A ray that meets nothing meets it there.
+const FAR: f32 = 1e30;
+// The end of a march that there is no need of.
+const NO_MARCH: f32 = -1.0;
 
 fn look_ahead(ray: Ray) -> Ahead {
     var ahead = Ahead(FAR, 0.0, ray.t_max);
@@ -26,21 +19,21 @@ fn look_ahead(ray: Ray) -> Ahead {
         ahead.met = hits(ray.origin, ray.direction);
         ahead.end = min(ray.t_max, ahead.met);
     }
-    if is_watched() {
-        if ahead.met <= ray.t_max {
-            // All else makes no difference.
-            ahead.end = -1.0;
+    if SOFT_SHADOWS {
+        if watched {
+            // Such a ray is marched through all there is, to see how narrowly it passes; not where it ends anyway.
+            ahead.end = select(ray.t_max, NO_MARCH, ahead.met <= ray.t_max);
+            return ahead;
+        }
+    }
+    if MARCHED {
+        if CLIPPED {
+            let way = clip(ray.origin, ray.direction);
+            ahead.start = max(way.x, 0.0);
+            ahead.end = min(ahead.end, way.y);
         }
     } else {
-        if MARCHED {
-            if CLIPPED {
-                let way = clip(ray.origin, ray.direction);
-                ahead.start = max(way.x, 0.0);
-                ahead.end = min(ahead.end, way.y);
-            }
-        } else {
-            ahead.end = -1.0;
-        }
+        ahead.end = NO_MARCH;
     }
     return ahead;
 }
@@ -51,8 +44,10 @@ fn along(p: vec3f) -> f32 {
     if CLOSED {
         if MARCHED {
             distance = marched(p);
-            if is_watched() {
-                distance = min(distance, closed(p));
+            if SOFT_SHADOWS {
+                if watched {
+                    distance = min(distance, closed(p));
+                }
             }
         } else {
             distance = closed(p);
@@ -63,19 +58,17 @@ fn along(p: vec3f) -> f32 {
     return distance;
 }
 
-// What a ray that was marched has met in all. Looking ahead counts as one evaluation.
-fn with_ahead(ray: Ray, ahead: Ahead, marched: Trace) -> Trace {
-    var found = marched;
-    if LOOKS_AHEAD {
-        found.evaluations++;
-    }
+// What a ray has met that was marched or had no need of it. Looking ahead counts as one evaluation.
+fn met_in_all(ray: Ray, ahead: Ahead, found: Trace) -> Trace {
+    var all = found;
+    all.evaluations++;
     if found.status == MISS {
         // Where the field is no number, so is the place, and both comparisons fail.
         if found.t > ahead.end && ahead.met <= ray.t_max {
-            found = Trace(ahead.met, HIT, found.evaluations);
+            all = Trace(ahead.met, HIT, all.evaluations);
         } else if found.t <= ray.t_max {
-            found.t = ray.t_max;
+            all.t = ray.t_max;
         }
     }
-    return found;
+    return all;
 }

@@ -1,5 +1,6 @@
-// Sphere tracing to a part of a pixel, wherever on the ray that is. That near to a surface the ray closes in by secants, so that a ray that only passes by an edge is not taken for a hit
-// on it; where the field led through the surface it closes in on the bracket.
+// Sphere tracing to a part of a pixel, wherever on the ray that is. That near to a surface the ray closes in by
+// secants, so that a ray that only passes by an edge is not taken for a hit on it; where the field led through the
+// surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
 
 // A hit is nearer than this part of the tolerance.
 const HIT_PART: f32 = 0.00390625;
@@ -18,22 +19,28 @@ fn secant(before: vec2f, t: f32, distance: f32) -> f32 {
 }
 
 fn trace(ray: Ray) -> Trace {
-    let ahead = look_ahead(ray);
-    var found = Trace(ahead.start, MISS, 0u);
-    if ANY_MARCHED {
-        if ahead.start <= ahead.end {
-            found = march(ray, ahead);
+    var found: Trace;
+    if LOOKS_AHEAD {
+        let ahead = look_ahead(ray);
+        found = Trace(ahead.start, MISS, 0u);
+        if ANY_MARCHED {
+            if ahead.start <= ahead.end {
+                found = march(ray, ahead.start, ahead.end);
+            }
         }
+        found = met_in_all(ray, ahead, found);
+    } else {
+        found = march(ray, 0.0, ray.t_max);
     }
-    return with_ahead(ray, ahead, found);
+    return found;
 }
 
-fn march(ray: Ray, ahead: Ahead) -> Trace {
+fn march(ray: Ray, start: f32, end: f32) -> Trace {
     // Last sample outside and first sample inside, as (t, distance).
     var outside = vec2f(0.0);
     var inside = vec2f(0.0);
     var crossed = false;
-    var t = ahead.start;
+    var t = start;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = along(ray_point(ray, t));
         passed(t, distance);
@@ -66,10 +73,10 @@ fn march(ray: Ray, ahead: Ahead) -> Trace {
         } else {
             // Only the distance is known to be free.
             let free = t + distance;
-            if !(free <= ahead.end) {
+            if !(free <= end) {
                 return Trace(free, MISS, step + 1u);
             }
-            t = min(t + stride, ahead.end);
+            t = min(t + stride, end);
         }
     }
     return Trace(t, CAPPED, ray.steps);

@@ -33,7 +33,7 @@ pub type Bounds = [[f64; 3]; 2];
 pub struct View {
     /// Size of the picture in pixels.
     pub size: [u32; 2],
-    /// Where rays start, or the middle of where parallel ones do.
+    /// Where rays start, or the middle of where parallel ones do; as all places counted from the program's origin.
     pub eye: DVec3,
     /// Whether the rays of the pixels are parallel.
     pub parallel: bool,
@@ -137,7 +137,20 @@ impl View {
             let found = nodes.iter().position(|node| *node == id);
             found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])
         };
-        Self::of_settings(settings, &value, bounds, size)
+        let view = Self::of_settings(settings, &value, bounds, size)?;
+        Ok(view.about(DVec3::from(program.origin)))
+    }
+
+    /// The view with places counted from another.
+    fn about(mut self, origin: DVec3) -> Self {
+        self.eye -= origin;
+        for light in &mut self.lights {
+            match &mut light.source {
+                ViewSource::Sun(_) => {}
+                ViewSource::Point(place) | ViewSource::Spot { place, .. } => *place -= origin,
+            }
+        }
+        self
     }
 
     /// `value` gives the lanes of the settings' nodes.

@@ -11,7 +11,7 @@ use crate::claims::{Claims, PROMISES, SIDES, Stated, says};
 use crate::field::Field;
 use crate::geometry::Random;
 use crate::samples::Samples;
-use crate::{mutants, variants};
+use crate::{mutants, rays, variants};
 
 /// So many scenes with other numbers are looked at at least; more, until every fault is seen; of so many that are
 /// tried.
@@ -129,6 +129,9 @@ fn one(
         if let Some(refuted) = claims.refuted_by(&samples) {
             return Err(told(refuted));
         }
+    }
+    if let Some(fault) = rays::fault(scene, id) {
+        return Err(told(fault));
     }
     if !is_of(scene, entry, id) {
         return Ok(());

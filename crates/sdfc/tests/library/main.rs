@@ -24,6 +24,7 @@ mod field;
 mod functions;
 mod geometry;
 mod mutants;
+mod rays;
 mod samples;
 mod table;
 mod variants;

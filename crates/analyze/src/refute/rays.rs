@@ -1,0 +1,189 @@
+//! Stated intervals of rays, held against the field along these rays.
+//!
+//! Rays lead through the shape from near and far, along axes, past its surface within a hair, from inside and from the
+//! surface itself. Where intervals say that a ray is inside, the field is nowhere above 0, and elsewhere nowhere
+//! below; where one begins or ends, the field is 0.
+
+use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
+use sdfc_graph::{Bounds, Dim, Expander, NodeId, Scene, ShapeId};
+
+use super::probe::Random;
+
+/// Rays of each shape.
+const RAYS: usize = 4000;
+/// Places at which each is looked at.
+const PLACES: usize = 24;
+/// How far away rays start at most, in sizes of the shape.
+const FARTHEST: f64 = 30.0;
+/// Size of shapes without bounds.
+const REACH: f64 = 1.5;
+
+/// A ray along which the field is not what the intervals say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RayFault {
+    /// Where it starts, and its direction.
+    pub ray: [[f64; 3]; 2],
+    /// Where along it they differ.
+    pub t: f64,
+    /// The field there.
+    pub field: f64,
+    /// Whether the intervals hold it to be inside; `None` for an end of one.
+    pub inside: Option<bool>,
+}
+
+impl RayFault {
+    /// The place in space.
+    pub fn at(&self) -> [f64; 3] {
+        at(self.ray, self.t)
+    }
+}
+
+/// Looks for a ray that refutes the intervals of a shape, computed in `N`, whose rounding in parts of what is computed
+/// with is `rounding`. `None` also for a shape that states none.
+pub fn refute_hits<N: Number + Into<f64>>(
+    scene: &Scene,
+    shape: ShapeId,
+    frame: &FrameValues,
+    rounding: f64,
+) -> Option<RayFault> {
+    let stated = scene.graph.shape(shape).hits.clone();
+    if stated.is_empty() {
+        return None;
+    }
+    let graph = &mut scene.graph.clone();
+    let corners = Bounds::new(&scene.params).of(graph, shape);
+    let rays = [0, 1].map(|level| graph.point(level, Dim::Three));
+    let mut expander = Expander::new();
+    let distance = expander.field(graph, shape, rays[0]).ok()?;
+    let ends: Option<Vec<NodeId>> =
+        stated.as_flattened().iter().map(|&end| expander.node(graph, end, &rays).ok()).collect();
+    let (field, hits) = (Tape::new(graph, &[distance]).ok()?, Tape::of_rays(graph, &ends?).ok()?);
+    let ends = sdfc_graph::eval::evaluate_frame(graph, &corners, frame);
+    let window = [0, 1].map(|end| [0, 1, 2].map(|axis| cut(ends[end][axis], end)));
+    let size = (0..3).map(|axis| window[1][axis] - window[0][axis]).fold(0.0, f64::max);
+    let mut sampler = Sampler {
+        exact: field.prepare(frame),
+        hits: hits.prepare::<N>(frame),
+        random: Random(1),
+        window,
+        size: size.max(1e-3),
+        rounding,
+    };
+    (0..RAYS).find_map(|_| sampler.ray())
+}
+
+fn cut(end: f64, side: usize) -> f64 {
+    if end.is_finite() { end } else { [-REACH, REACH][side] }
+}
+
+struct Sampler<'t, N> {
+    exact: Evaluator<'t, f64>,
+    hits: Evaluator<'t, N>,
+    random: Random,
+    window: [[f64; 3]; 2],
+    size: f64,
+    rounding: f64,
+}
+
+impl<N: Number + Into<f64>> Sampler<'_, N> {
+    /// One ray; what is wrong with it.
+    fn ray(&mut self) -> Option<RayFault> {
+        let (target, direction) = (self.target(), self.direction());
+        let back = match self.random.below(4) {
+            0 => 0.0,
+            1 => FARTHEST * self.random.next(),
+            _ => 2.0 * self.random.next(),
+        } * self.size;
+        let narrow = |x: f64| -> f64 { N::constant(x).into() };
+        let direction = direction.map(narrow);
+        let origin = [0, 1, 2].map(|axis| narrow(target[axis] - back * direction[axis]));
+        let spans = self.spans([origin, direction]);
+        // What rounding does to the origin, the direction and the place on the ray.
+        let slack = |t: f64| self.rounding * (back + t.abs() + self.size);
+        let fault = |t, field, inside| RayFault { ray: [origin, direction], t, field, inside };
+        for &t in spans.as_flattened().iter().filter(|t| t.abs() < 10.0 * (back + self.size)) {
+            let within = |span: &[f64; 2]| span[0] + slack(t) < t && t < span[1] - slack(t);
+            let field = self.exact.scalar(at([origin, direction], t));
+            let is_zero = field.abs() <= slack(t);
+            if !is_zero && !spans.iter().any(within) {
+                return Some(fault(t, field, None));
+            }
+        }
+        for place in 0..PLACES {
+            let t = back
+                + self.size * (2.0 * (place as f64 + self.random.next()) / PLACES as f64 - 1.0);
+            let field = self.exact.scalar(at([origin, direction], t));
+            let inside = spans.iter().any(|span| span[0] <= t && t <= span[1]);
+            let right = if inside { field <= slack(t) } else { field >= -slack(t) };
+            if !right {
+                return Some(fault(t, field, Some(inside)));
+            }
+        }
+        None
+    }
+
+    /// The intervals that are not empty. An end that is no number empties none: it will be found wrong.
+    fn spans(&mut self, ray: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
+        let [origin, direction] = ray.map(|vector| vector.map(N::constant));
+        let ends = self.hits.eval_ray(origin, direction);
+        let spans = ends.chunks_exact(2).map(|pair| [pair[0][0].into(), pair[1][0].into()]);
+        let is_empty = |span: &[f64; 2]| span[0] > span[1];
+        spans.filter(|span| !is_empty(span)).collect()
+    }
+
+    /// A point to aim at: in the window, often on its walls or in its middle, or next to the surface.
+    fn target(&mut self) -> [f64; 3] {
+        let [lo, hi] = self.window;
+        let mut point = [0, 1, 2].map(|axis| match self.random.below(6) {
+            0 => lo[axis],
+            1 => hi[axis],
+            2 => 0.5 * (lo[axis] + hi[axis]),
+            _ => lo[axis] + (hi[axis] - lo[axis]) * self.random.next(),
+        });
+        if self.random.below(2) == 0 {
+            // Along the axis that changes the field most, to where it is 0 and a hair beyond.
+            for _ in 0..4 {
+                let [field, slopes @ ..] = self.slopes(point);
+                let square = slopes.iter().map(|slope| slope * slope).sum::<f64>().max(1e-12);
+                let step = field / square;
+                point = [0, 1, 2].map(|axis| point[axis] - step * slopes[axis]);
+            }
+            let hair = self.size * [0.0, 1e-6, -1e-6, 1e-3, -1e-3][self.random.below(5)];
+            let [_, slopes @ ..] = self.slopes(point);
+            point = [0, 1, 2].map(|axis| point[axis] + hair * slopes[axis]);
+        }
+        if point.iter().all(|x| x.is_finite()) { point } else { [0.0; 3] }
+    }
+
+    /// The field and its differences along the axes.
+    fn slopes(&mut self, point: [f64; 3]) -> [f64; 4] {
+        let step = 1e-5 * self.size;
+        let here = self.exact.scalar(point);
+        let mut slopes = [here; 4];
+        for axis in 0..3 {
+            let mut beside = point;
+            beside[axis] += step;
+            slopes[axis + 1] = (self.exact.scalar(beside) - here) / step;
+        }
+        slopes
+    }
+
+    /// A unit vector, often along an axis or between two.
+    fn direction(&mut self) -> [f64; 3] {
+        loop {
+            let vector = [0, 1, 2].map(|_| match self.random.below(5) {
+                0 | 1 => 0.0,
+                2 => 1e-4 * (2.0 * self.random.next() - 1.0),
+                _ => 2.0 * self.random.next() - 1.0,
+            });
+            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if length > 1e-6 {
+                return vector.map(|x| x / length);
+            }
+        }
+    }
+}
+
+fn at([origin, direction]: [[f64; 3]; 2], t: f64) -> [f64; 3] {
+    [0, 1, 2].map(|axis| origin[axis] + t * direction[axis])
+}
