@@ -36,7 +36,7 @@ impl Sampler<'_> {
     ///
     /// [`Error::Render`].
     pub fn samples(&self, view: &View, frame: &FrameValues) -> Result<Vec<PixelSample>, Error> {
-        let uniforms = uniform_values(&self.scene.program, frame);
+        let uniforms = uniform_values(self.scene.drawn(), frame);
         let options = RenderOptions::default();
         let drawn = self.pipeline.render(view, &uniforms, &options, &mut unwatched)?;
         Ok(drawn.image.pixels().iter().map(sample).collect())
