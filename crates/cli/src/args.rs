@@ -325,10 +325,12 @@ pub struct Doc {
 /// Arguments of `chart`.
 #[derive(clap::Args, Debug)]
 pub struct Chart {
-    /// The scene; `-` is stdin
-    pub file: PathBuf,
-    /// Where the chart goes, as a picture; `-` is stdout
-    #[arg(short, long, value_name = "OUT.svg")]
+    /// Scenes; `-` is stdin
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the chart goes, as a picture; `-` is stdout. A folder takes a picture and the figures of each scene, and a
+    /// page that lists them
+    #[arg(short, long, value_name = "OUT.svg|FOLDER")]
     pub output: Option<PathBuf>,
     /// Where the figures go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
@@ -339,6 +341,9 @@ pub struct Chart {
     /// Ray methods, separated by commas; all unless given
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = methods())]
     pub march: Vec<String>,
+    /// What the picture tells of its making, such as a date and a commit
+    #[arg(long, value_name = "TEXT")]
+    pub note: Option<String>,
 }
 
 /// Arguments of `tune`.

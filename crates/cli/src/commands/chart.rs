@@ -7,6 +7,7 @@ use sdfc::accuracy_data::chart::{Chart as Figures, Row, svg};
 use sdfc::render::Gpu;
 use sdfc::{ChartOptions, Error, Scene};
 
+use super::charts;
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -18,26 +19,45 @@ use crate::output::{self, Output};
 ///
 /// The scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write.
 pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene(&args.file, sdfc::lang::Options::default(), console)?;
+    match (&args.files[..], &args.output) {
+        (files, Some(folder)) if folder.is_dir() => charts::run(args, files, folder, console),
+        ([file], _) => one(args, file, console),
+        (_, Some(_) | None) => {
+            Err(Failure::Call("several scenes need a folder that exists, with -o".to_owned()))
+        }
+    }
+}
+
+fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Failure> {
     let [picture, json] = [&args.output, &args.json].map(|path| path.as_deref().map(Output::new));
     let paths: Vec<_> =
         [&args.output, &args.json].into_iter().filter_map(|path| path.as_deref()).collect();
-    output::distinct(&args.file, &paths)?;
+    output::distinct(file, &paths)?;
     for output in picture.iter().chain(&json) {
         output.check()?;
     }
-
-    let options =
-        ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
-    let chart = figures(&args.file, &scene, &options, console)?;
+    let chart = charted(args, file, console)?;
     if ![&picture, &json].contains(&&Some(Output::Stdout)) {
         output::to_stdout(table(&chart).as_bytes())?;
     }
     if let Some(picture) = picture {
-        let text = svg(&chart).map_err(|error| Failure::Machine(error.to_string()))?;
-        picture.write(text.as_bytes())?;
+        picture.write(drawn(&chart)?.as_bytes())?;
     }
     json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
+}
+
+/// A scene's chart.
+pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Figures, Failure> {
+    let scene = super::scene(file, sdfc::lang::Options::default(), console)?;
+    let options =
+        ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
+    let chart = figures(file, &scene, &options, console)?;
+    Ok(Figures { made: args.note.clone(), ..chart })
+}
+
+/// Its picture.
+pub(super) fn drawn(chart: &Figures) -> Result<String, Failure> {
+    svg(chart).map_err(|error| Failure::Machine(error.to_string()))
 }
 
 /// Draws and compares, with bars of progress.

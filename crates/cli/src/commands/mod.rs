@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod chart;
+mod charts;
 pub mod check;
 pub mod compile;
 pub mod doc;
