@@ -37,3 +37,9 @@ impl std::fmt::Display for Failure {
         }
     }
 }
+
+impl From<sdfc_files::ReadError> for Failure {
+    fn from(error: sdfc_files::ReadError) -> Self {
+        Self::Call(error.to_string())
+    }
+}

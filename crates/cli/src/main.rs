@@ -8,7 +8,6 @@ mod args;
 mod commands;
 mod console;
 mod failure;
-mod input;
 mod interrupt;
 mod output;
 mod sequence;

@@ -10,7 +10,6 @@ use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, suite};
 use crate::args::Bench;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::input;
 use crate::output::{self, Output};
 
 const WITH_SLOTS: Options = Options { slots: true };
@@ -67,8 +66,8 @@ struct Entry {
 
 impl Entry {
     fn of_file(file: &Path, console: &Console) -> Result<Self, Failure> {
-        let input = input::read(file)?;
-        let folder = input::Folder::of(file);
+        let input = sdfc_files::read(file)?;
+        let folder = sdfc_files::Folder::of(file);
         let compile = |options| sdfc::compile_with(&input.name, &input.text, &folder, options);
         let mut compiled = compile(Options::default());
         super::show(&mut compiled, console);

@@ -5,7 +5,6 @@ use serde::Serialize;
 use crate::args::Check;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::input;
 use crate::output;
 
 /// A diagnostic for programs. The keys are a promise to other tools: some may be added, none renamed.
@@ -30,8 +29,8 @@ struct Row {
 pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
     let mut rows = Vec::new();
     let result = super::each(&args.files, console, |path| {
-        let input = input::read(path)?;
-        let mut compiled = sdfc::check(&input.name, &input.text, &input::Folder::of(path));
+        let input = sdfc_files::read(path)?;
+        let mut compiled = sdfc::check(&input.name, &input.text, &sdfc_files::Folder::of(path));
         if args.json {
             rows.extend(compiled.located().into_iter().map(row));
         } else {

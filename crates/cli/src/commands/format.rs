@@ -3,7 +3,6 @@
 use crate::args::Format;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::input;
 use crate::output::Output;
 
 /// Formats every file in place, stdin to stdout; with `--check` changes nothing and names those that would change.
@@ -13,7 +12,7 @@ use crate::output::Output;
 /// The worst of all files: one does not parse, or would change under `--check`; one cannot be read or written.
 pub fn run(args: &Format, console: &Console) -> Result<(), Failure> {
     super::each(&args.files, console, |path| {
-        let input = input::read(path)?;
+        let input = sdfc_files::read(path)?;
         let formatted = sdfc::format(&input.name, &input.text, console.color).map_err(|found| {
             console.text(&found);
             Failure::Scene

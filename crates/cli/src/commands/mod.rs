@@ -20,7 +20,6 @@ use sdfc::render::RenderError;
 
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::input;
 
 /// Reads and compiles a scene and shows what was found.
 ///
@@ -54,8 +53,8 @@ fn compiled(path: &Path) -> Result<sdfc::Compiled, Failure> {
 }
 
 fn compiled_with(path: &Path, options: Options) -> Result<sdfc::Compiled, Failure> {
-    let input = input::read(path)?;
-    Ok(sdfc::compile_with(&input.name, &input.text, &input::Folder::of(path), options))
+    let input = sdfc_files::read(path)?;
+    Ok(sdfc::compile_with(&input.name, &input.text, &sdfc_files::Folder::of(path), options))
 }
 
 /// Does the same to every file, also after one that fails.

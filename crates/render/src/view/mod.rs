@@ -18,7 +18,7 @@ use crate::tiles::Tile;
 pub use error::ViewError;
 use light::lights;
 pub use light::{ViewLight, ViewShadow, ViewSource};
-use pose::Pose;
+pub use pose::Pose;
 
 /// Length of a ray in distances from eye to target, where neither scene nor bounds limit it.
 const DEFAULT_DISTANCE: f64 = 200.0;
@@ -130,14 +130,27 @@ impl View {
         bounds: Option<Bounds>,
         size: [u32; 2],
     ) -> Result<Self, ViewError> {
+        let pose = Pose::new(program, frame, bounds, aspect(size))?;
+        Self::from_pose(program, frame, bounds, size, &pose)
+    }
+
+    /// As [`Self::new`], seen from where one says, whatever camera the scene has.
+    ///
+    /// # Errors
+    ///
+    /// [`ViewError`] where another setting's values make no picture.
+    pub fn from_pose(
+        program: &Program,
+        frame: &FrameValues,
+        bounds: Option<Bounds>,
+        size: [u32; 2],
+        pose: &Pose,
+    ) -> Result<Self, ViewError> {
         let settings = &program.settings;
         let nodes = settings.nodes();
         let values = evaluate_frame(&program.graph, &nodes, frame);
-        let value = |id: NodeId| {
-            let found = nodes.iter().position(|node| *node == id);
-            found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])
-        };
-        let view = Self::of_settings(settings, &value, bounds, size)?;
+        let value = |id| value_of(&nodes, &values, id);
+        let view = Self::of_settings(settings, &value, bounds, size, pose)?;
         Ok(view.about(DVec3::from(program.origin)))
     }
 
@@ -159,14 +172,10 @@ impl View {
         value: &dyn Fn(NodeId) -> [f64; 4],
         bounds: Option<Bounds>,
         size: [u32; 2],
+        pose: &Pose,
     ) -> Result<Self, ViewError> {
-        let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
-        let pose = match &settings.camera {
-            Some(camera) => Pose::of_camera(camera, value)?,
-            None => Pose::fitted(bounds, aspect),
-        };
         let [right, up, forward] = pose.basis();
-        let limits = Limits::new(&settings.march, &pose, bounds)?;
+        let limits = Limits::new(&settings.march, pose, bounds)?;
         let (reflections, reflection_strength) = match &settings.reflections {
             Some(mirrors) => {
                 let strength = share(value(mirrors.strength), "the strength of reflections")?;
@@ -179,7 +188,7 @@ impl View {
             size,
             eye: pose.eye,
             parallel: pose.parallel,
-            right: right * pose.half_height * aspect,
+            right: right * pose.half_height * aspect(size),
             up: up * pose.half_height,
             forward,
             t_max: limits.t_max,
@@ -290,6 +299,17 @@ impl View {
             lights,
         }
     }
+}
+
+/// How many times as wide as high.
+fn aspect([width, height]: [u32; 2]) -> f64 {
+    f64::from(width.max(1)) / f64::from(height.max(1))
+}
+
+/// The lanes of one of the settings' nodes.
+fn value_of(nodes: &[NodeId], values: &[[f64; 4]], id: NodeId) -> [f64; 4] {
+    let found = nodes.iter().position(|node| *node == id);
+    found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])
 }
 
 /// How far and how finely rays go.

@@ -1,9 +1,12 @@
 //! Where the camera stands: as the scene says, or fitted to the bounds.
 
 use glam::DVec3;
-use sdfc_graph::{Camera, Lens, NodeId};
+use sdfc_graph::{
+    Camera, Lens, NodeId, Program, Settings,
+    eval::{FrameValues, evaluate_frame},
+};
 
-use super::{Bounds, ViewError, finite, positive};
+use super::{Bounds, ViewError, finite, positive, value_of};
 
 /// Vertical field of view of a camera that is fitted to the bounds.
 const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
@@ -13,19 +16,53 @@ const FITTED_DIRECTION: DVec3 = DVec3::new(0.5, 0.45, 1.0);
 const FITTED_MARGIN: f64 = 1.05;
 
 /// Where the camera stands and how it looks.
-pub(super) struct Pose {
-    pub(super) eye: DVec3,
-    pub(super) target: DVec3,
-    pub(super) up: DVec3,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Where rays start.
+    pub eye: DVec3,
+    /// What is in the middle of the picture.
+    pub target: DVec3,
+    /// Upward direction, of any length.
+    pub up: DVec3,
     /// Whether rays are parallel.
-    pub(super) parallel: bool,
+    pub parallel: bool,
     /// Half the height of the picture, at distance 1 unless rays are parallel.
-    pub(super) half_height: f64,
+    pub half_height: f64,
 }
 
 impl Pose {
+    /// The scene's camera at a frame; without one, fitted to the bounds for a picture so many times as wide
+    /// as high.
+    ///
+    /// # Errors
+    ///
+    /// [`ViewError`] where the camera's values make no picture.
+    pub fn new(
+        program: &Program,
+        frame: &FrameValues,
+        bounds: Option<Bounds>,
+        aspect: f64,
+    ) -> Result<Self, ViewError> {
+        let settings = &program.settings;
+        let nodes = settings.nodes();
+        let values = evaluate_frame(&program.graph, &nodes, frame);
+        Self::of_settings(settings, &|id| value_of(&nodes, &values, id), bounds, aspect)
+    }
+
+    pub(super) fn of_settings(
+        settings: &Settings,
+        value: &dyn Fn(NodeId) -> [f64; 4],
+        bounds: Option<Bounds>,
+        aspect: f64,
+    ) -> Result<Self, ViewError> {
+        match &settings.camera {
+            Some(camera) => Self::of_camera(camera, value),
+            None => Ok(Self::fitted(bounds, aspect)),
+        }
+    }
+
     /// As the scene states it.
-    pub(super) fn of_camera(
+    fn of_camera(
         camera: &Camera,
         value: &dyn Fn(NodeId) -> [f64; 4],
     ) -> Result<Self, ViewError> {
@@ -45,8 +82,9 @@ impl Pose {
         Ok(Self { eye, target, up, parallel, half_height })
     }
 
-    /// Seeing the whole of the bounds, from the right, above and in front.
-    pub(super) fn fitted(bounds: Option<Bounds>, aspect: f64) -> Self {
+    /// Seeing the whole of the bounds from the right, above and in front; an unlimited side is taken as long
+    /// as the longest limited one.
+    pub fn fitted(bounds: Option<Bounds>, aspect: f64) -> Self {
         let [lo, hi] = limited(bounds);
         let target = (lo + hi) / 2.0;
         // The narrower side decides; a flat or single-point box still wants some distance.
@@ -59,7 +97,7 @@ impl Pose {
     }
 
     /// Unit vectors to the right, upwards and into the picture.
-    pub(super) fn basis(&self) -> [DVec3; 3] {
+    pub fn basis(&self) -> [DVec3; 3] {
         let forward = (self.target - self.eye).normalize_or(DVec3::NEG_Z);
         // Looking along `up`: then what lies behind is at the bottom, as on a map; z points at the
         // viewer of a scene, so it is at the bottom of a view from above.

@@ -1,9 +1,18 @@
-//! Scenes from files and from stdin.
+//! Scenes from files and from stdin, and the files that they import: what the programs of sdfc share and
+//! its library does not do.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! let path = Path::new("scene.sdf");
+//! let input = sdfc_files::read(path)?;
+//! let folder = sdfc_files::Folder::of(path);
+//! let compiled = sdfc::compile_with_imports(&input.name, &input.text, &folder);
+//! # Ok::<(), sdfc_files::ReadError>(())
+//! ```
 
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
-
-use crate::failure::Failure;
 
 /// No scene is larger; the compiler's own limit is smaller and says so with a diagnostic.
 const MAX_BYTES: u64 = 64 << 20;
@@ -16,12 +25,24 @@ pub struct Input {
     pub text: String,
 }
 
+/// Why a file gives no text, in one line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadError(String);
+
+impl std::fmt::Display for ReadError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
 /// Reads a file, or stdin for `-`.
 ///
 /// # Errors
 ///
-/// The file is missing, unreadable, no UTF-8 or larger than 64 MiB: the call is wrong.
-pub fn read(path: &Path) -> Result<Input, Failure> {
+/// The file is missing, unreadable, no UTF-8 or larger than 64 MiB.
+pub fn read(path: &Path) -> Result<Input, ReadError> {
     let is_stdin = path.as_os_str() == "-";
     let name = if is_stdin { "<stdin>".to_owned() } else { path.display().to_string() };
     let bytes = if is_stdin {
@@ -29,22 +50,21 @@ pub fn read(path: &Path) -> Result<Input, Failure> {
     } else {
         std::fs::File::open(path).and_then(read_all)
     };
-    let bytes = bytes.map_err(|e| Failure::Call(format!("cannot read {name}: {e}")))?;
+    let bytes = bytes.map_err(|e| ReadError(format!("cannot read {name}: {e}")))?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(Failure::Call(format!("{name} is larger than {} MiB", MAX_BYTES >> 20)));
+        return Err(ReadError(format!("{name} is larger than {} MiB", MAX_BYTES >> 20)));
     }
     match String::from_utf8(bytes) {
         Ok(text) => Ok(Input { name, text }),
         Err(e) => {
             let at = e.utf8_error().valid_up_to();
-            Err(Failure::Call(format!(
-                "{name} is not UTF-8 text: the byte at offset {at} is wrong"
-            )))
+            Err(ReadError(format!("{name} is not UTF-8 text: the byte at offset {at} is wrong")))
         }
     }
 }
 
 /// The files that a scene may import: those below the folder where it lies, for stdin the current one.
+#[derive(Clone, Debug)]
 pub struct Folder(PathBuf);
 
 impl Folder {
@@ -52,6 +72,11 @@ impl Folder {
     pub fn of(path: &Path) -> Self {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         Self(parent.unwrap_or(Path::new(".")).to_owned())
+    }
+
+    /// Where the folder is.
+    pub fn path(&self) -> &Path {
+        &self.0
     }
 
     fn place(&self, path: &str) -> std::io::Result<PathBuf> {
@@ -85,4 +110,32 @@ fn read_all(from: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sdfc::Resolver;
+
+    #[test]
+    fn imports_stay_in_the_folder_of_the_scene() {
+        let root = tempfile::tempdir().unwrap();
+        let inside = root.path().join("scene");
+        std::fs::create_dir(&inside).unwrap();
+        std::fs::write(root.path().join("secret.sdf"), "outside").unwrap();
+        std::fs::write(inside.join("part.sdf"), "inside").unwrap();
+        let folder = Folder::of(&inside.join("scene.sdf"));
+        assert_eq!(folder.read("part.sdf").as_deref(), Ok("inside"));
+        assert!(folder.read("../secret.sdf").is_err());
+        assert!(folder.read("missing.sdf").is_err());
+    }
+
+    #[test]
+    fn what_is_no_text_says_where() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.sdf");
+        std::fs::write(&path, b"box\xff").unwrap();
+        let Err(error) = read(&path) else { panic!("it is no UTF-8") };
+        assert!(error.to_string().contains("offset 3"), "{error}");
+    }
 }

@@ -1,0 +1,245 @@
+//! The window: shows a [`Session`] and hands input to it.
+
+mod canvas;
+mod editor;
+mod help;
+mod overlay;
+mod panels;
+mod source;
+mod status;
+mod style;
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Context, Key, Ui};
+
+use crate::session::Session;
+use canvas::Canvas;
+
+/// So long a remark stays in the status line.
+const REMARK: Duration = Duration::from_secs(4);
+
+/// Opens a window on a scene, and stays until it is closed.
+///
+/// # Errors
+///
+/// Why there is no window, in one line.
+pub fn run(path: &Path) -> Result<(), String> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title(title(path))
+        .with_app_id("sdfc-view")
+        .with_inner_size([1200.0, 760.0])
+        .with_min_inner_size([480.0, 320.0]);
+    let options = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Wgpu,
+        ..eframe::NativeOptions::default()
+    };
+    let path = path.to_owned();
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| {
+        let app = App::new(&creation.egui_ctx, &path)?;
+        Ok(Box::new(app))
+    });
+    eframe::run_native("sdfc-view", options, create).map_err(|error| error.to_string())
+}
+
+fn title(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!("{name} · sdfc")
+}
+
+/// The window's state that is not the scene's.
+pub struct App {
+    session: Session,
+    canvas: Canvas,
+    clipboard: Option<arboard::Clipboard>,
+    remark: Option<(String, Instant)>,
+    shows: Shows,
+    last_frame: Instant,
+}
+
+/// What is open.
+#[derive(Clone, Copy, Debug)]
+struct Shows {
+    knobs: bool,
+    source: bool,
+    help: bool,
+    warnings: bool,
+}
+
+/// What a panel wants done that is not its own business.
+enum Wish {
+    /// Into the clipboard.
+    Copy(String),
+    /// Into the status line.
+    Remark(String),
+}
+
+impl App {
+    /// With a scene open.
+    ///
+    /// # Errors
+    ///
+    /// As [`Session::open`].
+    pub fn new(ctx: &Context, path: &Path) -> std::io::Result<Self> {
+        style::apply(ctx);
+        let woken = ctx.clone();
+        let session = Session::open(path, Arc::new(move || woken.request_repaint()))?;
+        Ok(Self {
+            session,
+            canvas: Canvas::default(),
+            clipboard: None,
+            remark: None,
+            shows: Shows { knobs: true, source: false, help: false, warnings: false },
+            last_frame: Instant::now(),
+        })
+    }
+
+    /// The scene.
+    pub fn session(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Draws the whole window once.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.session.poll();
+        self.take_dropped(&ctx);
+        let mut wishes = Vec::new();
+        self.pass_time(&ctx);
+        self.keys(&ctx, &mut wishes);
+        let bar = egui::Panel::top("bar").frame(bar_frame());
+        bar.show(ui, |ui| panels::bar(ui, &mut self.session, &mut self.shows));
+        let remark = self.remark.as_ref().map(|(text, _)| text.as_str());
+        let line = egui::Panel::bottom("status").frame(bar_frame());
+        line.show(ui, |ui| status::show(ui, &mut self.session, remark));
+        if self.shows.knobs {
+            let panel = egui::Panel::right("knobs").default_size(280.0).min_size(220.0);
+            panel.show(ui, |ui| panels::knobs(ui, &mut self.session, &mut wishes));
+        }
+        if self.shows.source {
+            let panel = egui::Panel::left("source").default_size(400.0).min_size(220.0);
+            panel.show(ui, |ui| source::show(ui, &mut self.session, &mut wishes));
+        }
+        let center = egui::CentralPanel::no_frame();
+        center.show(ui, |ui| {
+            self.canvas.show(ui, &mut self.session);
+            overlay::show(ui, &self.session, &mut self.shows.warnings, &mut wishes);
+        });
+        help::show(&ctx, &mut self.shows.help);
+        wishes.into_iter().for_each(|wish| self.grant(wish));
+        if let Some((_, since)) = &self.remark {
+            if since.elapsed() < REMARK {
+                ctx.request_repaint_after(REMARK);
+            } else {
+                self.remark = None;
+            }
+        }
+    }
+
+    fn pass_time(&mut self, ctx: &Context) {
+        let seconds = self.last_frame.elapsed().as_secs_f64();
+        self.last_frame = Instant::now();
+        let moves = self.session.model.as_ref().is_some_and(|model| model.moves);
+        if moves && self.session.clock.playing {
+            self.session.clock.advance(seconds);
+            ctx.request_repaint();
+        }
+    }
+
+    fn take_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        if let Some(path) = dropped.first().map(|file| file.path()) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(path)));
+            self.session.open_other(path.to_owned());
+        }
+    }
+
+    /// Keys that work wherever the pointer is, unless a text is being typed.
+    fn keys(&mut self, ctx: &Context, wishes: &mut Vec<Wish>) {
+        if ctx.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key| ctx.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+        let session = &mut self.session;
+        for (key, side) in help::SIDES {
+            if pressed(key) {
+                session.move_camera(|orbit| orbit.look_from(side));
+            }
+        }
+        if pressed(Key::F) {
+            session.frame_all();
+        }
+        if pressed(Key::Home) || pressed(Key::H) {
+            session.go_home();
+        }
+        if pressed(Key::P) {
+            session.move_camera(|orbit| orbit.set_parallel(!orbit.is_parallel()));
+        }
+        if pressed(Key::C)
+            && let Some(orbit) = session.orbit()
+        {
+            wishes.push(Wish::Copy(orbit.text()));
+        }
+        if pressed(Key::Space) {
+            session.clock.playing = !session.clock.playing;
+        }
+        if pressed(Key::V) {
+            session.mode = panels::next_mode(session.mode);
+        }
+        if pressed(Key::Tab) {
+            self.shows.knobs = !self.shows.knobs;
+        }
+        if pressed(Key::T) {
+            self.shows.source = !self.shows.source;
+        }
+        if ctx.input(|input| input.key_pressed(Key::Questionmark)) || pressed(Key::F1) {
+            self.shows.help = !self.shows.help;
+        }
+        if pressed(Key::Escape) {
+            if self.shows.help {
+                self.shows.help = false;
+            } else {
+                session.refine = !session.refine;
+            }
+        }
+    }
+
+    fn grant(&mut self, wish: Wish) {
+        let text = match wish {
+            Wish::Remark(text) => text,
+            Wish::Copy(text) => match self.copy(&text) {
+                Ok(()) => format!("copied: {text}"),
+                Err(error) => format!("cannot copy: {error}"),
+            },
+        };
+        self.remark = Some((text, Instant::now()));
+    }
+
+    fn copy(&mut self, text: &str) -> Result<(), arboard::Error> {
+        // Kept, because on X11 the text is gone with the one who offers it.
+        let clipboard = match &mut self.clipboard {
+            Some(clipboard) => clipboard,
+            none => none.insert(arboard::Clipboard::new()?),
+        };
+        clipboard.set_text(text)
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App").field("session", &self.session).finish_non_exhaustive()
+    }
+}
+
+fn bar_frame() -> egui::Frame {
+    egui::Frame::new().fill(style::PANEL).inner_margin(egui::Margin::symmetric(10, 5))
+}

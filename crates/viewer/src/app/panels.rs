@@ -1,0 +1,339 @@
+//! The bar above the picture, and the knobs beside it.
+
+use eframe::egui::{self, RichText, Ui};
+use sdfc::graph::{Param, ParamKind};
+use sdfc::march::METHODS;
+
+use super::{Shows, Wish, style};
+use crate::knobs::value_text;
+use crate::model::Model;
+use crate::orbit::Side;
+use crate::session::Session;
+use crate::views::Mode;
+
+/// The view after this one.
+pub fn next_mode(mode: Mode) -> Mode {
+    let at = Mode::ALL.iter().position(|it| *it == mode).unwrap_or(0);
+    Mode::ALL[(at + 1) % Mode::ALL.len()]
+}
+
+/// Name of the scene, view, method, what is open.
+pub fn bar(ui: &mut Ui, session: &mut Session, shows: &mut Shows) {
+    ui.horizontal(|ui| {
+        let name = session.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let path = session.path().display().to_string();
+        ui.label(RichText::new(name).strong()).on_hover_text(path);
+        state(ui, session);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.toggle_value(&mut shows.help, "?").on_hover_text("Keys and buttons.");
+            ui.toggle_value(&mut shows.knobs, "Knobs").on_hover_text("Params, time, camera. Tab");
+            ui.toggle_value(&mut shows.source, "Text")
+                .on_hover_text("The scene's text; its numbers can be dragged. T");
+            ui.separator();
+            methods(ui, session);
+            modes(ui, session);
+        });
+    });
+}
+
+/// What the compiler is about.
+fn state(ui: &mut Ui, session: &Session) {
+    let errors = session.findings.errors();
+    if errors > 0 {
+        let text = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
+        let shown = if session.model.is_some() { ", showing the last good scene" } else { "" };
+        ui.label(RichText::new(format!("{text}{shown}")).small().color(style::ERROR));
+    } else if session.building {
+        ui.label(RichText::new("building…").small().color(style::ACCENT));
+    }
+}
+
+fn modes(ui: &mut Ui, session: &mut Session) {
+    let combo = egui::ComboBox::from_id_salt("mode").selected_text(session.mode.name());
+    let combo = combo.height(400.0).show_ui(ui, |ui| {
+        for mode in Mode::ALL {
+            ui.selectable_value(&mut session.mode, mode, mode.name()).on_hover_text(mode.help());
+        }
+    });
+    combo.response.on_hover_text("What is shown. V for the next.");
+}
+
+fn methods(ui: &mut Ui, session: &mut Session) {
+    let chosen = session.build().method.clone();
+    let own = session.model.as_ref().map_or("auto", |model| model.scene.method()).to_owned();
+    let shown = chosen.clone().unwrap_or_else(|| own.clone());
+    let combo = egui::ComboBox::from_id_salt("method").selected_text(shown);
+    let combo = combo.height(400.0).show_ui(ui, |ui| {
+        let text = format!("as the scene says ({own})");
+        if ui.selectable_label(chosen.is_none(), text).clicked() {
+            session.set_build(|build| build.method = None);
+        }
+        for method in METHODS {
+            let is_chosen = chosen.as_deref() == Some(method.name);
+            if ui.selectable_label(is_chosen, method.name).on_hover_text(method.summary).clicked() {
+                session.set_build(|build| build.method = Some(method.name.to_owned()));
+            }
+        }
+    });
+    combo.response.on_hover_text("How rays are marched.");
+}
+
+/// Params, time, camera, quality.
+pub fn knobs(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.add_space(4.0);
+        if let Some(model) = session.model.clone() {
+            section(ui, "Params", |ui| params(ui, session, &model, wishes));
+            if model.moves {
+                section(ui, "Time", |ui| time(ui, session));
+            }
+        }
+        section(ui, "Camera", |ui| camera(ui, session, wishes));
+        if session.mode == Mode::Slice {
+            section(ui, "Slice", |ui| slice(ui, session));
+        }
+        section(ui, "Drawing", |ui| drawing(ui, session));
+    });
+}
+
+fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    let title = RichText::new(name).strong().color(style::WEAK);
+    egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| {
+        ui.add_space(2.0);
+        contents(ui);
+        ui.add_space(6.0);
+    });
+}
+
+fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
+    if model.declared().is_empty() {
+        let text = "none: `param r = 0.5 in 0..1` in the scene makes a slider here";
+        ui.label(RichText::new(text).small().color(style::WEAK));
+        return;
+    }
+    let values = session.values(model);
+    for (param, lanes) in model.declared().iter().zip(values.params) {
+        let moved = session.knobs.params.contains_key(&param.name);
+        let mut value = lanes;
+        ui.horizontal(|ui| {
+            let color = if moved { style::ACCENT } else { style::TEXT };
+            let name = ui.add_sized(
+                [84.0, 18.0],
+                egui::Label::new(RichText::new(&param.name).color(color)).truncate().halign(egui::Align::LEFT),
+            );
+            name.on_hover_text(hint(param));
+            knob(ui, param, &mut value);
+            let back = egui::Button::new(RichText::new("⟲").small()).frame(false);
+            let text = format!("Back to {}.", value_text(param, param.default));
+            if moved && ui.add(back).on_hover_text(text).clicked() {
+                session.knobs.params.remove(&param.name);
+                value = lanes;
+            }
+        });
+        if value != lanes {
+            session.knobs.params.insert(param.name.clone(), value);
+        }
+    }
+    ui.horizontal(|ui| {
+        let reset = ui.add_enabled(!session.knobs.params.is_empty(), egui::Button::new("Reset"));
+        if reset.on_hover_text("All params back to what the scene says.").clicked() {
+            session.knobs.params.clear();
+        }
+        let copy = ui.button("Copy values");
+        if copy.on_hover_text("Copy them as arguments of `sdfc render`.").clicked() {
+            wishes.push(Wish::Copy(session.knobs.arguments(model)));
+        }
+    });
+}
+
+fn hint(param: &Param) -> String {
+    let kind = match param.kind {
+        ParamKind::Number => "a number",
+        ParamKind::Int => "a whole number",
+        ParamKind::Angle => "an angle",
+        ParamKind::Bool => "true or false",
+        ParamKind::Color => "a colour",
+        ParamKind::Choice => "a choice",
+    };
+    let summary = if param.summary.is_empty() { &param.name } else { &param.summary };
+    let default = value_text(param, param.default);
+    format!("{summary}\n{kind}; {default} in the scene")
+}
+
+/// The widget for a param.
+fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
+    let [number, ..] = value;
+    match param.kind {
+        ParamKind::Number => number_knob(ui, number, param.range, ""),
+        ParamKind::Angle => {
+            let mut degrees = number.to_degrees();
+            let range = param.range.map(|ends| ends.map(f64::to_degrees));
+            number_knob(ui, &mut degrees, range, "°");
+            if degrees.to_radians() != *number {
+                *number = degrees.to_radians();
+                if let Some([low, high]) = param.range {
+                    *number = number.clamp(low, high);
+                }
+            }
+        }
+        ParamKind::Int => {
+            match param.range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
+                Some([low, high]) => {
+                    ui.add(egui::Slider::new(number, low.ceil()..=high.floor()).integer());
+                }
+                None => {
+                    let [low, high] = param.range.unwrap_or([-1e9, 1e9]);
+                    ui.add(egui::DragValue::new(number).range(low..=high).speed(0.1).fixed_decimals(0));
+                    *number = number.round();
+                }
+            }
+        }
+        ParamKind::Bool => {
+            let mut on = *number != 0.0;
+            ui.checkbox(&mut on, "");
+            *number = f64::from(u8::from(on));
+        }
+        ParamKind::Color => {
+            let mut color = [value[0], value[1], value[2]].map(|lane| lane as f32);
+            if egui::color_picker::color_edit_button_rgb(ui, &mut color).changed() {
+                for (lane, new) in value.iter_mut().zip(color) {
+                    *lane = f64::from(new);
+                }
+            }
+        }
+        ParamKind::Choice => {
+            let mut index = *number as usize;
+            let name = |index: usize| param.choices.get(index).map_or("", String::as_str);
+            let combo = egui::ComboBox::from_id_salt(&param.name).selected_text(name(index));
+            combo.show_ui(ui, |ui| {
+                for choice in 0..param.choices.len() {
+                    ui.selectable_value(&mut index, choice, name(choice));
+                }
+            });
+            *number = index as f64;
+        }
+    }
+}
+
+fn number_knob(ui: &mut Ui, number: &mut f64, range: Option<[f64; 2]>, unit: &str) {
+    match range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
+        Some([low, high]) => {
+            let slider = egui::Slider::new(number, low..=high).suffix(unit).max_decimals(4);
+            ui.add(slider.smart_aim(false));
+        }
+        None => {
+            let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            let speed = (number.abs() * 0.005).max(0.002);
+            let drag = egui::DragValue::new(number).range(low..=high).speed(speed);
+            ui.add(drag.suffix(unit).max_decimals(4));
+        }
+    }
+}
+
+fn time(ui: &mut Ui, session: &mut Session) {
+    let clock = &mut session.clock;
+    ui.horizontal(|ui| {
+        let text = if clock.playing { "⏸" } else { "▶" };
+        if ui.button(text).on_hover_text("Play or pause. Space").clicked() {
+            clock.playing = !clock.playing;
+        }
+        if ui.button("⏮").on_hover_text("Back to 0.").clicked() {
+            clock.time = 0.0;
+        }
+        let slider = egui::Slider::new(&mut clock.time, 0.0..=clock.end.max(0.1)).suffix(" s");
+        ui.add(slider.max_decimals(2)).on_hover_text("The scene's `time`.");
+    });
+    ui.horizontal(|ui| {
+        let speed = egui::DragValue::new(&mut clock.speed).speed(0.02).range(-10.0..=10.0);
+        ui.add(speed.suffix("×")).on_hover_text("Speed.");
+        ui.checkbox(&mut clock.looping, "loop").on_hover_text("Start again at the end.");
+        let end = egui::DragValue::new(&mut clock.end).speed(0.1).range(0.1..=3600.0);
+        ui.add(end.prefix("at ").suffix(" s")).on_hover_text("The end.");
+    });
+}
+
+fn camera(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
+    let Some(orbit) = session.orbit().copied() else { return };
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Frame").on_hover_text("See all of the scene. F").clicked() {
+            session.frame_all();
+        }
+        let home = ui.add_enabled(!session.follows(), egui::Button::new("Scene's own"));
+        if home.on_hover_text("Back to the camera of the scene. H").clicked() {
+            session.go_home();
+        }
+        if ui.button("Copy").on_hover_text(format!("Copy {}", orbit.text())).clicked() {
+            wishes.push(Wish::Copy(orbit.text()));
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let sides = [
+            ("Front", Side::Front, "From the front. 1"),
+            ("Right", Side::Right, "From the right. 3"),
+            ("Top", Side::Top, "From above. 7"),
+            ("Back", Side::Back, "From behind. 2"),
+            ("Left", Side::Left, "From the left. 4"),
+            ("Bottom", Side::Bottom, "From below. 8"),
+        ];
+        for (name, side, help) in sides {
+            if ui.small_button(name).on_hover_text(help).clicked() {
+                session.move_camera(|orbit| orbit.look_from(side));
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        let mut parallel = orbit.is_parallel();
+        if ui.checkbox(&mut parallel, "parallel").on_hover_text("Rays without perspective. P").changed() {
+            session.move_camera(|orbit| orbit.set_parallel(parallel));
+        }
+        if let Some(fov) = orbit.fov() {
+            let mut degrees = fov.to_degrees();
+            let drag = egui::DragValue::new(&mut degrees).range(2.0..=150.0).speed(0.3);
+            let drag = ui.add(drag.suffix("°").max_decimals(1));
+            if drag.on_hover_text("Vertical field of view.").changed() {
+                session.move_camera(|orbit| orbit.set_fov(degrees.to_radians()));
+            }
+        }
+    });
+}
+
+fn slice(ui: &mut Ui, session: &mut Session) {
+    let slice = &mut session.slice;
+    ui.horizontal(|ui| {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            ui.selectable_value(&mut slice.axis, axis, name)
+                .on_hover_text("The axis that the plane crosses at right angles.");
+        }
+        let drag = egui::DragValue::new(&mut slice.offset).speed(0.01).max_decimals(4);
+        ui.add(drag.prefix("at ")).on_hover_text("Where it crosses it.");
+    });
+    let drag = egui::DragValue::new(&mut slice.spacing).speed(0.005).range(1e-4..=1e4);
+    ui.add(drag.prefix("a line every ").max_decimals(4)).on_hover_text("In scene units.");
+}
+
+fn drawing(ui: &mut Ui, session: &mut Session) {
+    ui.horizontal(|ui| {
+        ui.label("rays a pixel");
+        let own = session.model.as_ref().and_then(|it| it.scene.program().settings.samples);
+        let mut samples = session.samples.or(own).unwrap_or(4);
+        for count in [1, 4, 16, 64] {
+            ui.selectable_value(&mut samples, count, count.to_string())
+                .on_hover_text("Rays averaged in each pixel once the camera rests.");
+        }
+        if Some(samples) != session.samples.or(own.or(Some(4))) {
+            session.samples = Some(samples);
+        }
+    });
+    let mut live = session.build().live;
+    let text = "Numbers in the scene are shader inputs, so that a changed one shows without a new shader. Without, \
+                they are constants, and the shader is the fastest one.";
+    if ui.checkbox(&mut live, "live numbers").on_hover_text(text).changed() {
+        session.set_build(|build| build.live = live);
+    }
+    let mut on_cpu = session.build().on_cpu;
+    let text = "Draw on the processor, with the second implementation that the shader is checked against.";
+    if ui.checkbox(&mut on_cpu, "on the processor").on_hover_text(text).changed() {
+        session.set_build(|build| build.on_cpu = on_cpu);
+    }
+}

@@ -1,0 +1,68 @@
+//! The time of the scene: plays, pauses, is dragged, starts again.
+
+/// Frames a second of the `frame` that a scene may read, as `sdfc render` counts them.
+const FRAME_RATE: f64 = 30.0;
+/// A pause of the window is not made up for.
+const LONGEST_STEP: f64 = 0.25;
+
+/// The time of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Clock {
+    /// Seconds.
+    pub time: f64,
+    /// Whether it runs.
+    pub playing: bool,
+    /// Seconds of the scene a second.
+    pub speed: f64,
+    /// Whether it starts again at the end.
+    pub looping: bool,
+    /// Where it starts again, in seconds.
+    pub end: f64,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { time: 0.0, playing: false, speed: 1.0, looping: true, end: 10.0 }
+    }
+}
+
+impl Clock {
+    /// Lets so many seconds pass.
+    pub fn advance(&mut self, seconds: f64) {
+        if !self.playing {
+            return;
+        }
+        self.time += seconds.clamp(0.0, LONGEST_STEP) * self.speed;
+        if self.looping && self.end > 0.0 {
+            self.time = self.time.rem_euclid(self.end);
+        } else {
+            self.time = self.time.max(0.0);
+        }
+    }
+
+    /// The number of the frame.
+    pub fn frame(&self) -> f64 {
+        (self.time * FRAME_RATE).floor()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_runs_at_its_speed_and_starts_again() {
+        let mut clock = Clock { playing: true, speed: 2.0, end: 1.0, ..Clock::default() };
+        clock.advance(0.25);
+        assert_eq!((clock.time, clock.frame()), (0.5, 15.0));
+        clock.advance(0.25);
+        clock.advance(0.1);
+        assert!((clock.time - 0.2).abs() < 1e-12);
+        clock.playing = false;
+        clock.advance(0.1);
+        assert!((clock.time - 0.2).abs() < 1e-12);
+        let mut backwards = Clock { speed: -1.0, playing: true, ..Clock::default() };
+        backwards.advance(0.25);
+        assert_eq!(backwards.time, 9.75);
+    }
+}

@@ -1,0 +1,43 @@
+//! `sdfc-view FILE`: a window on a scene.
+//!
+//! Exit statuses as those of `sdfc`: 0, the window was closed; 2, the call is wrong; 3, there is no window to
+//! be had.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const USAGE: &str = "usage: sdfc-view FILE\n\n\
+    Shows the scene in FILE in a window and follows its text as it is edited.";
+
+#[allow(clippy::print_stdout, clippy::print_stderr, reason = "a program says what it has to say")]
+fn main() -> ExitCode {
+    let arguments: Vec<_> = std::env::args_os().skip(1).collect();
+    let [argument] = &arguments[..] else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
+    };
+    match argument.to_str() {
+        Some("-h" | "--help") => {
+            println!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        Some("-V" | "--version") => {
+            println!("sdfc-view {}", env!("CARGO_PKG_VERSION"));
+            return ExitCode::SUCCESS;
+        }
+        Some(_) | None => {}
+    }
+    let path = PathBuf::from(argument);
+    // Asked before the window opens: afterwards a file may come and go.
+    if let Err(error) = sdfc_files::read(&path) {
+        eprintln!("error: {error}");
+        return ExitCode::from(2);
+    }
+    match sdfc_viewer::app::run(&path) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: no window: {error}");
+            ExitCode::from(3)
+        }
+    }
+}

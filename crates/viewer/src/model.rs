@@ -1,0 +1,96 @@
+//! A scene that has compiled, with what draws it.
+
+use std::sync::Arc;
+
+use sdfc::graph::{FrameInput, Node, Param, reachable};
+use sdfc::lang::slots::Slot;
+use sdfc::render::{CpuScene, Pipeline};
+use sdfc::{FrameValues, Scene};
+
+use crate::probe::Probe;
+
+/// What draws a scene.
+#[derive(Clone, Debug)]
+pub enum Engine {
+    /// A shader on a device; scenes that differ only in their numbers share one.
+    Gpu(Arc<Pipeline>),
+    /// The program itself.
+    Cpu(Arc<CpuScene>),
+}
+
+/// Where the time from reading to being ready went, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stages {
+    /// Parsing, checking, elaborating.
+    pub front: f64,
+    /// Analyses and passes.
+    pub analyze: f64,
+    /// Lowering to the shader.
+    pub lower: f64,
+    /// Making the pipeline; `None` where the running one serves.
+    pub pipeline: Option<f64>,
+}
+
+/// A scene that draws something, ready to be drawn. It does not change.
+#[derive(Debug)]
+pub struct Model {
+    /// The scene.
+    pub scene: Scene,
+    /// Its own text.
+    pub text: String,
+    /// What draws it.
+    pub engine: Engine,
+    /// The method that it is drawn with.
+    pub method: String,
+    /// Its field on the CPU.
+    pub probe: Probe,
+    /// Whether the picture depends on time or frame.
+    pub moves: bool,
+    /// Where the time went.
+    pub stages: Stages,
+    /// How many pipelines the worker has made so far.
+    pub pipelines: u64,
+    /// A number of its own.
+    pub serial: u64,
+    /// What is drawn otherwise than asked, and why.
+    pub note: Option<String>,
+}
+
+impl Model {
+    /// The params that the scene declares, with their positions.
+    pub fn declared(&self) -> &[Param] {
+        let count = self.scene.params().len() - self.scene.slots().len();
+        self.scene.params().get(..count).unwrap_or_default()
+    }
+
+    /// Its numbers that move, and the params that they are.
+    pub fn literals(&self) -> impl Iterator<Item = (&Slot, &Param)> {
+        let params = self.scene.params();
+        self.scene.slots().iter().filter_map(|slot| Some((slot, params.get(slot.param)?)))
+    }
+
+    /// The values of a frame in which nothing has been changed.
+    pub fn defaults(&self) -> FrameValues {
+        FrameValues::defaults(self.scene.params())
+    }
+
+    /// The name of the adapter; `None` on the CPU.
+    pub fn adapter(&self) -> Option<&str> {
+        match &self.engine {
+            Engine::Gpu(pipeline) => Some(&pipeline.gpu().info().name),
+            Engine::Cpu(_) => None,
+        }
+    }
+}
+
+/// Whether anything per frame reads time or frame.
+pub fn reads_time(scene: &Scene) -> bool {
+    let program = scene.program();
+    let mut roots = program.uniforms.clone();
+    roots.extend(program.settings.nodes());
+    let is_time = |node| match node {
+        Node::Frame(input, _) => matches!(input, FrameInput::Time | FrameInput::Frame),
+        _ => false,
+    };
+    reachable(&program.graph, &roots).into_iter().any(|id| is_time(program.graph.node(id)))
+}

@@ -1,0 +1,387 @@
+//! All that the window does, without the window: files in, pictures and findings out.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::DVec3;
+use sdfc::FrameValues;
+use sdfc::render::{HIT, Pose};
+
+use crate::clock::Clock;
+use crate::document;
+use crate::findings::{Finding, Findings};
+use crate::knobs::Knobs;
+use crate::model::Model;
+use crate::orbit::Orbit;
+use crate::painter::{Painted, Painter, Picture, Request};
+use crate::views::{Mode, Slice};
+use crate::watch::Watch;
+use crate::worker::{Build, News, Worker};
+
+/// How often devices are opened anew before the processor takes over.
+const MOST_RENEWALS: u32 = 3;
+
+/// What a look at a pixel tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The pixel's ray ended like this: [`HIT`] and its like.
+    pub status: u32,
+    /// Length of the ray.
+    pub depth: f64,
+    /// Where it ended.
+    pub point: DVec3,
+    /// The field there, in double precision.
+    pub distance: Option<f64>,
+    /// The field's gradient there, of length 1.
+    pub normal: Option<DVec3>,
+    /// Evaluations of the field for this pixel.
+    pub evaluations: u32,
+}
+
+/// Wakes the window.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// One scene, open.
+#[derive(Debug)]
+pub struct Session {
+    build: Build,
+    worker: Worker,
+    news: Receiver<News>,
+    painter: Painter,
+    painted: Receiver<Painted>,
+    watch: Watch,
+    /// The order that a change on disk repeats.
+    standing: Arc<Mutex<Build>>,
+    /// The camera; `None` until the first scene says where it stands.
+    orbit: Option<Orbit>,
+    /// Whether the camera is the scene's own, and has not been moved by hand.
+    follows: bool,
+    /// What has been moved.
+    pub knobs: Knobs,
+    /// The time.
+    pub clock: Clock,
+    /// What is shown.
+    pub mode: Mode,
+    /// The plane of [`Mode::Slice`].
+    pub slice: Slice,
+    /// Rays for each pixel when all rests.
+    pub samples: Option<u32>,
+    /// Whether fine pictures are drawn however long they take.
+    pub refine: bool,
+    /// The last good scene.
+    pub model: Option<Arc<Model>>,
+    /// What is wrong with the text as it stands.
+    pub findings: Findings,
+    /// Why there is nothing newer to see, apart from findings.
+    pub trouble: Option<String>,
+    /// Why the last request gave no picture.
+    pub no_picture: Option<String>,
+    /// Whether the text is compiled, and its pipeline is being made.
+    pub building: bool,
+    /// The last good picture.
+    pub picture: Option<Box<Picture>>,
+    /// Counts pictures.
+    pub pictures: u64,
+    asked: Option<Request>,
+    size: [u32; 2],
+}
+
+impl Session {
+    /// Opens a scene. `wake` is called, from other threads, when there is something to [`poll`](Self::poll).
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no thread.
+    pub fn open(path: &Path, wake: Wake) -> std::io::Result<Self> {
+        let build = Build::of(path);
+        let (sender, news) = channel();
+        let woken = Arc::clone(&wake);
+        let worker = Worker::new(sender, move || woken())?;
+        let (sender, painted) = channel();
+        let painter = Painter::new(sender, move || wake())?;
+        let standing = Arc::new(Mutex::new(build.clone()));
+        let (orders, repeated) = (worker.orders(), Arc::clone(&standing));
+        let watch = Watch::new(move || orders.put(lock(&repeated).clone()));
+        let mut session = Self {
+            build,
+            worker,
+            news,
+            painter,
+            painted,
+            watch,
+            standing,
+            orbit: None,
+            follows: true,
+            knobs: Knobs::default(),
+            clock: Clock::default(),
+            mode: Mode::default(),
+            slice: Slice::default(),
+            samples: None,
+            refine: true,
+            model: None,
+            findings: Findings::default(),
+            trouble: None,
+            no_picture: None,
+            building: false,
+            picture: None,
+            pictures: 0,
+            asked: None,
+            size: [16, 9],
+        };
+        session.watch_own_folder();
+        session.order();
+        Ok(session)
+    }
+
+    /// The scene's file.
+    pub fn path(&self) -> &Path {
+        &self.build.path
+    }
+
+    /// How it is built.
+    pub fn build(&self) -> &Build {
+        &self.build
+    }
+
+    /// Builds it otherwise.
+    pub fn set_build(&mut self, change: impl FnOnce(&mut Build)) {
+        let mut build = self.build.clone();
+        change(&mut build);
+        if build != self.build {
+            self.build = build;
+            self.order();
+        }
+    }
+
+    /// Shows another scene in its place.
+    pub fn open_other(&mut self, path: PathBuf) {
+        self.build = Build { path, method: None, ..self.build.clone() };
+        (self.orbit, self.model, self.picture, self.asked) = (None, None, None, None);
+        (self.knobs, self.clock) = (Knobs::default(), Clock::default());
+        (self.findings, self.trouble, self.no_picture) = (Findings::default(), None, None);
+        self.follows = true;
+        self.watch_own_folder();
+        self.order();
+    }
+
+    /// Takes in what the threads have to tell. Gives whether anything changed.
+    pub fn poll(&mut self) -> bool {
+        let mut changed = false;
+        while let Ok(news) = self.news.try_recv() {
+            self.hear(news);
+            changed = true;
+        }
+        while let Ok(painted) = self.painted.try_recv() {
+            self.see(painted);
+            changed = true;
+        }
+        changed
+    }
+
+    /// Asks for a picture of this size, unless it is what was asked for last. `moving`: the next is likely
+    /// to differ.
+    pub fn ask(&mut self, size: [u32; 2], moving: bool) {
+        if size.contains(&0) {
+            return;
+        }
+        self.size = size;
+        if self.follows && let Some(pose) = self.home() {
+            self.orbit = Some(Orbit::new(&pose));
+        }
+        let (Some(model), Some(orbit)) = (&self.model, &self.orbit) else { return };
+        let request = Request {
+            model: Arc::clone(model),
+            frame: self.values(model),
+            pose: orbit.pose(),
+            size,
+            mode: self.mode,
+            slice: self.slice,
+            moving,
+            refine: self.refine,
+            samples: self.samples.or(model.scene.program().settings.samples).unwrap_or(4),
+        };
+        if self.asked.as_ref().is_some_and(|asked| asked.is(&request)) {
+            return;
+        }
+        self.asked = Some(request.clone());
+        self.painter.ask(request);
+    }
+
+    /// The values of the frame as it stands.
+    pub fn values(&self, model: &Model) -> FrameValues {
+        self.knobs.frame(model, self.clock.time, self.clock.frame())
+    }
+
+    /// The camera that the scene has, or one that sees all of it.
+    pub fn home(&self) -> Option<Pose> {
+        let model = self.model.as_ref()?;
+        let values = self.values(model);
+        let (program, bounds) = (model.scene.program(), model.scene.bounds_at(&values));
+        Pose::new(program, &values, bounds, self.aspect()).ok()
+    }
+
+    /// The camera.
+    pub fn orbit(&self) -> Option<&Orbit> {
+        self.orbit.as_ref()
+    }
+
+    /// The camera, to be moved by hand: from then on it does not follow the scene's.
+    pub fn move_camera(&mut self, change: impl FnOnce(&mut Orbit)) {
+        if let Some(orbit) = &mut self.orbit {
+            change(orbit);
+            self.follows = false;
+        }
+    }
+
+    /// Puts the camera where it was.
+    pub fn set_camera(&mut self, orbit: Orbit) {
+        (self.orbit, self.follows) = (Some(orbit), false);
+    }
+
+    /// Back to the scene's own camera.
+    pub fn go_home(&mut self) {
+        self.follows = true;
+    }
+
+    /// Whether the camera is the scene's own.
+    pub fn follows(&self) -> bool {
+        self.follows
+    }
+
+    /// Sees all of the scene, from where the camera looks.
+    pub fn frame_all(&mut self) {
+        let Some(model) = &self.model else { return };
+        let (values, aspect) = (self.values(model), self.aspect());
+        let bounds = model.scene.bounds_at(&values);
+        self.move_camera(|orbit| orbit.frame(bounds, aspect));
+    }
+
+    /// What is at a place of the picture, from its upper left corner in parts of its sides.
+    pub fn look(&self, [right, down]: [f64; 2]) -> Option<Look> {
+        let picture = self.picture.as_ref()?;
+        let [width, height] = picture.image.size();
+        let place = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side - 1);
+        let (x, y) = (place(right, width), place(down, height));
+        let pixel = picture.image.pixel(x, y)?;
+        let [start, direction] = picture.view.ray(x, y);
+        let depth = f64::from(pixel.depth);
+        let point = start + direction * depth;
+        let request = &picture.request;
+        let field = request.model.probe.at(&request.frame, point.to_array());
+        let gradient = field.map(|field| DVec3::from(field.partials));
+        Some(Look {
+            status: pixel.status,
+            depth,
+            point,
+            distance: field.map(|field| field.value),
+            normal: gradient.and_then(DVec3::try_normalize).filter(|_| pixel.status == HIT),
+            evaluations: pixel.evaluations,
+        })
+    }
+
+    /// Where a finding is, as an absolute path where there is one.
+    pub fn path_of(&self, finding: &Finding) -> PathBuf {
+        document::path_of(&self.build.path, &finding.file)
+    }
+
+    /// Writes the numbers that have been moved into the scene's file.
+    ///
+    /// # Errors
+    ///
+    /// The file has changed since, or cannot be written.
+    pub fn write_literals(&mut self) -> Result<(), String> {
+        let Some(model) = &self.model else { return Ok(()) };
+        let document = document::Document::read(self.path()).map_err(|error| error.to_string())?;
+        if document.text != model.text {
+            return Err("the file has changed; nothing is written".to_owned());
+        }
+        let text = self.knobs.rewritten(model);
+        std::fs::write(self.path(), text).map_err(|error| error.to_string())
+    }
+
+    fn aspect(&self) -> f64 {
+        let [width, height] = self.size;
+        f64::from(width) / f64::from(height)
+    }
+
+    fn watch_own_folder(&mut self) {
+        let own = document::Imports::of(&self.build.path).folders();
+        self.watch.set_folders(&own);
+    }
+
+    fn order(&self) {
+        *lock(&self.standing) = self.build.clone();
+        self.worker.order(self.build.clone());
+    }
+
+    fn hear(&mut self, news: News) {
+        match news {
+            News::Unreadable(why) => {
+                self.building = false;
+                let shown = if self.model.is_some() { "; showing what it was" } else { "" };
+                self.trouble = Some(format!("{why}{shown}"));
+                self.watch_own_folder();
+            }
+            News::Compiled { findings, folders, builds } => {
+                (self.findings, self.building, self.trouble) = (findings, builds, None);
+                let refused = self.watch.set_folders(&folders);
+                if let Some(folder) = refused.first() {
+                    self.trouble = Some(format!("changes in {} are not seen", folder.display()));
+                }
+            }
+            News::Empty => {
+                self.trouble = Some("the scene draws nothing: a solid on a line of its own is drawn".into());
+            }
+            News::Failed(why) => (self.building, self.trouble) = (false, Some(why)),
+            News::Ready(model) => self.take(model),
+        }
+    }
+
+    fn take(&mut self, model: Arc<Model>) {
+        self.building = false;
+        let same_text = self.model.as_ref().is_some_and(|old| old.text == model.text);
+        if !same_text {
+            self.knobs.forget_literals();
+        }
+        let before = self.stated_camera();
+        self.model = Some(model);
+        let after = self.stated_camera();
+        // Whoever edits the camera wants to see it.
+        self.follows |= after.is_some() && before != after;
+        if self.orbit.is_none() {
+            self.orbit = Some(Orbit::new(&Pose::fitted(None, 1.0)));
+        }
+    }
+
+    /// The camera that the text states, at its defaults.
+    fn stated_camera(&self) -> Option<Pose> {
+        let model = self.model.as_ref()?;
+        let program = model.scene.program();
+        program.settings.camera?;
+        Pose::new(program, &model.defaults(), None, 1.0).ok()
+    }
+
+    fn see(&mut self, painted: Painted) {
+        match painted {
+            Painted::Picture(picture) => {
+                self.no_picture = None;
+                self.picture = Some(picture);
+                self.pictures += 1;
+            }
+            Painted::Failed { message, machine } => {
+                self.no_picture = Some(message);
+                if machine && self.build.renewed < MOST_RENEWALS {
+                    self.set_build(|build| build.renewed += 1);
+                } else if machine {
+                    self.set_build(|build| build.on_cpu = true);
+                }
+            }
+        }
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // What is behind it is replaced whole or not at all.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

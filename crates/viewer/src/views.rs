@@ -1,0 +1,521 @@
+//! A finished picture as colours for the screen: shaded, or what its rays met and what that cost. Each view
+//! is a function of the picture and, where it says so, of the field at the places that the picture shows.
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+use sdfc::FrameValues;
+use sdfc::graph::eval::Dual;
+use sdfc::march::PixelBlock;
+use sdfc::render::{CAPPED, HIT, Image, View, linear_to_srgb8};
+
+use crate::probe::Probe;
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Mode {
+    /// Light and materials.
+    #[default]
+    Shaded,
+    /// Directions of the surface.
+    Normals,
+    /// Lengths of the rays.
+    Depth,
+    /// Evaluations of the field.
+    Evaluations,
+    /// Rays that ran out of steps.
+    Capped,
+    /// Rays that went through a surface.
+    Overshoot,
+    /// Length of the gradient.
+    Slope,
+    /// The field on a plane.
+    Slice,
+}
+
+impl Mode {
+    /// All of them, in the order in which they are offered.
+    pub const ALL: [Self; 8] = [
+        Self::Shaded,
+        Self::Normals,
+        Self::Depth,
+        Self::Evaluations,
+        Self::Capped,
+        Self::Overshoot,
+        Self::Slope,
+        Self::Slice,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Shaded => "Shaded",
+            Self::Normals => "Normals",
+            Self::Depth => "Depth",
+            Self::Evaluations => "Evaluations",
+            Self::Capped => "Capped rays",
+            Self::Overshoot => "Overshoot",
+            Self::Slope => "Gradient length",
+            Self::Slice => "Slice",
+        }
+    }
+
+    /// What it shows.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Shaded => "Light and materials, as `sdfc render` draws them.",
+            Self::Normals => {
+                "The direction of the surface, from the field's gradient in double precision: \
+                 x, y, z as red, green, blue, with 0 in the middle."
+            }
+            Self::Depth => "How long each ray is, from the nearest hit to the farthest.",
+            Self::Evaluations => {
+                "How often the field was evaluated for each pixel, shadows and mirrors included."
+            }
+            Self::Capped => {
+                "Rays that ran out of steps before they met anything, and pixels that are no number."
+            }
+            Self::Overshoot => {
+                "The field in double precision where each ray stopped: deeper inside than a quarter of \
+                 a pixel, the ray went through the surface. A ray that left again on the other side \
+                 cannot be told from one that met nothing."
+            }
+            Self::Slope => {
+                "The length of the gradient where each ray stopped: 1 is a distance, above 1 the field \
+                 grows faster than the distance and rays may step through."
+            }
+            Self::Slice => {
+                "The field on a plane: warm inside, cool outside, with lines of equal distance."
+            }
+        }
+    }
+}
+
+/// A plane to show the field on.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Slice {
+    /// Which coordinate is the same all over it, 0 to 2.
+    pub axis: usize,
+    /// That coordinate, in scene units.
+    pub offset: f64,
+    /// From line to line, in scene units.
+    pub spacing: f64,
+}
+
+impl Default for Slice {
+    fn default() -> Self {
+        Self { axis: 2, offset: 0.0, spacing: 0.1 }
+    }
+}
+
+/// What the colours mean.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Legend {
+    /// What they are.
+    None,
+    /// A scale from one number to another.
+    Scale {
+        /// What is measured.
+        label: &'static str,
+        /// The numbers at the ends.
+        ends: [f64; 2],
+        /// Which colours.
+        ramp: Ramp,
+    },
+    /// Single colours.
+    Keys(Vec<([u8; 3], String)>),
+}
+
+/// Colours for numbers from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ramp {
+    /// From little to much.
+    Heat,
+    /// From near to far.
+    Grey,
+    /// About a middle.
+    Balance,
+}
+
+impl Ramp {
+    /// The colour of a number from 0 to 1.
+    pub fn color(self, value: f64) -> [u8; 3] {
+        // Evenly spaced samples: of viridis (Smith and van der Walt, CC0), of two greys, of a diverging scale.
+        const HEAT: &[[u8; 3]] = &[
+            [68, 1, 84],
+            [72, 40, 120],
+            [62, 74, 137],
+            [49, 104, 142],
+            [38, 130, 142],
+            [31, 158, 137],
+            [53, 183, 121],
+            [109, 205, 89],
+            [180, 222, 44],
+            [253, 231, 37],
+        ];
+        const GREY: &[[u8; 3]] = &[[245, 245, 245], [28, 30, 34]];
+        const BALANCE: &[[u8; 3]] =
+            &[[33, 102, 172], [146, 197, 222], [247, 247, 247], [244, 165, 130], [178, 24, 43]];
+        let stops = match self {
+            Self::Heat => HEAT,
+            Self::Grey => GREY,
+            Self::Balance => BALANCE,
+        };
+        let place = value.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        // NaN becomes 0 on the way.
+        let index = (place as usize).min(stops.len() - 2);
+        mix(stops[index], stops[index + 1], place - index as f64)
+    }
+}
+
+const ALARM: [u8; 3] = [255, 64, 129];
+const NOTICE: [u8; 3] = [255, 193, 7];
+const BROKEN: [u8; 3] = [0, 229, 255];
+const FINE: [u8; 3] = [76, 175, 80];
+const NOTHING: [u8; 3] = [24, 26, 30];
+const INSIDE: [u8; 3] = [224, 122, 63];
+const OUTSIDE: [u8; 3] = [58, 124, 165];
+/// Of a pixel's width: where a ray must not be deeper inside.
+const QUARTER: f64 = 0.25;
+
+/// What a view is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Colours, averaged over samples.
+    pub colors: &'a Image,
+    /// Depths, ends and counts of one ray a pixel.
+    pub image: &'a Image,
+    /// The rays.
+    pub view: &'a View,
+    /// The field.
+    pub probe: &'a Probe,
+    /// The frame's values.
+    pub frame: &'a FrameValues,
+    /// The plane of [`Mode::Slice`].
+    pub slice: Slice,
+}
+
+/// Red, green, blue, alpha of each pixel in sRGB, and what they mean.
+pub fn paint(mode: Mode, seen: Seen<'_>) -> (Vec<u8>, Legend) {
+    match mode {
+        Mode::Shaded => (seen.each(|_, pixel| shaded(pixel)), Legend::None),
+        Mode::Normals => seen.normals(),
+        Mode::Depth => seen.depth(),
+        Mode::Evaluations => seen.evaluations(),
+        Mode::Capped => seen.capped(),
+        Mode::Overshoot => seen.overshoot(),
+        Mode::Slope => seen.slope(),
+        Mode::Slice => seen.slice(),
+    }
+}
+
+impl Seen<'_> {
+    fn each(&self, color: impl Fn(usize, &PixelBlock) -> [u8; 3]) -> Vec<u8> {
+        let mut out = Vec::with_capacity(self.colors.pixels().len() * 4);
+        for (index, pixel) in self.colors.pixels().iter().enumerate() {
+            let [red, green, blue] = color(index, pixel);
+            out.extend([red, green, blue, 255]);
+        }
+        out
+    }
+
+    fn ray(&self, index: usize) -> [DVec3; 2] {
+        let columns = self.image.size()[0].max(1) as usize;
+        self.view.ray((index % columns) as u32, (index / columns) as u32)
+    }
+
+    /// The field where rays met something.
+    fn at_hits(&self) -> Vec<Option<Dual>> {
+        let point = |(index, pixel): (usize, &PixelBlock)| {
+            let [start, direction] = self.ray(index);
+            let hit = pixel.status == HIT && pixel.depth.is_finite();
+            hit.then(|| (start + direction * f64::from(pixel.depth)).to_array())
+        };
+        let points: Vec<_> = self.image.pixels().iter().enumerate().map(point).collect();
+        self.probe.at_all(self.frame, &points)
+    }
+
+    fn normals(&self) -> (Vec<u8>, Legend) {
+        let fields = self.at_hits();
+        let color = |index: usize, _: &PixelBlock| match fields[index] {
+            Some(field) => {
+                let normal = DVec3::from(field.partials).normalize_or_zero();
+                normal.to_array().map(|lane| ((lane * 0.5 + 0.5) * 255.0).round() as u8)
+            }
+            None => NOTHING,
+        };
+        (self.each(color), Legend::None)
+    }
+
+    fn depth(&self) -> (Vec<u8>, Legend) {
+        let depths = || self.image.pixels().iter().filter(|it| it.status == HIT).map(|it| it.depth);
+        let near = f64::from(depths().fold(f32::INFINITY, f32::min));
+        let far = f64::from(depths().fold(f32::NEG_INFINITY, f32::max));
+        let color = |index: usize, _: &PixelBlock| match self.image.pixels()[index] {
+            PixelBlock { status: HIT, depth, .. } => {
+                Ramp::Grey.color((f64::from(depth) - near) / (far - near).max(1e-12))
+            }
+            _ => NOTHING,
+        };
+        let ends = if near <= far { [near, far] } else { [0.0, 0.0] };
+        (self.each(color), Legend::Scale { label: "length of the ray", ends, ramp: Ramp::Grey })
+    }
+
+    fn evaluations(&self) -> (Vec<u8>, Legend) {
+        let most = percentile(self.image, 0.99).max(1);
+        let color = |index: usize, _: &PixelBlock| {
+            let count = self.image.pixels()[index].evaluations;
+            Ramp::Heat.color(f64::from(count) / f64::from(most))
+        };
+        let label = "evaluations a pixel, up to the 99th percentile";
+        let ends = [0.0, f64::from(most)];
+        (self.each(color), Legend::Scale { label, ends, ramp: Ramp::Heat })
+    }
+
+    fn capped(&self) -> (Vec<u8>, Legend) {
+        let color = |index: usize, shown: &PixelBlock| {
+            let pixel = &self.image.pixels()[index];
+            let finite = pixel.depth.is_finite() && pixel.color.iter().all(|it| it.is_finite());
+            match pixel.status {
+                _ if !finite => BROKEN,
+                CAPPED => ALARM,
+                _ => dimmed(shaded(shown)),
+            }
+        };
+        let counts = self.image.counts();
+        let keys = vec![
+            (ALARM, format!("out of steps: {}", counts.capped)),
+            (BROKEN, format!("no number: {}", counts.nan)),
+        ];
+        (self.each(color), Legend::Keys(keys))
+    }
+
+    fn overshoot(&self) -> (Vec<u8>, Legend) {
+        let fields = self.at_hits();
+        let how = |index: usize| {
+            let field = fields[index]?;
+            let width = f64::from(self.image.pixel_width(self.image.pixels()[index].depth));
+            Some(match field.value / width.max(1e-300) {
+                depth if depth < -QUARTER => ALARM,
+                gap if gap > QUARTER => NOTICE,
+                _ => FINE,
+            })
+        };
+        let color = |index: usize, shown: &PixelBlock| match how(index) {
+            Some(FINE) => mix(dimmed(shaded(shown)), FINE, 0.25),
+            Some(found) => found,
+            None => NOTHING,
+        };
+        let count = |which| (0..fields.len()).filter(|index| how(*index) == Some(which)).count();
+        let keys = vec![
+            (ALARM, format!("through the surface: {}", count(ALARM))),
+            (NOTICE, format!("stopped short of it: {}", count(NOTICE))),
+            (FINE, "within a quarter of a pixel".to_owned()),
+        ];
+        (self.each(color), Legend::Keys(keys))
+    }
+
+    fn slope(&self) -> (Vec<u8>, Legend) {
+        let fields = self.at_hits();
+        let color = |index: usize, _: &PixelBlock| match fields[index] {
+            Some(field) => Ramp::Balance.color(DVec3::from(field.partials).length() / 2.0),
+            None => NOTHING,
+        };
+        let label = "length of the gradient";
+        (self.each(color), Legend::Scale { label, ends: [0.0, 2.0], ramp: Ramp::Balance })
+    }
+
+    fn slice(&self) -> (Vec<u8>, Legend) {
+        let Slice { axis, offset, spacing } = self.slice;
+        let axis = axis.min(2);
+        let point = |(index, pixel): (usize, &PixelBlock)| {
+            let [start, direction] = self.ray(index);
+            let t = (offset - start[axis]) / direction[axis];
+            let behind = pixel.status == HIT && f64::from(pixel.depth) < t;
+            (t.is_finite() && t > 0.0 && t < self.view.t_max && !behind)
+                .then(|| ((start + direction * t).to_array(), t))
+        };
+        let places: Vec<_> = self.image.pixels().iter().enumerate().map(point).collect();
+        let points: Vec<_> = places.iter().map(|place| place.map(|(point, _)| point)).collect();
+        let fields = self.probe.at_all(self.frame, &points);
+        let color = |index: usize, shown: &PixelBlock| match (fields[index], places[index]) {
+            (Some(field), Some((_, t))) => {
+                let width = f64::from(self.image.pixel_width(t as f32));
+                mix(shaded(shown), isolines(field, spacing, width), 0.85)
+            }
+            _ => shaded(shown),
+        };
+        let keys = vec![
+            (INSIDE, "inside".to_owned()),
+            (OUTSIDE, "outside".to_owned()),
+            ([235, 235, 235], format!("a line every {spacing}")),
+        ];
+        (self.each(color), Legend::Keys(keys))
+    }
+}
+
+/// The colour of a value on the slice: by side, darker away from the surface, with a line at each multiple
+/// of `spacing` and a strong one at 0, about a pixel wide.
+fn isolines(field: Dual, spacing: f64, pixel: f64) -> [u8; 3] {
+    let value = field.value;
+    if !value.is_finite() {
+        return BROKEN;
+    }
+    let side = if value < 0.0 { INSIDE } else { OUTSIDE };
+    let base = mix(side, [18, 20, 24], (value.abs() / (spacing * 12.0)).min(0.75));
+    let per_pixel = DVec3::from(field.partials).length().max(1e-9) * pixel;
+    let to_line = (value / spacing - (value / spacing).round()).abs() * spacing / per_pixel;
+    let is_surface = value.abs() < spacing / 2.0;
+    let (line, strength, half) =
+        if is_surface { ([255, 255, 255], 1.0, 1.2) } else { ([235, 235, 235], 0.45, 0.5) };
+    // Lines closer than their width would be a grey without meaning.
+    let room = (spacing / per_pixel / 4.0).min(1.0);
+    mix(base, line, strength * room * (half + 0.5 - to_line).clamp(0.0, 1.0))
+}
+
+/// So many of all pixels have at most this many evaluations.
+fn percentile(image: &Image, share: f64) -> u32 {
+    let mut counts: Vec<u32> = image.pixels().iter().map(|pixel| pixel.evaluations).collect();
+    let rank = ((counts.len() as f64 * share).ceil() as usize).clamp(1, counts.len().max(1)) - 1;
+    if counts.is_empty() { 0 } else { *counts.select_nth_unstable(rank).1 }
+}
+
+/// sRGB of linear light by table: a view is repainted often, and a power for each channel takes longer than
+/// all the rest. The step is a fifth of a level where the curve is steepest.
+fn shaded(pixel: &PixelBlock) -> [u8; 3] {
+    const STEPS: usize = 1 << 14;
+    static TABLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        (0..=STEPS).map(|step| linear_to_srgb8(step as f32 / STEPS as f32)).collect()
+    });
+    let [red, green, blue, _] = pixel.color;
+    // `as` saturates, and makes 0 of NaN.
+    [red, green, blue].map(|light| {
+        let step = (light * STEPS as f32 + 0.5) as usize;
+        TABLE[step.min(STEPS)]
+    })
+}
+
+fn dimmed(color: [u8; 3]) -> [u8; 3] {
+    let [red, green, blue] = color.map(u32::from);
+    let grey = ((red * 54 + green * 183 + blue * 19) / 256) as u8;
+    mix([grey; 3], [0; 3], 0.45)
+}
+
+fn mix(a: [u8; 3], b: [u8; 3], share: f64) -> [u8; 3] {
+    let lane = |i: usize| f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * share;
+    [0, 1, 2].map(|i| lane(i).round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sdfc::render::{CpuScene, RenderOptions, unwatched};
+
+    const SIZE: [u32; 2] = [32, 24];
+
+    fn painted(text: &str, mode: Mode, change: impl Fn(&mut Image)) -> (Vec<[u8; 3]>, Legend) {
+        let scene = sdfc::compile("a", text).scene.unwrap();
+        let frame = FrameValues::defaults(scene.params());
+        let program = scene.program();
+        let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE).unwrap();
+        let cpu = CpuScene::new(program).unwrap();
+        let options = RenderOptions::default();
+        let mut image = cpu.render(&view, &frame, "auto", &options, &mut unwatched).unwrap().image;
+        change(&mut image);
+        let probe = Probe::new(program);
+        let slice = Slice::default();
+        let (image, view, frame) = (&image, &view, &frame);
+        let seen = Seen { colors: image, image, view, probe: &probe, frame, slice };
+        let (bytes, legend) = paint(mode, seen);
+        (bytes.chunks_exact(4).map(|it| [it[0], it[1], it[2]]).collect(), legend)
+    }
+
+    const BALL: &str = "sphere(1)\ncamera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)";
+    const MIDDLE: usize = 12 * 32 + 16;
+
+    #[test]
+    fn the_shaded_view_is_that_of_a_file() {
+        let scene = sdfc::compile("a", BALL).scene.unwrap();
+        let options = sdfc::PictureOptions {
+            size: SIZE,
+            backend: sdfc::Backend::Cpu,
+            ..Default::default()
+        };
+        let expected = scene.render(&options, &mut sdfc::unwatched).unwrap().image.to_srgb8();
+        let (colors, _) = painted(BALL, Mode::Shaded, |_| {});
+        for (color, expected) in colors.iter().flatten().zip(expected) {
+            assert!(color.abs_diff(expected) <= 1, "{color} {expected}");
+        }
+    }
+
+    #[test]
+    fn normals_point_at_the_viewer_in_the_middle() {
+        let (colors, _) = painted(BALL, Mode::Normals, |_| {});
+        let [red, green, blue] = colors[MIDDLE];
+        assert!(red.abs_diff(128) < 12 && green.abs_diff(128) < 12 && blue > 250, "{red} {green}");
+        assert_eq!(colors[0], NOTHING);
+    }
+
+    #[test]
+    fn depth_is_lightest_where_it_is_nearest() {
+        let (colors, legend) = painted(BALL, Mode::Depth, |_| {});
+        assert!(colors[MIDDLE][0] > 240);
+        let Legend::Scale { ends: [near, far], .. } = legend else { panic!("{legend:?}") };
+        assert!((near - 4.0).abs() < 0.05 && far > 4.2 && far < 5.0, "{near} {far}");
+    }
+
+    #[test]
+    fn what_ran_out_of_steps_or_is_no_number_stands_out_and_is_counted() {
+        let (colors, legend) = painted(BALL, Mode::Capped, |image| {
+            image.pixels_mut()[0].status = CAPPED;
+            image.pixels_mut()[1].color[1] = f32::NAN;
+        });
+        assert_eq!((colors[0], colors[1]), (ALARM, BROKEN));
+        assert!(colors.iter().skip(2).all(|color| ![ALARM, BROKEN].contains(color)));
+        let Legend::Keys(keys) = legend else { panic!("{legend:?}") };
+        assert!(keys.iter().all(|(_, text)| text.ends_with(": 1")), "{keys:?}");
+    }
+
+    #[test]
+    fn a_ray_that_stopped_inside_is_an_alarm() {
+        let (colors, _) = painted(BALL, Mode::Overshoot, |_| {});
+        assert!(!colors.contains(&ALARM) && !colors.contains(&NOTICE));
+        let (colors, _) = painted(BALL, Mode::Overshoot, |image| {
+            image.pixels_mut()[MIDDLE].depth += 0.5;
+            image.pixels_mut()[MIDDLE + 1].depth -= 0.5;
+        });
+        assert_eq!((colors[MIDDLE], colors[MIDDLE + 1]), (ALARM, NOTICE));
+    }
+
+    #[test]
+    fn a_distance_has_a_gradient_of_length_1() {
+        let (colors, _) = painted(BALL, Mode::Slope, |_| {});
+        assert_eq!(colors[MIDDLE], Ramp::Balance.color(0.5));
+    }
+
+    #[test]
+    fn evaluations_reach_the_end_of_the_scale() {
+        let (colors, legend) = painted(BALL, Mode::Evaluations, |image| {
+            for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
+                pixel.evaluations = (index % 101) as u32;
+            }
+        });
+        let Legend::Scale { ends, .. } = legend else { panic!("{legend:?}") };
+        assert!((98.0..=100.0).contains(&ends[1]), "{ends:?}");
+        assert_eq!(colors[0], Ramp::Heat.color(0.0));
+        assert_eq!(colors[100], Ramp::Heat.color(1.0));
+    }
+
+    #[test]
+    fn the_slice_is_warm_inside_and_cool_outside() {
+        // The ball is in front of the plane through its middle, so its far side is seen from a place
+        // inside it: the half in front is cut away by nothing, and hides the plane.
+        let (colors, _) = painted(BALL, Mode::Slice, |image| {
+            image.pixels_mut().iter_mut().for_each(|pixel| pixel.status = 0);
+        });
+        let [red, _, blue] = colors[MIDDLE];
+        assert!(red > blue, "{:?}", colors[MIDDLE]);
+        let [red, _, blue] = colors[0];
+        assert!(blue > red, "{:?}", colors[0]);
+    }
+}

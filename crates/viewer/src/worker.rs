@@ -1,0 +1,455 @@
+//! The thread that turns the newest text into something that can be drawn.
+//!
+//! Only the newest order counts: what comes in while one is being worked on replaces what is waiting.
+//! A text that does not compile gives findings and leaves the last model standing. Numbers of the scene are
+//! elaborated as params, so that a changed number gives the same shader with other values: then the running
+//! pipeline is taken over. Two devices take turns, because a device that compiles for one pipeline may hold
+//! up what another draws.
+
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use sdfc::diagnostics::{FileId, Sources};
+use sdfc::lang::Options;
+use sdfc::render::{CpuScene, Gpu, Pipeline};
+use sdfc::{Compiled, Error, Scene};
+
+use crate::document::{Document, Imports};
+use crate::findings::Findings;
+use crate::mailbox::Mailbox;
+use crate::model::{Engine, Model, Stages, reads_time};
+use crate::probe::Probe;
+
+/// Most of what input controls in depth is bounded by the compiler; this is room for that.
+const STACK: usize = 16 << 20;
+/// A text whose pipeline is not made because a newer one waits: so often in a row at most.
+const MOST_SKIPPED: u32 = 3;
+
+/// How a scene is built.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Build {
+    /// The file.
+    pub path: PathBuf,
+    /// The ray method; `None` takes the scene's.
+    pub method: Option<String>,
+    /// Whether numbers in the scene move without a recompile.
+    pub live: bool,
+    /// Whether the processor draws although there may be an adapter.
+    pub on_cpu: bool,
+    /// Counts how often all has been begun anew, after a device was lost.
+    pub renewed: u32,
+}
+
+impl Build {
+    /// Of a file, all else left to the scene and the machine.
+    pub fn of(path: impl Into<PathBuf>) -> Self {
+        let (path, method) = (path.into(), None);
+        Self { path, method, live: true, on_cpu: false, renewed: 0 }
+    }
+}
+
+/// What the worker tells.
+#[derive(Debug)]
+pub enum News {
+    /// The file gives no text; why.
+    Unreadable(String),
+    /// A text was compiled.
+    Compiled {
+        /// What was found.
+        findings: Findings,
+        /// Where a change can change the scene.
+        folders: BTreeSet<PathBuf>,
+        /// Whether a pipeline is made for it.
+        builds: bool,
+    },
+    /// The scene draws nothing.
+    Empty,
+    /// It can be drawn.
+    Ready(Arc<Model>),
+    /// The text compiles and yet cannot be drawn; why.
+    Failed(String),
+}
+
+/// The thread, as others see it.
+#[derive(Debug)]
+pub struct Worker {
+    orders: Arc<Mailbox<Build>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts it. `wake` is called after each piece of news.
+    pub fn new(news: Sender<News>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let orders = Arc::new(Mailbox::default());
+        let mailbox = Arc::clone(&orders);
+        let mut shop = Shop::new(Arc::clone(&orders), move |letter| {
+            // The receiver is gone only where the window is.
+            let _ = news.send(letter);
+            wake();
+        });
+        let run = move || {
+            while let Some(build) = mailbox.take() {
+                shop.guarded(&build);
+            }
+        };
+        let thread = std::thread::Builder::new().name("worker".into()).stack_size(STACK);
+        Ok(Self { orders, thread: Some(thread.spawn(run)?) })
+    }
+
+    /// Orders a build; the texts are read when it begins, and nothing is done where neither they nor the
+    /// order differ from the last.
+    pub fn order(&self, build: Build) {
+        self.orders.put(build);
+    }
+
+    /// The way in for those who only know that something may have changed.
+    pub fn orders(&self) -> Arc<Mailbox<Build>> {
+        Arc::clone(&self.orders)
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.orders.close();
+        // Not joined: a driver may be compiling for minutes, and the process ends anyway.
+        drop(self.thread.take());
+    }
+}
+
+/// What the thread keeps between orders.
+struct Shop<T> {
+    orders: Arc<Mailbox<Build>>,
+    tell: T,
+    /// The last order, and a hash of the texts that it met.
+    last: Option<(Build, u64)>,
+    /// The running shader and its pipeline.
+    running: Option<(String, Arc<Pipeline>)>,
+    devices: [Option<Gpu>; 2],
+    turn: usize,
+    serial: u64,
+    pipelines: u64,
+    skipped: u32,
+}
+
+impl<T: FnMut(News)> Shop<T> {
+    fn new(orders: Arc<Mailbox<Build>>, tell: T) -> Self {
+        let devices = [None, None];
+        let (last, running) = (None, None);
+        Self { orders, tell, last, running, devices, turn: 0, serial: 0, pipelines: 0, skipped: 0 }
+    }
+
+    /// A fault of the compiler must not take the window's thread with it.
+    fn guarded(&mut self, build: &Build) {
+        let result = catch_unwind(AssertUnwindSafe(|| self.build(build)));
+        if result.is_err() {
+            self.last = None;
+            let what = "the compiler failed on this text; please report it with the scene";
+            (self.tell)(News::Failed(what.to_owned()));
+        }
+    }
+
+    fn build(&mut self, build: &Build) {
+        let document = match Document::read(&build.path) {
+            Ok(document) => document,
+            Err(error) => {
+                self.last = None;
+                return (self.tell)(News::Unreadable(error.to_string()));
+            }
+        };
+        let imports = Imports::of(&build.path);
+        let options = Options { slots: build.live };
+        let mut compiled =
+            sdfc::compile_with(&document.name, &document.text, &imports, options);
+        let order = (build.clone(), hash(&compiled.sources));
+        if self.last.as_ref() == Some(&order) {
+            return;
+        }
+        if self.last.as_ref().is_some_and(|(last, _)| last.renewed != build.renewed) {
+            self.forget_devices();
+        }
+        self.last = Some(order);
+        let scene = compiled.scene.take();
+        let findings = self.findings(&document, &imports, compiled, scene.is_some());
+        let folders = imports.folders();
+        match scene {
+            None => (self.tell)(News::Compiled { findings, folders, builds: false }),
+            Some(scene) if !scene.draws() => {
+                (self.tell)(News::Compiled { findings, folders, builds: false });
+                (self.tell)(News::Empty);
+            }
+            Some(scene) => {
+                (self.tell)(News::Compiled { findings, folders, builds: true });
+                self.ready(build, document, scene);
+            }
+        }
+    }
+
+    /// What the terminal says: of the text as it stands, not of one whose numbers are params.
+    fn findings(
+        &self,
+        document: &Document,
+        imports: &Imports,
+        compiled: Compiled,
+        compiles: bool,
+    ) -> Findings {
+        if !compiles || compiled.diagnostics.is_empty() {
+            return Findings::of(&compiled);
+        }
+        Findings::of(&sdfc::compile_with_imports(&document.name, &document.text, imports))
+    }
+
+    fn ready(&mut self, build: &Build, document: Document, scene: Scene) {
+        let times = scene.times();
+        let mut stages =
+            Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
+        match self.engine(build, &scene, &mut stages) {
+            Ok(Some(Prepared { engine, method, note })) => {
+                self.skipped = 0;
+                self.serial += 1;
+                let (probe, moves) = (Probe::new(scene.program()), reads_time(&scene));
+                let (text, pipelines, serial) = (document.text, self.pipelines, self.serial);
+                let model = Model {
+                    scene, text, engine, method, probe, moves, stages, pipelines, serial, note,
+                };
+                (self.tell)(News::Ready(Arc::new(model)));
+            }
+            Ok(None) => {
+                // A newer order waits; whatever it finds, this text has not been shown.
+                self.last = None;
+                self.skipped += 1;
+            }
+            Err(error) => {
+                self.last = None;
+                self.forget_devices();
+                (self.tell)(News::Failed(error.to_string()));
+            }
+        }
+    }
+
+    /// What draws the scene, and with which method; `None` where a newer order makes it pointless.
+    fn engine(
+        &mut self,
+        build: &Build,
+        scene: &Scene,
+        stages: &mut Stages,
+    ) -> Result<Option<Prepared>, Error> {
+        let wanted = build.method.as_deref().unwrap_or(scene.method()).to_owned();
+        if build.on_cpu {
+            return on_cpu(scene, wanted, None).map(Some);
+        }
+        let start = Instant::now();
+        let shader = scene.picture_shader(&wanted)?;
+        let text = shader.wgsl().map_err(Error::Codegen)?;
+        stages.lower = milliseconds(start);
+        if let Some((_, pipeline)) = self.running.as_ref().filter(|(running, _)| *running == text) {
+            let engine = Engine::Gpu(Arc::clone(pipeline));
+            return Ok(Some(Prepared { engine, method: wanted, note: None }));
+        }
+        if self.orders.calls() && self.skipped < MOST_SKIPPED {
+            return Ok(None);
+        }
+        let gpu = match self.device() {
+            Ok(gpu) => gpu,
+            Err(error) => {
+                let note = format!("drawn on the processor: {error}");
+                return on_cpu(scene, wanted, Some(note)).map(Some);
+            }
+        };
+        let start = Instant::now();
+        let pipeline = Pipeline::new(&gpu, shader, scene.program().uniforms.len())?;
+        stages.pipeline = Some(milliseconds(start));
+        self.pipelines += 1;
+        let pipeline = Arc::new(pipeline);
+        self.running = Some((text, Arc::clone(&pipeline)));
+        Ok(Some(Prepared { engine: Engine::Gpu(pipeline), method: wanted, note: None }))
+    }
+
+    /// The device that is not drawing.
+    fn device(&mut self) -> Result<Gpu, sdfc::render::RenderError> {
+        self.turn = (self.turn + 1) % self.devices.len();
+        let place = &mut self.devices[self.turn];
+        if let Some(gpu) = place {
+            return Ok(gpu.clone());
+        }
+        let gpu = Gpu::new()?;
+        *place = Some(gpu.clone());
+        Ok(gpu)
+    }
+
+    fn forget_devices(&mut self) {
+        self.devices = [None, None];
+        self.running = None;
+    }
+}
+
+/// What draws a scene, and with which method; what is otherwise than asked.
+struct Prepared {
+    engine: Engine,
+    method: String,
+    note: Option<String>,
+}
+
+/// The CPU renderer, which has two of the methods.
+fn on_cpu(scene: &Scene, wanted: String, note: Option<String>) -> Result<Prepared, Error> {
+    let engine = Engine::Cpu(Arc::new(CpuScene::new(scene.program())?));
+    if matches!(wanted.as_str(), "auto" | "sphere") {
+        return Ok(Prepared { engine, method: wanted, note });
+    }
+    let other = format!("the processor has no method `{wanted}`, `auto` is shown");
+    let notes: Vec<String> = note.into_iter().chain([other]).collect();
+    Ok(Prepared { engine, method: "auto".to_owned(), note: Some(notes.join("; ")) })
+}
+
+fn hash(sources: &Sources) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    for file in 0..sources.len() {
+        sources.text(FileId(file as u32)).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::path::Path;
+    use std::sync::mpsc::{Receiver, channel};
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Long enough for a busy machine; reached only where a test fails.
+    const PATIENCE: Duration = Duration::from_secs(300);
+
+    /// A text as the worker makes a model of it, drawn on the CPU.
+    pub(crate) fn model(text: &str) -> Arc<Model> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        std::fs::write(&path, text).unwrap();
+        let (worker, news) = worker();
+        worker.order(on_cpu(&path));
+        ready(&news)
+    }
+
+    fn on_cpu(path: &Path) -> Build {
+        Build { on_cpu: true, ..Build::of(path) }
+    }
+
+    fn worker() -> (Worker, Receiver<News>) {
+        let (sender, news) = channel();
+        (Worker::new(sender, || {}).unwrap(), news)
+    }
+
+    fn ready(news: &Receiver<News>) -> Arc<Model> {
+        loop {
+            match news.recv_timeout(PATIENCE).unwrap() {
+                News::Ready(model) => return model,
+                News::Compiled { findings, .. } => assert_eq!(findings.errors(), 0, "{findings:?}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    fn findings(news: &Receiver<News>) -> Findings {
+        match news.recv_timeout(PATIENCE).unwrap() {
+            News::Compiled { findings, .. } => findings,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn broken_text_gives_findings_and_the_next_good_one_a_model() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        let (worker, news) = worker();
+        worker.order(on_cpu(&path));
+        assert!(matches!(news.recv_timeout(PATIENCE).unwrap(), News::Unreadable(_)));
+        for round in 1..4 {
+            std::fs::write(&path, format!("spere({round})")).unwrap();
+            worker.order(on_cpu(&path));
+            assert_eq!(findings(&news).errors(), 1);
+            std::fs::write(&path, format!("\u{feff}sphere({round})\r\n")).unwrap();
+            worker.order(on_cpu(&path));
+            assert_eq!(ready(&news).serial, round);
+        }
+        // The same text again is no news; what draws nothing is told.
+        worker.order(on_cpu(&path));
+        std::fs::write(&path, "let a = 1\n").unwrap();
+        worker.order(on_cpu(&path));
+        assert_eq!(findings(&news).errors(), 0);
+        assert!(matches!(news.recv_timeout(PATIENCE).unwrap(), News::Empty));
+    }
+
+    #[test]
+    fn an_edited_import_is_seen_and_its_folder_watched() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        let part = folder.path().join("parts").join("ball.sdf");
+        std::fs::create_dir(part.parent().unwrap()).unwrap();
+        std::fs::write(&path, "import \"parts/ball.sdf\"\nball()\n").unwrap();
+        let (worker, news) = worker();
+        let at = [0.0, 0.0, 2.0];
+        for radius in [1.0, 0.5] {
+            std::fs::write(&part, format!("solid ball() = sphere({radius:?})(p)\n")).unwrap();
+            worker.order(on_cpu(&path));
+            match news.recv_timeout(PATIENCE).unwrap() {
+                News::Compiled { findings, folders, .. } => {
+                    assert_eq!(findings.errors(), 0, "{findings:?}");
+                    assert!(folders.iter().any(|folder| folder.ends_with("parts")), "{folders:?}");
+                }
+                other => panic!("{other:?}"),
+            }
+            assert_eq!(ready(&news).scene.distance(at).unwrap(), 2.0 - radius);
+        }
+    }
+
+    #[test]
+    fn warnings_are_those_of_the_text_as_it_stands() {
+        let text = "let idle = 2\nsphere(1).twist(1)\n";
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        std::fs::write(&path, text).unwrap();
+        let (worker, news) = worker();
+        worker.order(on_cpu(&path));
+        let expected = Findings::of(&sdfc::compile("a.sdf", text));
+        assert_eq!(findings(&news), expected);
+    }
+
+    /// Hundreds of edits, half of them broken, faster than they can be followed: the last one counts.
+    #[test]
+    fn a_storm_of_edits_ends_with_the_last_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        let (worker, news) = worker();
+        let broken = ["sphere(", "spere(1)", "sphere(1).", "\u{0}", "box(1) |", "sphere(1, 2, 3, 4)"];
+        let rounds = std::env::var("SDFC_SOAK").ok().and_then(|it| it.parse().ok()).unwrap_or(400);
+        for round in 0..rounds {
+            let text = match round % 2 {
+                0 => broken[round / 2 % broken.len()].to_owned(),
+                _ => format!("sphere({}) | box(0.{})\n", round, round % 7 + 1),
+            };
+            std::fs::write(&path, text).unwrap();
+            worker.order(on_cpu(&path));
+        }
+        std::fs::write(&path, "sphere(0.75)\n").unwrap();
+        worker.order(on_cpu(&path));
+        loop {
+            match news.recv_timeout(PATIENCE).unwrap() {
+                News::Ready(model) if model.text == "sphere(0.75)\n" => {
+                    assert_eq!(model.scene.distance([0.0, 0.0, 2.0]).unwrap(), 1.25);
+                    return;
+                }
+                News::Failed(why) => panic!("{why}"),
+                News::Ready(_) | News::Compiled { .. } | News::Unreadable(_) | News::Empty => {}
+            }
+        }
+    }
+}
