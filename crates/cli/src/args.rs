@@ -66,6 +66,8 @@ pub enum Command {
     Compile(Compile),
     /// Draw a scene
     Render(Render),
+    /// Show a scene in a window that follows its text
+    View(View),
     /// Say what was modelled and why
     Explain(Explain),
     /// Time the specialised shader against shaders that interpret the scene
@@ -280,6 +282,13 @@ pub enum Backend {
     Gpu,
     /// The processor
     Cpu,
+}
+
+/// Arguments of `view`.
+#[derive(clap::Args, Debug)]
+pub struct View {
+    /// The scene
+    pub file: PathBuf,
 }
 
 /// Arguments of `explain`.

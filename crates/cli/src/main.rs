@@ -2,7 +2,7 @@
 //!
 //! Exit statuses: 0, done; 1, the scene is wrong; 2, the call is wrong; 3, the machine cannot; 130,
 //! stopped by ctrl-C.
-//! This is the only crate that prints, opens files or ends the process.
+//! Beside the viewer this is the only crate that prints or ends the process.
 
 mod args;
 mod commands;
@@ -37,6 +37,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
+        Command::View(args) => commands::view::run(args),
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),
         Command::Doc(args) => commands::doc::run(args, console),

@@ -61,6 +61,6 @@ pub use image::{
 pub use stats::{Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};
 pub use view::{
-    Background, Bounds, Footprint, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion, ViewShadow,
-    ViewSource,
+    Background, Bounds, Footprint, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion,
+    ViewShadow, ViewSource,
 };

@@ -26,7 +26,9 @@ impl Knobs {
         let mut values = model.defaults();
         (values.time, values.frame) = (time, frame);
         for (param, lanes) in model.declared().iter().zip(&mut values.params) {
-            if let Some(moved) = self.params.get(&param.name).and_then(|moved| fitted(param, *moved)) {
+            if let Some(moved) =
+                self.params.get(&param.name).and_then(|moved| fitted(param, *moved))
+            {
                 *lanes = moved;
             }
         }
@@ -124,7 +126,8 @@ pub fn value_text(param: &Param, lanes: [f64; 4]) -> String {
 pub fn number_text(value: f64) -> String {
     let digits = if value != 0.0 && value.abs() < 0.1 { 6 } else { 4 };
     let text = format!("{value:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text =
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 

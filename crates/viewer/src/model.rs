@@ -88,9 +88,6 @@ pub fn reads_time(scene: &Scene) -> bool {
     let program = scene.program();
     let mut roots = program.uniforms.clone();
     roots.extend(program.settings.nodes());
-    let is_time = |node| match node {
-        Node::Frame(input, _) => matches!(input, FrameInput::Time | FrameInput::Frame),
-        _ => false,
-    };
+    let is_time = |node| matches!(node, Node::Frame(FrameInput::Time | FrameInput::Frame, _));
     reachable(&program.graph, &roots).into_iter().any(|id| is_time(program.graph.node(id)))
 }

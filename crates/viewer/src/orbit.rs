@@ -177,7 +177,7 @@ impl Orbit {
             self.half_height = self.half_height_at_pivot();
         } else {
             let distance = self.half_height / self.perspective;
-            self.eye = self.eye + self.forward * (self.depth() - distance);
+            self.eye += self.forward * (self.depth() - distance);
             self.half_height = self.perspective;
         }
         self.parallel = parallel;
@@ -337,7 +337,8 @@ mod tests {
             orbit.set_parallel(parallel);
             let pose = orbit.pose();
             let [x, y, _] = pose.basis();
-            let half = pose.half_height * if parallel { 1.0 } else { (pose.target - pose.eye).length() };
+            let half =
+                pose.half_height * if parallel { 1.0 } else { (pose.target - pose.eye).length() };
             let under = pose.target + (x * 0.6 + y * -0.3) * half;
             near(seen(&orbit, under), [0.6, -0.3]);
             orbit.dolly(0.5, [0.6, -0.3]);
@@ -408,7 +409,8 @@ mod tests {
             orbit.set_parallel(step == 2);
             let text = format!("sphere(1)\n{}", orbit.text());
             let compiled = sdfc::compile("a", &text);
-            let scene = compiled.scene.unwrap_or_else(|| panic!("{text}: {:?}", compiled.diagnostics));
+            let scene =
+                compiled.scene.unwrap_or_else(|| panic!("{text}: {:?}", compiled.diagnostics));
             let frame = sdfc::FrameValues::defaults(scene.params());
             let pose = Pose::new(scene.program(), &frame, None, 1.5).unwrap();
             let own = orbit.pose();

@@ -276,7 +276,11 @@ impl<T: FnMut(Painted)> Studio<T> {
         let mut progress = |progress: Progress| {
             reached = progress.done as f64;
             let must = gives_way || start.elapsed() > PATIENCE;
-            if must && requests.calls() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if must && requests.calls() {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let options = RenderOptions { tile_size: TileSize::Adaptive { milliseconds: TILE } };
         let (model, values) = (&request.model, &request.frame);
@@ -289,13 +293,13 @@ impl<T: FnMut(Painted)> Studio<T> {
                 scene.render(view, values, &model.method, &options, &mut progress)
             }
         };
-        result.map_err(|error| match error {
-            RenderError::Cancelled => {
-                // Known by now, so that the next first pass is coarse enough.
-                self.cost = Some((model.serial, milliseconds(start) / f64::max(reached, 1.0)));
-                Stop::Superseded
+        result.map_err(|error| {
+            if error != RenderError::Cancelled {
+                return Stop::Error(error.into());
             }
-            error => Stop::Error(error.into()),
+            // Known by now, so that the next first pass is coarse enough.
+            self.cost = Some((model.serial, milliseconds(start) / f64::max(reached, 1.0)));
+            Stop::Superseded
         })
     }
 

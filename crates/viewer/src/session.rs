@@ -186,7 +186,9 @@ impl Session {
             return;
         }
         self.size = size;
-        if self.follows && let Some(pose) = self.home() {
+        if self.follows
+            && let Some(pose) = self.home()
+        {
             self.orbit = Some(Orbit::new(&pose));
         }
         let (Some(model), Some(orbit)) = (&self.model, &self.orbit) else { return };
@@ -331,7 +333,8 @@ impl Session {
                 }
             }
             News::Empty => {
-                self.trouble = Some("the scene draws nothing: a solid on a line of its own is drawn".into());
+                self.trouble =
+                    Some("the scene draws nothing: a solid on a line of its own is drawn".into());
             }
             News::Failed(why) => (self.building, self.trouble) = (false, Some(why)),
             News::Ready(model) => self.take(model),

@@ -436,11 +436,8 @@ mod tests {
     #[test]
     fn the_shaded_view_is_that_of_a_file() {
         let scene = sdfc::compile("a", BALL).scene.unwrap();
-        let options = sdfc::PictureOptions {
-            size: SIZE,
-            backend: sdfc::Backend::Cpu,
-            ..Default::default()
-        };
+        let options =
+            sdfc::PictureOptions { size: SIZE, backend: sdfc::Backend::Cpu, ..Default::default() };
         let expected = scene.render(&options, &mut sdfc::unwatched).unwrap().image.to_srgb8();
         let (colors, _) = painted(BALL, Mode::Shaded, |_| {});
         for (color, expected) in colors.iter().flatten().zip(expected) {

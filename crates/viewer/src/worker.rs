@@ -164,8 +164,7 @@ impl<T: FnMut(News)> Shop<T> {
         };
         let imports = Imports::of(&build.path);
         let options = Options { slots: build.live };
-        let mut compiled =
-            sdfc::compile_with(&document.name, &document.text, &imports, options);
+        let mut compiled = sdfc::compile_with(&document.name, &document.text, &imports, options);
         let order = (build.clone(), hash(&compiled.sources));
         if self.last.as_ref() == Some(&order) {
             return;
@@ -206,8 +205,7 @@ impl<T: FnMut(News)> Shop<T> {
 
     fn ready(&mut self, build: &Build, document: Document, scene: Scene) {
         let times = scene.times();
-        let mut stages =
-            Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
+        let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
         match self.engine(build, &scene, &mut stages) {
             Ok(Some(Prepared { engine, method, note })) => {
                 self.skipped = 0;
@@ -215,7 +213,16 @@ impl<T: FnMut(News)> Shop<T> {
                 let (probe, moves) = (Probe::new(scene.program()), reads_time(&scene));
                 let (text, pipelines, serial) = (document.text, self.pipelines, self.serial);
                 let model = Model {
-                    scene, text, engine, method, probe, moves, stages, pipelines, serial, note,
+                    scene,
+                    text,
+                    engine,
+                    method,
+                    probe,
+                    moves,
+                    stages,
+                    pipelines,
+                    serial,
+                    note,
                 };
                 (self.tell)(News::Ready(Arc::new(model)));
             }
@@ -326,6 +333,25 @@ pub(crate) mod tests {
 
     use super::*;
 
+    #[allow(clippy::wildcard_enum_match_arm, reason = "a test that meets anything else fails")]
+    mod told {
+        use super::*;
+
+        pub fn ready(news: &Receiver<News>) -> Arc<Model> {
+            match news.recv_timeout(PATIENCE).unwrap() {
+                News::Ready(model) => model,
+                other => panic!("{other:?}"),
+            }
+        }
+
+        pub fn compiled(news: &Receiver<News>) -> (Findings, BTreeSet<PathBuf>) {
+            match news.recv_timeout(PATIENCE).unwrap() {
+                News::Compiled { findings, folders, .. } => (findings, folders),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
     /// Long enough for a busy machine; reached only where a test fails.
     const PATIENCE: Duration = Duration::from_secs(300);
 
@@ -349,20 +375,12 @@ pub(crate) mod tests {
     }
 
     fn ready(news: &Receiver<News>) -> Arc<Model> {
-        loop {
-            match news.recv_timeout(PATIENCE).unwrap() {
-                News::Ready(model) => return model,
-                News::Compiled { findings, .. } => assert_eq!(findings.errors(), 0, "{findings:?}"),
-                other => panic!("{other:?}"),
-            }
-        }
+        assert_eq!(findings(news).errors(), 0);
+        told::ready(news)
     }
 
     fn findings(news: &Receiver<News>) -> Findings {
-        match news.recv_timeout(PATIENCE).unwrap() {
-            News::Compiled { findings, .. } => findings,
-            other => panic!("{other:?}"),
-        }
+        told::compiled(news).0
     }
 
     #[test]
@@ -394,20 +412,16 @@ pub(crate) mod tests {
         let path = folder.path().join("a.sdf");
         let part = folder.path().join("parts").join("ball.sdf");
         std::fs::create_dir(part.parent().unwrap()).unwrap();
-        std::fs::write(&path, "import \"parts/ball.sdf\"\nball()\n").unwrap();
+        std::fs::write(&path, "import ball from \"parts/ball.sdf\"\nball()\n").unwrap();
         let (worker, news) = worker();
         let at = [0.0, 0.0, 2.0];
         for radius in [1.0, 0.5] {
             std::fs::write(&part, format!("solid ball() = sphere({radius:?})(p)\n")).unwrap();
             worker.order(on_cpu(&path));
-            match news.recv_timeout(PATIENCE).unwrap() {
-                News::Compiled { findings, folders, .. } => {
-                    assert_eq!(findings.errors(), 0, "{findings:?}");
-                    assert!(folders.iter().any(|folder| folder.ends_with("parts")), "{folders:?}");
-                }
-                other => panic!("{other:?}"),
-            }
-            assert_eq!(ready(&news).scene.distance(at).unwrap(), 2.0 - radius);
+            let (findings, folders) = told::compiled(&news);
+            assert_eq!(findings.errors(), 0, "{findings:?}");
+            assert!(folders.iter().any(|folder| folder.ends_with("parts")), "{folders:?}");
+            assert_eq!(told::ready(&news).scene.distance(at).unwrap(), 2.0 - radius);
         }
     }
 
@@ -429,7 +443,8 @@ pub(crate) mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.sdf");
         let (worker, news) = worker();
-        let broken = ["sphere(", "spere(1)", "sphere(1).", "\u{0}", "box(1) |", "sphere(1, 2, 3, 4)"];
+        let broken =
+            ["sphere(", "spere(1)", "sphere(1).", "\u{0}", "box(1) |", "sphere(1, 2, 3, 4)"];
         let rounds = std::env::var("SDFC_SOAK").ok().and_then(|it| it.parse().ok()).unwrap_or(400);
         for round in 0..rounds {
             let text = match round % 2 {

@@ -16,20 +16,22 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const SIZE: [u32; 2] = [1000, 640];
 /// Columns and rows of the window that show nothing but the picture.
 const PICTURE: [std::ops::Range<u32>; 2] = [40..680, 120..500];
-/// The middle of them.
-const MIDDLE: [u32; 2] = [360, 310];
+/// A place on what is shown, beside the light's reflection.
+const PLACE: [u32; 2] = [410, 370];
+
+type Test = fn(Display) -> Result<(), Failed>;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, fn(Display) -> Result<(), Failed>); 3] = [
+    let trials: [(&str, Test); 3] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
     ];
-    let trial = |(name, test): (&str, fn(Display) -> Result<(), Failed>)| {
+    let trial = |(name, test): (&str, Test)| {
         let run = move || Display::open().and_then(test);
         Trial::test(name, run).with_ignored_flag(!missing.is_empty() && !required)
     };
@@ -47,7 +49,7 @@ const BALL: &str = "sphere(1).color(#d94f30)\nbackground(#203040)\n\
 fn edits(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(BALL)?;
     let window = Window::open(&display, &scene.path)?;
-    let ball = window.settled(|picture| is_red(picture, MIDDLE))?;
+    let ball = window.settled(|picture| is_red(picture, PLACE))?;
     // Another number: it grows.
     scene.write(&BALL.replace("sphere(1)", "sphere(1.6)"))?;
     let larger = window.settled(|picture| reds(picture) > reds(&ball) * 2)?;
@@ -55,11 +57,11 @@ fn edits(display: Display) -> Result<(), Failed> {
     scene.write("spere(1)\n")?;
     let broken = window.settled(|picture| differ(picture, &larger, [0..700, 40..200]) > 500)?;
     window.keep(&broken, "broken")?;
-    expect(is_red(&broken, MIDDLE), "the last good picture is gone")?;
+    expect(is_red(&broken, PLACE), "the last good picture is gone")?;
     // Another structure.
     let text = BALL.replace("sphere(1)", "box([1, 1, 1]).rotate(y: 30deg)");
     scene.write(&text.replace("#d94f30", "#30d94f"))?;
-    let mended = window.settled(|picture| is_green(picture, MIDDLE))?;
+    let mended = window.settled(|picture| is_green(picture, PLACE))?;
     window.keep(&mended, "mended")
 }
 
@@ -67,8 +69,8 @@ fn camera(display: Display) -> Result<(), Failed> {
     let text = BALL.replace("sphere(1)", "box([1, 1, 1])");
     let scene = Scene::new(&text)?;
     let window = Window::open(&display, &scene.path)?;
-    let before = window.settled(|picture| is_red(picture, MIDDLE))?;
-    let [x, y] = MIDDLE.map(|at| at.to_string());
+    let before = window.settled(|picture| is_red(picture, PLACE))?;
+    let [x, y] = PLACE.map(|at| at.to_string());
     window.input(&["mousemove", &x, &y, "mousedown", "1"])?;
     for _ in 0..6 {
         window.input(&["mousemove_relative", "--", "20", "10"])?;
@@ -86,14 +88,14 @@ fn camera(display: Display) -> Result<(), Failed> {
 fn comes_back(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(BALL)?;
     let window = Window::open(&display, &scene.path)?;
-    window.settled(|picture| is_red(picture, MIDDLE))?;
+    window.settled(|picture| is_red(picture, PLACE))?;
     std::fs::remove_file(&scene.path)?;
     std::thread::sleep(Duration::from_millis(500));
-    let gone = window.settled(|picture| is_red(picture, MIDDLE))?;
+    let gone = window.settled(|picture| is_red(picture, PLACE))?;
     let aside = scene.path.with_extension("new");
     std::fs::write(&aside, BALL.replace("#d94f30", "#30d94f"))?;
     std::fs::rename(&aside, &scene.path)?;
-    let back = window.settled(|picture| is_green(picture, MIDDLE))?;
+    let back = window.settled(|picture| is_green(picture, PLACE))?;
     expect(differ(&back, &gone, PICTURE) > 2000, "the new file is not seen")
 }
 
@@ -221,10 +223,8 @@ impl<'a> Window<'a> {
     }
 
     fn input(&self, arguments: &[&str]) -> Result<(), Failed> {
-        let output = Command::new("xdotool")
-            .args(arguments)
-            .env("DISPLAY", &self.display.name)
-            .output()?;
+        let output =
+            Command::new("xdotool").args(arguments).env("DISPLAY", &self.display.name).output()?;
         expect(output.status.success(), &format!("xdotool {arguments:?}: {output:?}"))
     }
 

@@ -11,6 +11,7 @@ mod faults;
 pub mod format;
 pub mod render;
 pub mod tune;
+pub mod view;
 
 use std::path::{Path, PathBuf};
 

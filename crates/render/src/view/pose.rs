@@ -62,10 +62,7 @@ impl Pose {
     }
 
     /// As the scene states it.
-    fn of_camera(
-        camera: &Camera,
-        value: &dyn Fn(NodeId) -> [f64; 4],
-    ) -> Result<Self, ViewError> {
+    fn of_camera(camera: &Camera, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<Self, ViewError> {
         let eye = finite(value(camera.eye), "the camera's eye")?;
         let target = finite(value(camera.target), "the camera's target")?;
         let up = finite(value(camera.up), "the camera's up")?;

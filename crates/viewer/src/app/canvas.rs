@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui::{
-    self, Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, RichText, Sense, TextureHandle,
-    TextureOptions, Ui, pos2, vec2,
+    self, Color32, ColorImage, Key, PointerButton, Pos2, Rect, Response, RichText, Sense,
+    TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
 use glam::DVec3;
 use sdfc::render::{CAPPED, HIT};
@@ -76,7 +76,8 @@ impl Canvas {
         }
         self.shown = session.pictures;
         let image = color_image(picture);
-        let smooth = if picture.divisor > 1 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
+        let smooth =
+            if picture.divisor > 1 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
         match &mut self.texture {
             Some(texture) => texture.set(image, smooth),
             none => *none = Some(ui.ctx().load_texture("picture", image, smooth)),
@@ -122,7 +123,8 @@ fn drive(ui: &Ui, response: &Response, rect: Rect, session: &mut Session) -> boo
         });
     }
     if response.double_clicked()
-        && let Some(look) = response.interact_pointer_pos().and_then(|at| session.look(part(rect, at)))
+        && let Some(look) =
+            response.interact_pointer_pos().and_then(|at| session.look(part(rect, at)))
         && look.status == HIT
     {
         session.move_camera(|orbit| orbit.set_pivot(look.point));
@@ -171,15 +173,20 @@ fn part(rect: Rect, at: Pos2) -> [f64; 2] {
 
 /// What is under the pointer, in a corner.
 fn hover(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
-    let Some(look) = response.hover_pos().and_then(|at| session.look(part(rect, at))) else { return };
+    let Some(look) = response.hover_pos().and_then(|at| session.look(part(rect, at))) else {
+        return;
+    };
     let lines = lines(&look);
-    let area = egui::Area::new(ui.scope_id().with("hover")).order(egui::Order::Middle).interactable(false);
-    let area = area.pivot(egui::Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(10.0, -10.0));
+    let area =
+        egui::Area::new(ui.scope_id().with("hover")).order(egui::Order::Middle).interactable(false);
+    let area =
+        area.pivot(egui::Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(10.0, -10.0));
     area.show(ui.ctx(), |ui| {
         card().show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             for (line, color) in lines {
-                ui.label(RichText::new(line).monospace().size(11.5).color(color));
+                let text = RichText::new(line).monospace().size(11.5).color(color);
+                ui.add(egui::Label::new(text).extend());
             }
         });
     });
@@ -218,7 +225,9 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
     if *legend == Legend::None {
         return;
     }
-    let area = egui::Area::new(ui.scope_id().with("legend")).order(egui::Order::Middle).interactable(false);
+    let area = egui::Area::new(ui.scope_id().with("legend"))
+        .order(egui::Order::Middle)
+        .interactable(false);
     let area =
         area.pivot(egui::Align2::RIGHT_BOTTOM).fixed_pos(rect.right_bottom() + vec2(-10.0, -10.0));
     area.show(ui.ctx(), |ui| {

@@ -9,8 +9,7 @@ const WITH_COLUMN: [&str; 3] = ["subl", "zed", "kate"];
 /// The same behind `--goto`.
 const WITH_GOTO: [&str; 4] = ["code", "codium", "cursor", "windsurf"];
 /// Editors that need a terminal, which a window has not.
-const IN_TERMINAL: [&str; 9] =
-    ["vi", "vim", "nvim", "nano", "hx", "helix", "kak", "micro", "ed"];
+const IN_TERMINAL: [&str; 9] = ["vi", "vim", "nvim", "nano", "hx", "helix", "kak", "micro", "ed"];
 
 /// The user's editor: `$VISUAL`, else `$EDITOR`.
 pub fn chosen() -> Option<String> {

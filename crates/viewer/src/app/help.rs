@@ -37,7 +37,8 @@ const ROWS: [(&str, &str); 17] = [
 
 /// The window with all of it.
 pub fn show(ctx: &Context, open: &mut bool) {
-    let window = egui::Window::new("Keys and buttons").open(open).resizable(false).collapsible(false);
+    let window =
+        egui::Window::new("Keys and buttons").open(open).resizable(false).collapsible(false);
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
             for (key, what) in ROWS {

@@ -22,7 +22,9 @@ pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, wishes: &mut Ve
         let others = findings.all.len() - errors;
         if errors > 0 || *warnings {
             let shown = |found: &&Finding| found.is_error || *warnings;
-            let scroll = egui::ScrollArea::vertical().max_height(rect.height() * 0.7);
+            let scroll = egui::ScrollArea::vertical()
+                .max_height(rect.height() * 0.7)
+                .min_scrolled_height(rect.height() * 0.7);
             scroll.show(ui, |ui| {
                 for found in findings.all.iter().filter(shown) {
                     finding(ui, session, found, wishes);
@@ -30,7 +32,8 @@ pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, wishes: &mut Ve
             });
         }
         if others > 0 {
-            let text = if others == 1 { "1 warning".to_owned() } else { format!("{others} warnings") };
+            let text =
+                if others == 1 { "1 warning".to_owned() } else { format!("{others} warnings") };
             let button = egui::Button::new(RichText::new(text).small().color(style::WARNING))
                 .fill(Color32::from_rgba_unmultiplied(18, 20, 24, 225));
             if ui.add(button).on_hover_text("Show or hide the warnings.").clicked() {

@@ -5,7 +5,7 @@ use sdfc::graph::{Param, ParamKind};
 use sdfc::march::METHODS;
 
 use super::{Shows, Wish, style};
-use crate::knobs::value_text;
+use crate::knobs::{number_text, value_text};
 use crate::model::Model;
 use crate::orbit::Side;
 use crate::session::Session;
@@ -117,11 +117,12 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
         let mut value = lanes;
         ui.horizontal(|ui| {
             let color = if moved { style::ACCENT } else { style::TEXT };
-            let name = ui.add_sized(
-                [84.0, 18.0],
-                egui::Label::new(RichText::new(&param.name).color(color)).truncate().halign(egui::Align::LEFT),
-            );
-            name.on_hover_text(hint(param));
+            let left = egui::Layout::left_to_right(egui::Align::Center);
+            ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
+                ui.set_min_width(84.0);
+                let name = RichText::new(&param.name).color(color);
+                ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param));
+            });
             knob(ui, param, &mut value);
             let back = egui::Button::new(RichText::new("⟲").small()).frame(false);
             let text = format!("Back to {}.", value_text(param, param.default));
@@ -176,18 +177,16 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
                 }
             }
         }
-        ParamKind::Int => {
-            match param.range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
-                Some([low, high]) => {
-                    ui.add(egui::Slider::new(number, low.ceil()..=high.floor()).integer());
-                }
-                None => {
-                    let [low, high] = param.range.unwrap_or([-1e9, 1e9]);
-                    ui.add(egui::DragValue::new(number).range(low..=high).speed(0.1).fixed_decimals(0));
-                    *number = number.round();
-                }
+        ParamKind::Int => match param.range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
+            Some([low, high]) => {
+                ui.add(egui::Slider::new(number, low.ceil()..=high.floor()).integer());
             }
-        }
+            None => {
+                let [low, high] = param.range.unwrap_or([-1e9, 1e9]);
+                ui.add(egui::DragValue::new(number).range(low..=high).speed(0.1).fixed_decimals(0));
+                *number = number.round();
+            }
+        },
         ParamKind::Bool => {
             let mut on = *number != 0.0;
             ui.checkbox(&mut on, "");
@@ -218,14 +217,14 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
 fn number_knob(ui: &mut Ui, number: &mut f64, range: Option<[f64; 2]>, unit: &str) {
     match range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
         Some([low, high]) => {
-            let slider = egui::Slider::new(number, low..=high).suffix(unit).max_decimals(4);
-            ui.add(slider.smart_aim(false));
+            let slider = egui::Slider::new(number, low..=high).suffix(unit);
+            ui.add(slider.custom_formatter(|value, _| number_text(value)));
         }
         None => {
             let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             let speed = (number.abs() * 0.005).max(0.002);
-            let drag = egui::DragValue::new(number).range(low..=high).speed(speed);
-            ui.add(drag.suffix(unit).max_decimals(4));
+            let drag = egui::DragValue::new(number).range(low..=high).speed(speed).suffix(unit);
+            ui.add(drag.custom_formatter(|value, _| number_text(value)));
         }
     }
 }
@@ -266,25 +265,32 @@ fn camera(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
             wishes.push(Wish::Copy(orbit.text()));
         }
     });
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let sides = [
-            ("Front", Side::Front, "From the front. 1"),
-            ("Right", Side::Right, "From the right. 3"),
-            ("Top", Side::Top, "From above. 7"),
-            ("Back", Side::Back, "From behind. 2"),
-            ("Left", Side::Left, "From the left. 4"),
-            ("Bottom", Side::Bottom, "From below. 8"),
-        ];
-        for (name, side, help) in sides {
-            if ui.small_button(name).on_hover_text(help).clicked() {
-                session.move_camera(|orbit| orbit.look_from(side));
+    let sides = [
+        ("Front", Side::Front, "From the front. 1"),
+        ("Right", Side::Right, "From the right. 3"),
+        ("Top", Side::Top, "From above. 7"),
+        ("Back", Side::Back, "From behind. 2"),
+        ("Left", Side::Left, "From the left. 4"),
+        ("Bottom", Side::Bottom, "From below. 8"),
+    ];
+    for row in sides.chunks(3) {
+        ui.columns(3, |columns| {
+            for ((name, side, help), ui) in row.iter().zip(columns) {
+                let button = egui::Button::new(RichText::new(*name).small());
+                let size = egui::vec2(ui.available_width(), 18.0);
+                if ui.add_sized(size, button).on_hover_text(*help).clicked() {
+                    session.move_camera(|orbit| orbit.look_from(*side));
+                }
             }
-        }
-    });
+        });
+    }
     ui.horizontal(|ui| {
         let mut parallel = orbit.is_parallel();
-        if ui.checkbox(&mut parallel, "parallel").on_hover_text("Rays without perspective. P").changed() {
+        if ui
+            .checkbox(&mut parallel, "parallel")
+            .on_hover_text("Rays without perspective. P")
+            .changed()
+        {
             session.move_camera(|orbit| orbit.set_parallel(parallel));
         }
         if let Some(fov) = orbit.fov() {
@@ -332,7 +338,8 @@ fn drawing(ui: &mut Ui, session: &mut Session) {
         session.set_build(|build| build.live = live);
     }
     let mut on_cpu = session.build().on_cpu;
-    let text = "Draw on the processor, with the second implementation that the shader is checked against.";
+    let text =
+        "Draw on the processor, with the second implementation that the shader is checked against.";
     if ui.checkbox(&mut on_cpu, "on the processor").on_hover_text(text).changed() {
         session.set_build(|build| build.on_cpu = on_cpu);
     }

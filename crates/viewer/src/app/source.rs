@@ -5,6 +5,7 @@ use sdfc::graph::{Param, ParamKind};
 use sdfc::lang::slots::Slot;
 
 use super::{Wish, style};
+use crate::knobs::number_text;
 use crate::model::Model;
 use crate::session::Session;
 
@@ -106,7 +107,8 @@ fn number(ui: &mut Ui, session: &mut Session, slot: &Slot, param: &Param) {
     let [low, high] = param.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let speed = (slot.value.abs() * unit * 0.005).max(0.002);
     let drag = egui::DragValue::new(&mut value).speed(speed).range(low * unit..=high * unit);
-    let drag = drag.max_decimals(4).suffix(if is_angle { "deg" } else { "" });
+    let drag = drag.custom_formatter(|value, _| number_text(value));
+    let drag = drag.suffix(if is_angle { "deg" } else { "" });
     let moved = before != slot.value;
     let response = ui
         .scope(|ui| {

@@ -1,7 +1,8 @@
 //! Colours and spacing: dark and calm, so that the picture is what one sees.
 
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Visuals, vec2,
+    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Visuals,
+    vec2,
 };
 
 /// Behind everything.

@@ -1,0 +1,165 @@
+//! A session without a window: files on disk in, pictures of a device out.
+//!
+//! Reported as ignored where there is no adapter, unless `SDFC_REQUIRE_GPU` is set.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::render::{Gpu, HIT};
+use sdfc_viewer::model::Model;
+use sdfc_viewer::painter::Picture;
+use sdfc_viewer::session::Session;
+use sdfc_viewer::views::Mode;
+
+/// Long enough for a busy machine and a software adapter; reached only where a test fails.
+const PATIENCE: Duration = Duration::from_secs(300);
+const SIZE: [u32; 2] = [96, 64];
+
+type Test = fn() -> Result<(), Failed>;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::from_args();
+    let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
+    let ignored = !required && Gpu::new().is_err();
+    let tests: [(&str, Test); 4] = [
+        ("a_changed_number_makes_no_pipeline", numbers),
+        ("broken_text_keeps_model_and_picture", broken),
+        ("a_picture_is_refined_to_full_resolution_and_then_smoothed", refined),
+        ("all_views_are_drawn_from_one_picture", views),
+    ];
+    let trial = |(name, test)| Trial::test(name, test).with_ignored_flag(ignored);
+    libtest_mimic::run(&arguments, tests.map(trial).into()).exit_code()
+}
+
+struct Fixture {
+    session: Session,
+    path: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+impl Fixture {
+    fn new(text: &str) -> Result<Self, Failed> {
+        let folder = tempfile::tempdir()?;
+        let path = folder.path().join("scene.sdf");
+        std::fs::write(&path, text)?;
+        let session = Session::open(&path, Arc::new(|| {}))?;
+        Ok(Self { session, path, _folder: folder })
+    }
+
+    fn write(&self, text: &str) -> Result<(), Failed> {
+        Ok(std::fs::write(&self.path, text)?)
+    }
+
+    /// Does as the window does until it is so.
+    fn until(&mut self, holds: impl Fn(&Session) -> bool) -> Result<(), Failed> {
+        let start = Instant::now();
+        while !holds(&self.session) {
+            if start.elapsed() > PATIENCE {
+                return Err(format!("still waiting: {:?}", self.session.trouble).into());
+            }
+            std::thread::sleep(Duration::from_millis(2));
+            self.session.poll();
+            self.session.ask(SIZE, false);
+        }
+        Ok(())
+    }
+
+    fn model(&self) -> Result<Arc<Model>, Failed> {
+        self.session.model.clone().ok_or_else(|| "there is no model".into())
+    }
+
+    fn picture(&self) -> Result<&Picture, Failed> {
+        self.session.picture.as_deref().ok_or_else(|| "there is no picture".into())
+    }
+
+    /// The picture of the newest model, done.
+    fn finish(&mut self) -> Result<(), Failed> {
+        self.until(|session| {
+            let (Some(model), Some(picture)) = (&session.model, &session.picture) else {
+                return false;
+            };
+            picture.finished && picture.request.model.serial == model.serial
+        })
+    }
+}
+
+fn expect(holds: bool, otherwise: &str) -> Result<(), Failed> {
+    if holds { Ok(()) } else { Err(otherwise.into()) }
+}
+
+fn ball(radius: &str) -> String {
+    format!(
+        "sphere({radius}).color(#d94f30)\ncamera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)\n"
+    )
+}
+
+fn numbers() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    fixture.finish()?;
+    let (first, before) = (fixture.model()?, fixture.picture()?.counts.hit);
+    fixture.write(&ball("1.5"))?;
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text.contains("1.5")))?;
+    fixture.finish()?;
+    let (second, after) = (fixture.model()?, fixture.picture()?.counts.hit);
+    expect(after > before * 2, "the ball has not grown")?;
+    expect((first.pipelines, second.pipelines) == (1, 1), "a number made a pipeline")?;
+    expect(second.stages.pipeline.is_none(), "time was spent on a pipeline")?;
+    fixture.write(&ball("1.5").replace("sphere(1.5)", "sphere(1.5) - sphere(0.5)"))?;
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text.contains(" - ")))?;
+    expect(fixture.model()?.pipelines == 2, "another structure made no pipeline")?;
+    fixture.finish()
+}
+
+fn broken() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    fixture.finish()?;
+    let (model, pictures) = (fixture.model()?.serial, fixture.session.pictures);
+    fixture.write("spere(1)\n")?;
+    fixture.until(|session| session.findings.errors() == 1)?;
+    expect(fixture.model()?.serial == model, "the model is another one")?;
+    expect(fixture.session.pictures == pictures, "something was drawn")?;
+    // The last good scene still moves.
+    fixture.session.move_camera(|orbit| orbit.turn(0.1, 0.0));
+    fixture.until(|session| session.pictures > pictures)?;
+    std::fs::remove_file(&fixture.path)?;
+    fixture.until(|session| session.trouble.is_some())?;
+    fixture.write(&ball("0.5"))?;
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text.contains("0.5")))?;
+    expect(fixture.session.trouble.is_none(), "the trouble is over and still told")
+}
+
+fn refined() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    fixture.session.samples = Some(4);
+    fixture.until(|session| session.pictures > 0)?;
+    fixture.finish()?;
+    let picture = fixture.picture()?;
+    expect((picture.divisor, picture.samples) == (1, 4), "it is not finished")?;
+    expect(picture.image.size() == SIZE, "it has another size")?;
+    let look = fixture.session.look([0.5, 0.5]).ok_or("nothing is there")?;
+    expect(look.status == HIT && (look.depth - 4.0).abs() < 0.01, &format!("{look:?}"))?;
+    let distance = look.distance.ok_or("no field")?;
+    expect(distance.abs() < 0.01, &format!("{look:?}"))
+}
+
+fn views() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    fixture.session.samples = Some(1);
+    fixture.finish()?;
+    let image = Arc::clone(&fixture.picture()?.image);
+    for mode in Mode::ALL {
+        fixture.session.mode = mode;
+        fixture.until(|session| {
+            session.picture.as_ref().is_some_and(|picture| picture.request.mode == mode)
+        })?;
+        let picture = fixture.picture()?;
+        expect(Arc::ptr_eq(&picture.image, &image), "the rays were drawn again")?;
+        let first = &picture.rgba[..4];
+        let differs = picture.rgba.chunks_exact(4).any(|pixel| pixel != first);
+        expect(differs || mode == Mode::Capped, &format!("{mode:?} is blank"))?;
+    }
+    Ok(())
+}
