@@ -146,7 +146,9 @@ fn refined() -> Result<(), Failed> {
 }
 
 fn views() -> Result<(), Failed> {
-    let mut fixture = Fixture::new(&ball("1"))?;
+    // A blend has no closed form: it is marched.
+    let blend = "union(sphere(0.8), box([1, 1, 1]).translate(x: 0.8), blend: smooth(0.4))\n";
+    let mut fixture = Fixture::new(blend)?;
     fixture.session.samples = Some(1);
     fixture.finish()?;
     let image = Arc::clone(&fixture.picture()?.image);

@@ -108,8 +108,10 @@ fn pixels(picture: &RgbImage) -> impl Iterator<Item = [u8; 3]> + '_ {
     rows.flat_map(move |y| columns.clone().map(move |x| picture.get_pixel(x, y).0))
 }
 
+/// Also where it reflects the light.
 fn red([r, g, b]: [u8; 3]) -> bool {
-    r > 60 && u32::from(r) > 2 * u32::from(g) && u32::from(r) > 2 * u32::from(b)
+    let outweighs = |other: u8| 2 * u32::from(r) > 3 * u32::from(other);
+    r > 60 && outweighs(g) && outweighs(b)
 }
 
 fn reds(picture: &RgbImage) -> usize {

@@ -102,6 +102,11 @@ impl App {
         &mut self.session
     }
 
+    /// Whether the picture is as fine as it will be.
+    pub fn picture_is_finished(&self) -> bool {
+        self.session.picture.as_ref().is_some_and(|picture| picture.finished)
+    }
+
     /// Draws the whole window once.
     pub fn show(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();

@@ -1,0 +1,96 @@
+//! The panels, laid out and clicked without a window, in front of the CPU renderer.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::Context;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use sdfc_viewer::app::App;
+
+/// Long enough for a busy machine; reached only where a test fails.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+const SCENE: &str = "/// How thick the wall is.\nparam wall = 0.1 in 0.05..0.5\nsphere(1) - sphere(1 - wall)\n\
+                     camera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)\n";
+
+struct Fixture {
+    harness: Harness<'static, App>,
+    folder: tempfile::TempDir,
+}
+
+impl Fixture {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.sdf");
+        std::fs::write(&path, SCENE).unwrap();
+        let mut app = App::new(&Context::default(), &path).unwrap();
+        app.session().set_build(|build| build.on_cpu = true);
+        let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
+        let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
+        let mut fixture = Self { harness, folder };
+        fixture.until(|harness| harness.state().picture_is_finished());
+        fixture
+    }
+
+    fn write(&self, text: &str) {
+        std::fs::write(self.folder.path().join("scene.sdf"), text).unwrap();
+    }
+
+    fn until(&mut self, holds: impl Fn(&Harness<'static, App>) -> bool) {
+        let start = Instant::now();
+        while !holds(&self.harness) {
+            assert!(start.elapsed() < PATIENCE);
+            std::thread::sleep(Duration::from_millis(5));
+            self.harness.step();
+        }
+    }
+
+    fn click(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        self.harness.run_steps(3);
+    }
+
+    fn has(&self, text: &str) -> bool {
+        self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+}
+
+#[test]
+fn the_camera_is_the_scenes_until_it_is_moved() {
+    let mut fixture = Fixture::new();
+    assert!(fixture.has("wall"));
+    assert!(fixture.harness.state_mut().session().follows());
+    fixture.click("Top");
+    assert!(!fixture.harness.state_mut().session().follows());
+    fixture.click("Scene's own");
+    assert!(fixture.harness.state_mut().session().follows());
+}
+
+#[test]
+fn errors_are_told_in_the_terminals_words_and_go_when_mended() {
+    let mut fixture = Fixture::new();
+    fixture.write("spere(1)\n");
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    assert!(fixture.has("did you mean `sphere`?"));
+    assert!(fixture.has("scene.sdf:1:1"));
+    assert!(fixture.has("showing the last good scene"));
+    fixture.write(SCENE);
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_none());
+}
+
+#[test]
+fn the_text_opens_and_params_can_be_reset() {
+    let mut fixture = Fixture::new();
+    fixture.click("Text");
+    assert!(fixture.has("drag a number"));
+    let moved = [0.4, 0.0, 0.0, 0.0];
+    fixture.harness.state_mut().session().knobs.params.insert("wall".to_owned(), moved);
+    fixture.harness.run_steps(2);
+    // The first is that of the numbers in the text, which is not to be clicked.
+    let reset = fixture.harness.get_all_by_label("Reset").last();
+    reset.unwrap().click();
+    fixture.harness.run_steps(3);
+    assert!(fixture.harness.state_mut().session().knobs.params.is_empty());
+}
