@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use sdfc::Resolver;
@@ -37,12 +38,19 @@ impl Document {
 pub struct Imports {
     folder: Folder,
     asked: RefCell<BTreeSet<String>>,
+    /// Of the bytes of files that are no text.
+    hasher: RefCell<DefaultHasher>,
 }
 
 impl Imports {
     /// Of the scene at `path`.
     pub fn of(path: &Path) -> Self {
-        Self { folder: Folder::of(path), asked: RefCell::default() }
+        Self { folder: Folder::of(path), asked: RefCell::default(), hasher: RefCell::default() }
+    }
+
+    /// A hash of all that was read and is no text, such as fonts.
+    pub fn hash_of_bytes(&self) -> u64 {
+        self.hasher.borrow().finish()
     }
 
     /// Folders in which a change can change the scene: its own, and those of the files that were asked for.
@@ -58,6 +66,13 @@ impl Resolver for Imports {
     fn read(&self, path: &str) -> Result<String, String> {
         self.asked.borrow_mut().insert(path.to_owned());
         self.folder.read(path)
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.asked.borrow_mut().insert(path.to_owned());
+        let bytes = self.folder.read_bytes(path)?;
+        bytes.hash(&mut *self.hasher.borrow_mut());
+        Ok(bytes)
     }
 }
 

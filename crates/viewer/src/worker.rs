@@ -122,14 +122,21 @@ impl Drop for Worker {
     }
 }
 
+/// A pipeline, and what it was made from.
+struct Running {
+    text: String,
+    lists: Vec<[f32; 4]>,
+    pipeline: Arc<Pipeline>,
+}
+
 /// What the thread keeps between orders.
 struct Shop<T> {
     orders: Arc<Mailbox<Build>>,
     tell: T,
     /// The last order, and a hash of the texts that it met.
     last: Option<(Build, u64)>,
-    /// The running shader and its pipeline.
-    running: Option<(String, Arc<Pipeline>)>,
+    /// The running shader, its lists, and its pipeline.
+    running: Option<Running>,
     devices: [Option<Gpu>; 2],
     turn: usize,
     serial: u64,
@@ -165,7 +172,7 @@ impl<T: FnMut(News)> Shop<T> {
         let imports = Imports::of(&build.path);
         let options = Options { slots: build.live };
         let mut compiled = sdfc::compile_with(&document.name, &document.text, &imports, options);
-        let order = (build.clone(), hash(&compiled.sources));
+        let order = (build.clone(), hash(&compiled.sources, imports.hash_of_bytes()));
         if self.last.as_ref() == Some(&order) {
             return;
         }
@@ -254,8 +261,10 @@ impl<T: FnMut(News)> Shop<T> {
         let shader = scene.picture_shader(&wanted)?;
         let text = shader.wgsl().map_err(Error::Codegen)?;
         stages.lower = milliseconds(start);
-        if let Some((_, pipeline)) = self.running.as_ref().filter(|(running, _)| *running == text) {
-            let engine = Engine::Gpu(Arc::clone(pipeline));
+        let lists = shader.lists().to_vec();
+        let serves = |running: &&Running| running.text == text && running.lists == lists;
+        if let Some(running) = self.running.as_ref().filter(serves) {
+            let engine = Engine::Gpu(Arc::clone(&running.pipeline));
             return Ok(Some(Prepared { engine, method: wanted, note: None }));
         }
         if self.orders.calls() && self.skipped < MOST_SKIPPED {
@@ -273,7 +282,7 @@ impl<T: FnMut(News)> Shop<T> {
         stages.pipeline = Some(milliseconds(start));
         self.pipelines += 1;
         let pipeline = Arc::new(pipeline);
-        self.running = Some((text, Arc::clone(&pipeline)));
+        self.running = Some(Running { text, lists, pipeline: Arc::clone(&pipeline) });
         Ok(Some(Prepared { engine: Engine::Gpu(pipeline), method: wanted, note: None }))
     }
 
@@ -313,8 +322,9 @@ fn on_cpu(scene: &Scene, wanted: String, note: Option<String>) -> Result<Prepare
     Ok(Prepared { engine, method: "auto".to_owned(), note: Some(notes.join("; ")) })
 }
 
-fn hash(sources: &Sources) -> u64 {
+fn hash(sources: &Sources, other: u64) -> u64 {
     let mut hasher = DefaultHasher::new();
+    other.hash(&mut hasher);
     for file in 0..sources.len() {
         sources.text(FileId(file as u32)).hash(&mut hasher);
     }
