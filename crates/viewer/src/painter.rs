@@ -252,7 +252,7 @@ impl<T: FnMut(Painted)> Studio<T> {
         let start = Instant::now();
         let size = request.size.map(|side| side.div_ceil(divisor).max(1));
         let (model, values) = (&request.model, &request.frame);
-        let program = model.scene.program();
+        let program = model.scene.drawn();
         let bounds = model.scene.bounds_at(values);
         let view = View::from_pose(program, values, bounds, size, &request.pose)
             .map_err(|error| Stop::Error(error.into()))?;
@@ -286,7 +286,7 @@ impl<T: FnMut(Painted)> Studio<T> {
         let (model, values) = (&request.model, &request.frame);
         let result = match &model.engine {
             Engine::Gpu(pipeline) => {
-                let uniforms = uniform_values(model.scene.program(), values);
+                let uniforms = uniform_values(model.scene.drawn(), values);
                 pipeline.render(view, &uniforms, &options, &mut progress)
             }
             Engine::Cpu(scene) => {
@@ -341,6 +341,7 @@ impl<T: FnMut(Painted)> Studio<T> {
             probe: &request.model.probe,
             frame: &request.frame,
             slice: request.slice,
+            origin: request.model.scene.drawn().origin,
         };
         let (rgba, legend) = paint(request.mode, seen);
         let smooth = request.mode != Mode::Shaded || drawn.samples >= request.samples;

@@ -14,7 +14,7 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Of a program; one that cannot be evaluated gives nothing.
+    /// Of a program, with points counted from its origin; one that cannot be evaluated gives nothing.
     pub fn new(program: &Program) -> Self {
         let tape = program.distance.and_then(|root| Tape::new(&program.graph, &[root]).ok());
         Self { tape }

@@ -271,11 +271,13 @@ impl Session {
         let point = start + direction * depth;
         let request = &picture.request;
         let field = request.model.probe.at(&request.frame, point.to_array());
+        // Rays and field are counted from there.
+        let origin = DVec3::from(request.model.scene.drawn().origin);
         let gradient = field.map(|field| DVec3::from(field.partials));
         Some(Look {
             status: pixel.status,
             depth,
-            point,
+            point: point + origin,
             distance: field.map(|field| field.value),
             normal: gradient.and_then(DVec3::try_normalize).filter(|_| pixel.status == HIT),
             evaluations: pixel.evaluations,

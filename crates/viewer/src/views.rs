@@ -193,6 +193,8 @@ pub struct Seen<'a> {
     pub frame: &'a FrameValues,
     /// The plane of [`Mode::Slice`].
     pub slice: Slice,
+    /// Where in the scene the rays and the field count from.
+    pub origin: [f64; 3],
 }
 
 /// Red, green, blue, alpha of each pixel in sRGB, and what they mean.
@@ -330,7 +332,7 @@ impl Seen<'_> {
         let axis = axis.min(2);
         let point = |(index, pixel): (usize, &PixelBlock)| {
             let [start, direction] = self.ray(index);
-            let t = (offset - start[axis]) / direction[axis];
+            let t = (offset - self.origin[axis] - start[axis]) / direction[axis];
             let behind = pixel.status == HIT && f64::from(pixel.depth) < t;
             (t.is_finite() && t > 0.0 && t < self.view.t_max && !behind)
                 .then(|| ((start + direction * t).to_array(), t))
@@ -425,7 +427,8 @@ mod tests {
         let probe = Probe::new(program);
         let slice = Slice::default();
         let (image, view, frame) = (&image, &view, &frame);
-        let seen = Seen { colors: image, image, view, probe: &probe, frame, slice };
+        let origin = program.origin;
+        let seen = Seen { colors: image, image, view, probe: &probe, frame, slice, origin };
         let (bytes, legend) = paint(mode, seen);
         (bytes.chunks_exact(4).map(|it| [it[0], it[1], it[2]]).collect(), legend)
     }

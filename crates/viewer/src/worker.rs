@@ -15,6 +15,7 @@ use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
+use sdfc::codegen::render_module;
 use sdfc::diagnostics::{FileId, Sources};
 use sdfc::lang::Options;
 use sdfc::render::{CpuScene, Gpu, Pipeline};
@@ -217,7 +218,7 @@ impl<T: FnMut(News)> Shop<T> {
             Ok(Some(Prepared { engine, method, note })) => {
                 self.skipped = 0;
                 self.serial += 1;
-                let (probe, moves) = (Probe::new(scene.program()), reads_time(&scene));
+                let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
                 let (text, pipelines, serial) = (document.text, self.pipelines, self.serial);
                 let model = Model {
                     scene,
@@ -258,7 +259,7 @@ impl<T: FnMut(News)> Shop<T> {
             return on_cpu(scene, wanted, None).map(Some);
         }
         let start = Instant::now();
-        let shader = scene.picture_shader(&wanted)?;
+        let shader = render_module(scene.drawn(), &wanted).map_err(Error::Codegen)?;
         let text = shader.wgsl().map_err(Error::Codegen)?;
         stages.lower = milliseconds(start);
         let lists = shader.lists().to_vec();
@@ -278,7 +279,7 @@ impl<T: FnMut(News)> Shop<T> {
             }
         };
         let start = Instant::now();
-        let pipeline = Pipeline::new(&gpu, shader, scene.program().uniforms.len())?;
+        let pipeline = Pipeline::new(&gpu, shader, scene.drawn().uniforms.len())?;
         stages.pipeline = Some(milliseconds(start));
         self.pipelines += 1;
         let pipeline = Arc::new(pipeline);
@@ -313,7 +314,7 @@ struct Prepared {
 
 /// The CPU renderer, which has two of the methods.
 fn on_cpu(scene: &Scene, wanted: String, note: Option<String>) -> Result<Prepared, Error> {
-    let engine = Engine::Cpu(Arc::new(CpuScene::new(scene.program())?));
+    let engine = Engine::Cpu(Arc::new(CpuScene::new(scene.drawn())?));
     if matches!(wanted.as_str(), "auto" | "sphere") {
         return Ok(Prepared { engine, method: wanted, note });
     }
