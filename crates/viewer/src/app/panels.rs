@@ -118,12 +118,12 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
         ui.horizontal(|ui| {
             let color = if moved { style::ACCENT } else { style::TEXT };
             let left = egui::Layout::left_to_right(egui::Align::Center);
-            ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
+            let label = ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
                 ui.set_min_width(84.0);
                 let name = RichText::new(&param.name).color(color);
-                ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param));
+                ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param)).id
             });
-            knob(ui, param, &mut value);
+            knob(ui, param, &mut value, label.inner);
             let back = egui::Button::new(RichText::new("⟲").small()).frame(false);
             let text = format!("Back to {}.", value_text(param, param.default));
             if moved && ui.add(back).on_hover_text(text).clicked() {
@@ -161,15 +161,15 @@ fn hint(param: &Param) -> String {
     format!("{summary}\n{kind}; {default} in the scene")
 }
 
-/// The widget for a param.
-fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
+/// The widget for a param; `label` is that of its name, for those who hear it.
+fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) {
     let [number, ..] = value;
     match param.kind {
-        ParamKind::Number => number_knob(ui, number, param.range, ""),
+        ParamKind::Number => number_knob(ui, number, param.range, "", label),
         ParamKind::Angle => {
             let mut degrees = number.to_degrees();
             let range = param.range.map(|ends| ends.map(f64::to_degrees));
-            number_knob(ui, &mut degrees, range, "°");
+            number_knob(ui, &mut degrees, range, "°", label);
             if degrees.to_radians() != *number {
                 *number = degrees.to_radians();
                 if let Some([low, high]) = param.range {
@@ -177,24 +177,23 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
                 }
             }
         }
-        ParamKind::Int => match param.range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
-            Some([low, high]) => {
-                ui.add(egui::Slider::new(number, low.ceil()..=high.floor()).integer());
-            }
-            None => {
-                let [low, high] = param.range.unwrap_or([-1e9, 1e9]);
-                ui.add(egui::DragValue::new(number).range(low..=high).speed(0.1).fixed_decimals(0));
+        ParamKind::Int => {
+            let before = *number;
+            let range = param.range.map(|[low, high]| [low.ceil(), high.floor()]);
+            number_knob(ui, number, range, "", label);
+            if *number != before {
                 *number = number.round();
             }
-        },
+        }
         ParamKind::Bool => {
             let mut on = *number != 0.0;
-            ui.checkbox(&mut on, "");
+            ui.checkbox(&mut on, "").labelled_by(label);
             *number = f64::from(u8::from(on));
         }
         ParamKind::Color => {
             let mut color = [value[0], value[1], value[2]].map(|lane| lane as f32);
-            if egui::color_picker::color_edit_button_rgb(ui, &mut color).changed() {
+            let button = egui::color_picker::color_edit_button_rgb(ui, &mut color);
+            if button.labelled_by(label).changed() {
                 for (lane, new) in value.iter_mut().zip(color) {
                     *lane = f64::from(new);
                 }
@@ -204,29 +203,33 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4]) {
             let mut index = *number as usize;
             let name = |index: usize| param.choices.get(index).map_or("", String::as_str);
             let combo = egui::ComboBox::from_id_salt(&param.name).selected_text(name(index));
-            combo.show_ui(ui, |ui| {
+            let combo = combo.show_ui(ui, |ui| {
                 for choice in 0..param.choices.len() {
                     ui.selectable_value(&mut index, choice, name(choice));
                 }
             });
+            combo.response.labelled_by(label);
             *number = index as f64;
         }
     }
 }
 
-fn number_knob(ui: &mut Ui, number: &mut f64, range: Option<[f64; 2]>, unit: &str) {
-    match range.filter(|ends| ends.iter().all(|end| end.is_finite())) {
-        Some([low, high]) => {
-            let slider = egui::Slider::new(number, low..=high).suffix(unit);
-            ui.add(slider.custom_formatter(|value, _| number_text(value)));
-        }
-        None => {
-            let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-            let speed = (number.abs() * 0.005).max(0.002);
-            let drag = egui::DragValue::new(number).range(low..=high).speed(speed).suffix(unit);
-            ui.add(drag.custom_formatter(|value, _| number_text(value)));
-        }
+/// A slider where the range is finite, and the number, which can be dragged and typed.
+fn number_knob(
+    ui: &mut Ui,
+    number: &mut f64,
+    range: Option<[f64; 2]>,
+    unit: &str,
+    label: egui::Id,
+) {
+    let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let mut speed = (number.abs() * 0.005).max(0.002);
+    if low.is_finite() && high.is_finite() {
+        ui.add(egui::Slider::new(number, low..=high).show_value(false)).labelled_by(label);
+        speed = (high - low) / 400.0;
     }
+    let drag = egui::DragValue::new(number).range(low..=high).speed(speed).suffix(unit);
+    ui.add(drag.custom_formatter(|value, _| number_text(value))).labelled_by(label);
 }
 
 fn time(ui: &mut Ui, session: &mut Session) {
