@@ -73,8 +73,11 @@ fn camera(display: Display) -> Result<(), Failed> {
     let [x, y] = PLACE.map(|at| at.to_string());
     window.input(&["mousemove", &x, &y, "mousedown", "1"])?;
     for _ in 0..6 {
+        // A slow machine would see all of the drag between two frames, as no drag at all.
+        std::thread::sleep(Duration::from_millis(250));
         window.input(&["mousemove_relative", "--", "20", "10"])?;
     }
+    window.settled(|picture| differ(picture, &before, PICTURE) > 2000)?;
     window.input(&["mouseup", "1"])?;
     let turned = window.settled(|picture| differ(picture, &before, PICTURE) > 2000)?;
     window.keep(&turned, "turned")?;
