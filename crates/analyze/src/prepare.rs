@@ -113,8 +113,7 @@ pub fn prepare_about(scene: &Scene, origin: [f64; 3]) -> Result<Prepared, Expand
         Some(root) => flatten(&mut program, root, scene.painted)?,
         None => Report::default(),
     };
-    let roots = roots(&program);
-    program.uniforms = uniforms(&program.graph, &roots);
+    program.uniforms = uniforms(&program.graph, &program.roots());
     Ok(Prepared { program, report })
 }
 
@@ -210,15 +209,6 @@ fn rays(apart: &Parts, fields: &[NodeId], Asked { hits, clip }: Asked) -> Rays {
             Rays { hits, closed: parts.first().copied(), marched, clip }
         }
     }
-}
-
-/// Everything that a shader of the program computes at its points, and the settings.
-fn roots(program: &Program) -> Vec<NodeId> {
-    let field = program.distance.into_iter().chain(program.gradient);
-    let material = program.material.into_iter().flatten();
-    // Taken apart so that a new function does not compile until it is thought of here.
-    let Rays { hits, closed, marched, clip } = program.rays;
-    field.chain(material).chain([hits, closed, marched, clip].into_iter().flatten()).collect()
 }
 
 fn shape_reports(

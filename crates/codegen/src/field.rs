@@ -7,7 +7,7 @@ use sdfc_march::{Features, Method, ray_source, stubs};
 use crate::inputs::{declare_members, raw_inputs};
 use crate::lower::struct_function;
 use crate::names::{check_prefix, make_public};
-use crate::picture::{Filling, ahead, known_method, ray_features};
+use crate::picture::{Filling, ahead, known_method, ray_features, stretches};
 use crate::reflect::{Parts, Role};
 use crate::tables::Tables;
 use crate::{Error, Lists, Shader, link, types};
@@ -80,6 +80,9 @@ fn functions(
         fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
     }
     fillings.extend(ahead(program, features));
+    if let Some(method) = method {
+        fillings.extend(stretches(program, method)?);
+    }
     let material = program.material.filter(|_| options.material);
     let mut nodes: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
     nodes.extend(material.into_iter().flatten());

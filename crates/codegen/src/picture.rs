@@ -6,7 +6,7 @@ use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Shadow, reachable_whe
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
-use crate::lower::{ray_function, store_function, struct_function, value_function};
+use crate::lower::{function_of, store_function, struct_function, value_function};
 use crate::names::{check_prefix, make_public};
 use crate::reflect::{Parts, Role};
 use crate::tables::Tables;
@@ -212,6 +212,7 @@ impl<'p> Picture<'p> {
         if method.gradient.is_none() {
             fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
         }
+        fillings.extend(stretches(program, method)?);
         let mut roots: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);
@@ -280,17 +281,27 @@ pub(crate) struct Filling {
     pub role: Option<Role>,
     pub stub: &'static str,
     pub root: NodeId,
-    /// Whether it is a function of a ray, not of a point.
-    of_ray: bool,
+    /// The points that it is a function of.
+    arguments: &'static [&'static str],
 }
 
 impl Filling {
     pub(crate) fn of_point(role: Option<Role>, stub: &'static str, root: NodeId) -> Self {
-        Self { role, stub, root, of_ray: false }
+        Self { role, stub, root, arguments: &["p"] }
     }
 
     fn of_ray(stub: &'static str, root: NodeId) -> Self {
-        Self { role: None, stub, root, of_ray: true }
+        Self { role: None, stub, root, arguments: &["origin", "direction"] }
+    }
+
+    /// The stub, and what fills it where there is a root.
+    fn of_stretch(
+        role: Role,
+        stub: &'static str,
+        root: Option<NodeId>,
+        arguments: &'static [&'static str],
+    ) -> (&'static str, Option<Self>) {
+        (stub, root.map(|root| Self { role: Some(role), stub, root, arguments }))
     }
 
     pub(crate) fn function(
@@ -299,8 +310,7 @@ impl Filling {
         inputs: &Inputs,
         types: &mut UniqueArena<naga::Type>,
     ) -> Result<Function, Error> {
-        let lower = if self.of_ray { ray_function } else { value_function };
-        lower(program, inputs, types, self.stub, self.root)
+        function_of(program, inputs, types, self.stub, self.root, self.arguments)
     }
 }
 
@@ -318,6 +328,21 @@ pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
         .filter_map(|(stub, root)| Some(Filling::of_ray(stub, root?)))
         .chain(of_point.filter_map(|(stub, root)| Some(Filling::of_point(None, stub, root?))))
         .collect()
+}
+
+/// What a method wants to know of stretches of rays.
+pub(crate) fn stretches(program: &Program, method: &Method) -> Result<Vec<Filling>, Error> {
+    let known = [
+        Filling::of_stretch(Role::Range, stubs::RANGE, program.range, &["a", "b"]),
+        Filling::of_stretch(
+            Role::SlopeRange,
+            stubs::SLOPE_RANGE,
+            program.slope_range,
+            &["a", "b", "direction"],
+        ),
+    ];
+    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub));
+    wanted.map(|(stub, filling)| filling.ok_or(Error::MissingRoot(stub))).collect()
 }
 
 /// The ray method of that name.

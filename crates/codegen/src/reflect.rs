@@ -20,6 +20,10 @@ pub enum Role {
     Gradient,
     /// Material.
     Material,
+    /// Bounds of the distance along a stretch of a ray.
+    Range,
+    /// Bounds of the distance's slope along a stretch of a ray.
+    SlopeRange,
     /// Where a ray meets the surface.
     Trace,
 }
@@ -31,6 +35,8 @@ impl Role {
             Self::Distance => "distance",
             Self::Gradient => "gradient",
             Self::Material => "material",
+            Self::Range => "range",
+            Self::SlopeRange => "slope_range",
             Self::Trace => "trace",
         }
     }

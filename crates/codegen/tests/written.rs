@@ -10,7 +10,7 @@ use sdfc_codegen::{
     Target, field_module, march_module, picture_module, render_module, shadertoy_module,
 };
 use sdfc_graph::{Const, Dim, Graph, Program, Shadow, Table, Type};
-use sdfc_march::{METHODS, ViewBlock};
+use sdfc_march::{METHODS, ViewBlock, stubs};
 
 fn field(program: &Program) -> String {
     let options = FieldOptions::default();
@@ -83,11 +83,18 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
         .into_iter()
         .flat_map(|method| [(method, shadowed.clone()), (method, featured(painted(), unoccluded))])
     {
+        let all = all.enclosed(true, true);
         let shader = render_module(&all, method.name).expect("links");
         let text = shader.wgsl().expect("is written");
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();
         let differences = usize::from(method.gradient.is_some());
         assert_eq!((calls("field"), calls("trace")), (1 + differences, 1), "{}", method.name);
+        // What a method does not ask of stretches is not there.
+        for stub in [stubs::RANGE, stubs::SLOPE_RANGE] {
+            let asked = usize::from(method.calls(stub));
+            let (written, called) = (text.matches(&format!("fn {stub}(")).count(), calls(stub));
+            assert_eq!((written, called), (asked, asked), "{}: {stub}", method.name);
+        }
     }
 }
 

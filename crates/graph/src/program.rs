@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::{Graph, NodeId, Param, Settings};
+use crate::{Dim, Graph, NodeId, Param, Settings, enclosure, slope_enclosure, uniforms};
 
 /// What of a scene rays meet without marching, and what is left to march. Functions of a ray have its origin as
 /// `Point(0, Dim::Three)` and its direction, of unit length, as `Point(1, Dim::Three)`.
@@ -20,7 +20,7 @@ pub struct Rays {
 }
 
 /// Flat math of one scene. No `Sample`, no `MaterialAt` is reachable from any of the roots;
-/// the only point is `Point(0, Dim::Three)`.
+/// the only point is `Point(0, Dim::Three)`, but for `range` and `slope_range`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     /// The arena.
@@ -33,6 +33,12 @@ pub struct Program {
     pub gradient: Option<NodeId>,
     /// How rays meet it other than by marching `distance`.
     pub rays: Rays,
+    /// The least and the greatest of `distance` on the stretch from `Point(0, Dim::Three)` to `Point(1, Dim::Three)`, a
+    /// 2-vector; `None` unless [`Program::enclosed`].
+    pub range: Option<NodeId>,
+    /// The least and the greatest slope of `distance` on such a stretch along `Point(2, Dim::Three)`, a 2-vector; `None`
+    /// unless [`Program::enclosed`].
+    pub slope_range: Option<NodeId>,
     /// Material fields in the order of `MaterialField::ALL`; `None` without materials.
     pub material: Option<[NodeId; 6]>,
     /// Per-frame nodes that per-point nodes or settings use: evaluated on the CPU, one uniform slot each,
@@ -44,4 +50,34 @@ pub struct Program {
     pub params: Vec<Param>,
     /// The scene's settings; their nodes live in `graph`.
     pub settings: Settings,
+}
+
+impl Program {
+    /// The program with `range`, with `slope_range`, or with both. Nothing changes where there is no distance.
+    pub fn enclosed(&self, range: bool, slope: bool) -> Self {
+        let mut program = self.clone();
+        let Some(distance) = self.distance else { return program };
+        let graph = &mut program.graph;
+        let [a, b, direction] = [0, 1, 2].map(|level| graph.point(level, Dim::Three));
+        if range {
+            let ends = enclosure(graph, distance, a, [a, b]);
+            program.range = ends.map(|ends| graph.compose(&ends));
+        }
+        if slope {
+            let ends = slope_enclosure(graph, distance, a, [a, b], direction);
+            program.slope_range = ends.map(|ends| graph.compose(&ends));
+        }
+        program.uniforms = uniforms(&program.graph, &program.roots());
+        program
+    }
+
+    /// Everything that a shader of the program computes at its points.
+    pub fn roots(&self) -> Vec<NodeId> {
+        // Taken apart so that a new function does not compile until it is thought of here.
+        let Rays { hits, closed, marched, clip } = self.rays;
+        let fields = [self.distance, self.gradient, self.range, self.slope_range];
+        let rays = [hits, closed, marched, clip];
+        let material = self.material.into_iter().flatten();
+        fields.into_iter().chain(rays).flatten().chain(material).collect()
+    }
 }

@@ -4,8 +4,17 @@ use crate::hir::{SettingKind, Type};
 
 /// What `march(method: ...)` may name, the default first: the ray methods of `sdfc-march`, save those that are
 /// there to compare with.
-pub const RAY_METHODS: [&str; 7] =
-    ["auto", "fixed", "sphere", "sphere-cone", "relaxed", "accelerated", "auto-relaxed"];
+pub const RAY_METHODS: [&str; 9] = [
+    "auto",
+    "fixed",
+    "sphere",
+    "sphere-cone",
+    "relaxed",
+    "accelerated",
+    "auto-relaxed",
+    "segment",
+    "interval",
+];
 
 /// One parameter of a setting.
 #[derive(Clone, Debug)]

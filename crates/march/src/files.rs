@@ -68,10 +68,15 @@ impl Method {
         files.push(self.source);
         files
     }
+
+    /// Whether its file calls a function of that name, one of [`stubs`].
+    pub fn calls(&self, stub: &str) -> bool {
+        self.source.contains(&format!("{stub}("))
+    }
 }
 
 /// All ray methods, the default first.
-pub const METHODS: [Method; 8] = [
+pub const METHODS: [Method; 10] = [
     Method {
         name: "auto",
         summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
@@ -136,6 +141,24 @@ pub const METHODS: [Method; 8] = [
         charted: &PIXELS,
     },
     Method {
+        name: "segment",
+        summary: "Steps as long as the slope along the next stretch of the ray allows, which grows with them.",
+        source: include_str!("wgsl/segment.wgsl"),
+        gradient: None,
+        looks_ahead: false,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
+    },
+    Method {
+        name: "interval",
+        summary: "Stretches of the ray are proven free or cut, the nearer part first, down to a part of the tolerance.",
+        source: include_str!("wgsl/interval.wgsl"),
+        gradient: None,
+        looks_ahead: false,
+        knob: Some(Knob::Tolerance),
+        charted: &PIXELS,
+    },
+    Method {
         name: "practical",
         summary: "A classroom practical's march and normals, faults and all: to compare with.",
         source: include_str!("wgsl/baseline/practical.wgsl"),
@@ -148,6 +171,9 @@ pub const METHODS: [Method; 8] = [
 
 /// Of a quarter of a pixel: from the radius of a pixel down to a hundredth of its width.
 const PIXELS: [f64; 4] = [2.0, 1.0, 0.2, 0.04];
+
+/// The method that finds the first hit whatever the field promises.
+pub const UNCERTIFIED: &str = "interval";
 
 /// The method of that name.
 pub fn method(name: &str) -> Option<&'static Method> {
@@ -316,6 +342,7 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         field,
         method.gradient.unwrap_or(gradient),
         include_str!("wgsl/frame.wgsl"),
+        RANGES,
         RAY,
         PASSED,
     ];
@@ -338,12 +365,13 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
 pub fn ray_source(method: &Method) -> String {
     let [field, _] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");
-    let mut files = vec![features, field, RAY, PASSED];
+    let mut files = vec![features, field, RANGES, RAY, PASSED];
     files.extend(method.files());
     files.push(include_str!("wgsl/anchor.wgsl"));
     files.join("\n")
 }
 
+const RANGES: &str = include_str!("wgsl/ranges.wgsl");
 const RAY: &str = include_str!("wgsl/ray.wgsl");
 const PASSED: &str = include_str!("wgsl/passed.wgsl");
 
@@ -368,6 +396,11 @@ pub mod stubs {
     /// `fn clip(origin: vec3f, direction: vec3f) -> vec2f`, where a ray passes a box around what is marched, where
     /// [`super::Features::clipped`] is set.
     pub const CLIP: &str = "clip";
+    /// `fn field_range(a: vec3f, b: vec3f) -> vec2f`, the least and the greatest of `field` on the stretch from a to b.
+    pub const RANGE: &str = "field_range";
+    /// `fn field_slope_range(a: vec3f, b: vec3f, direction: vec3f) -> vec2f`, the least and the greatest slope of `field` on
+    /// the stretch from a to b, which leads along the direction.
+    pub const SLOPE_RANGE: &str = "field_slope_range";
     /// `fn material(p: vec3f) -> Material`, where [`super::Features::materials`] is set.
     pub const MATERIAL: &str = "material";
     /// `fn load_frame()`; calls to it are dropped where nothing is known per frame.

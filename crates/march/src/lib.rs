@@ -27,8 +27,8 @@
 mod files;
 
 pub use files::{
-    Features, FieldSource, Form, Knob, METHODS, Method, SHADERTOY_HEAD, SHADERTOY_TAIL, method,
-    ray_source, source, source_over, stubs,
+    Features, FieldSource, Form, Knob, METHODS, Method, SHADERTOY_HEAD, SHADERTOY_TAIL,
+    UNCERTIFIED, method, ray_source, source, source_over, stubs,
 };
 
 /// Linear colour of surfaces that nothing paints, `UNPAINTED` of `shade.wgsl`.

@@ -47,7 +47,7 @@ pub struct Stats {
     pub leaf_evals_per_pixel: LeafEvaluations,
     /// How the rays ended.
     pub pixels: PixelCounts,
-    /// Why figures of this object are null.
+    /// Why figures of this object are null, and why the method is not what was asked for.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub why: Why,
 }

@@ -13,6 +13,7 @@ use sdfc_render::{
     Clock, FrameTimes, Gpu, OnProgress, Pipeline, Progress, RenderOptions, View, uniform_values,
 };
 
+use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
 /// How a chart is made.
@@ -118,21 +119,24 @@ impl Scene {
             methods: Vec::new(),
         };
         for method in methods {
-            let shader = render_module(self.drawn(), method.name)?;
-            let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
+            let marched_by = self.marched_by(method.name);
+            let program = with_stretches(self.drawn(), marched_by);
+            let shader = render_module(&program, marched_by)?;
+            let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
+            let uniforms = uniform_values(&program, &frame);
             let sampler = self.sampler(gpu, method)?;
             for part in parts(method) {
                 let view = match method.knob {
                     Some(knob) => view.with_knob(knob, part * view.knob(knob)),
                     None => view.clone(),
                 };
-                let frame_ms = self.timed(&pipeline, &view, &frame, options.repetitions)?;
+                let frame_ms = self.timed(&pipeline, &view, &uniforms, options.repetitions)?;
                 let samples = sampler.samples(&view, &frame)?;
                 let metrics = compare(&oracle, &frame, &truth, &samples);
                 let set = method.knob.map(|knob| (knob.name(), view.knob(knob)));
                 let settings = BTreeMap::from_iter(set);
                 let evaluations = metrics.evaluations.mean;
-                let operations = self.report.operations(evaluations, method.looks_ahead);
+                let operations = self.operations_of(&program, marched_by, evaluations);
                 let default = part == 1.0;
                 let row = Row::new(method.name, settings, default, &metrics, operations, frame_ms);
                 chart.methods.push(row);
@@ -151,13 +155,12 @@ impl Scene {
         &self,
         pipeline: &Pipeline,
         view: &View,
-        frame: &FrameValues,
+        uniforms: &[[f32; 4]],
         repetitions: u32,
     ) -> Result<FrameMs, Error> {
-        let uniforms = uniform_values(self.drawn(), frame);
         let draw = || {
             let options = RenderOptions::default();
-            pipeline.render(view, &uniforms, &options, &mut sdfc_render::unwatched)
+            pipeline.render(view, uniforms, &options, &mut sdfc_render::unwatched)
         };
         let first = draw()?;
         let mut times = Vec::new();

@@ -57,6 +57,8 @@ pub struct Scene {
     pub(crate) rebased: OnceLock<Option<Program>>,
     /// Derived when first asked for; a shader needs none.
     pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
+    /// Whether `interval` ends on the field; found when first asked for.
+    pub(crate) intervals_end: OnceLock<bool>,
     pub(crate) times: FrontTimes,
     pub(crate) origin: Origin,
 }
@@ -203,8 +205,17 @@ fn finish(
         Ok(prepared) => {
             let times = FrontTimes { front, analyze: milliseconds(start) };
             let (program, report) = (prepared.program, prepared.report);
-            let (rebased, bounds) = (OnceLock::new(), OnceLock::new());
-            Some(Scene { elaborated, program, report, rebased, bounds, times, origin })
+            let (rebased, bounds, intervals_end) = Default::default();
+            Some(Scene {
+                elaborated,
+                program,
+                report,
+                rebased,
+                bounds,
+                intervals_end,
+                times,
+                origin,
+            })
         }
         Err(error) => {
             let span = Span::new(file, 0, 0);

@@ -32,6 +32,8 @@ pub struct Explanation {
     pub features: Vec<String>,
     /// Ray method.
     pub method: String,
+    /// Why, where it is not for a certified field.
+    pub method_why: Option<String>,
     /// By what a distance is multiplied to be a safe step; 1, since the field is divided where it must be.
     pub step_scale: f64,
     /// Whether every part has a Lipschitz constant.
@@ -140,7 +142,8 @@ impl std::fmt::Display for Explanation {
         let features =
             if self.features.is_empty() { "none".to_owned() } else { self.features.join(", ") };
         writeln!(f, "features            {features}")?;
-        writeln!(f, "method              {}", self.method)?;
+        let why = self.method_why.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
+        writeln!(f, "method              {}{why}", self.method)?;
         writeln!(f, "certified           {}", if self.certified { "yes" } else { "no" })?;
         writeln!(f, "bounds              {}", self.bounds)?;
         for knob in &self.knobs {

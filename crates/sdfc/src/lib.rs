@@ -37,6 +37,7 @@ mod error;
 mod explain;
 mod faults;
 mod findings;
+mod marched;
 mod origin;
 mod params;
 mod picture;

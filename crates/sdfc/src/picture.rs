@@ -1,8 +1,10 @@
 //! From a compiled scene to a picture, on the GPU or the CPU.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use sdfc_codegen::render_module;
+use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline,
@@ -10,6 +12,7 @@ use sdfc_render::{
 };
 
 use crate::compile::milliseconds;
+use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
 /// Where a picture is drawn.
@@ -57,7 +60,7 @@ pub struct Picture {
     pub image: Image,
     /// Figures.
     pub stats: Stats,
-    /// Why it was drawn elsewhere than asked, in one line.
+    /// Why it was drawn elsewhere or otherwise than asked, in one line.
     pub note: Option<String>,
 }
 
@@ -95,16 +98,19 @@ impl Scene {
         let method = options.method.as_deref().unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
         let samples = sample_places(samples)?;
+        let why = self.why_marched_by(method);
+        let method = self.marched_by(method);
+        let program = with_stretches(self.drawn(), method);
         let on_cpu = || CpuScene::new(self.drawn()).map(|scene| Engine::Cpu(Box::new(scene)));
         let (engine, compile, note) = match options.backend {
             Backend::Cpu => (on_cpu()?, cpu_times(start), None),
             Backend::Gpu => {
-                let (engine, compile) = self.pipeline(&Gpu::new()?, method)?;
+                let (engine, compile) = self.pipeline(&Gpu::new()?, &program, method)?;
                 (engine, compile, None)
             }
             Backend::Auto => match Gpu::new() {
                 Ok(gpu) => {
-                    let (engine, compile) = self.pipeline(&gpu, method)?;
+                    let (engine, compile) = self.pipeline(&gpu, &program, method)?;
                     (engine, compile, None)
                 }
                 Err(error) => {
@@ -113,18 +119,36 @@ impl Scene {
                 }
             },
         };
+        let notes: Vec<String> = why.clone().into_iter().chain(note).collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
         let (method, size) = (method.to_owned(), options.size);
-        Ok(Painter { scene: self, engine, method, size, samples, compile, note, start })
+        Ok(Painter {
+            scene: self,
+            program,
+            engine,
+            method,
+            why,
+            size,
+            samples,
+            compile,
+            note,
+            start,
+        })
     }
 
-    fn pipeline(&self, gpu: &Gpu, method: &str) -> Result<(Engine, CompileTimes), Error> {
+    fn pipeline(
+        &self,
+        gpu: &Gpu,
+        program: &Program,
+        method: &str,
+    ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
-        let shader = render_module(self.drawn(), method)?;
+        let shader = render_module(program, method)?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds(start) - validate;
-        let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
+        let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
         let compile = CompileTimes {
             lower: Some(lower),
             validate: Some(validate),
@@ -155,8 +179,12 @@ enum Engine {
 #[derive(Debug)]
 pub struct Painter<'s> {
     scene: &'s Scene,
+    /// The scene's, with what the method asks for.
+    program: Cow<'s, Program>,
     engine: Engine,
     method: String,
+    /// Why this method, where it is not for a certified field.
+    why: Option<String>,
     size: [u32; 2],
     /// Where in a pixel its rays pass.
     samples: Vec<[f64; 2]>,
@@ -188,6 +216,7 @@ impl Painter<'_> {
         let adapter = self.adapter();
         let mut stats = Stats::new(&frame, frame_ms, adapter, &self.method, self.compile.clone());
         stats.set_leaves(scene.report.leaves);
+        stats.why.extend(self.why.clone().map(|why| ("method", why)));
         let first = scene.times.front + scene.times.analyze + milliseconds(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
         Ok(Picture { image: frame.image, stats, note: self.note.clone() })
@@ -239,7 +268,7 @@ impl Painter<'_> {
         let options = RenderOptions::default();
         match &self.engine {
             Engine::Gpu(pipeline) => {
-                let uniforms = uniform_values(self.scene.drawn(), values);
+                let uniforms = uniform_values(&self.program, values);
                 pipeline.render(view, &uniforms, &options, progress)
             }
             Engine::Cpu(scene) => scene.render(view, values, &self.method, &options, progress),

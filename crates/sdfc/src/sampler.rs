@@ -1,17 +1,21 @@
 //! What one ray method makes of a view: of each pixel how its ray ended, where, and with which normal.
 
+use std::borrow::Cow;
+
 use sdfc_accuracy::{PixelSample, Status};
 use sdfc_codegen::normals_module;
+use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_march::{Method, PixelBlock};
 use sdfc_render::{Gpu, HIT, MISS, Pipeline, RenderOptions, View, uniform_values, unwatched};
 
+use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
 /// A ray method made ready to be compared with the oracle: see [`Scene::sampler`].
 #[derive(Debug)]
 pub struct Sampler<'s> {
-    scene: &'s Scene,
+    program: Cow<'s, Program>,
     pipeline: Pipeline,
 }
 
@@ -23,9 +27,13 @@ impl Scene {
     ///
     /// [`Error::NothingDrawn`], [`Error::Codegen`], [`Error::Render`].
     pub fn sampler(&self, gpu: &Gpu, method: &Method) -> Result<Sampler<'_>, Error> {
-        let shader = normals_module(self.drawn(), method)?;
-        let pipeline = Pipeline::new(gpu, shader, self.drawn().uniforms.len())?;
-        Ok(Sampler { scene: self, pipeline })
+        let marched_by = self.marched_by(method.name);
+        // A method that is not of the table may have the name of one that is.
+        let other = sdfc_march::method(marched_by).filter(|other| other.name != method.name);
+        let program = with_stretches(self.drawn(), marched_by);
+        let shader = normals_module(&program, other.unwrap_or(method))?;
+        let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
+        Ok(Sampler { program, pipeline })
     }
 }
 
@@ -36,7 +44,7 @@ impl Sampler<'_> {
     ///
     /// [`Error::Render`].
     pub fn samples(&self, view: &View, frame: &FrameValues) -> Result<Vec<PixelSample>, Error> {
-        let uniforms = uniform_values(self.scene.drawn(), frame);
+        let uniforms = uniform_values(&self.program, frame);
         let options = RenderOptions::default();
         let drawn = self.pipeline.render(view, &uniforms, &options, &mut unwatched)?;
         Ok(drawn.image.pixels().iter().map(sample).collect())

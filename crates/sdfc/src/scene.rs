@@ -7,6 +7,7 @@ use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
 
 use crate::explain::{Bounds, Explanation, Knob, QualityRow, feature_names};
+use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
 /// Lowest and highest point of what is drawn, per-frame nodes of a graph of their own.
@@ -49,7 +50,8 @@ impl Scene {
     ///
     /// [`Error::Codegen`], for an unknown method too.
     pub fn picture_shader(&self, method: &str) -> Result<Shader, Error> {
-        Ok(render_module(&self.program, method)?)
+        let method = self.marched_by(method);
+        Ok(render_module(&with_stretches(&self.program, method), method)?)
     }
 
     /// Where the scene lies at a frame: lowest and highest corner, infinite where not limited.
@@ -94,7 +96,8 @@ impl Scene {
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
             features: feature_names(features),
-            method: self.method().to_owned(),
+            method: self.marched_by(self.method()).to_owned(),
+            method_why: self.why_marched_by(self.method()),
             step_scale: 1.0,
             certified: self.is_certified(),
             bounds: self.finite_bounds(),

@@ -8,6 +8,7 @@ use sdfc_diagnostics::{FileId, Sources};
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{Tile, View, view_bytes};
 
+use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
 /// Which part of a shader is written.
@@ -119,18 +120,20 @@ impl Scene {
             let prefix = prefix.clone();
             FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
         };
+        let method = self.marched_by(method);
+        let program = with_stretches(&self.program, method);
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
-            Emit::March => march_module(&self.program, method, &functions())?,
+            Emit::March => march_module(&program, method, &functions())?,
             Emit::Render if target == Target::Shadertoy => {
-                shadertoy_module(&self.program, method, &self.default_view()?)?
+                shadertoy_module(&program, method, &self.default_view()?)?
             }
             Emit::Render => {
                 let rows_up = target.counts_rows_upwards();
                 let method = method.to_owned();
                 let options =
                     PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
-                picture_module(&self.program, &options)?
+                picture_module(&program, &options)?
             }
         };
         Ok(shader)

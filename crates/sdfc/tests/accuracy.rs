@@ -19,7 +19,7 @@ const DEPTH: f64 = 0.1;
 fn main() {
     let without_gpu = testing::without_gpu();
     let trial = |(name, text): (String, String)| {
-        // Of a field that may lie no method promises anything.
+        // Of fields that may lie the test `lying` has its own.
         let uncertified = sdfc::compile(&name, &text).scene.is_some_and(|s| !s.is_certified());
         let title = name.clone();
         Trial::test(title, move || auto_is_right(&name, &text))

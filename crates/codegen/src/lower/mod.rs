@@ -40,16 +40,17 @@ pub(crate) fn value_function(
     Ok(lowering.finish(name, value, result))
 }
 
-/// A function of a ray's origin and direction that yields one node's value.
-pub(crate) fn ray_function(
+/// A function of several points, by level, that yields one node's value.
+pub(crate) fn function_of(
     program: &Program,
     inputs: &Inputs,
     types: &mut UniqueArena<naga::Type>,
     name: &str,
     root: NodeId,
+    arguments: &'static [&'static str],
 ) -> Result<Function, Error> {
     let lowering = Lowering::new(program, inputs, types, &[root]);
-    let mut lowering = Lowering { arguments: &["origin", "direction"], ..lowering };
+    let mut lowering = Lowering { arguments, ..lowering };
     lowering.visit_all()?;
     let value = lowering.value(root)?;
     let result = types::value(lowering.types, program.graph.ty(root));

@@ -1,6 +1,6 @@
 //! The CPU renderer: for machines without an adapter, and the check of the shader.
 //!
-//! A second implementation of `sphere` and `auto` and of the shading, on purpose: it shares the
+//! A second implementation of `sphere`, `auto` and `interval` and of the shading, on purpose: it shares the
 //! scene's formula with the shader and nothing else. It works in waves: all rays of a group of
 //! pixels from the eye, then normals and materials of all hits, then all rays to a lamp; and the
 //! same again for all rays from a mirror.
@@ -18,7 +18,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use sdfc_graph::{
     Program,
-    eval::{FrameValues, Packet, Tape, TapeError},
+    eval::{Evaluator, FrameValues, Interval, Packet, Tape, TapeError},
 };
 use sdfc_march::PixelBlock;
 
@@ -71,7 +71,7 @@ impl CpuScene {
         })
     }
 
-    /// Draws a frame in f32, as the shader does. The methods are `sphere` and `auto`.
+    /// Draws a frame in f32, as the shader does. The methods are `sphere`, `auto` and `interval`.
     ///
     /// # Errors
     ///
@@ -143,6 +143,7 @@ impl CpuScene {
             },
             field: prepare(&self.field),
             ahead: self.ahead.as_ref().filter(|_| method.looks_ahead()).map(|a| a.prepare(frame)),
+            range: self.field.prepare(frame),
             gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
             material: self.material.as_ref().filter(|_| shaded).map(prepare),
         }
@@ -197,6 +198,8 @@ struct Wave<'a, T> {
     limits: Limits<T>,
     field: Batch<'a, T>,
     ahead: Option<AheadBatch<'a, T>>,
+    /// The field over boxes.
+    range: Evaluator<'a, Interval>,
     /// `None`: depths only.
     gradient: Option<Batch<'a, T>>,
     material: Option<Batch<'a, T>>,
@@ -269,7 +272,7 @@ impl<T: Real> Wave<'_, T> {
         };
         let rays: Vec<_> = rays.iter().copied().zip(known).collect();
         let marched = self.ahead.as_mut().filter(|_| !watched).and_then(|a| a.marched.as_mut());
-        trace(marched.unwrap_or(&mut self.field), &rays, &self.limits)
+        trace(marched.unwrap_or(&mut self.field), &mut self.range, &rays, &self.limits)
     }
 
     /// Adds what lies behind where sights met nothing, and what lights what they met.

@@ -1,8 +1,10 @@
 //! Marching rays on the CPU, several at a time.
 
+mod interval;
+
 use std::ops::{Add, Mul, Sub};
 
-use sdfc_graph::eval::{Evaluator, Number, Packet};
+use sdfc_graph::eval::{Evaluator, Interval, Number, Packet};
 
 use super::ahead::Ahead;
 use crate::{
@@ -39,6 +41,8 @@ pub(super) enum Method {
     Sphere,
     /// Steps as long as the distance up to a quarter of a pixel, then secants; or closing in on a sign change.
     Auto,
+    /// Stretches of the ray are proven free or cut, the nearer part first, down to a part of the pixel.
+    Interval,
 }
 
 impl Method {
@@ -46,6 +50,7 @@ impl Method {
         match name {
             "sphere" => Ok(Self::Sphere),
             "auto" => Ok(Self::Auto),
+            "interval" => Ok(Self::Interval),
             _ => Err(RenderError::MethodNotOnCpu(name.to_owned())),
         }
     }
@@ -53,7 +58,7 @@ impl Method {
     /// Whether it asks what is known of rays before they are marched.
     pub(super) fn looks_ahead(self) -> bool {
         match self {
-            Self::Sphere => false,
+            Self::Sphere | Self::Interval => false,
             Self::Auto => true,
         }
     }
@@ -111,11 +116,19 @@ pub(super) struct Limits<T> {
 }
 
 impl<T: Real> Limits<T> {
+    /// At most so many evaluations a ray.
+    fn most(&self) -> u32 {
+        match self.method {
+            Method::Sphere | Method::Auto => self.steps,
+            Method::Interval => self.steps.saturating_mul(interval::BOXES),
+        }
+    }
+
     /// How near to the surface a hit is.
     pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
         match self.method {
             Method::Sphere => self.epsilon,
-            Method::Auto => {
+            Method::Auto | Method::Interval => {
                 let part = T::constant(2.0) * ray.tolerance * ray.footprint(t);
                 part.max(ray.rounding(t))
             }
@@ -144,9 +157,11 @@ struct Walk<T> {
     clearance: T,
     /// Last place, and the distance there.
     before: (T, T),
-    /// Last place outside and first place inside, with the distances there (`auto`).
+    /// Last place outside and first place inside, with the distances there (`auto`, `interval`).
     outside: Option<(T, T)>,
     inside: Option<(T, T)>,
+    /// Length of the next stretch that is looked at (`interval`).
+    stretch: T,
 }
 
 /// What a sample of the field decides.
@@ -167,6 +182,7 @@ impl<T: Real> Walk<T> {
             before: (zero, zero),
             outside: None,
             inside: None,
+            stretch: ray.t_max,
         }
     }
 
@@ -185,7 +201,12 @@ impl<T: Real> Walk<T> {
     }
 
     /// Takes the distance at the current place: either the ray has ended, or it has moved.
-    fn see(&mut self, distance: T, limits: &Limits<T>) -> Option<Trace<T>> {
+    fn see(
+        &mut self,
+        distance: T,
+        limits: &Limits<T>,
+        range: &mut Evaluator<'_, Interval>,
+    ) -> Option<Trace<T>> {
         self.evaluations += 1;
         if limits.clearance {
             self.pass(distance);
@@ -194,6 +215,7 @@ impl<T: Real> Walk<T> {
             Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
             Method::Sphere => Turn::Onward(self.t + distance),
             Method::Auto => self.auto(distance, limits.tolerance(&self.ray, self.t)),
+            Method::Interval => self.interval(distance, limits, range),
         };
         match turn {
             Turn::Hit(t) => return self.ends(t, HIT),
@@ -203,7 +225,7 @@ impl<T: Real> Walk<T> {
         let within = self.inside.is_some() || self.t <= self.ahead.end;
         if !within {
             self.unmet()
-        } else if self.evaluations >= limits.steps {
+        } else if self.evaluations >= limits.most() {
             self.ends(self.t, CAPPED)
         } else {
             None
@@ -234,28 +256,42 @@ impl<T: Real> Walk<T> {
         if self.evaluations == 1 && distance < zero {
             return Turn::Hit(self.t);
         }
-        let hit = (T::constant(HIT_PART) * near).max(self.ray.rounding(self.t));
+        let hit = self.hit_within(near);
         let stride = if distance.abs() < near { self.secant(distance) } else { distance };
         if distance.abs() < hit {
             return Turn::Hit(self.t + stride);
         }
-        if distance < zero {
+        self.keep(distance);
+        self.closing_in(hit).unwrap_or_else(|| {
+            // Only the distance is known to be free.
+            let free = self.t + distance;
+            let onward = (self.t + stride).min(self.ahead.end);
+            Turn::Onward(if free <= self.ahead.end { onward } else { free })
+        })
+    }
+
+    /// How near to the surface a hit is, in terms of what is near.
+    fn hit_within(&self, near: T) -> T {
+        (T::constant(HIT_PART) * near).max(self.ray.rounding(self.t))
+    }
+
+    fn keep(&mut self, distance: T) {
+        if distance < T::constant(0.0) {
             self.inside = Some((self.t, distance));
         } else {
             self.outside = Some((self.t, distance));
         }
-        let (Some((last, above)), Some((first, below))) = (self.outside, self.inside) else {
-            // Only the distance is known to be free.
-            let free = self.t + distance;
-            let onward = (self.t + stride).min(self.ahead.end);
-            return Turn::Onward(if free <= self.ahead.end { onward } else { free });
-        };
+    }
+
+    /// The next place between one outside and one inside, once there are both.
+    fn closing_in(&self, hit: T) -> Option<Turn<T>> {
+        let ((last, above), (first, below)) = (self.outside?, self.inside?);
         if first - last < hit {
-            return Turn::Hit(first);
+            return Some(Turn::Hit(first));
         }
         // Where a line through both samples is zero, but within the middle 8 tenths.
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
-        Turn::Onward(last + part * (first - last))
+        Some(Turn::Onward(last + part * (first - last)))
     }
 
     /// How far along the ray a line through the last sample outside and this one reaches zero.
@@ -269,6 +305,7 @@ impl<T: Real> Walk<T> {
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
 pub(super) fn trace<T: Real>(
     field: &mut Batch<'_, T>,
+    range: &mut Evaluator<'_, Interval>,
     rays: &[(Ray<T>, Ahead<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
@@ -292,7 +329,7 @@ pub(super) fn trace<T: Real>(
         let Packet(distances) = field.scalar(packed(&points));
         for (lane, distance) in lanes.iter_mut().zip(distances) {
             let Some((index, walk)) = lane else { continue };
-            if let Some(ended) = walk.see(distance, limits) {
+            if let Some(ended) = walk.see(distance, limits, range) {
                 traces[*index] = ended;
                 *lane = waiting.next();
             }

@@ -64,11 +64,12 @@ impl Depths {
         let frame = FrameValues::defaults(scene.params());
         let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), [SIDE; 2])?;
         let cpu = CpuScene::new(scene.program())?;
-        let double = cpu.depth_map::<f64>(&view, &frame, METHOD)?;
+        let method = scene.marched_by(METHOD);
+        let double = cpu.depth_map::<f64>(&view, &frame, method)?;
         let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
         let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
         let limit = DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING);
-        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, METHOD)?, double, limit })
+        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method)?, double, limit })
     }
 }
 

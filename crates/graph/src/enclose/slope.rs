@@ -1,0 +1,364 @@
+//! How fast a node changes along a stretch: for each operation the chain rule over extents.
+//!
+//! Between kinks the slope is the derivative, at a kink all that lies between those on both sides. What may jump within the
+//! stretch has any slope. So values at two places of a stretch never differ by more than the slopes allow.
+
+use super::Enclosing;
+use super::extent::{Extent, Line, ROUNDING, Span, TINY};
+use crate::{Binary, Ternary, Type, Unary};
+
+/// What is known of a node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    pub(super) value: Extent,
+    /// None where it does not change.
+    pub(super) slope: Option<Extent>,
+}
+
+impl Known {
+    pub(super) fn fixed(value: Extent) -> Self {
+        Self { value, slope: None }
+    }
+}
+
+impl Enclosing<'_> {
+    /// The slope of an operation on one argument, given what it yields.
+    pub(super) fn unary_slope(&mut self, op: Unary, x: Known, result: Extent) -> Option<Extent> {
+        let slope = x.slope?;
+        let value = x.value;
+        Some(match op {
+            Unary::Neg => self.negative(slope),
+            Unary::Abs => self.absolute_slope(value, slope),
+            Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc => {
+                let whole = self.span(result);
+                self.jump(whole)
+            }
+            Unary::Fract => {
+                let floor = self.unary(Unary::Floor, value);
+                let floor = self.span(floor);
+                let jump = self.jump(floor);
+                self.sum(slope, jump)
+            }
+            Unary::Sqrt => {
+                let half = self.number(result, 0.5);
+                let factor = self.quotient(half, result);
+                self.product(slope, factor)
+            }
+            Unary::InverseSqrt => {
+                let factor = self.quotient(result, value);
+                let factor = self.times(factor, -0.5);
+                self.product(slope, factor)
+            }
+            Unary::Exp => self.product(slope, result),
+            Unary::Exp2 => {
+                let slope = self.product(slope, result);
+                self.times(slope, std::f64::consts::LN_2)
+            }
+            Unary::Log => self.quotient(slope, value),
+            Unary::Log2 => {
+                let slope = self.quotient(slope, value);
+                self.times(slope, std::f64::consts::LOG2_E)
+            }
+            Unary::Sin => {
+                let cosine = self.unary(Unary::Cos, value);
+                self.product(slope, cosine)
+            }
+            Unary::Cos => {
+                let sine = self.unary(Unary::Sin, value);
+                let slope = self.product(slope, sine);
+                self.negative(slope)
+            }
+            Unary::Tan => {
+                let square = self.square(result);
+                let factor = self.plus(square, 1.0);
+                self.product(slope, factor)
+            }
+            Unary::Asin | Unary::Acos => {
+                let square = self.square(value);
+                let rest = self.one_minus(square);
+                let root = self.unary(Unary::Sqrt, rest);
+                let slope = self.quotient(slope, root);
+                if op == Unary::Asin { slope } else { self.negative(slope) }
+            }
+            Unary::Atan => {
+                let square = self.square(value);
+                let below = self.plus(square, 1.0);
+                self.quotient(slope, below)
+            }
+            Unary::Sinh | Unary::Cosh => {
+                let other = if op == Unary::Sinh { Unary::Cosh } else { Unary::Sinh };
+                let factor = self.unary(other, value);
+                self.product(slope, factor)
+            }
+            Unary::Tanh => {
+                let square = self.square(result);
+                let factor = self.one_minus(square);
+                self.product(slope, factor)
+            }
+            Unary::Saturate => {
+                let (nought, one) = (self.number(value, 0.0), self.number(value, 1.0));
+                self.clamp_slope(x, Known::fixed(nought), Known::fixed(one))?
+            }
+            Unary::Length => self.length_slope(value, slope, result),
+            Unary::Normalize => {
+                let ty = self.ty(value);
+                let along = self.dot(result, slope);
+                let along = self.splat(ty, along);
+                let part = self.product(result, along);
+                let aside = self.difference(slope, part);
+                let length = self.length(value);
+                let length = self.splat(ty, length);
+                self.quotient(aside, length)
+            }
+            Unary::Not => return None,
+        })
+    }
+
+    /// The slope of an operation on two arguments, given what it yields.
+    pub(super) fn binary_slope(
+        &mut self,
+        op: Binary,
+        x: Known,
+        y: Known,
+        result: Extent,
+    ) -> Option<Extent> {
+        if x.slope.is_none() && y.slope.is_none() {
+            return None;
+        }
+        match op {
+            Binary::Add => self.total(x.slope, y.slope),
+            Binary::Sub => {
+                let y = y.slope.map(|slope| self.negative(slope));
+                self.total(x.slope, y)
+            }
+            Binary::Mul => {
+                let first = x.slope.map(|slope| self.product(slope, y.value));
+                let second = y.slope.map(|slope| self.product(slope, x.value));
+                self.total(first, second)
+            }
+            Binary::Div => {
+                let second = y.slope.map(|slope| {
+                    let part = self.product(slope, result);
+                    self.negative(part)
+                });
+                let above = self.total(x.slope, second)?;
+                Some(self.quotient(above, y.value))
+            }
+            Binary::Rem => {
+                let quotient = self.quotient(x.value, y.value);
+                let whole = self.unary(Unary::Floor, quotient);
+                let second = y.slope.map(|slope| {
+                    let part = self.product(slope, whole);
+                    self.negative(part)
+                });
+                let smooth = self.total(x.slope, second);
+                let whole = self.span(whole);
+                let jump = self.jump(whole);
+                self.total(smooth, Some(jump))
+            }
+            Binary::Min => Some(self.slope_by(x, y, x, y)),
+            Binary::Max => Some(self.slope_by(y, x, x, y)),
+            Binary::Pow => self.power_slope(x, y, result),
+            Binary::Atan2 => self.angle_slope(x, y),
+            Binary::Step | Binary::Hash => {
+                let result = self.span(result);
+                Some(self.jump(result))
+            }
+            Binary::Dot => {
+                let first = x.slope.map(|slope| self.dot(slope, y.value));
+                let second = y.slope.map(|slope| self.dot(slope, x.value));
+                self.total(first, second)
+            }
+            Binary::Cross => {
+                let first = x.slope.map(|slope| self.cross(slope, y.value));
+                let second = y.slope.map(|slope| self.cross(x.value, slope));
+                self.total(first, second)
+            }
+            Binary::Lt | Binary::Le | Binary::Eq | Binary::Ne | Binary::And | Binary::Or => None,
+        }
+    }
+
+    /// The slope of an operation on three arguments, given what it yields.
+    pub(super) fn ternary_slope(&mut self, op: Ternary, [x, y, z]: [Known; 3]) -> Option<Extent> {
+        match op {
+            Ternary::Mix => {
+                let rest = self.one_minus(z.value);
+                let first = x.slope.map(|slope| self.product(slope, rest));
+                let second = y.slope.map(|slope| self.product(slope, z.value));
+                let third = z.slope.map(|slope| {
+                    let way = self.difference(y.value, x.value);
+                    self.product(slope, way)
+                });
+                let moved = self.total(first, second);
+                self.total(moved, third)
+            }
+            Ternary::Clamp => self.clamp_slope(x, y, z),
+            Ternary::Smoothstep => {
+                let width = self.width_between(x.value, y.value);
+                let t = self.place_between(x.value, y.value, z.value);
+                let rest = self.one_minus(t);
+                let bump = self.product(t, rest);
+                let bump = self.times(bump, 6.0);
+                let steepness = self.quotient(bump, width);
+                let moved = z.slope.map(|slope| self.product(steepness, slope));
+                if x.slope.is_none() && y.slope.is_none() {
+                    return moved;
+                }
+                let ty = self.ty(t);
+                Some(self.entire(ty).into())
+            }
+            Ternary::Select => {
+                let (yes, no) = (self.slope(y), self.slope(z));
+                let truth = self.span(x.value);
+                let (yes, no) = (self.span(yes), self.span(no));
+                let chosen = self.chosen(truth, yes, no);
+                if truth.lo == truth.hi {
+                    return Some(chosen.into());
+                }
+                // Where the choice changes the value may jump.
+                let ty = self.graph.ty(chosen.lo);
+                let entire = self.entire(ty);
+                let undecided = self.graph.binary(Binary::Ne, truth.lo, truth.hi);
+                Some(self.chosen(Span::new(undecided, undecided), entire, chosen).into())
+            }
+        }
+    }
+
+    /// The slope; 0 where the node does not change.
+    pub(super) fn slope(&mut self, x: Known) -> Extent {
+        x.slope.unwrap_or_else(|| self.number(x.value, 0.0))
+    }
+
+    fn total(&mut self, x: Option<Extent>, y: Option<Extent>) -> Option<Extent> {
+        match (x, y) {
+            (Some(x), Some(y)) => Some(self.sum(x, y)),
+            (x, y) => x.or(y),
+        }
+    }
+
+    /// A number in all lanes that a value has.
+    fn number(&mut self, like: Extent, value: f64) -> Extent {
+        let ty = self.ty(like);
+        Extent::Fixed(self.graph.constant(ty, &[value; 4]))
+    }
+
+    pub(super) fn times(&mut self, x: Extent, factor: f64) -> Extent {
+        let factor = self.number(x, factor);
+        self.product(x, factor)
+    }
+
+    fn plus(&mut self, x: Extent, by: f64) -> Extent {
+        let by = self.number(x, by);
+        self.sum(x, by)
+    }
+
+    pub(super) fn one_minus(&mut self, x: Extent) -> Extent {
+        let one = self.number(x, 1.0);
+        self.difference(one, x)
+    }
+
+    fn absolute_slope(&mut self, x: Extent, slope: Extent) -> Extent {
+        let x = self.span(x);
+        let nought = self.number_like(x.lo, 0.0);
+        let signs = [x.lo, x.hi].map(|end| {
+            let above = self.graph.binary(Binary::Step, nought, end);
+            let twice = self.scaled(above, 2.0);
+            self.offset(twice, -1.0)
+        });
+        self.product(slope, Span::new(signs[0], signs[1]).into())
+    }
+
+    /// The slope of `yes` where `x` is less than `y`, of `no` where it is greater.
+    fn slope_by(&mut self, x: Known, y: Known, yes: Known, no: Known) -> Extent {
+        let (yes, no) = (self.slope(yes), self.slope(no));
+        self.by_lane([x.value, y.value, yes, no], |s, [x, y, yes, no]| {
+            let (x, y) = (s.span(x), s.span(y));
+            let certain = s.graph.lt(x.hi, y.lo);
+            let possible = s.graph.le(x.lo, y.hi);
+            let (yes, no) = (s.span(yes), s.span(no));
+            s.chosen(Span::new(certain, possible), yes, no)
+        })
+    }
+
+    fn clamp_slope(&mut self, x: Known, low: Known, high: Known) -> Option<Extent> {
+        let value = self.binary(Binary::Max, x.value, low.value);
+        let slope = Some(self.slope_by(low, x, x, low));
+        let raised = Known { value, slope };
+        Some(self.slope_by(raised, high, raised, high))
+    }
+
+    /// Of a point that moves evenly the distance is convex, so its slope rises from one end to the other.
+    fn length_slope(&mut self, x: Extent, slope: Extent, length: Extent) -> Extent {
+        if self.ty(x).width() == 1 {
+            return self.absolute_slope(x, slope);
+        }
+        if let (
+            Extent::Line(Line { ends, .. }),
+            Extent::Line(Line { ends: [direction, end], size }),
+        ) = (x, slope)
+            && direction == end
+        {
+            let ends = ends.map(|end| {
+                let along = self.graph.dot(end, direction);
+                let length = self.graph.length(end);
+                let length = self.at_least(length, TINY);
+                self.graph.div(along, length)
+            });
+            let size = self.graph.length(size);
+            let margin = self.scaled(size, 4.0 * ROUNDING);
+            return self.grown(Span::new(ends[0], ends[1]), margin).into();
+        }
+        let along = self.dot(x, slope);
+        let ratio = self.quotient(along, length);
+        let steepest = self.length(slope);
+        let (ratio, steepest) = (self.span(ratio), self.span(steepest).hi);
+        let least = self.graph.neg(steepest);
+        let [lo, hi] = [ratio.lo, ratio.hi].map(|end| {
+            let raised = self.graph.max(end, least);
+            self.graph.min(raised, steepest)
+        });
+        Span { lo, hi, wild: ratio.wild }.into()
+    }
+
+    /// `y x^(y - 1)` for the base, `x^y log x` for the exponent.
+    fn power_slope(&mut self, x: Known, y: Known, result: Extent) -> Option<Extent> {
+        let first = x.slope.map(|slope| {
+            let less = self.plus(y.value, -1.0);
+            let power = self.binary(Binary::Pow, x.value, less);
+            let factor = self.product(power, y.value);
+            self.product(slope, factor)
+        });
+        let second = y.slope.map(|slope| {
+            // Also of a fixed base, which may be 0.
+            let base = self.span(x.value);
+            let log = self.unary(Unary::Log, base.into());
+            let factor = self.product(result, log);
+            self.product(slope, factor)
+        });
+        self.total(first, second)
+    }
+
+    /// `(x y' - y x') / (x² + y²)`; any slope where the angle may jump.
+    fn angle_slope(&mut self, y: Known, x: Known) -> Option<Extent> {
+        let (dy, dx) = (self.slope(y), self.slope(x));
+        Some(self.by_lane([y.value, x.value, dy, dx], |s, [y, x, dy, dx]| {
+            let above = s.turning(y, x, dy, dx);
+            let place = s.compose(&[x, y]);
+            let square = s.square_of_length(place);
+            let slope = s.quotient(above, square);
+            let (slope, y, x) = (s.span(slope), s.span(y), s.span(x));
+            let cut = s.meets_cut(y, x);
+            let entire = s.entire(Type::Scalar);
+            s.chosen(Span::new(cut, cut), entire, slope)
+        }))
+    }
+
+    /// `x y' - y x'`, which is one number for a point that moves evenly.
+    fn turning(&mut self, y: Extent, x: Extent, dy: Extent, dx: Extent) -> Extent {
+        let (first, second) = (self.product(x, dy), self.product(y, dx));
+        let difference = self.difference(first, second);
+        let Extent::Line(Line { ends, size }) = difference else { return difference };
+        let margin = self.scaled(size, 4.0 * ROUNDING);
+        self.grown(Span::new(ends[0], ends[0]), margin).into()
+    }
+}

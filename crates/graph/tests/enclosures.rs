@@ -1,0 +1,141 @@
+//! Bounds of values and slopes along stretches, computed in f32, hold what is sampled there.
+
+#![allow(clippy::expect_used, reason = "a test that cannot be set up fails")]
+
+mod common;
+
+use common::{each_node, graph, steps};
+use proptest::prelude::*;
+use sdfc_graph::eval::{FrameValues, Tape};
+use sdfc_graph::{
+    Dim, FrameInput, Graph, NodeId, Stage, Type, enclosure, reachable, slope_enclosure,
+};
+
+/// Places of a stretch that are looked at, its ends among them.
+const PLACES: usize = 33;
+/// Values are compared whose size lies between these, or which are 0: beyond, f32 has other ideas.
+const SIZES: std::ops::Range<f64> = 1e-9..1e9;
+/// Numbers of a program count as infinite from here.
+const LARGE: f64 = 1e15;
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -4.0..4.0,
+        2 => (-8_i32..8).prop_map(|i| f64::from(i) / 2.0),
+        1 => -1000.0..1000.0,
+    ]
+}
+
+/// One end, and the way to the other: of any length.
+fn stretch() -> impl Strategy<Value = [[f64; 3]; 2]> {
+    let length = (-3.0..1.0).prop_map(|power: f64| 10.0_f64.powf(power));
+    let way = prop::array::uniform3(-1.0..1.0);
+    (prop::array::uniform3(coordinate()), way, length).prop_map(|(a, way, length)| {
+        // The ends and the way between them are numbers of f32.
+        let a = a.map(coarse);
+        [a, std::array::from_fn(|i| a[i] + coarse(way[i] * length))]
+    })
+}
+
+fn coarse(x: f64) -> f64 {
+    (x * 4096.0).round() / 4096.0
+}
+
+fn lerp([a, b]: [[f64; 3]; 2], part: f64) -> [f64; 3] {
+    std::array::from_fn(|i| a[i] + part * (b[i] - a[i]))
+}
+
+/// The places of a stretch.
+fn places(stretch: [[f64; 3]; 2]) -> impl Iterator<Item = [f64; 3]> {
+    (0..PLACES).map(move |i| lerp(stretch, i as f64 / (PLACES - 1) as f64))
+}
+
+/// Bounds of a root's value and of its slope, computed in f32.
+struct Bounds {
+    value: [f64; 2],
+    slope: [f64; 2],
+}
+
+fn bounds(graph: &mut Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Option<Bounds> {
+    // The first end is the point, so that all is computed in f32 but what is known per frame.
+    let point = graph.point(0, Dim::Three);
+    let way = graph.frame_input(FrameInput::Param(1), Type::Vec3);
+    let end = graph.add(point, way);
+    let mut roots = enclosure(graph, root, point, [point, end])?.to_vec();
+    roots.extend(slope_enclosure(graph, root, point, [point, end], way)?);
+    let tape = Tape::new(graph, &roots).expect("flat math");
+    let [from, to] = stretch;
+    let way: [f64; 3] = std::array::from_fn(|i| to[i] - from[i]);
+    let params = vec![[param; 4], [way[0], way[1], way[2], 0.0]];
+    let frame = FrameValues { params, time: 0.0, frame: 0.0 };
+    let found = tape.prepare::<f32>(&frame).eval(from.map(|x| x as f32)).to_vec();
+    let end = |i: usize| f64::from(found[i][0]);
+    Some(Bounds { value: [end(0), end(1)], slope: [end(2), end(3)] })
+}
+
+/// A root's values at the places in f64; `None` where one of them rests on a number that f32 has other ideas of.
+fn values(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Option<Vec<f64>> {
+    let used = reachable(graph, &[root]);
+    let tame = |lane: &f64| *lane == 0.0 || SIZES.contains(&lane.abs());
+    let value = |point| {
+        let all = each_node(graph, point, param);
+        let all_tame = used
+            .iter()
+            .all(|id| all[id.index()].is_some_and(|value| value.lanes().iter().all(tame)));
+        all_tame.then(|| all[root.index()].map(|value| value.lanes()[0])).flatten()
+    };
+    places(stretch).map(value).collect()
+}
+
+/// A root's values at the places in f32, as a shader computes them.
+fn singles(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Vec<f32> {
+    let tape = Tape::new(graph, &[root]).expect("flat math");
+    let frame = FrameValues { params: vec![[param; 4]], time: 0.0, frame: 0.0 };
+    let mut field = tape.prepare::<f32>(&frame);
+    places(stretch).map(|place| field.scalar(place.map(|x| x as f32))).collect()
+}
+
+fn varies(graph: &Graph, id: NodeId) -> bool {
+    graph.ty(id) == Type::Scalar && graph.stage(id) == Stage::Point
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(600) })]
+
+    #[test]
+    fn bounds_hold_every_sample(
+        steps in steps(24),
+        stretch in stretch(),
+        param in -3.0..3.0_f32,
+    ) {
+        prop_assume!(stretch[0] != stretch[1]);
+        let param = f64::from(param);
+        let mut graph = graph(&steps);
+        let roots: Vec<NodeId> =
+            graph.ids().filter(|&id| varies(&graph, id)).collect();
+        for &root in roots.iter().rev().take(6) {
+            let Some(values) = values(&graph, root, stretch, param) else { continue };
+            let Some(Bounds { value: [lo, hi], slope }) = bounds(&mut graph, root, stretch, param)
+            else { continue };
+            for value in singles(&graph, root, stretch, param) {
+                let value = f64::from(value);
+                prop_assert!(
+                    value.is_nan() || (lo <= value && value <= hi),
+                    "node {} is {:?}: {value} is not in {lo}..{hi}", root.index(), graph.node(root)
+                );
+            }
+            let step = 1.0 / (PLACES - 1) as f64;
+            for pair in values.windows(2) {
+                let rounding = 1e-12 * pair[0].abs().max(1.0);
+                let rise = pair[1] - pair[0];
+                let least = if slope[0] <= -LARGE { f64::NEG_INFINITY } else { slope[0] * step };
+                let most = if slope[1] >= LARGE { f64::INFINITY } else { slope[1] * step };
+                prop_assert!(
+                    least - rounding <= rise && rise <= most + rounding,
+                    "node {} is {:?}: {rise} is not in {step} times {slope:?}",
+                    root.index(), graph.node(root)
+                );
+            }
+        }
+    }
+}

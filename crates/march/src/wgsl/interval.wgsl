@@ -1,0 +1,77 @@
+// Proof by rejection and cutting. A stretch on which the field is nowhere 0 is free; any other is cut and its nearer part is
+// looked at first, down to a part of the tolerance, where the sign behind it tells whether the ray went in. So the first hit is
+// found whatever the field promises, jumps included. Nothing is kept of the parts that wait: the stretch after a free one
+// is as long as the field is high there, or twice as long as the last. After A. Knoll et al., Fast Ray Tracing of Arbitrary Implicit Surfaces
+// with Interval and Affine Arithmetic (2009).
+
+// A hit is nearer than this part of the tolerance.
+const HIT_PART: f32 = 0.00390625;
+// No stretch is cut shorter than this part of it; nor, of a ray that has spent its steps, than so many tolerances: bounds of what
+// jumps stay wide however short the stretch is.
+const FINEST: f32 = 0.0625;
+const COARSEST: f32 = 4.0;
+// Of what is not free this part at most is looked at next, and this part at least.
+const CAUTION: f32 = 0.9;
+const SHORTEST: f32 = 0.0625;
+
+fn tolerance(ray: Ray, t: f32) -> f32 {
+    return part_of_footprint(ray, t);
+}
+
+fn trace(ray: Ray) -> Trace {
+    // Last sample outside, up to which the ray is free, and first sample inside, as (t, distance).
+    var outside = vec2f(0.0);
+    var inside = vec2f(0.0);
+    var crossed = false;
+    var t = 0.0;
+    var stretch = ray.t_max;
+    // Of the field's range; a sample at the end of a stretch belongs to it.
+    var evaluations = 0u;
+    while evaluations < ray.steps {
+        let distance = field(ray_point(ray, t));
+        passed(t, distance);
+        // A ray that starts inside is at its hit.
+        if evaluations == 0u && distance < 0.0 {
+            return Trace(t, HIT, 1u);
+        }
+        if distance < 0.0 {
+            inside = vec2f(t, distance);
+            crossed = true;
+        } else {
+            outside = vec2f(t, distance);
+        }
+        let near = tolerance(ray, outside.x);
+        if crossed {
+            evaluations++;
+            if inside.x - outside.x < max(HIT_PART * near, rounding(ray, t)) {
+                return Trace(inside.x, HIT, evaluations);
+            }
+            // False position, kept off the ends so that the bracket always shrinks.
+            let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
+            t = mix(outside.x, inside.x, part);
+            continue;
+        }
+        if !(t < ray.t_max) {
+            return Trace(t, MISS, evaluations);
+        }
+        stretch = max(stretch, max(distance, rounding(ray, t)));
+        var shortened = false;
+        while evaluations < ray.steps {
+            let end = min(outside.x + stretch, ray.t_max);
+            let least = field_range(ray_point(ray, outside.x), ray_point(ray, end)).x;
+            evaluations++;
+            let spent = f32(evaluations) / f32(ray.steps);
+            let finest = max(max(FINEST, COARSEST * spent) * near, rounding(ray, t));
+            if least > 0.0 || stretch <= finest {
+                t = end;
+                break;
+            }
+            // As far as the field would stay above 0 if it fell evenly to its least value.
+            let part = clamp(CAUTION * distance / max(distance - least, 1e-30), SHORTEST, CAUTION);
+            stretch = max(part * (end - outside.x), finest);
+            shortened = true;
+        }
+        stretch = select(2.0 * stretch, 0.0, shortened);
+    }
+    return Trace(outside.x, CAPPED, ray.steps);
+}

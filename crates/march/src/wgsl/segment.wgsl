@@ -1,0 +1,57 @@
+// Segment tracing: a step is as long as the field can stay above 0, at the steepest that it falls anywhere on the stretch of
+// the ray that the step lies in. The stretch grows with the steps that are made. Where the sign changes the ray closes in on
+// the bracket. After E. Galin et al., Segment Tracing Using Local Lipschitz Bounds (2020); there the bound is of the slope's
+// magnitude, here of how steeply the field falls.
+
+// A hit is nearer than this part of the tolerance.
+const HIT_PART: f32 = 0.00390625;
+// The next stretch is so many times as long as the step made.
+const GROWTH: f32 = 2.0;
+
+fn tolerance(ray: Ray, t: f32) -> f32 {
+    return part_of_footprint(ray, t);
+}
+
+fn trace(ray: Ray) -> Trace {
+    // Last sample outside and first sample inside, as (t, distance).
+    var outside = vec2f(0.0);
+    var inside = vec2f(0.0);
+    var crossed = false;
+    var t = 0.0;
+    var stretch = ray.t_max;
+    for (var step = 0u; step < ray.steps; step++) {
+        let distance = field(ray_point(ray, t));
+        passed(t, distance);
+        // A ray that starts inside is at its hit.
+        if step == 0u && distance < 0.0 {
+            return Trace(t, HIT, 1u);
+        }
+        let near = tolerance(ray, t);
+        let hit = max(HIT_PART * near, rounding(ray, t));
+        if distance < 0.0 {
+            inside = vec2f(t, distance);
+            crossed = true;
+        } else {
+            outside = vec2f(t, distance);
+        }
+        if crossed {
+            if inside.x - outside.x < hit {
+                return Trace(inside.x, HIT, step + 1u);
+            }
+            // False position, kept off the ends so that the bracket always shrinks.
+            let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
+            t = mix(outside.x, inside.x, part);
+        } else {
+            let end = min(t + stretch, ray.t_max);
+            let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);
+            // Not less than the tolerance: what is thinner along the ray is less than a quarter of a pixel.
+            let stride = clamp(distance / max(-slopes.x, 1e-6), near, max(end - t, near));
+            stretch = GROWTH * stride;
+            t += stride;
+            if !(t <= ray.t_max) {
+                return Trace(t, MISS, step + 1u);
+            }
+        }
+    }
+    return Trace(t, CAPPED, ray.steps);
+}

@@ -1,0 +1,71 @@
+//! `interval` on the CPU: boxes about stretches of the ray, bounded in f64. The shader bounds stretches themselves; boxes
+//! are wider, so that more of them are looked at.
+
+use sdfc_graph::eval::{Evaluator, Interval};
+
+use super::{Limits, Real, Turn, Walk};
+
+/// As many boxes are looked at for each stretch that the shader may look at.
+pub(super) const BOXES: u32 = 8;
+/// Of what is not free this part at most is looked at next, and this part at least.
+const CAUTION: f64 = 0.9;
+const SHORTEST: f64 = 0.0625;
+/// No stretch is cut shorter than this part of the tolerance; nor, of a ray that has spent its steps, than so many of it.
+const FINEST: f64 = 0.0625;
+const COARSEST: f64 = 4.0;
+
+impl<T: Real> Walk<T> {
+    /// The place up to which the ray is free, or which is too near to tell; or, of a ray that is inside, the next
+    /// place on the way back to the surface.
+    pub(super) fn interval(
+        &mut self,
+        distance: T,
+        limits: &Limits<T>,
+        range: &mut Evaluator<'_, Interval>,
+    ) -> Turn<T> {
+        let zero = T::constant(0.0);
+        if self.evaluations == 1 && distance < zero {
+            return Turn::Hit(self.t);
+        }
+        self.keep(distance);
+        let (last, above) = self.outside.unwrap_or((zero, zero));
+        let near = limits.tolerance(&self.ray, last);
+        if let Some(turn) = self.closing_in(self.hit_within(near)) {
+            return turn;
+        }
+        if self.t >= self.ray.t_max {
+            return Turn::Onward(self.ray.t_max + self.ray.t_max);
+        }
+        let rounding = self.ray.rounding(self.t);
+        self.stretch = self.stretch.max(above.max(rounding));
+        let mut shortened = false;
+        let mut end = last;
+        while self.evaluations < limits.most() {
+            end = (last + self.stretch).min(self.ray.t_max);
+            self.evaluations += 1;
+            let least = T::constant(range.scalar(self.box_about(last, end)).lo());
+            let spent = f64::from(self.evaluations) / f64::from(limits.most());
+            let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
+            let finest = finest.max(rounding);
+            if least > zero || self.stretch <= finest {
+                break;
+            }
+            // As far as the field would stay above 0 if it fell evenly to its least value.
+            let fall = (above - least).max(T::constant(1e-30));
+            let part = (T::constant(CAUTION) * above).div(fall);
+            let part = part.clamp(T::constant(SHORTEST), T::constant(CAUTION));
+            self.stretch = (part * (end - last)).max(finest);
+            shortened = true;
+        }
+        self.stretch = if shortened { zero } else { self.stretch + self.stretch };
+        Turn::Onward(end)
+    }
+
+    fn box_about(&self, from: T, to: T) -> [Interval; 3] {
+        let (a, b) = (self.ray.at(from), self.ray.at(to));
+        std::array::from_fn(|axis| {
+            let (a, b): (f64, f64) = (a[axis].into(), b[axis].into());
+            Interval::new(a.min(b), a.max(b))
+        })
+    }
+}

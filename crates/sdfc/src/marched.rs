@@ -1,0 +1,80 @@
+//! What a ray method wants of a scene beside its field, and what `auto` is where the field promises nothing.
+
+use std::borrow::Cow;
+
+use sdfc_analyze::cost;
+use sdfc_graph::eval::FrameValues;
+use sdfc_graph::{NodeId, Program};
+use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
+use sdfc_render::{CpuScene, HIT, MISS, View};
+
+use crate::{Error, Scene};
+
+/// Rays that are tried on the CPU, as a picture of so many pixels.
+const TRIED: [u32; 2] = [8, 6];
+/// The pixels of the picture that they stand for are so many times narrower.
+const FINER: f64 = 80.0;
+/// Most rays out of steps.
+const MOST_CAPPED: usize = 1;
+
+impl Scene {
+    /// The ray method that marches where one is asked for by name: `auto` is `interval` where the field may exceed the
+    /// distance, so that nothing is missed, unless intervals do not end on it within the steps that a ray has.
+    pub fn marched_by<'n>(&self, name: &'n str) -> &'n str {
+        let is_auto = METHODS.first().is_some_and(|auto| auto.name == name);
+        if is_auto && !self.is_certified() && self.intervals_end() { UNCERTIFIED } else { name }
+    }
+
+    /// Why [`Scene::marched_by`] says what it does, in one line; `None` where the field is certified or another method
+    /// than `auto` is asked for.
+    pub(crate) fn why_marched_by(&self, name: &str) -> Option<String> {
+        let is_auto = METHODS.first().is_some_and(|auto| auto.name == name);
+        if !is_auto || self.is_certified() {
+            return None;
+        }
+        Some(if self.intervals_end() {
+            format!("the field is uncertified: `{name}` is `{UNCERTIFIED}`")
+        } else {
+            format!(
+                "the field is uncertified and its bounds are too wide for `{UNCERTIFIED}`: \
+                 `{name}` takes it for the distance"
+            )
+        })
+    }
+
+    /// Operations of so many evaluations by a method, in a program of [`with_stretches`]. An evaluation by a method that
+    /// looks at stretches is the field and what it asks of a stretch, what they share counted once.
+    pub(crate) fn operations_of(&self, program: &Program, name: &str, evaluations: f64) -> f64 {
+        let Some(method) = method(name) else { return f64::NAN };
+        let stretches = [(stubs::RANGE, program.range), (stubs::SLOPE_RANGE, program.slope_range)];
+        let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));
+        let asked: Vec<NodeId> = asked.filter_map(|asked| asked.1).collect();
+        if asked.is_empty() {
+            return self.report.operations(evaluations, method.looks_ahead);
+        }
+        let roots: Vec<NodeId> = program.distance.into_iter().chain(asked).collect();
+        evaluations * cost(&program.graph, &roots).operations as f64
+    }
+
+    fn intervals_end(&self) -> bool {
+        // A scene of which no ray can be tried has no picture either.
+        *self.intervals_end.get_or_init(|| self.capped_by_intervals().unwrap_or(0) <= MOST_CAPPED)
+    }
+
+    /// How many of a few rays run out of steps.
+    fn capped_by_intervals(&self) -> Result<usize, Error> {
+        let frame = FrameValues::defaults(self.params());
+        let view = self.view(&frame, TRIED)?;
+        let view = View { tolerance: view.tolerance / FINER, ..view };
+        let depths = CpuScene::new(self.drawn())?.depth_map::<f64>(&view, &frame, UNCERTIFIED)?;
+        let ended = |status: u32| status == HIT || status == MISS;
+        Ok(depths.pixels().iter().filter(|pixel| !ended(pixel.status)).count())
+    }
+}
+
+/// A program with what the method of that name asks for: bounds along stretches of rays, where it looks at such.
+pub(crate) fn with_stretches<'p>(program: &'p Program, name: &str) -> Cow<'p, Program> {
+    let calls = |stub| method(name).is_some_and(|method| method.calls(stub));
+    let (range, slope) = (calls(stubs::RANGE), calls(stubs::SLOPE_RANGE));
+    if range || slope { Cow::Owned(program.enclosed(range, slope)) } else { Cow::Borrowed(program) }
+}
