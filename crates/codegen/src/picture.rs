@@ -2,7 +2,9 @@
 
 use naga::{Function, Module, ResourceBinding, UniqueArena};
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Shadow, reachable_where};
+use sdfc_graph::{
+    Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where,
+};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
@@ -43,8 +45,10 @@ pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Err
 ///
 /// As [`render_module`].
 pub fn normals_module(program: &Program, method: &Method) -> Result<Shader, Error> {
-    let unpainted = Program { material: None, ..program.clone() };
-    link_picture(&unpainted, Form::Normals, method)
+    let Settings { camera, march, .. } = program.settings.clone();
+    let settings = Settings { camera, march, ..Settings::default() };
+    let unlit = Program { material: None, settings, ..program.clone() };
+    link_picture(&unlit, Form::Normals, method)
 }
 
 /// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an

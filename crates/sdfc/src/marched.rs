@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use sdfc_analyze::cost;
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{NodeId, Program};
+use sdfc_graph::{Node, NodeId, Program, reachable};
 use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
 use sdfc_render::{CpuScene, HIT, MISS, View};
 
@@ -58,7 +58,16 @@ impl Scene {
 
     fn intervals_end(&self) -> bool {
         // A scene of which no ray can be tried has no picture either.
-        *self.intervals_end.get_or_init(|| self.capped_by_intervals().unwrap_or(0) <= MOST_CAPPED)
+        let tried = || self.capped_by_intervals().unwrap_or(0) <= MOST_CAPPED;
+        *self.intervals_end.get_or_init(|| !self.has_loop() && tried())
+    }
+
+    /// The rounds of a loop widen bounds beyond what numbers of 32 bits hold; the CPU's, which rays are tried
+    /// with, hold more.
+    fn has_loop(&self) -> bool {
+        let (graph, distance) = (&self.program.graph, self.program.distance);
+        let nodes = reachable(graph, distance.as_slice());
+        nodes.into_iter().any(|node| matches!(graph.node(node), Node::Loop(..)))
     }
 
     /// How many of a few rays run out of steps.
