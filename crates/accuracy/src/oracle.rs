@@ -12,6 +12,8 @@ const SEARCH: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
 /// A root counts although something before it is not proven, if that is nearer to it than this part of
 /// the distance: a ten-thousandth of a pixel.
 const DOUBT: f64 = 1e-7;
+/// What is known of a field's value at a point is no wider than this, in parts of the point's size, but on a jump.
+const NARROW: f64 = 1e-10;
 
 /// On a stretch with more jumps the ways through them are not told apart: it is cut first.
 const FEW_JUMPS: usize = 2;
@@ -150,7 +152,11 @@ impl Prober<'_> {
     }
 
     fn search(&mut self, ray: &Ray) -> Verdict {
-        if self.over(ray, 0.0, 0.0).lo() <= 0.0 {
+        let start = self.over(ray, 0.0, 0.0);
+        // Where the ray starts on a jump, what is known of its start is wide, and tells nothing.
+        let size = ray.origin.iter().fold(1.0, |size, x| x.abs().max(size));
+        let is_narrow = start.hi() - start.lo() <= NARROW * size;
+        if start.hi() <= 0.0 || (start.lo() <= 0.0 && is_narrow) {
             return Verdict::Hit(0.0);
         }
         // Stretches that may hold the root, the nearest on top.

@@ -180,7 +180,7 @@ proptest! {
         prop_assume!(doubt > 1e-6);
         let found = probe(&program, &ray);
         match (found.verdict, nearest) {
-            (Verdict::Hit(t), Some(wanted)) => prop_assert!((t - wanted).abs() < 1e-8 * wanted.max(1.0)),
+            (Verdict::Hit(t), Some(wanted)) => prop_assert!((t - wanted).abs() < 1e-8 * wanted.max(1.0), "{t}, not {wanted}"),
             (Verdict::Miss, None) => {}
             (verdict, wanted) => prop_assert!(false, "{verdict:?}, not {wanted:?}"),
         }

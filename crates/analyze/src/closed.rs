@@ -274,6 +274,10 @@ impl Pass<'_> {
             | Form::Chosen(..)
             | Form::Whole => return Ok(None),
         };
+        // One that is built inside this formula sees this point too, not only the one where it is sampled.
+        if self.graph.shape(child).level > 0 {
+            return Ok(None);
+        }
         let own_direction = self.graph.point(1, Dim::Three);
         let direction = slopes.direction(self.graph, q, own_direction);
         let ray = [place.point, place.direction];

@@ -2,9 +2,7 @@
 
 use naga::{Function, Module, ResourceBinding, UniqueArena};
 use rustc_hash::FxHashSet;
-use sdfc_graph::{
-    Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where,
-};
+use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
