@@ -88,8 +88,8 @@ fn the_text_opens_and_params_can_be_reset() {
     let moved = [0.4, 0.0, 0.0, 0.0];
     fixture.harness.state_mut().session().knobs.params.insert("wall".to_owned(), moved);
     fixture.harness.run_steps(2);
-    // The first is that of the numbers in the text, which is not to be clicked.
-    let reset = fixture.harness.get_all_by_label("Reset").last();
+    // The last is that of the numbers in the text, which is not to be clicked.
+    let reset = fixture.harness.get_all_by_label("Reset").next();
     reset.unwrap().click();
     fixture.harness.run_steps(3);
     assert!(fixture.harness.state_mut().session().knobs.params.is_empty());

@@ -124,7 +124,7 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
                 ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param)).id
             });
             knob(ui, param, &mut value, label.inner);
-            let back = egui::Button::new(RichText::new("⟲").small()).frame(false);
+            let back = egui::Button::new(RichText::new("reset").small()).frame(false);
             let text = format!("Back to {}.", value_text(param, param.default));
             if moved && ui.add(back).on_hover_text(text).clicked() {
                 session.knobs.params.remove(&param.name);
@@ -235,11 +235,11 @@ fn number_knob(
 fn time(ui: &mut Ui, session: &mut Session) {
     let clock = &mut session.clock;
     ui.horizontal(|ui| {
-        let text = if clock.playing { "⏸" } else { "▶" };
+        let text = if clock.playing { "Pause" } else { "Play" };
         if ui.button(text).on_hover_text("Play or pause. Space").clicked() {
             clock.playing = !clock.playing;
         }
-        if ui.button("⏮").on_hover_text("Back to 0.").clicked() {
+        if ui.button("To 0").on_hover_text("Back to 0.").clicked() {
             clock.time = 0.0;
         }
         let slider = egui::Slider::new(&mut clock.time, 0.0..=clock.end.max(0.1)).suffix(" s");

@@ -86,7 +86,7 @@ fn machine(ui: &mut Ui, model: &Model) {
     let note = model.note.as_deref().map_or(String::new(), |note| format!("{note}\n"));
     ui.label(text).on_hover_text(format!("{note}{}", built(model.stages, model.pipelines)));
     if model.note.is_some() {
-        ui.label(RichText::new("⚠").small().color(style::WARNING)).on_hover_text(note);
+        ui.label(RichText::new("note").small().color(style::WARNING)).on_hover_text(note);
     }
 }
 

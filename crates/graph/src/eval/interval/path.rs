@@ -28,7 +28,7 @@ use crate::eval::watch::Watch;
 ///
 /// let region = [Interval::new(0.45, 0.55), Interval::ENTIRE, Interval::ENTIRE];
 /// let mut path = Path::default();
-/// assert!(field.scalar_along(region, &mut path).contains(0.0));
+/// assert!(field.scalar_along(region, &mut path).contains(1.0));
 /// assert!(path.fork(1));
 /// assert!(field.scalar_along(region, &mut path).lo() > 1.4); // the lower cell
 /// assert!(path.advance());
