@@ -1,9 +1,9 @@
 //! The thread that draws: the newest request, coarse first where the scene is slow, then finer.
 //!
 //! While the camera moves, one pass is drawn whose resolution is chosen so that it should take no longer than
-//! [`BUDGET`]; when it rests, passes of up to full resolution follow, and then more rays for each pixel. A
+//! `BUDGET`; when it rests, passes of up to full resolution follow, and then more rays for each pixel. A
 //! newer request ends a finer pass at its next tile; the first pass is finished, so that a camera that never
-//! rests is seen to move, unless it takes longer than [`PATIENCE`].
+//! rests is seen to move, unless it takes longer than `PATIENCE`.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
