@@ -7,9 +7,10 @@ use std::ops::ControlFlow;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_graph::{Program, Shadow, eval::FrameValues};
+use sdfc_march::METHODS;
 use sdfc_render::{
-    Clock, CpuScene, Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, TileSize, View,
-    compare, testing, uniform_values, unwatched,
+    Clock, CpuScene, Frame, Gpu, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize,
+    View, compare, testing, uniform_values, unwatched,
 };
 
 type Outcome = Result<(), Failed>;
@@ -27,6 +28,7 @@ fn main() {
         Trial::test("a_bad_shader_is_an_error", a_bad_shader_is_an_error),
         Trial::test("the_device_survives_an_error", the_device_survives_an_error),
         Trial::test("gpu_and_cpu_agree", gpu_and_cpu_agree),
+        Trial::test("every_method_casts_the_same_soft_shadow", soft_shadows_are_the_same),
         Trial::test("tiles_give_the_picture_of_one_tile", tiles_give_the_picture_of_one_tile),
         Trial::test("a_param_moves_the_surface", a_param_moves_the_surface),
         Trial::test("fields_that_are_no_numbers_are_counted", not_a_number_is_counted),
@@ -95,6 +97,34 @@ fn gpu_and_cpu_agree() -> Outcome {
             let close = compare(&on_gpu, &double).ok_or("different sizes")?;
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
         }
+    }
+    Ok(())
+}
+
+/// Steps of another length meet other places of a ray, from which its shadow is estimated.
+fn soft_shadows_are_the_same() -> Outcome {
+    let gpu = Gpu::new()?;
+    let program = common::soft_shadow(4.0).enclosed(true, true);
+    let (size, frame) = ([96, 64], FrameValues::default());
+    let picture = |method| {
+        Ok::<_, Failed>(draw(&gpu, &program, &frame, size, method, TileSize::default())?.image)
+    };
+    let plain = picture("sphere")?;
+    let is_same = |image: &Image, what: &str| {
+        let close = compare(image, &plain).ok_or("different sizes")?;
+        assert!(close.mean_color < 0.5, "{what}: {close:?}");
+        Ok::<_, Failed>(())
+    };
+    // Neither of these meets what the others do.
+    let walks = |name: &str| !["fixed", "practical"].contains(&name);
+    for method in METHODS.iter().filter(|method| walks(method.name)) {
+        is_same(&picture(method.name)?, method.name)?;
+    }
+    let view = common::view(&program, size);
+    let (scene, options) = (CpuScene::new(&program)?, RenderOptions::default());
+    for method in ["auto", "interval"] {
+        let on_cpu = scene.render(&view, &frame, method, &options, &mut unwatched)?.image;
+        is_same(&on_cpu, &format!("{method} on the CPU"))?;
     }
     Ok(())
 }

@@ -40,7 +40,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t + distance <= ray.t_max) {
             return Trace(t + distance, MISS, step + 1u);
         }
-        stride = min(distance + ahead, ray.t_max - t);
+        stride = min(paced(distance + ahead, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

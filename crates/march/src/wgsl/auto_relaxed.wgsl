@@ -42,7 +42,7 @@ fn trace(ray: Ray) -> Trace {
         }
         // Two balls touch at a step z = r + (r + slope z).
         let relaxation = 2.0 / clamp(1.0 - slope, 2.0 / MOST_RELAXATION, 2.0);
-        stride = min(relaxation * distance, ray.t_max - t);
+        stride = min(paced(relaxation * distance, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

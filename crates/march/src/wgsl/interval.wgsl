@@ -54,7 +54,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t < ray.t_max) {
             return Trace(t, MISS, evaluations);
         }
-        stretch = max(stretch, max(distance, rounding(ray, t)));
+        stretch = paced(max(stretch, max(distance, rounding(ray, t))), max(distance, near));
         var shortened = false;
         while evaluations < ray.steps {
             let end = min(outside.x + stretch, ray.t_max);

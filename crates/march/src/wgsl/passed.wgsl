@@ -10,6 +10,18 @@ var<private> clearance: f32;
 // Last place, and the distance there.
 var<private> before: vec2f;
 
+// A step, but of a ray that is watched no longer than the distance, whatever the method could do: its spheres would hardly
+// meet, or not, and what they touch at would be taken for a surface.
+fn paced(stride: f32, distance: f32) -> f32 {
+    var allowed = stride;
+    if SOFT_SHADOWS {
+        if watched {
+            allowed = min(stride, distance);
+        }
+    }
+    return allowed;
+}
+
 // Before a ray to a lamp.
 fn open_penumbra() {
     clearance = 1e30;
@@ -24,7 +36,7 @@ fn passed(t: f32, distance: f32) {
         // How far before this place the spheres meet, and how far beside the ray.
         let back = 0.5 * (step + (square - before.y * before.y) / step);
         var nearest = vec2f(t - back, sqrt(max(square - back * back, 0.0)));
-        if back <= 0.0 {
+        if back <= 0.0 || step > distance + before.y {
             nearest = vec2f(t, distance);
         } else if back >= step {
             nearest = before;

@@ -33,7 +33,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t + distance <= ray.t_max) {
             return Trace(t + distance, MISS, step + 1u);
         }
-        stride = min(relaxation * distance, ray.t_max - t);
+        stride = min(paced(relaxation * distance, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

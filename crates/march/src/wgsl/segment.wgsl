@@ -45,7 +45,8 @@ fn trace(ray: Ray) -> Trace {
             let end = min(t + stretch, ray.t_max);
             let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);
             // Not less than the tolerance: what is thinner along the ray is less than a quarter of a pixel.
-            let stride = clamp(distance / max(-slopes.x, 1e-6), near, max(end - t, near));
+            let free = paced(distance / max(-slopes.x, 1e-6), distance);
+            let stride = clamp(free, near, max(end - t, near));
             stretch = GROWTH * stride;
             t += stride;
             if !(t <= ray.t_max) {

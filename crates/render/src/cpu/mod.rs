@@ -130,8 +130,6 @@ impl CpuScene {
         method: Method,
         shaded: bool,
     ) -> Wave<'a, T> {
-        let is_soft = |light: &ViewLight| matches!(light.shadow, ViewShadow::Soft(_));
-        let clearance = view.lights.iter().any(is_soft);
         let prepare = |tape: &'a Tape| tape.prepare::<Packet<T, { trace::LANES }>>(frame);
         Wave {
             view,
@@ -139,7 +137,7 @@ impl CpuScene {
                 method,
                 epsilon: T::constant(view.epsilon),
                 steps: view.steps,
-                clearance,
+                watched: false,
             },
             field: prepare(&self.field),
             ahead: self.ahead.as_ref().filter(|_| method.looks_ahead()).map(|a| a.prepare(frame)),
@@ -272,7 +270,8 @@ impl<T: Real> Wave<'_, T> {
         };
         let rays: Vec<_> = rays.iter().copied().zip(known).collect();
         let marched = self.ahead.as_mut().filter(|_| !watched).and_then(|a| a.marched.as_mut());
-        trace(marched.unwrap_or(&mut self.field), &mut self.range, &rays, &self.limits)
+        let limits = Limits { watched, ..self.limits };
+        trace(marched.unwrap_or(&mut self.field), &mut self.range, &rays, &limits)
     }
 
     /// Adds what lies behind where sights met nothing, and what lights what they met.

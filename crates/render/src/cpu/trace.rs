@@ -112,7 +112,7 @@ pub(super) struct Limits<T> {
     pub(super) epsilon: T,
     pub(super) steps: u32,
     /// Whether it is wanted how narrowly rays pass what they do not meet.
-    pub(super) clearance: bool,
+    pub(super) watched: bool,
 }
 
 impl<T: Real> Limits<T> {
@@ -208,7 +208,7 @@ impl<T: Real> Walk<T> {
         range: &mut Evaluator<'_, Interval>,
     ) -> Option<Trace<T>> {
         self.evaluations += 1;
-        if limits.clearance {
+        if limits.watched {
             self.pass(distance);
         }
         let turn = match limits.method {
@@ -233,7 +233,8 @@ impl<T: Real> Walk<T> {
     }
 
     /// This place's distance and the last one's are radii of spheres; they meet in a circle about the ray, whose
-    /// radius is taken for the distance of what lies there, if it lies between.
+    /// radius is taken for the distance of what lies there, if it lies between. Spheres that do not meet tell nothing
+    /// of what is between them.
     fn pass(&mut self, here: T) {
         let ((last, before), zero) = (self.before, T::constant(0.0));
         self.before = (self.t, here);
@@ -241,7 +242,7 @@ impl<T: Real> Walk<T> {
         if step > zero {
             let back = T::constant(0.5) * (step + (here * here - before * before).div(step));
             let (along, aside) = match back {
-                back if back <= zero => (self.t, here),
+                back if back <= zero || step > here + before => (self.t, here),
                 back if back >= step => (last, before),
                 back => (self.t - back, (here * here - back * back).max(zero).sqrt()),
             };

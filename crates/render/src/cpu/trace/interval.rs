@@ -38,6 +38,9 @@ impl<T: Real> Walk<T> {
         }
         let rounding = self.ray.rounding(self.t);
         self.stretch = self.stretch.max(above.max(rounding));
+        if limits.watched {
+            self.stretch = self.stretch.min(above.max(near));
+        }
         let mut shortened = false;
         let mut end = last;
         while self.evaluations < limits.most() {
