@@ -337,10 +337,13 @@ pub struct Chart {
     /// Scenes; `-` is stdin
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Where the chart goes, as a picture; `-` is stdout. A folder takes a picture and the figures of each scene, and a
-    /// page that lists them
-    #[arg(short, long, value_name = "OUT.svg|FOLDER")]
+    /// Where the chart goes, as a picture; `-` is stdout, as SVG. A folder takes both pictures and the figures of each scene,
+    /// and a page that lists them
+    #[arg(short, long, value_name = "OUT.svg|OUT.png|FOLDER")]
     pub output: Option<PathBuf>,
+    /// A dark ground for PNG; an SVG has that of the reader's page
+    #[arg(long)]
+    pub dark: bool,
     /// Where the figures go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,

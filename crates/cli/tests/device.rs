@@ -1,5 +1,6 @@
 //! A device that is lost on the way: a clear error, status 3, no partial output. The program loses it on purpose, which
-//! it can only in a build with debug assertions; elsewhere, and without an adapter, these are reported as ignored.
+//! it can only in a build with debug assertions; elsewhere, and without an adapter, these are reported as ignored. Beside
+//! them what else needs an adapter.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -19,7 +20,10 @@ fn main() {
         Trial::test("in the middle of a sequence", a_sequence_keeps_whole_frames),
         Trial::test("while measuring", while_measuring),
     ];
-    let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
+    let mut trials: Vec<Trial> =
+        trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
+    let charts = Trial::test("charts into a folder", charts_into_a_folder);
+    trials.push(charts.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -63,6 +67,24 @@ fn a_sequence_keeps_whole_frames() -> Result<(), Failed> {
         image::load_from_memory(&std::fs::read(folder.path().join(name))?)?;
     }
     Ok(())
+}
+
+/// A page, and of each scene both pictures and the figures.
+fn charts_into_a_folder() -> Result<(), Failed> {
+    let folder = folder(&[("a.sdf", BALL), ("b.sdf", "box(1)")]);
+    std::fs::create_dir(folder.path().join("charts"))?;
+    let args = "chart a.sdf b.sdf -o charts --size 12x8 --march auto,fixed --note today";
+    let output = run_in(folder.path(), args, b"", &[]);
+    let written = folder.path().join("charts");
+    let expected = ["README.md", "a.json", "a.png", "a.svg", "b.json", "b.png", "b.svg"];
+    if !output.status.success() || names(&written) != expected {
+        return Err(format!("{}: {:?}", said(&output), names(&written)).into());
+    }
+    let page = std::fs::read_to_string(written.join("README.md"))?;
+    let svg = std::fs::read_to_string(written.join("a.svg"))?;
+    image::open(written.join("a.png"))?;
+    let told = page.contains("12x8") && page.contains("today") && svg.contains("today");
+    if told { Ok(()) } else { Err(page.into()) }
 }
 
 fn while_measuring() -> Result<(), Failed> {

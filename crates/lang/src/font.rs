@@ -15,8 +15,9 @@ use crate::import::{self, Resolver};
 use crate::outline::{Curve, Piece, Point, boundary, mix, sub};
 use outline::{DrawMemory, DrawOptions, PathElement};
 
-/// The font that comes with the library, and its name in scenes.
-const SANS: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
+/// The font that comes with the library: Roboto, an OpenType file.
+pub const SANS: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
+/// Its name in scenes.
 const SANS_NAME: &str = "sans";
 /// Most curves of one text.
 pub const MAX_CURVES: usize = 4096;

@@ -2,27 +2,28 @@
 //! ten. A method is a line through its settings; a ring instead of a disc says that pixels are wrong.
 
 use plotters::prelude::*;
+use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::theme::Theme;
 use super::{Chart, Row};
 
-const SIZE: (u32, u32) = (960, 620);
+pub(super) const SIZE: (u32, u32) = (960, 620);
 /// Errors below this lie on the axis: no eye and no f32 tells them apart.
 const LEAST_ERROR: f64 = 1e-5;
-const PAPER: RGBColor = RGBColor(252, 252, 250);
-const INK: RGBColor = RGBColor(40, 44, 52);
-const FAINT: RGBColor = RGBColor(214, 216, 220);
-/// Told apart by most eyes (Okabe and Ito, "Color universal design", 2008).
-const COLORS: [RGBColor; 8] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(120, 94, 240),
-    RGBColor(90, 90, 90),
-];
+/// Width and height that a count above a marker takes.
+const LABEL: (i32, i32) = (30, 13);
+
+/// The bytes of a font, by which letters are measured, and drawn where the picture is one of pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Font(pub &'static [u8]);
+
+impl Font {
+    pub(super) fn register(self) -> Result<(), DrawError> {
+        let known = register_font("sans-serif", FontStyle::Normal, self.0);
+        known.map_err(|_| DrawError::new(&"the font cannot be read"))
+    }
+}
 
 /// Why a chart could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,26 +43,30 @@ impl std::fmt::Display for DrawError {
 
 impl std::error::Error for DrawError {}
 
-/// The chart as SVG, on a light ground of its own.
+/// The chart as SVG, on a ground of its own, which is dark where the reader's page is.
 ///
 /// # Errors
 ///
-/// [`DrawError`] if there is no row to draw.
-pub fn svg(chart: &Chart) -> Result<String, DrawError> {
+/// [`DrawError`] if there is no row to draw, or the font is none.
+pub fn svg(chart: &Chart, font: Font) -> Result<String, DrawError> {
+    font.register()?;
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        draw(chart, &root).map_err(|error| DrawError::new(&error))?;
+        draw(chart, &root, &Theme::LIGHT).map_err(|error| DrawError::new(&error))?;
     }
+    let head = text.find('\n').map_or(0, |end| end + 1);
+    text.insert_str(head, &format!("<style>{}</style>\n", Theme::css()));
     Ok(text)
 }
 
-fn draw<B: DrawingBackend>(
+pub(super) fn draw<B: DrawingBackend>(
     chart: &Chart,
     root: &DrawingArea<B, plotters::coord::Shift>,
+    theme: &Theme,
 ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
-    root.fill(&PAPER)?;
-    let body = header(chart, root)?;
+    root.fill(&theme.paper)?;
+    let body = header(chart, root, theme)?;
     let (costs, errors) = (span(&chart.methods, cost), span(&chart.methods, error));
     let mut plane = ChartBuilder::on(&body)
         .margin(12)
@@ -69,13 +74,13 @@ fn draw<B: DrawingBackend>(
         .x_label_area_size(44)
         .y_label_area_size(72)
         .build_cartesian_2d((costs[0]..costs[1]).log_scale(), (errors[0]..errors[1]).log_scale())?;
-    let label = |size| ("sans-serif", size).into_font().color(&INK);
+    let label = |size| ("sans-serif", size).into_font().color(&theme.ink);
     plane
         .configure_mesh()
         .x_desc("operations of the field's formula per pixel")
         .y_desc("error in depth, 99th of 100 pixels, in widths of a pixel")
-        .axis_style(INK)
-        .bold_line_style(FAINT)
+        .axis_style(theme.ink)
+        .bold_line_style(theme.faint)
         .light_line_style(TRANSPARENT)
         .label_style(label(13))
         .axis_desc_style(label(14))
@@ -87,11 +92,12 @@ fn draw<B: DrawingBackend>(
         chart.methods.iter().filter(|row| row.pareto && row.wrong() == 0).collect();
     front.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let line = front.iter().map(|row| place(row));
-    plane.draw_series(LineSeries::new(line, FAINT.stroke_width(9)))?;
-    plane.draw_series(front.iter().map(|row| Circle::new(place(row), 11, FAINT.filled())))?;
+    plane.draw_series(LineSeries::new(line, theme.faint.stroke_width(9)))?;
+    plane.draw_series(front.iter().map(|row| Circle::new(place(row), 11, theme.faint.filled())))?;
 
+    let mut labels: Vec<(i32, i32)> = Vec::new();
     for (index, name) in names(chart).into_iter().enumerate() {
-        let color = COLORS[index % COLORS.len()];
+        let color = theme.methods[index % theme.methods.len()];
         let rows: Vec<&Row> = chart.methods.iter().filter(|row| row.method == name).collect();
         let line = rows.iter().map(|row| place(row));
         plane
@@ -99,17 +105,23 @@ fn draw<B: DrawingBackend>(
             .label(name)
             .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
         plane.draw_series(rows.iter().map(|row| marker(row, color)))?;
-        plane.draw_series(rows.iter().filter(|row| row.wrong() > 0).map(|row| {
-            let style = ("sans-serif", 12).into_font().color(&color);
-            let text = format!("{} wrong", row.wrong());
-            EmptyElement::at(place(row)) + Text::new(text, (10, 2), style)
-        }))?;
+        let style =
+            ("sans-serif", 12).into_font().color(&color).pos(Pos::new(HPos::Center, VPos::Top));
+        for row in rows.iter().filter(|row| row.default && row.wrong() > 0) {
+            let (x, marker) = plane.backend_coord(&place(row));
+            let mut y = marker - 2 * LABEL.1;
+            while labels.iter().any(|(a, b)| (x - a).abs() < LABEL.0 && (y - b).abs() < LABEL.1) {
+                y -= LABEL.1;
+            }
+            labels.push((x, y));
+            root.draw(&Text::new(row.wrong().to_string(), (x, y), style.clone()))?;
+        }
     }
     plane
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperRight)
-        .background_style(PAPER.mix(0.85))
-        .border_style(FAINT)
+        .background_style(theme.paper.mix(0.85))
+        .border_style(theme.faint)
         .label_font(label(14))
         .draw()?;
     root.present()
@@ -119,17 +131,18 @@ fn draw<B: DrawingBackend>(
 fn header<B: DrawingBackend>(
     chart: &Chart,
     root: &DrawingArea<B, plotters::coord::Shift>,
+    theme: &Theme,
 ) -> Result<DrawingArea<B, plotters::coord::Shift>, DrawingAreaErrorKind<B::ErrorType>> {
     let (head, body) = root.split_vertically(58);
     let style = |size, color: &RGBColor| {
         ("sans-serif", size).into_font().color(color).pos(Pos::new(HPos::Left, VPos::Top))
     };
     let [width, height] = chart.size;
-    head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &INK)))?;
+    head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &theme.ink)))?;
     let counts = chart.oracle;
     let line = format!(
         "{} leaves, {width}x{height}, on {}, {}{}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
-         Disc: no wrong pixel. Large: the default. Grey: nothing is cheaper and better.",
+         Ring: pixels are wrong. Large: the default, with their number. Grey: nothing is cheaper and better.",
         chart.leaves,
         chart.adapter,
         chart.driver,
@@ -139,12 +152,8 @@ fn header<B: DrawingBackend>(
         counts.edge,
         counts.undecided
     );
-    for (index, part) in wrapped(&line, 130).into_iter().enumerate() {
-        head.draw(&Text::new(
-            part,
-            (20, 34 + 14 * index as i32),
-            style(12, &RGBColor(96, 100, 108)),
-        ))?;
+    for (index, part) in wrapped(&line, 160).into_iter().enumerate() {
+        head.draw(&Text::new(part, (20, 34 + 14 * index as i32), style(12, &theme.soft)))?;
     }
     Ok(body)
 }
@@ -198,7 +207,7 @@ fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
     let values = || rows.iter().map(&value).filter(|value| value.is_finite());
     let least = values().fold(f64::INFINITY, f64::min);
     let greatest = values().fold(0.0, f64::max);
-    if least > greatest { [1.0, 10.0] } else { [least / 1.6, greatest * 2.0] }
+    if least > greatest { [1.0, 10.0] } else { [least / 1.6, greatest * 4.0] }
 }
 
 /// 0.001, 20, 3000: as few digits as the axis needs.

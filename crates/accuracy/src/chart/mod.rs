@@ -1,6 +1,8 @@
 //! Cost against error: every method at several settings, on one scene.
 
 mod draw;
+mod pixels;
+mod theme;
 mod tune;
 
 use std::collections::BTreeMap;
@@ -10,7 +12,9 @@ use serde::Serialize;
 use crate::metrics::{Metrics, Quantiles};
 use crate::truth::Counts;
 
-pub use draw::{DrawError, svg};
+pub use draw::{DrawError, Font, svg};
+pub use pixels::png;
+pub use theme::Theme;
 
 /// What a chart shows, and what `chart --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -140,31 +144,37 @@ impl Chart {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod testing {
     use super::*;
 
-    fn row(ops: f64, missed: u64, p99: f64) -> Row {
+    /// The library's font.
+    pub(crate) const FONT: Font = Font(include_bytes!("../../../lang/fonts/Roboto-Regular.ttf"));
+
+    pub(crate) fn row(method: &str, ops: f64, p99: f64) -> Row {
         let frame_ms = FrameMs { median: 1.0, clock: "wall" };
-        let mut row = Row::new("m", BTreeMap::new(), false, &Metrics::default(), 1.0, frame_ms);
-        row.ops_per_pixel = ops;
-        row.missed = missed;
+        let settings = BTreeMap::from([("tolerance", 0.05)]);
+        let mut row = Row::new(method, settings, false, &Metrics::default(), ops, frame_ms);
         row.depth_px.p99 = p99;
         row
     }
 
+    pub(crate) fn chart(methods: Vec<Row>) -> Chart {
+        let (scene, adapter, driver) = Default::default();
+        let (leaves, size, oracle) = Default::default();
+        Chart { scene, leaves, adapter, driver, size, made: None, oracle, methods }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::{chart, row};
+
     #[test]
     fn the_front_holds_what_nothing_beats() {
-        let rows = [row(10.0, 0, 1.0), row(20.0, 0, 0.1), row(21.0, 0, 0.1), row(5.0, 3, 0.01)];
-        let mut chart = Chart {
-            scene: String::new(),
-            leaves: 1,
-            adapter: String::new(),
-            driver: String::new(),
-            size: [1, 1],
-            made: None,
-            oracle: Counts::default(),
-            methods: rows.to_vec(),
-        };
+        let mut fast = row("m", 5.0, 0.01);
+        fast.missed = 3;
+        let rows = [row("m", 10.0, 1.0), row("m", 20.0, 0.1), row("m", 21.0, 0.1), fast];
+        let mut chart = chart(rows.to_vec());
         chart.mark_front();
         let front: Vec<bool> = chart.methods.iter().map(|row| row.pareto).collect();
         assert_eq!(front, [true, true, false, true]);

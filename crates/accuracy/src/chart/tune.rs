@@ -26,24 +26,7 @@ impl Row {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
-    use crate::Metrics;
-    use crate::chart::{Chart, FrameMs, Row};
-
-    fn row(method: &str, ops: f64, p99: f64) -> Row {
-        let frame_ms = FrameMs { median: 1.0, clock: "wall" };
-        let settings = BTreeMap::from([("tolerance", 0.05)]);
-        let mut row = Row::new(method, settings, false, &Metrics::default(), 1.0, frame_ms);
-        (row.ops_per_pixel, row.depth_px.p99) = (ops, p99);
-        row
-    }
-
-    fn chart(methods: Vec<Row>) -> Chart {
-        let (scene, adapter, driver) = Default::default();
-        let (leaves, size, oracle) = Default::default();
-        Chart { scene, leaves, adapter, driver, size, made: None, oracle, methods }
-    }
+    use crate::chart::testing::{chart, row};
 
     #[test]
     fn the_cheapest_row_misses_nothing_and_keeps_the_error() {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::accuracy_data::chart::{Chart as Figures, Row, svg};
+use sdfc::accuracy_data::chart::{Chart as Figures, Font, Row, Theme, png, svg};
 use sdfc::render::Gpu;
 use sdfc::{ChartOptions, Error, Scene};
 
@@ -36,12 +36,13 @@ fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Failure> {
     for output in picture.iter().chain(&json) {
         output.check()?;
     }
+    let form = args.output.as_deref().map_or(Ok(Form::Svg), Form::of)?;
     let chart = charted(args, file, console)?;
     if ![&picture, &json].contains(&&Some(Output::Stdout)) {
         output::to_stdout(table(&chart).as_bytes())?;
     }
     if let Some(picture) = picture {
-        picture.write(drawn(&chart)?.as_bytes())?;
+        picture.write(&drawn(&chart, form, args.dark)?)?;
     }
     json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
 }
@@ -55,9 +56,41 @@ pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Fi
     Ok(Figures { made: args.note.clone(), ..chart })
 }
 
-/// Its picture.
-pub(super) fn drawn(chart: &Figures) -> Result<String, Failure> {
-    svg(chart).map_err(|error| Failure::Machine(error.to_string()))
+/// A kind of picture.
+#[derive(Clone, Copy)]
+pub(super) enum Form {
+    /// By its shapes.
+    Svg,
+    /// By its pixels.
+    Png,
+}
+
+impl Form {
+    /// By the path's ending; a stream is SVG.
+    fn of(path: &Path) -> Result<Self, Failure> {
+        if path.as_os_str() == "-" {
+            return Ok(Self::Svg);
+        }
+        match path.extension().map(|ending| ending.to_ascii_lowercase()) {
+            Some(ending) if ending == "svg" => Ok(Self::Svg),
+            Some(ending) if ending == "png" => Ok(Self::Png),
+            Some(_) | None => Err(Failure::Call(format!(
+                "{} is no folder, and its name does not end in .svg or .png",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// The picture of a chart.
+pub(super) fn drawn(chart: &Figures, form: Form, dark: bool) -> Result<Vec<u8>, Failure> {
+    let font = Font(sdfc::lang::font::SANS);
+    let theme = if dark { Theme::DARK } else { Theme::LIGHT };
+    let picture = match form {
+        Form::Svg => svg(chart, font).map(String::into_bytes),
+        Form::Png => png(chart, font, &theme),
+    };
+    picture.map_err(|error| Failure::Machine(error.to_string()))
 }
 
 /// Draws and compares, with bars of progress.

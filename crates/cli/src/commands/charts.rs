@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use sdfc::accuracy_data::chart::{Chart as Figures, Row};
 
-use super::chart::{charted, drawn};
+use super::chart::{Form, charted, drawn};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::Output;
 
-/// Writes `NAME.svg` and `NAME.json` of each scene into the folder, and `README.md`.
+/// Writes `NAME.svg`, `NAME.png` and `NAME.json` of each scene into the folder, and `README.md`.
 ///
 /// # Errors
 ///
@@ -27,7 +27,8 @@ pub fn run(
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let chart = charted(args, file, console)?;
         let path = |ending: &str| folder.join(format!("{name}.{ending}"));
-        Output::new(&path("svg")).write(drawn(&chart)?.as_bytes())?;
+        Output::new(&path("svg")).write(&drawn(&chart, Form::Svg, false)?)?;
+        Output::new(&path("png")).write(&drawn(&chart, Form::Png, args.dark)?)?;
         Output::new(&path("json")).write(&super::json(&chart)?)?;
         charts.push((name, chart));
     }
