@@ -43,11 +43,13 @@
 
 pub mod chart;
 mod edges;
+mod kept;
 mod metrics;
 mod normals;
 mod oracle;
 mod truth;
 
+pub use kept::TruthStore;
 pub use metrics::{Depth, Evaluations, Metrics, PixelSample, Quantiles, Status, compare};
 pub use oracle::{Oracle, OracleError, Probe, Prober, Ray, Verdict};
 pub use truth::{Camera, Counts, Kind, Truth};

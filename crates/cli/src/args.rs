@@ -356,6 +356,20 @@ pub struct Chart {
     /// What the picture tells of its making, such as a date and a commit
     #[arg(long, value_name = "TEXT")]
     pub note: Option<String>,
+    /// Where truths are kept.
+    #[command(flatten)]
+    pub cache: Cache,
+}
+
+/// Where what the oracle says is kept between runs.
+#[derive(clap::Args, Debug)]
+pub struct Cache {
+    /// Keep what the oracle finds in this folder; in the user's one for caches unless given
+    #[arg(long, value_name = "FOLDER")]
+    pub cache: Option<PathBuf>,
+    /// Ask the oracle anew and keep nothing
+    #[arg(long, conflicts_with = "cache")]
+    pub no_cache: bool,
 }
 
 /// Arguments of `tune`.
@@ -375,6 +389,9 @@ pub struct Tune {
     /// Ray methods to choose from, separated by commas; all unless given
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(RAY_METHODS))]
     pub march: Vec<String>,
+    /// Where truths are kept.
+    #[command(flatten)]
+    pub cache: Cache,
 }
 
 fn methods() -> PossibleValuesParser {

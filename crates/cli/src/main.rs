@@ -5,6 +5,7 @@
 //! Beside the viewer this is the only crate that prints or ends the process.
 
 mod args;
+mod cache;
 mod commands;
 mod console;
 mod failure;

@@ -73,7 +73,8 @@ fn a_sequence_keeps_whole_frames() -> Result<(), Failed> {
 fn charts_into_a_folder() -> Result<(), Failed> {
     let folder = folder(&[("a.sdf", BALL), ("b.sdf", "box(1)")]);
     std::fs::create_dir(folder.path().join("charts"))?;
-    let args = "chart a.sdf b.sdf -o charts --size 12x8 --march auto,fixed --note today";
+    let args =
+        "chart a.sdf b.sdf -o charts --size 12x8 --march auto,fixed --note today --cache kept";
     let output = run_in(folder.path(), args, b"", &[]);
     let written = folder.path().join("charts");
     let expected = ["README.md", "a.json", "a.png", "a.svg", "b.json", "b.png", "b.svg"];

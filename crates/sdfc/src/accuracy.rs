@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sdfc_accuracy::chart::{Chart, FrameMs, Row};
-use sdfc_accuracy::{Camera, Oracle, OracleError, Truth, compare};
+use sdfc_accuracy::{Camera, Oracle, OracleError, Truth, TruthStore, compare};
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
 use sdfc_march::{METHODS, Method, method};
@@ -39,6 +39,22 @@ impl Default for ChartOptions {
     }
 }
 
+/// How the oracle is asked.
+#[derive(Clone, Copy)]
+pub struct OracleOptions<'a> {
+    /// Is told how many pixels are done; it cannot cancel.
+    pub progress: &'a (dyn Fn(Progress) + Sync),
+    /// Where its answers are kept; `None` asks anew.
+    pub kept: Option<&'a dyn TruthStore>,
+}
+
+impl Default for OracleOptions<'_> {
+    /// Asks anew and tells nobody.
+    fn default() -> Self {
+        Self { progress: &|_| (), kept: None }
+    }
+}
+
 impl Scene {
     /// What the oracle says of a view of the scene. `progress` counts pixels; it cannot cancel.
     ///
@@ -51,13 +67,26 @@ impl Scene {
         frame: &FrameValues,
         progress: &(dyn Fn(Progress) + Sync),
     ) -> Result<Truth, Error> {
+        self.asked(view, frame, OracleOptions { progress, kept: None })
+    }
+
+    fn asked(
+        &self,
+        view: &View,
+        frame: &FrameValues,
+        options: OracleOptions<'_>,
+    ) -> Result<Truth, Error> {
         let camera = camera(view);
         let (total, done) = (camera.pixels() as u64, AtomicUsize::new(0));
         let report = |pixels| {
             let done = done.fetch_add(pixels, Ordering::Relaxed) + pixels;
-            progress(Progress { done: done as u64, total });
+            (options.progress)(Progress { done: done as u64, total });
         };
-        Ok(Truth::find(&self.oracle()?, frame, camera, &report))
+        let oracle = self.oracle()?;
+        Ok(match options.kept {
+            Some(store) => Truth::kept_or_found(store, &oracle, frame, camera, &report),
+            None => Truth::find(&oracle, frame, camera, &report),
+        })
     }
 
     /// The view of a frame that a picture of that size has.
@@ -82,7 +111,7 @@ impl Scene {
     }
 
     /// Draws the scene with every method at several settings and compares each picture with the oracle's
-    /// verdict. `on_truth` counts its pixels, `progress` the pictures and may cancel.
+    /// verdict. `progress` counts the pictures and may cancel.
     ///
     /// # Errors
     ///
@@ -93,13 +122,13 @@ impl Scene {
         name: &str,
         gpu: &Gpu,
         options: &ChartOptions,
-        on_truth: &(dyn Fn(Progress) + Sync),
+        asked: OracleOptions<'_>,
         progress: &mut OnProgress<'_>,
     ) -> Result<Chart, Error> {
         let frame = options.frame.clone();
         let frame = frame.unwrap_or_else(|| FrameValues::defaults(self.params()));
         let view = self.view(&frame, options.size)?;
-        let truth = self.truth(&view, &frame, on_truth)?;
+        let truth = self.asked(&view, &frame, asked)?;
         let oracle = self.oracle()?;
 
         let methods = methods(&options.methods)?;

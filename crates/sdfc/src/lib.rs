@@ -46,7 +46,7 @@ mod sampler;
 mod scene;
 mod shader;
 
-pub use accuracy::ChartOptions;
+pub use accuracy::{ChartOptions, OracleOptions};
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use compile::{
     Compiled, FrontTimes, Scene, check, compile, compile_with, compile_with_imports, format,

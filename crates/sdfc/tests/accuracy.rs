@@ -8,7 +8,7 @@ use common::examples::scene_files;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
-use sdfc::{ChartOptions, unwatched};
+use sdfc::{ChartOptions, OracleOptions, unwatched};
 
 const SIZE: [u32; 2] = [96, 54];
 /// Most of a picture's pixels that the oracle may leave undecided.
@@ -35,7 +35,7 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let methods = vec!["auto".to_owned()];
     let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
     let options = ChartOptions { size: SIZE, methods, ..once };
-    let chart = scene.chart(name, &gpu, &options, &|_| (), &mut unwatched)?;
+    let chart = scene.chart(name, &gpu, &options, OracleOptions::default(), &mut unwatched)?;
     let undecided = chart.oracle.undecided as f64 / f64::from(SIZE[0] * SIZE[1]);
     if undecided > UNDECIDED {
         return Err(format!("the oracle leaves {undecided:.4} of the pixels undecided").into());

@@ -9,7 +9,7 @@ use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
-use sdfc::{ChartOptions, unwatched};
+use sdfc::{ChartOptions, OracleOptions, unwatched};
 
 const SIZE: [u32; 2] = [96, 54];
 /// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
@@ -64,7 +64,8 @@ fn proven_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let methods = ["sphere", "interval", "auto"].map(str::to_owned).to_vec();
     let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
     let options = ChartOptions { size: SIZE, methods, ..once };
-    let chart = scene.chart(name, &Gpu::new()?, &options, &|_| (), &mut unwatched)?;
+    let chart =
+        scene.chart(name, &Gpu::new()?, &options, OracleOptions::default(), &mut unwatched)?;
     let [sphere, proven @ ..] = &chart.methods[..] else { return Err("no rows".into()) };
     if sphere.missed == 0 {
         return Err("steps as long as the field miss nothing: the scene tests nothing".into());

@@ -3,12 +3,14 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use sdfc::accuracy_data::TruthStore;
 use sdfc::accuracy_data::chart::{Chart as Figures, Font, Row, Theme, png, svg};
 use sdfc::render::Gpu;
-use sdfc::{ChartOptions, Error, Scene};
+use sdfc::{ChartOptions, Error, OracleOptions, Scene};
 
 use super::charts;
-use crate::args::Chart;
+use crate::args::{Cache, Chart};
+use crate::cache::TruthFolder;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
@@ -52,7 +54,7 @@ pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Fi
     let scene = super::scene(file, sdfc::lang::Options::default(), console)?;
     let options =
         ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
-    let chart = figures(file, &scene, &options, console)?;
+    let chart = figures(file, &scene, &options, &args.cache, console)?;
     Ok(Figures { made: args.note.clone(), ..chart })
 }
 
@@ -98,22 +100,22 @@ pub(super) fn figures(
     file: &Path,
     scene: &Scene,
     options: &ChartOptions,
+    cache: &Cache,
     console: &Console,
 ) -> Result<Figures, Failure> {
     let failed = |error: Error| super::lowering(&error, console);
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
     let truth = console.progress("oracle");
     let pictures = console.progress("methods");
-    let chart = scene.chart(
-        &file.display().to_string(),
-        &gpu,
-        options,
-        &|part| truth.set(part.done, part.total),
-        &mut |part| {
-            pictures.set(part.done, part.total);
-            ControlFlow::Continue(())
-        },
-    );
+    let kept = TruthFolder::of(cache);
+    let asked = OracleOptions {
+        progress: &|part| truth.set(part.done, part.total),
+        kept: kept.as_ref().map(|folder| folder as &dyn TruthStore),
+    };
+    let chart = scene.chart(&file.display().to_string(), &gpu, options, asked, &mut |part| {
+        pictures.set(part.done, part.total);
+        ControlFlow::Continue(())
+    });
     drop((truth, pictures));
     chart.map_err(failed)
 }

@@ -23,7 +23,7 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     let all = || RAY_METHODS.map(str::to_owned).to_vec();
     let methods = if args.march.is_empty() { all() } else { args.march.clone() };
     let options = ChartOptions { size: args.size, methods, ..ChartOptions::default() };
-    let chart = figures(&args.file, &scene, &options, console)?;
+    let chart = figures(&args.file, &scene, &options, &args.cache, console)?;
     if json != Some(Output::Stdout) {
         output::to_stdout(advice(&chart, args.max_error, scene.method())?.as_bytes())?;
     }
