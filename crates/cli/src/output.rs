@@ -1,9 +1,9 @@
-//! Results to files and to stdout. A file appears whole or not at all.
+//! Results to files and to stdout.
 
 use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use sdfc_files::{check_writable, write};
 
 use crate::failure::Failure;
 
@@ -30,8 +30,7 @@ impl Output {
     pub fn check(&self) -> Result<(), Failure> {
         match self {
             Self::Stdout => Ok(()),
-            Self::File(path) if is_device(path) => Ok(()),
-            Self::File(path) => temporary(path).map(drop).map_err(|e| cannot_write(path, &e)),
+            Self::File(path) => check_writable(path).map_err(|e| cannot_write(path, &e)),
         }
     }
 
@@ -43,7 +42,7 @@ impl Output {
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => to_stdout(bytes),
-            Self::File(path) => to_file(path, bytes).map_err(|e| cannot_write(path, &e)),
+            Self::File(path) => write(path, bytes).map_err(|e| cannot_write(path, &e)),
         }
     }
 }
@@ -82,40 +81,4 @@ pub fn distinct(scene: &Path, outputs: &[&Path]) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Whether it exists and is neither a file nor a folder: a terminal, `/dev/null`, a named pipe.
-fn is_device(path: &Path) -> bool {
-    std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
-}
-
-fn to_file(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if is_device(path) {
-        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    let mut file = temporary(path)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    // A link keeps being one: the file that it names is replaced.
-    let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    file.persist(place).map_err(|e| e.error)?;
-    Ok(())
-}
-
-/// A file in the folder where `path` is or will be, which vanishes unless it is renamed.
-fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
-    if path.is_dir() {
-        return Err(ErrorKind::IsADirectory.into());
-    }
-    let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let folder = match place.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".sdfc-");
-    // Temporary files are private by default; this one becomes the result and is as open as any other.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
 }

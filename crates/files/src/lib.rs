@@ -1,4 +1,4 @@
-//! Scenes from files and from stdin, and the files that they import: what the programs of sdfc share and
+//! Scenes from files and from stdin, the files that they import, and results on disk: what the programs of sdfc share and
 //! its library does not do.
 //!
 //! ```no_run
@@ -10,6 +10,10 @@
 //! let compiled = sdfc::compile_with_imports(&input.name, &input.text, &folder);
 //! # Ok::<(), sdfc_files::ReadError>(())
 //! ```
+
+mod write;
+
+pub use write::{check_writable, write};
 
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};

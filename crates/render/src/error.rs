@@ -41,7 +41,7 @@ pub enum RenderError {
     NothingDrawn,
     /// The progress callback asked to stop.
     Cancelled,
-    /// The method is not one that the CPU renderer has.
+    /// The method is none of [`CpuScene::METHODS`](crate::CpuScene::METHODS).
     MethodNotOnCpu(String),
     /// The CPU evaluator refused the scene; what it said.
     Evaluator(String),
@@ -100,7 +100,8 @@ impl fmt::Display for RenderError {
             Self::NothingDrawn => f.write_str("the scene draws nothing"),
             Self::Cancelled => f.write_str("cancelled"),
             Self::MethodNotOnCpu(name) => {
-                write!(f, "the CPU renderer has no method `{name}`; it has `sphere` and `auto`")
+                let own = crate::CpuScene::METHODS.join("`, `");
+                write!(f, "the CPU renderer has no method `{name}`; it has `{own}`")
             }
             Self::Evaluator(detail) => write!(f, "the CPU evaluator refused the scene: {detail}"),
         }

@@ -11,6 +11,7 @@ use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
     image::check_size,
+    stats::milliseconds_since,
     testing,
     tiles::Tiler,
 };
@@ -420,8 +421,4 @@ fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu:
         usage,
         mapped_at_creation: false,
     })
-}
-
-fn milliseconds_since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
 }

@@ -31,7 +31,7 @@
 //! # Limits
 //!
 //! Pictures have up to 16,384 pixels a side and 2^26 in all, scenes up to 8 lights. The CPU renderer
-//! has the methods `sphere` and `auto`. A device that is lost while it is waited for makes wgpu
+//! has some of the ray methods, [`CpuScene::METHODS`]. A device that is lost while it is waited for makes wgpu
 //! panic; that is caught and becomes [`RenderError::DeviceLost`], but the panic hook is run.
 
 mod blocks;
@@ -55,10 +55,13 @@ pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, uniform_values, unwatched};
 pub use gpu::Pipeline;
 pub use image::{
-    Animation, CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts,
+    Animation, CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts, is_finite,
     linear_to_srgb, linear_to_srgb8, sample_places,
 };
-pub use stats::{Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why};
+pub use stats::{
+    Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,
+    milliseconds_since,
+};
 pub use tiles::{Tile, TileSize};
 pub use view::{
     Background, Bounds, Footprint, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion,

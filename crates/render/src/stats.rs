@@ -4,6 +4,7 @@
 //! and `why` of the object that holds it says the reason under the figure's key.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use serde::Serialize;
 
@@ -108,6 +109,11 @@ pub struct FrameTimes {
     pub n: usize,
     /// What measured them.
     pub clock: Clock,
+}
+
+/// Time since then by the wall clock, in milliseconds.
+pub fn milliseconds_since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
 }
 
 impl FrameTimes {

@@ -10,6 +10,7 @@ use sdfc_diagnostics::{
 use sdfc_graph::{Param, Program};
 use sdfc_lang::slots::Slot;
 use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
+use sdfc_render::milliseconds_since;
 
 use crate::findings;
 use crate::scene::DerivedBounds;
@@ -146,7 +147,7 @@ pub fn compile_with(name: &str, text: &str, resolver: &dyn Resolver, options: Op
     let file = sources.add(name, text);
     let (elaborated, mut diagnostics) =
         sdfc_lang::front_with(&mut sources, file, resolver, options);
-    let front = milliseconds(start);
+    let front = milliseconds_since(start);
     let origin = Origin::new(&sources, file);
     let scene =
         elaborated.and_then(|elaborated| finish(elaborated, origin, front, file, &mut diagnostics));
@@ -203,7 +204,7 @@ fn finish(
     let start = Instant::now();
     match prepare(&elaborated.scene) {
         Ok(prepared) => {
-            let times = FrontTimes { front, analyze: milliseconds(start) };
+            let times = FrontTimes { front, analyze: milliseconds_since(start) };
             let (program, report) = (prepared.program, prepared.report);
             let (rebased, bounds, intervals_end) = Default::default();
             Some(Scene {
@@ -224,8 +225,4 @@ fn finish(
             None
         }
     }
-}
-
-pub(crate) fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }

@@ -54,6 +54,7 @@ pub use compile::{
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
+pub use marched::Marched;
 pub use params::ParamError;
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{

@@ -17,7 +17,40 @@ const FINER: f64 = 80.0;
 /// Most rays out of steps.
 const MOST_CAPPED: usize = 1;
 
+/// A scene as a ray method marches it: see [`Scene::marched`].
+#[derive(Clone, Debug)]
+pub struct Marched<'s> {
+    /// The program that pictures are drawn by, with what the method asks for beside the field.
+    pub program: Cow<'s, Program>,
+    /// The method that marches.
+    pub method: String,
+    /// Why it is another than the one asked for, or what it cannot promise, in one line.
+    pub note: Option<String>,
+}
+
 impl Scene {
+    /// What draws pictures where the ray method of that name is asked for, on an adapter.
+    pub fn marched(&self, name: &str) -> Marched<'_> {
+        let method = self.marched_by(name);
+        let program = with_stretches(self.drawn(), method);
+        Marched { program, method: method.to_owned(), note: self.why_marched_by(name) }
+    }
+
+    /// The same on the CPU, which has few of the methods: `auto` stands in for the others.
+    pub fn marched_on_cpu(&self, name: &str) -> Marched<'_> {
+        let auto = METHODS[0].name;
+        let (known, other) = match method(name) {
+            Some(found) if !CpuScene::METHODS.contains(&found.name) => {
+                (auto, Some(format!("the CPU renderer has no method `{name}`, `{auto}` stands in")))
+            }
+            Some(_) | None => (name, None),
+        };
+        let method = self.marched_by(known).to_owned();
+        let notes: Vec<String> = other.into_iter().chain(self.why_marched_by(known)).collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
+        Marched { program: Cow::Borrowed(self.drawn()), method, note }
+    }
+
     /// The ray method that marches where one is asked for by name: `auto` is `interval` where the field may exceed the
     /// distance, so that nothing is missed, unless intervals do not end on it within the steps that a ray has.
     pub fn marched_by<'n>(&self, name: &'n str) -> &'n str {

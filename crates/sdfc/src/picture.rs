@@ -8,12 +8,11 @@ use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline,
-    Progress, RenderError, RenderOptions, Stats, View, Why, sample_places, uniform_values,
+    Progress, RenderError, RenderOptions, Stats, View, Why, milliseconds_since, sample_places,
+    uniform_values,
 };
 
-use crate::compile::milliseconds;
-use crate::marched::with_stretches;
-use crate::{Error, Scene};
+use crate::{Error, Marched, Scene};
 
 /// Where a picture is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,32 +97,32 @@ impl Scene {
         let method = options.method.as_deref().unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
         let samples = sample_places(samples)?;
-        let why = self.why_marched_by(method);
-        let method = self.marched_by(method);
-        let program = with_stretches(self.drawn(), method);
-        let on_cpu = || CpuScene::new(self.drawn()).map(|scene| Engine::Cpu(Box::new(scene)));
-        let (engine, compile, note) = match options.backend {
-            Backend::Cpu => (on_cpu()?, cpu_times(start), None),
-            Backend::Gpu => {
-                let (engine, compile) = self.pipeline(&Gpu::new()?, &program, method)?;
+        let gpu = match options.backend {
+            Backend::Gpu => Ok(Gpu::new()?),
+            Backend::Cpu => Err(None),
+            Backend::Auto => Gpu::new().map_err(|error| Some(format!("{error}; drawn on the CPU"))),
+        };
+        // Whoever asks for both by name is told that they do not go together.
+        let both = options.backend == Backend::Cpu && options.method.is_some();
+        let Marched { program, method, note: why } = match gpu {
+            Err(_) if !both => self.marched_on_cpu(method),
+            Ok(_) | Err(_) => self.marched(method),
+        };
+        let (engine, compile, note) = match gpu {
+            Ok(gpu) => {
+                let (engine, compile) = self.pipeline(&gpu, &program, &method)?;
                 (engine, compile, None)
             }
-            Backend::Auto => match Gpu::new() {
-                Ok(gpu) => {
-                    let (engine, compile) = self.pipeline(&gpu, &program, method)?;
-                    (engine, compile, None)
-                }
-                Err(error) => {
-                    let note = format!("{error}; drawn on the CPU");
-                    (on_cpu()?, cpu_times(start), Some(note))
-                }
-            },
+            Err(note) => {
+                let scene = CpuScene::new(self.drawn())?;
+                (Engine::Cpu(Box::new(scene)), cpu_times(start), note)
+            }
         };
-        let notes: Vec<String> = why.clone().into_iter().chain(note).collect();
+        let notes: Vec<String> = note.into_iter().chain(why.clone()).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
-        let (method, size) = (method.to_owned(), options.size);
+        let size = options.size;
         Ok(Painter {
             scene: self,
             program,
@@ -147,7 +146,7 @@ impl Scene {
         let start = Instant::now();
         let shader = render_module(program, method)?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
-        let lower = milliseconds(start) - validate;
+        let lower = milliseconds_since(start) - validate;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
         let compile = CompileTimes {
             lower: Some(lower),
@@ -162,7 +161,7 @@ impl Scene {
 fn cpu_times(start: Instant) -> CompileTimes {
     let no_shader = || "drawn on the CPU, without a shader".to_owned();
     CompileTimes {
-        lower: Some(milliseconds(start)),
+        lower: Some(milliseconds_since(start)),
         why: Why::from([("validate", no_shader()), ("pipeline", no_shader())]),
         ..CompileTimes::default()
     }
@@ -217,7 +216,7 @@ impl Painter<'_> {
         let mut stats = Stats::new(&frame, frame_ms, adapter, &self.method, self.compile.clone());
         stats.set_leaves(scene.report.leaves);
         stats.why.extend(self.why.clone().map(|why| ("method", why)));
-        let first = scene.times.front + scene.times.analyze + milliseconds(self.start);
+        let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
         Ok(Picture { image: frame.image, stats, note: self.note.clone() })
     }

@@ -6,7 +6,7 @@ const FRAME_RATE: f64 = 30.0;
 const LONGEST_STEP: f64 = 0.25;
 
 /// The time of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// Seconds.
     pub time: f64,

@@ -1,7 +1,7 @@
 //! The scene's text on disk, the files that it imports, and where to look for changes of either.
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
@@ -33,47 +33,63 @@ impl Document {
     }
 }
 
-/// Hands in imported files, and notes which were asked for: those that are missing may come.
+/// Hands in imported files, and notes which were asked for and what they held: those that are missing may come.
 #[derive(Debug)]
 pub struct Imports {
     folder: Folder,
-    asked: RefCell<BTreeSet<String>>,
-    /// Of the bytes of files that are no text.
-    hasher: RefCell<DefaultHasher>,
+    /// By path, and whether as bytes: a hash of what was given.
+    asked: RefCell<BTreeMap<(String, bool), u64>>,
 }
 
 impl Imports {
     /// Of the scene at `path`.
     pub fn of(path: &Path) -> Self {
-        Self { folder: Folder::of(path), asked: RefCell::default(), hasher: RefCell::default() }
+        Self { folder: Folder::of(path), asked: RefCell::default() }
     }
 
-    /// A hash of all that was read and is no text, such as fonts.
-    pub fn hash_of_bytes(&self) -> u64 {
-        self.hasher.borrow().finish()
+    /// Whether all that was asked for would be given again as it was.
+    pub fn are_as_read(&self) -> bool {
+        let same = |((path, bytes), before): (&(String, bool), &u64)| {
+            let now = match bytes {
+                true => hash(&self.folder.read_bytes(path)),
+                false => hash(&self.folder.read(path)),
+            };
+            now == *before
+        };
+        self.asked.borrow().iter().all(same)
     }
 
     /// Folders in which a change can change the scene: its own, and those of the files that were asked for.
     pub fn folders(&self) -> BTreeSet<PathBuf> {
         let root = self.folder.path();
         let asked = self.asked.borrow();
-        let parents = asked.iter().filter_map(|path| root.join(path).parent().map(existing));
+        let parents = asked.keys().filter_map(|(path, _)| root.join(path).parent().map(existing));
         [existing(root)].into_iter().chain(parents).collect()
+    }
+
+    fn note<T: Hash>(&self, path: &str, bytes: bool, given: &T) {
+        self.asked.borrow_mut().insert((path.to_owned(), bytes), hash(given));
     }
 }
 
 impl Resolver for Imports {
     fn read(&self, path: &str) -> Result<String, String> {
-        self.asked.borrow_mut().insert(path.to_owned());
-        self.folder.read(path)
+        let text = self.folder.read(path);
+        self.note(path, false, &text);
+        text
     }
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.asked.borrow_mut().insert(path.to_owned());
-        let bytes = self.folder.read_bytes(path)?;
-        bytes.hash(&mut *self.hasher.borrow_mut());
-        Ok(bytes)
+        let bytes = self.folder.read_bytes(path);
+        self.note(path, true, &bytes);
+        bytes
     }
+}
+
+fn hash(what: &impl Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    what.hash(&mut hasher);
+    hasher.finish()
 }
 
 /// The folder itself, or the nearest one above it that is there.

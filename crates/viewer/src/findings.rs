@@ -1,7 +1,7 @@
 //! What is wrong with the scene, as the window shows it: the terminal's words, with places to click.
 
 use sdfc::Compiled;
-use sdfc::diagnostics::{Diagnostic, Sources, locate, render};
+use sdfc::diagnostics::{Diagnostic, Sources, locate};
 
 use crate::document;
 
@@ -33,8 +33,6 @@ pub struct Finding {
     pub label: String,
     /// Further facts, then ways to mend it.
     pub help: Vec<String>,
-    /// As the terminal shows it.
-    pub text: String,
 }
 
 impl Findings {
@@ -79,7 +77,6 @@ impl Finding {
             marked: from..to.max(from),
             label: found.label.clone(),
             help: notes.chain(help).collect(),
-            text: render(sources, std::slice::from_ref(found), false),
         }
     }
 

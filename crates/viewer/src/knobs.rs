@@ -1,6 +1,7 @@
 //! Values of params and of numbers in the text, as moved by hand, and the text that keeps them.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 use sdfc::FrameValues;
 use sdfc::diagnostics::Span;
@@ -107,12 +108,12 @@ fn fitted(param: &Param, moved: [f64; 4]) -> Option<[f64; 4]> {
     fits.then_some(moved)
 }
 
-/// A value as a scene writes it.
+/// A value as a scene writes it; read back, it is the same.
 pub fn value_text(param: &Param, lanes: [f64; 4]) -> String {
     let [number, green, blue, _] = lanes;
     match param.kind {
         ParamKind::Number | ParamKind::Int => number_text(number),
-        ParamKind::Angle => format!("{}deg", number_text(number.to_degrees())),
+        ParamKind::Angle => angle_text(number, "deg"),
         ParamKind::Bool => (number != 0.0).to_string(),
         ParamKind::Color => {
             let [r, g, b] = [number, green, blue].map(|lane| linear_to_srgb8(lane as f32));
@@ -122,13 +123,32 @@ pub fn value_text(param: &Param, lanes: [f64; 4]) -> String {
     }
 }
 
-/// A number with up to four digits after the point, more where it is small.
+/// The shortest text that is read back as this number.
 pub fn number_text(value: f64) -> String {
-    let digits = if value != 0.0 && value.abs() < 0.1 { 6 } else { 4 };
-    let text = format!("{value:.digits$}");
-    let text =
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    // With an exponent where there would be many zeros.
+    let text = format!("{:?}", if value == 0.0 { 0.0 } else { value });
+    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
+}
+
+/// A number to look at: four digits, or all before the point and four behind it.
+pub fn display_text(value: f64) -> String {
+    let text = if value.abs() < 1.0 { format!("{value:.3e}") } else { format!("{value:.4}") };
+    number_text(text.parse().unwrap_or(value))
+}
+
+/// The shortest text that is read back as this angle.
+fn angle_text(radians: f64, unit: &str) -> String {
+    let [half, turns] = match unit {
+        "deg" => [180.0, 1.0],
+        "turn" => [1.0, 2.0],
+        _ => return format!("{}{unit}", number_text(radians)),
+    };
+    // As the compiler reads it: the order of the operations decides the last digit.
+    let read = |number: f64| number * (PI * turns) / half;
+    let near = radians * half / (PI * turns);
+    let rounded = |digits: usize| format!("{near:.digits$e}").parse::<f64>().ok();
+    let exact = (0..17).filter_map(rounded).find(|number| read(*number) == radians);
+    format!("{}{unit}", number_text(exact.unwrap_or(near)))
 }
 
 /// A number in the place of a literal, with the unit that stands there.
@@ -136,12 +156,7 @@ fn literal_text(model: &Model, slot: &Slot, value: f64) -> String {
     let span = slot.span.start as usize..slot.span.end as usize;
     let written = model.text.get(span).unwrap_or_default();
     let unit = written.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE_+-".contains(c));
-    let text = match unit {
-        "deg" => number_text(value.to_degrees()),
-        "turn" => number_text(value / std::f64::consts::TAU),
-        _ => number_text(value),
-    };
-    format!("{text}{unit}")
+    if unit.is_empty() { number_text(value) } else { angle_text(value, unit) }
 }
 
 #[cfg(test)]
@@ -197,8 +212,36 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_short() {
-        let texts = [0.5, -0.0, 2.0, 1.0 / 3.0, 0.000_123_4, 100.0, 1e-9].map(number_text);
-        assert_eq!(texts, ["0.5", "0", "2", "0.3333", "0.000123", "100", "0"]);
+    fn numbers_to_look_at_are_short() {
+        let texts = [0.5, -0.0, 2.0, 1.0 / 3.0, 0.000_123_46, 123_456.0, 1e-9].map(display_text);
+        assert_eq!(texts, ["0.5", "0", "2", "0.3333", "0.0001235", "123456", "1e-9"]);
+    }
+
+    #[test]
+    fn numbers_in_a_file_are_read_back_as_they_were() {
+        let places =
+            ["sphere(0.5)\n", "sphere(1).rotate(y: 0.5deg)\n", "sphere(1).rotate(y: 0.5turn)\n"];
+        for text in places {
+            let at = text.find("0.5").unwrap() as u32;
+            let slot = |model: &Model| {
+                model.literals().find(|(slot, _)| slot.span.start == at).unwrap().0.clone()
+            };
+            let model_before = model(text);
+            for value in [0.1 + 0.2, 1e-7, 1.0 / 3.0, 12_345.678_9, 0.123_456_789_012_345_6] {
+                let mut knobs = Knobs::default();
+                knobs.set_literal(&slot(&model_before), value);
+                let rewritten = knobs.rewritten(&model_before);
+                let back = slot(&model(&rewritten)).value;
+                let digits = f64::EPSILON * value;
+                assert!((back - value).abs() <= digits, "{rewritten}: {back} is not {value}");
+                assert!(
+                    back == value || text.contains("rotate"),
+                    "{rewritten}: {back} is not {value}"
+                );
+            }
+        }
+        assert_eq!(angle_text(PI / 4.0, "deg"), "45deg");
+        assert_eq!(angle_text(45.1 * PI / 180.0, "deg"), "45.1deg");
+        assert_eq!(angle_text(0.1 * std::f64::consts::TAU, "turn"), "0.1turn");
     }
 }

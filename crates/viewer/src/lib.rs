@@ -20,6 +20,7 @@
 //! need no second renderer. What that costs is in `docs/viewer.md`.
 
 pub mod app;
+pub mod clerk;
 pub mod clock;
 pub mod document;
 pub mod findings;

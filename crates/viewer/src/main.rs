@@ -27,6 +27,10 @@ fn main() -> ExitCode {
         }
         Some(_) | None => {}
     }
+    if argument == "-" {
+        eprintln!("error: a scene from stdin cannot be followed; write it to a file");
+        return ExitCode::from(2);
+    }
     let path = PathBuf::from(argument);
     // Asked before the window opens: afterwards a file may come and go.
     if let Err(error) = sdfc_files::read(&path) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sdfc::graph::{FrameInput, Node, Param, reachable};
+use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc::lang::slots::Slot;
 use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
@@ -42,6 +42,8 @@ pub struct Model {
     pub engine: Engine,
     /// The method that it is drawn with.
     pub method: String,
+    /// The program with what the method asks for, where it is not that of the scene.
+    pub enclosed: Option<Program>,
     /// Its field on the CPU.
     pub probe: Probe,
     /// Whether the picture depends on time or frame.
@@ -52,6 +54,8 @@ pub struct Model {
     pub pipelines: u64,
     /// A number of its own.
     pub serial: u64,
+    /// How often devices had been opened anew when it was made.
+    pub renewed: u32,
     /// What is drawn otherwise than asked, and why.
     pub note: Option<String>,
 }
@@ -67,6 +71,11 @@ impl Model {
     pub fn literals(&self) -> impl Iterator<Item = (&Slot, &Param)> {
         let params = self.scene.params();
         self.scene.slots().iter().filter_map(|slot| Some((slot, params.get(slot.param)?)))
+    }
+
+    /// The program that the engine was made from.
+    pub fn marched(&self) -> &Program {
+        self.enclosed.as_ref().unwrap_or(self.scene.drawn())
     }
 
     /// The values of a frame in which nothing has been changed.

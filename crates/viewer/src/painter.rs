@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use sdfc::render::{
     Clock, EvaluationCounts, Frame, Image, PixelCounts, Pose, Progress, RenderError, RenderOptions,
-    TileSize, View, sample_places, uniform_values,
+    TileSize, View, milliseconds_since, sample_places, uniform_values,
 };
 use sdfc::{Error, FrameValues};
 
@@ -118,6 +118,8 @@ pub enum Painted {
         message: String,
         /// Whether another device may help.
         machine: bool,
+        /// Of the scene: which devices it was made for.
+        renewed: u32,
     },
 }
 
@@ -198,17 +200,18 @@ impl<T: FnMut(Painted)> Studio<T> {
     /// A fault in a driver must not end all drawing.
     fn guarded(&mut self, request: Request) {
         self.started = Instant::now();
+        let renewed = request.model.renewed;
         match catch_unwind(AssertUnwindSafe(|| self.serve(Arc::new(request)))) {
             Ok(Ok(())) | Ok(Err(Stop::Superseded)) => {}
             Ok(Err(Stop::Error(error))) => {
                 self.drawn = None;
                 let machine = error.is_machine();
-                (self.tell)(Painted::Failed { message: error.to_string(), machine });
+                (self.tell)(Painted::Failed { message: error.to_string(), machine, renewed });
             }
             Err(_) => {
                 self.drawn = None;
                 let message = "the device driver failed while drawing".to_owned();
-                (self.tell)(Painted::Failed { message, machine: true });
+                (self.tell)(Painted::Failed { message, machine: true, renewed });
             }
         }
     }
@@ -264,7 +267,7 @@ impl<T: FnMut(Painted)> Studio<T> {
         self.drawn = Some(drawn);
         self.show(&request);
         let pixels = f64::from(size[0]) * f64::from(size[1]);
-        self.cost = Some((request.model.serial, milliseconds(start) / pixels));
+        self.cost = Some((request.model.serial, milliseconds_since(start) / pixels));
         Ok(())
     }
 
@@ -286,7 +289,7 @@ impl<T: FnMut(Painted)> Studio<T> {
         let (model, values) = (&request.model, &request.frame);
         let result = match &model.engine {
             Engine::Gpu(pipeline) => {
-                let uniforms = uniform_values(model.scene.drawn(), values);
+                let uniforms = uniform_values(model.marched(), values);
                 pipeline.render(view, &uniforms, &options, &mut progress)
             }
             Engine::Cpu(scene) => {
@@ -298,7 +301,7 @@ impl<T: FnMut(Painted)> Studio<T> {
                 return Stop::Error(error.into());
             }
             // Known by now, so that the next first pass is coarse enough.
-            self.cost = Some((model.serial, milliseconds(start) / f64::max(reached, 1.0)));
+            self.cost = Some((model.serial, milliseconds_since(start) / f64::max(reached, 1.0)));
             Stop::Superseded
         })
     }
@@ -311,7 +314,7 @@ impl<T: FnMut(Painted)> Studio<T> {
             request.mode == Mode::Shaded
                 && drawn.divisor == 1
                 && (drawn.samples as usize) < places.len()
-                && milliseconds(start) < SMOOTHING
+                && milliseconds_since(start) < SMOOTHING
                 && request.refine
         };
         while let Some(drawn) = self.drawn.as_ref().filter(|drawn| wants(drawn)) {
@@ -356,14 +359,10 @@ impl<T: FnMut(Painted)> Studio<T> {
             finished: drawn.divisor == 1 && smooth,
             milliseconds: drawn.frame.milliseconds,
             clock: drawn.frame.clock,
-            latency: milliseconds(self.started),
+            latency: milliseconds_since(self.started),
             evaluations: EvaluationCounts::of(&drawn.image),
             counts: drawn.image.counts(),
         };
         (self.tell)(Painted::Picture(Box::new(picture)));
     }
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }

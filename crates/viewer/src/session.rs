@@ -8,6 +8,7 @@ use glam::DVec3;
 use sdfc::FrameValues;
 use sdfc::render::{HIT, Pose};
 
+use crate::clerk::{Clerk, Errand, Outcome};
 use crate::clock::Clock;
 use crate::document;
 use crate::findings::{Finding, Findings};
@@ -19,7 +20,7 @@ use crate::views::{Mode, Slice};
 use crate::watch::Watch;
 use crate::worker::{Build, News, Worker};
 
-/// How often devices are opened anew before the processor takes over.
+/// How often in a row devices are opened anew, without a picture between, before the processor takes over.
 const MOST_RENEWALS: u32 = 3;
 
 /// What a look at a pixel tells.
@@ -50,6 +51,8 @@ pub struct Session {
     news: Receiver<News>,
     painter: Painter,
     painted: Receiver<Painted>,
+    clerk: Clerk,
+    outcomes: Receiver<Outcome>,
     watch: Watch,
     /// The order that a change on disk repeats.
     standing: Arc<Mutex<Build>>,
@@ -83,8 +86,12 @@ pub struct Session {
     pub picture: Option<Box<Picture>>,
     /// Counts pictures.
     pub pictures: u64,
+    /// What came of what was to be written, to be told once.
+    pub remarks: Vec<String>,
     asked: Option<Request>,
     size: [u32; 2],
+    /// Devices that were lost since the last picture.
+    lost: u32,
 }
 
 impl Session {
@@ -99,7 +106,10 @@ impl Session {
         let woken = Arc::clone(&wake);
         let worker = Worker::new(sender, move || woken())?;
         let (sender, painted) = channel();
-        let painter = Painter::new(sender, move || wake())?;
+        let woken = Arc::clone(&wake);
+        let painter = Painter::new(sender, move || woken())?;
+        let (sender, outcomes) = channel();
+        let clerk = Clerk::new(sender, move || wake())?;
         let standing = Arc::new(Mutex::new(build.clone()));
         let (orders, repeated) = (worker.orders(), Arc::clone(&standing));
         let watch = Watch::new(move || orders.put(lock(&repeated).clone()));
@@ -109,6 +119,8 @@ impl Session {
             news,
             painter,
             painted,
+            clerk,
+            outcomes,
             watch,
             standing,
             orbit: None,
@@ -126,8 +138,10 @@ impl Session {
             building: false,
             picture: None,
             pictures: 0,
+            remarks: Vec::new(),
             asked: None,
             size: [16, 9],
+            lost: 0,
         };
         session.watch_own_folder();
         session.order();
@@ -174,6 +188,10 @@ impl Session {
         }
         while let Ok(painted) = self.painted.try_recv() {
             self.see(painted);
+            changed = true;
+        }
+        while let Ok(outcome) = self.outcomes.try_recv() {
+            self.remarks.push(outcome.unwrap_or_else(|why| why));
             changed = true;
         }
         changed
@@ -236,11 +254,6 @@ impl Session {
         }
     }
 
-    /// Puts the camera where it was.
-    pub fn set_camera(&mut self, orbit: Orbit) {
-        (self.orbit, self.follows) = (Some(orbit), false);
-    }
-
     /// Back to the scene's own camera.
     pub fn go_home(&mut self) {
         self.follows = true;
@@ -289,19 +302,12 @@ impl Session {
         document::path_of(&self.build.path, &finding.file)
     }
 
-    /// Writes the numbers that have been moved into the scene's file.
-    ///
-    /// # Errors
-    ///
-    /// The file has changed since, or cannot be written.
-    pub fn write_literals(&mut self) -> Result<(), String> {
-        let Some(model) = &self.model else { return Ok(()) };
-        let document = document::Document::read(self.path()).map_err(|error| error.to_string())?;
-        if document.text != model.text {
-            return Err("the file has changed; nothing is written".to_owned());
-        }
-        let text = self.knobs.rewritten(model);
-        std::fs::write(self.path(), text).map_err(|error| error.to_string())
+    /// Writes the numbers that have been moved into the scene's file, unless it has changed since. What came of it
+    /// is among the [`remarks`](Self::remarks) later.
+    pub fn write_literals(&self) {
+        let Some(model) = &self.model else { return };
+        let (before, after) = (model.text.clone(), self.knobs.rewritten(model));
+        self.clerk.send(Errand::Rewrite { path: self.path().to_owned(), before, after });
     }
 
     fn aspect(&self) -> f64 {
@@ -370,16 +376,19 @@ impl Session {
     fn see(&mut self, painted: Painted) {
         match painted {
             Painted::Picture(picture) => {
-                self.no_picture = None;
+                (self.no_picture, self.lost) = (None, 0);
                 self.picture = Some(picture);
                 self.pictures += 1;
             }
-            Painted::Failed { message, machine } => {
+            Painted::Failed { message, machine, renewed } => {
                 self.no_picture = Some(message);
-                if machine && self.build.renewed < MOST_RENEWALS {
-                    self.set_build(|build| build.renewed += 1);
-                } else if machine {
-                    self.set_build(|build| build.on_cpu = true);
+                // Every request that a lost device met fails; new ones are ordered once.
+                if machine && renewed == self.build.renewed && !self.build.on_cpu {
+                    self.lost += 1;
+                    let gives_up = self.lost > MOST_RENEWALS;
+                    self.set_build(|build| {
+                        (build.renewed, build.on_cpu) = (build.renewed + 1, gives_up)
+                    });
                 }
             }
         }

@@ -7,12 +7,12 @@ use glam::DVec3;
 use sdfc::FrameValues;
 use sdfc::graph::eval::Dual;
 use sdfc::march::PixelBlock;
-use sdfc::render::{CAPPED, HIT, Image, View, linear_to_srgb8};
+use sdfc::render::{CAPPED, EvaluationCounts, HIT, Image, View, is_finite, linear_to_srgb8};
 
 use crate::probe::Probe;
 
 /// What is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// Light and materials.
     #[default]
@@ -92,7 +92,7 @@ impl Mode {
 }
 
 /// A plane to show the field on.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slice {
     /// Which coordinate is the same all over it, 0 to 2.
     pub axis: usize,
@@ -264,7 +264,7 @@ impl Seen<'_> {
     }
 
     fn evaluations(&self) -> (Vec<u8>, Legend) {
-        let most = percentile(self.image, 0.99).max(1);
+        let most = EvaluationCounts::of(self.image).p99.max(1);
         let color = |index: usize, _: &PixelBlock| {
             let count = self.image.pixels()[index].evaluations;
             Ramp::Heat.color(f64::from(count) / f64::from(most))
@@ -277,9 +277,8 @@ impl Seen<'_> {
     fn capped(&self) -> (Vec<u8>, Legend) {
         let color = |index: usize, shown: &PixelBlock| {
             let pixel = &self.image.pixels()[index];
-            let finite = pixel.depth.is_finite() && pixel.color.iter().all(|it| it.is_finite());
             match pixel.status {
-                _ if !finite => BROKEN,
+                _ if !is_finite(pixel) => BROKEN,
                 CAPPED => ALARM,
                 _ => dimmed(shaded(shown)),
             }
@@ -373,13 +372,6 @@ fn isolines(field: Dual, spacing: f64, pixel: f64) -> [u8; 3] {
     // Lines closer than their width would be a grey without meaning.
     let room = (spacing / per_pixel / 4.0).min(1.0);
     mix(base, line, strength * room * (half + 0.5 - to_line).clamp(0.0, 1.0))
-}
-
-/// So many of all pixels have at most this many evaluations.
-fn percentile(image: &Image, share: f64) -> u32 {
-    let mut counts: Vec<u32> = image.pixels().iter().map(|pixel| pixel.evaluations).collect();
-    let rank = ((counts.len() as f64 * share).ceil() as usize).clamp(1, counts.len().max(1)) - 1;
-    if counts.is_empty() { 0 } else { *counts.select_nth_unstable(rank).1 }
 }
 
 /// sRGB of linear light by table: a view is repainted often, and a power for each channel takes longer than

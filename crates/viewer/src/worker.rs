@@ -6,8 +6,8 @@
 //! pipeline is taken over. Two devices take turns, because a device that compiles for one pipeline may hold
 //! up what another draws.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -16,10 +16,10 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use sdfc::codegen::render_module;
-use sdfc::diagnostics::{FileId, Sources};
+use sdfc::graph::Program;
 use sdfc::lang::Options;
-use sdfc::render::{CpuScene, Gpu, Pipeline};
-use sdfc::{Compiled, Error, Scene};
+use sdfc::render::{CpuScene, Gpu, Pipeline, milliseconds_since};
+use sdfc::{Compiled, Error, FrameValues, Marched, Scene};
 
 use crate::document::{Document, Imports};
 use crate::findings::Findings;
@@ -130,12 +130,19 @@ struct Running {
     pipeline: Arc<Pipeline>,
 }
 
+/// An order, and the texts that it met.
+struct Met {
+    build: Build,
+    text: String,
+    imports: Imports,
+}
+
 /// What the thread keeps between orders.
 struct Shop<T> {
     orders: Arc<Mailbox<Build>>,
     tell: T,
-    /// The last order, and a hash of the texts that it met.
-    last: Option<(Build, u64)>,
+    /// The last order, and the texts that it met.
+    last: Option<Met>,
     /// The running shader, its lists, and its pipeline.
     running: Option<Running>,
     devices: [Option<Gpu>; 2],
@@ -170,20 +177,22 @@ impl<T: FnMut(News)> Shop<T> {
                 return (self.tell)(News::Unreadable(error.to_string()));
             }
         };
+        let same = |last: &Met| {
+            last.build == *build && last.text == document.text && last.imports.are_as_read()
+        };
+        if self.last.as_ref().is_some_and(same) {
+            return;
+        }
+        if self.last.as_ref().is_some_and(|last| last.build.renewed != build.renewed) {
+            self.forget_devices();
+        }
         let imports = Imports::of(&build.path);
         let options = Options { slots: build.live };
         let mut compiled = sdfc::compile_with(&document.name, &document.text, &imports, options);
-        let order = (build.clone(), hash(&compiled.sources, imports.hash_of_bytes()));
-        if self.last.as_ref() == Some(&order) {
-            return;
-        }
-        if self.last.as_ref().is_some_and(|(last, _)| last.renewed != build.renewed) {
-            self.forget_devices();
-        }
-        self.last = Some(order);
         let scene = compiled.scene.take();
         let findings = self.findings(&document, &imports, compiled, scene.is_some());
         let folders = imports.folders();
+        self.last = Some(Met { build: build.clone(), text: document.text.clone(), imports });
         match scene {
             None => (self.tell)(News::Compiled { findings, folders, builds: false }),
             Some(scene) if !scene.draws() => {
@@ -214,8 +223,17 @@ impl<T: FnMut(News)> Shop<T> {
     fn ready(&mut self, build: &Build, document: Document, scene: Scene) {
         let times = scene.times();
         let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
-        match self.engine(build, &scene, &mut stages) {
-            Ok(Some(Prepared { engine, method, note })) => {
+        // Derived when first asked for, which is not to be where input is heard.
+        scene.bounds_at(&FrameValues::defaults(scene.params()));
+        let had_devices = self.devices.iter().any(Option::is_some);
+        let mut made = self.engine(build, &scene, &mut stages);
+        if had_devices && made.as_ref().is_err_and(Error::is_machine) {
+            // A device that was lost while nothing was drawn on it.
+            self.forget_devices();
+            made = self.engine(build, &scene, &mut stages);
+        }
+        match made {
+            Ok(Some(Prepared { engine, method, enclosed, note })) => {
                 self.skipped = 0;
                 self.serial += 1;
                 let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
@@ -225,11 +243,13 @@ impl<T: FnMut(News)> Shop<T> {
                     text,
                     engine,
                     method,
+                    enclosed,
                     probe,
                     moves,
                     stages,
                     pipelines,
                     serial,
+                    renewed: build.renewed,
                     note,
                 };
                 (self.tell)(News::Ready(Arc::new(model)));
@@ -254,19 +274,20 @@ impl<T: FnMut(News)> Shop<T> {
         scene: &Scene,
         stages: &mut Stages,
     ) -> Result<Option<Prepared>, Error> {
-        let wanted = build.method.as_deref().unwrap_or(scene.method()).to_owned();
+        let wanted = build.method.as_deref().unwrap_or(scene.method());
         if build.on_cpu {
             return on_cpu(scene, wanted, None).map(Some);
         }
         let start = Instant::now();
-        let shader = render_module(scene.drawn(), &wanted).map_err(Error::Codegen)?;
+        let marched = scene.marched(wanted);
+        let shader = render_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
         let text = shader.wgsl().map_err(Error::Codegen)?;
-        stages.lower = milliseconds(start);
+        stages.lower = milliseconds_since(start);
         let lists = shader.lists().to_vec();
         let serves = |running: &&Running| running.text == text && running.lists == lists;
         if let Some(running) = self.running.as_ref().filter(serves) {
             let engine = Engine::Gpu(Arc::clone(&running.pipeline));
-            return Ok(Some(Prepared { engine, method: wanted, note: None }));
+            return Ok(Some(Prepared::new(engine, marched, None)));
         }
         if self.orders.calls() && self.skipped < MOST_SKIPPED {
             return Ok(None);
@@ -279,12 +300,12 @@ impl<T: FnMut(News)> Shop<T> {
             }
         };
         let start = Instant::now();
-        let pipeline = Pipeline::new(&gpu, shader, scene.drawn().uniforms.len())?;
-        stages.pipeline = Some(milliseconds(start));
+        let pipeline = Pipeline::new(&gpu, shader, marched.program.uniforms.len())?;
+        stages.pipeline = Some(milliseconds_since(start));
         self.pipelines += 1;
         let pipeline = Arc::new(pipeline);
         self.running = Some(Running { text, lists, pipeline: Arc::clone(&pipeline) });
-        Ok(Some(Prepared { engine: Engine::Gpu(pipeline), method: wanted, note: None }))
+        Ok(Some(Prepared::new(Engine::Gpu(pipeline), marched, None)))
     }
 
     /// The device that is not drawing.
@@ -309,31 +330,26 @@ impl<T: FnMut(News)> Shop<T> {
 struct Prepared {
     engine: Engine,
     method: String,
+    enclosed: Option<Program>,
     note: Option<String>,
 }
 
-/// The CPU renderer, which has two of the methods.
-fn on_cpu(scene: &Scene, wanted: String, note: Option<String>) -> Result<Prepared, Error> {
-    let engine = Engine::Cpu(Arc::new(CpuScene::new(scene.drawn())?));
-    if matches!(wanted.as_str(), "auto" | "sphere") {
-        return Ok(Prepared { engine, method: wanted, note });
+impl Prepared {
+    fn new(engine: Engine, marched: Marched<'_>, elsewhere: Option<String>) -> Self {
+        let notes: Vec<String> = elsewhere.into_iter().chain(marched.note).collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
+        let enclosed = match marched.program {
+            Cow::Owned(program) => Some(program),
+            Cow::Borrowed(_) => None,
+        };
+        Self { engine, method: marched.method, enclosed, note }
     }
-    let other = format!("the processor has no method `{wanted}`, `auto` is shown");
-    let notes: Vec<String> = note.into_iter().chain([other]).collect();
-    Ok(Prepared { engine, method: "auto".to_owned(), note: Some(notes.join("; ")) })
 }
 
-fn hash(sources: &Sources, other: u64) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    other.hash(&mut hasher);
-    for file in 0..sources.len() {
-        sources.text(FileId(file as u32)).hash(&mut hasher);
-    }
-    hasher.finish()
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
+fn on_cpu(scene: &Scene, wanted: &str, why: Option<String>) -> Result<Prepared, Error> {
+    let marched = scene.marched_on_cpu(wanted);
+    let engine = Engine::Cpu(Arc::new(CpuScene::new(&marched.program)?));
+    Ok(Prepared::new(engine, marched, why))
 }
 
 #[cfg(test)]

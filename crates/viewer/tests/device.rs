@@ -8,8 +8,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::render::{Gpu, HIT};
-use sdfc_viewer::model::Model;
+use sdfc::march::METHODS;
+use sdfc::render::{Gpu, HIT, testing};
+use sdfc::{PictureOptions, unwatched};
+use sdfc_viewer::model::{Engine, Model};
 use sdfc_viewer::painter::Picture;
 use sdfc_viewer::session::Session;
 use sdfc_viewer::views::Mode;
@@ -24,11 +26,13 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 4] = [
+    let tests: [(&str, Test); 6] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("broken_text_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_smoothed", refined),
         ("all_views_are_drawn_from_one_picture", views),
+        ("all_methods_draw_as_the_command_line_does", methods),
+        ("lost_devices_are_opened_anew", lost),
     ];
     let trial = |(name, test)| Trial::test(name, test).with_ignored_flag(ignored);
     libtest_mimic::run(&arguments, tests.map(trial).into()).exit_code()
@@ -164,4 +168,60 @@ fn views() -> Result<(), Failed> {
         expect(differs || mode == Mode::Capped, &format!("{mode:?} is blank"))?;
     }
     Ok(())
+}
+
+/// Of a scene whose field is certified, and of one whose field grows faster than its distance.
+fn methods() -> Result<(), Failed> {
+    let flower = "solid flower() = pow(length(p), 3) - 0.5 - 0.45 * sin(3 * atan2(p.z, p.x)) * pow(length(p.xz), 2)\n\
+                  flower()\ncamera(eye: [1, 2, 3], target: [0, 0, 0], fov: 40deg)\n";
+    for text in [ball("1").as_str(), flower] {
+        let mut fixture = Fixture::new(text)?;
+        fixture.session.samples = Some(1);
+        for method in METHODS {
+            fixture.session.set_build(|build| build.method = Some(method.name.to_owned()));
+            let serial = fixture.session.model.as_ref().map_or(0, |model| model.serial);
+            fixture.until(|session| {
+                session.trouble.is_some()
+                    || session.model.as_ref().is_some_and(|model| model.serial > serial)
+            })?;
+            expect(fixture.session.trouble.is_none(), &format!("{:?}", fixture.session.trouble))?;
+            fixture.finish()?;
+            let model = fixture.model()?;
+            let options = PictureOptions {
+                size: SIZE,
+                method: Some(method.name.to_owned()),
+                samples: Some(1),
+                ..PictureOptions::default()
+            };
+            let expected = model.scene.render(&options, &mut unwatched)?;
+            let (shown, meant) = (fixture.picture()?.counts, expected.image.counts());
+            let what = format!("{}: {shown:?}, not {meant:?}", method.name);
+            expect(model.method == expected.stats.method, &what)?;
+            expect(shown.hit.abs_diff(meant.hit) <= 2, &what)?;
+            expect(shown.capped.abs_diff(meant.capped) <= 2, &what)?;
+            // Others step over a field like that.
+            expect(!["auto", "interval"].contains(&method.name) || shown.hit > 100, &what)?;
+        }
+    }
+    Ok(())
+}
+
+/// More often than devices are opened anew where no picture comes of it.
+fn lost() -> Result<(), Failed> {
+    let mut fixture = Fixture::new(&ball("1"))?;
+    for round in 0..6 {
+        fixture.finish()?;
+        let (model, pictures) = (fixture.model()?, fixture.session.pictures);
+        let Engine::Gpu(pipeline) = &model.engine else {
+            return Err(format!("after {round} losses the processor draws").into());
+        };
+        testing::lose(pipeline.gpu());
+        fixture.session.move_camera(|orbit| orbit.turn(0.1, 0.0));
+        fixture.until(|session| {
+            session.model.as_ref().is_some_and(|it| it.serial > model.serial)
+                && session.pictures > pictures
+        })?;
+    }
+    expect(!fixture.session.build().on_cpu, "the processor draws")?;
+    expect(fixture.session.build().renewed == 6, "devices are opened once for each loss")
 }

@@ -94,3 +94,19 @@ fn the_text_opens_and_params_can_be_reset() {
     fixture.harness.run_steps(3);
     assert!(fixture.harness.state_mut().session().knobs.params.is_empty());
 }
+
+#[test]
+fn moved_numbers_are_written_into_the_file() {
+    let mut fixture = Fixture::new();
+    fixture.click("Text");
+    let session = fixture.harness.state_mut().session();
+    let model = session.model.clone().unwrap();
+    let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
+    let (slot, _) = model.literals().find(|(slot, _)| slot.span.start == at).unwrap();
+    session.knobs.set_literal(slot, 1.25);
+    fixture.harness.run_steps(2);
+    fixture.click("Write");
+    let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
+}

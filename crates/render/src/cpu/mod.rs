@@ -54,6 +54,10 @@ pub struct CpuScene {
 }
 
 impl CpuScene {
+    /// Names of the ray methods that it has.
+    pub const METHODS: [&'static str; Method::ALL.len()] =
+        [Method::ALL[0].0, Method::ALL[1].0, Method::ALL[2].0];
+
     /// Of a program.
     ///
     /// # Errors
@@ -71,7 +75,7 @@ impl CpuScene {
         })
     }
 
-    /// Draws a frame in f32, as the shader does. The methods are `sphere`, `auto` and `interval`.
+    /// Draws a frame in f32, as the shader does. The methods are [`Self::METHODS`].
     ///
     /// # Errors
     ///

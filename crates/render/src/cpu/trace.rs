@@ -46,13 +46,12 @@ pub(super) enum Method {
 }
 
 impl Method {
+    pub(super) const ALL: [(&'static str, Self); 3] =
+        [("auto", Self::Auto), ("sphere", Self::Sphere), ("interval", Self::Interval)];
+
     pub(super) fn of_name(name: &str) -> Result<Self, RenderError> {
-        match name {
-            "sphere" => Ok(Self::Sphere),
-            "auto" => Ok(Self::Auto),
-            "interval" => Ok(Self::Interval),
-            _ => Err(RenderError::MethodNotOnCpu(name.to_owned())),
-        }
+        let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
+        found.map(|(_, method)| method).ok_or_else(|| RenderError::MethodNotOnCpu(name.to_owned()))
     }
 
     /// Whether it asks what is known of rays before they are marched.

@@ -132,7 +132,8 @@ pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
     if sides && area { Ok(()) } else { Err(RenderError::Size(size)) }
 }
 
-fn is_finite(pixel: &PixelBlock) -> bool {
+/// Whether colour and depth of a pixel are numbers.
+pub fn is_finite(pixel: &PixelBlock) -> bool {
     pixel.depth.is_finite() && pixel.color.iter().all(|channel| channel.is_finite())
 }
 

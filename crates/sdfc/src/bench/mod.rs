@@ -9,12 +9,12 @@ use sdfc_codegen::{FieldSource, measured_module};
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     CompileTimes, EvaluationCounts, Frame, FrameTimes, Gpu, HIT, Image, LeafEvaluations,
-    OnProgress, Pipeline, Progress, RenderOptions, TileSize, View, Why, edges, uniform_values,
+    OnProgress, Pipeline, Progress, RenderOptions, TileSize, View, Why, edges, milliseconds_since,
+    uniform_values,
 };
 use serde::Serialize;
 
 use crate::baseline::{self, Encoded, Inexpressible};
-use crate::compile::milliseconds;
 use crate::{Error, Scene};
 
 pub use suite::suite;
@@ -258,7 +258,7 @@ impl Heat<'_> {
         };
         let shader = measured_module(scene.program(), &self.options.method, kind.field())?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
-        let lower = milliseconds(start) - validate;
+        let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, turns) = match &data {
             Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.turns)),
             Data::Uniforms(uniforms) => (&[][..], uniforms.clone(), None),
@@ -286,7 +286,7 @@ impl Heat<'_> {
             kind,
             pipeline,
             uniforms,
-            first_picture: times.front + compile.analyze.unwrap_or(0.0) + milliseconds(start),
+            first_picture: times.front + compile.analyze.unwrap_or(0.0) + milliseconds_since(start),
             compile,
             options: RenderOptions { tile_size },
             repetitions: if once { 1 } else { self.options.repetitions.max(1) },

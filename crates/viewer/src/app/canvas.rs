@@ -244,8 +244,8 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
                     let cell = Rect::from_min_size(pos2(left, bar.top()), vec2(width + 0.5, 10.0));
                     ui.painter().rect_filled(cell, 0.0, Color32::from_rgb(red, green, blue));
                 }
-                let [low, high] = ends.map(crate::knobs::number_text);
-                let middle = crate::knobs::number_text((ends[0] + ends[1]) / 2.0);
+                let [low, high] = ends.map(crate::knobs::display_text);
+                let middle = crate::knobs::display_text((ends[0] + ends[1]) / 2.0);
                 let font = egui::TextStyle::Small.resolve(ui.style());
                 let (row, _) = ui.allocate_exact_size(vec2(220.0, 12.0), Sense::hover());
                 let places = [

@@ -32,8 +32,11 @@ pub fn open(editor: &str, path: &Path, place: [u32; 2]) -> Result<(), String> {
     let mut command = Command::new(program);
     command.args(words).args(arguments(&name, path, place));
     command.stdin(Stdio::null());
-    let started = command.spawn();
-    started.map(drop).map_err(|error| format!("{program} does not start: {error}"))
+    let mut child =
+        command.spawn().map_err(|error| format!("{program} does not start: {error}"))?;
+    // Waited for, so that it leaves no trace in the table of processes when it ends.
+    std::thread::spawn(move || child.wait());
+    Ok(())
 }
 
 fn arguments(name: &str, path: &Path, [line, column]: [u32; 2]) -> Vec<OsString> {

@@ -112,7 +112,7 @@ impl App {
         let ctx = ui.ctx().clone();
         self.session.poll();
         self.take_dropped(&ctx);
-        let mut wishes = Vec::new();
+        let mut wishes: Vec<Wish> = self.session.remarks.drain(..).map(Wish::Remark).collect();
         self.pass_time(&ctx);
         self.keys(&ctx, &mut wishes);
         let bar = egui::Panel::top("bar").frame(bar_frame());

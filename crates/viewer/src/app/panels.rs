@@ -5,7 +5,7 @@ use sdfc::graph::{Param, ParamKind};
 use sdfc::march::METHODS;
 
 use super::{Shows, Wish, style};
-use crate::knobs::{number_text, value_text};
+use crate::knobs::{display_text, value_text};
 use crate::model::Model;
 use crate::orbit::Side;
 use crate::session::Session;
@@ -214,6 +214,17 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) {
     }
 }
 
+/// A number that can be dragged and typed. It is shown rounded; opened and left as it was, it keeps its value.
+pub fn drag(number: &mut f64) -> egui::DragValue<'_> {
+    let before = *number;
+    let read = move |text: &str| match text.trim() {
+        same if same == display_text(before) => Some(before),
+        other => other.parse().ok(),
+    };
+    let drag = egui::DragValue::new(number).custom_formatter(|value, _| display_text(value));
+    drag.custom_parser(read)
+}
+
 /// A slider where the range is finite, and the number, which can be dragged and typed.
 fn number_knob(
     ui: &mut Ui,
@@ -228,8 +239,7 @@ fn number_knob(
         ui.add(egui::Slider::new(number, low..=high).show_value(false)).labelled_by(label);
         speed = (high - low) / 400.0;
     }
-    let drag = egui::DragValue::new(number).range(low..=high).speed(speed).suffix(unit);
-    ui.add(drag.custom_formatter(|value, _| number_text(value))).labelled_by(label);
+    ui.add(drag(number).range(low..=high).speed(speed).suffix(unit)).labelled_by(label);
 }
 
 fn time(ui: &mut Ui, session: &mut Session) {

@@ -4,8 +4,8 @@ use eframe::egui::{self, RichText, Ui};
 use sdfc::graph::{Param, ParamKind};
 use sdfc::lang::slots::Slot;
 
+use super::panels::drag;
 use super::{Wish, style};
-use crate::knobs::number_text;
 use crate::model::Model;
 use crate::session::Session;
 
@@ -47,9 +47,7 @@ fn buttons(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<W
         ui.label(RichText::new(what).small().color(color));
         ui.add_enabled_ui(moved > 0, |ui| {
             if ui.small_button("Write").on_hover_text("Write them into the file.").clicked() {
-                let result = session.write_literals();
-                let text = result.map_or_else(|error| error, |()| "written".to_owned());
-                wishes.push(Wish::Remark(text));
+                session.write_literals();
             }
             if ui.small_button("Copy").on_hover_text("Copy the text with them.").clicked() {
                 wishes.push(Wish::Copy(session.knobs.rewritten(model)));
@@ -106,8 +104,7 @@ fn number(ui: &mut Ui, session: &mut Session, slot: &Slot, param: &Param) {
     let mut value = before * unit;
     let [low, high] = param.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let speed = (slot.value.abs() * unit * 0.005).max(0.002);
-    let drag = egui::DragValue::new(&mut value).speed(speed).range(low * unit..=high * unit);
-    let drag = drag.custom_formatter(|value, _| number_text(value));
+    let drag = drag(&mut value).speed(speed).range(low * unit..=high * unit);
     let drag = drag.suffix(if is_angle { "deg" } else { "" });
     let moved = before != slot.value;
     let response = ui
