@@ -52,7 +52,7 @@ const RESERVED: [(&str, &[&str]); 10] = [
     ("codespan-reporting", &["diagnostics"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
-    ("tempfile", &["cli"]),
+    ("tempfile", &["files"]),
     ("plotters", &["accuracy"]),
 ];
 
