@@ -341,6 +341,9 @@ pub struct Chart {
     /// and a page that lists them
     #[arg(short, long, value_name = "OUT.svg|OUT.png|FOLDER")]
     pub output: Option<PathBuf>,
+    /// Where a table goes, as Markdown: a line for each scene, with what `auto` does there; `-` is stdout
+    #[arg(long, value_name = "OUT.md", conflicts_with_all = ["output", "json"])]
+    pub table: Option<PathBuf>,
     /// A dark ground for PNG; an SVG has that of the reader's page
     #[arg(long)]
     pub dark: bool,

@@ -140,6 +140,7 @@ impl Scene {
         let mut chart = Chart {
             scene: name.to_owned(),
             leaves: self.report.leaves,
+            certified: self.is_certified(),
             adapter: gpu.info().name.clone(),
             driver: gpu.info().driver.clone(),
             size: options.size,

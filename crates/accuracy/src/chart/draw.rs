@@ -88,9 +88,7 @@ pub(super) fn draw<B: DrawingBackend>(
         .y_label_formatter(&|value| plain(*value))
         .draw()?;
 
-    let mut front: Vec<&Row> =
-        chart.methods.iter().filter(|row| row.pareto && row.wrong() == 0).collect();
-    front.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let front = chart.front();
     let line = front.iter().map(|row| place(row));
     plane.draw_series(LineSeries::new(line, theme.faint.stroke_width(9)))?;
     plane.draw_series(front.iter().map(|row| Circle::new(place(row), 11, theme.faint.filled())))?;
@@ -107,14 +105,14 @@ pub(super) fn draw<B: DrawingBackend>(
         plane.draw_series(rows.iter().map(|row| marker(row, color)))?;
         let style =
             ("sans-serif", 12).into_font().color(&color).pos(Pos::new(HPos::Center, VPos::Top));
-        for row in rows.iter().filter(|row| row.default && row.wrong() > 0) {
+        for row in rows.iter().filter(|row| row.default && row.failed() > 0) {
             let (x, marker) = plane.backend_coord(&place(row));
             let mut y = marker - 2 * LABEL.1;
             while labels.iter().any(|(a, b)| (x - a).abs() < LABEL.0 && (y - b).abs() < LABEL.1) {
                 y -= LABEL.1;
             }
             labels.push((x, y));
-            root.draw(&Text::new(row.wrong().to_string(), (x, y), style.clone()))?;
+            root.draw(&Text::new(row.failed().to_string(), (x, y), style.clone()))?;
         }
     }
     plane
@@ -141,9 +139,10 @@ fn header<B: DrawingBackend>(
     head.draw(&Text::new(chart.scene.clone(), (20, 12), style(19, &theme.ink)))?;
     let counts = chart.oracle;
     let line = format!(
-        "{} leaves, {width}x{height}, on {}, {}{}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
-         Ring: pixels are wrong. Large: the default, with their number. Grey: nothing is cheaper and better.",
+        "{} leaves, {}{width}x{height}, on {}, {}{}; oracle: {} hit, {} miss, {} at edges, {} undecided. \
+         Ring: pixels are wrong or out of steps. Large: the default, with their number. Grey: nothing is cheaper and better.",
         chart.leaves,
+        if chart.certified { "" } else { "field uncertified, " },
         chart.adapter,
         chart.driver,
         chart.made.iter().map(|made| format!(", {made}")).collect::<String>(),
@@ -186,7 +185,7 @@ fn names(chart: &Chart) -> Vec<&str> {
 
 fn marker(row: &Row, color: RGBColor) -> Circle<(f64, f64), i32> {
     let radius = if row.default { 7 } else { 4 };
-    let style = if row.wrong() == 0 { color.filled() } else { color.stroke_width(2) };
+    let style = if row.failed() == 0 { color.filled() } else { color.stroke_width(2) };
     Circle::new(place(row), radius, style)
 }
 

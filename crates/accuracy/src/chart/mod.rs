@@ -23,6 +23,8 @@ pub struct Chart {
     pub scene: String,
     /// Leaves of the scene.
     pub leaves: usize,
+    /// Whether every part of the field is known never to exceed the distance.
+    pub certified: bool,
     /// Name of the adapter.
     pub adapter: String,
     /// Name and version of its driver.
@@ -123,23 +125,36 @@ impl Row {
         self.missed + self.false_hits + self.nan
     }
 
+    /// Pixels that are wrong or were given up.
+    pub fn failed(&self) -> u64 {
+        self.wrong() + self.capped
+    }
+
     /// Whether it is at least as good in all that counts, and better in something.
     fn beats(&self, other: &Self) -> bool {
-        let mine = [self.ops_per_pixel, self.wrong() as f64, self.depth_px.p99];
-        let others = [other.ops_per_pixel, other.wrong() as f64, other.depth_px.p99];
+        let mine = [self.ops_per_pixel, self.failed() as f64, self.depth_px.p99];
+        let others = [other.ops_per_pixel, other.failed() as f64, other.depth_px.p99];
         let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
         no_worse && mine != others
     }
 }
 
 impl Chart {
-    /// Marks the rows that no other beats in operations, in wrong pixels and in depth (99th of 100).
+    /// Marks the rows that no other beats in operations, in wrong pixels and rays out of steps, and in depth (99th of 100).
     pub fn mark_front(&mut self) {
         let beaten = |row: &Row| self.methods.iter().any(|other| other.beats(row));
         let front: Vec<bool> = self.methods.iter().map(|row| !beaten(row)).collect();
         for (row, pareto) in self.methods.iter_mut().zip(front) {
             row.pareto = pareto;
         }
+    }
+
+    /// The front as a chart draws it: rows that nothing beats and that fail nowhere, from cheap to dear.
+    pub fn front(&self) -> Vec<&Row> {
+        let mut front: Vec<&Row> =
+            self.methods.iter().filter(|row| row.pareto && row.failed() == 0).collect();
+        front.sort_by(|a, b| a.ops_per_pixel.total_cmp(&b.ops_per_pixel));
+        front
     }
 }
 
@@ -161,7 +176,8 @@ pub(crate) mod testing {
     pub(crate) fn chart(methods: Vec<Row>) -> Chart {
         let (scene, adapter, driver) = Default::default();
         let (leaves, size, oracle) = Default::default();
-        Chart { scene, leaves, adapter, driver, size, made: None, oracle, methods }
+        let certified = true;
+        Chart { scene, leaves, certified, adapter, driver, size, made: None, oracle, methods }
     }
 }
 

@@ -22,6 +22,7 @@ use crate::output::{self, Output};
 /// The scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write.
 pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
     match (&args.files[..], &args.output) {
+        (files, None) if args.table.is_some() => charts::table(args, files, console),
         (files, Some(folder)) if folder.is_dir() => charts::run(args, files, folder, console),
         ([file], _) => one(args, file, console),
         (_, Some(_) | None) => {
@@ -125,9 +126,10 @@ fn table(chart: &Figures) -> String {
     let [width, height] = chart.size;
     let counts = chart.oracle;
     let mut text = format!(
-        "{}: {} leaves, {width}x{height}, on {}, {}\noracle: {} hit, {} miss, {} at edges, {} undecided\n\n",
+        "{}: {} leaves, {}{width}x{height}, on {}, {}\noracle: {} hit, {} miss, {} at edges, {} undecided\n\n",
         chart.scene,
         chart.leaves,
+        if chart.certified { "" } else { "field uncertified, " },
         chart.adapter,
         chart.driver,
         counts.hit,
