@@ -13,7 +13,7 @@ use crate::leaves::count_leaves;
 use crate::quality::{Qualities, Sides, shapes_below};
 use crate::sound::{Uncertified, sound_field};
 use crate::spans::first;
-use crate::uneven::{Uneven, uneven};
+use crate::uneven::{Uneven, inexact_outside, uneven};
 
 /// A scene ready for code generation, and what was found on the way.
 #[derive(Clone, Debug)]
@@ -47,6 +47,8 @@ pub struct Report {
     pub uncertified: Vec<Uncertified>,
     /// Operators that want an exact distance and have none.
     pub uneven: Vec<Uneven>,
+    /// Where the scene's field stops being the distance outside; `None` where it is that everywhere.
+    pub inexact_outside: Option<ShapeId>,
 }
 
 impl Report {
@@ -158,6 +160,7 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         uneven: uneven(graph, &qualities, root),
+        inexact_outside: inexact_outside(graph, &qualities, root),
     })
 }
 

@@ -5,7 +5,7 @@
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Unary};
 
-use crate::quality::{Promise, Qualities, shapes_below};
+use crate::quality::{Promise, Qualities, Sides, shapes_below};
 
 /// An operator whose result is uneven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +24,15 @@ pub(crate) fn uneven(graph: &Graph, qualities: &Qualities, root: ShapeId) -> Vec
         Some(Uneven { shape, cause })
     });
     found.collect()
+}
+
+/// Where at or below `root` the field stops being the distance outside; `None` where it is that.
+pub(crate) fn inexact_outside(
+    graph: &Graph,
+    qualities: &Qualities,
+    root: ShapeId,
+) -> Option<ShapeId> {
+    cause(graph, qualities, LevelSet { child: root, outside: true, inside: false })
 }
 
 /// A child whose surface at some distance is wanted.
@@ -70,17 +79,27 @@ fn sampled(graph: &Graph, node: NodeId) -> Option<ShapeId> {
     if let Node::Sample(child, _) = graph.node(node) { Some(child) } else { None }
 }
 
-/// The lowest shape on the way down that is not exact although all below it is.
+/// The lowest shape on the way down that is not exact although all below it is; by way of those that lack what is wanted,
+/// where there are such.
 fn cause(graph: &Graph, qualities: &Qualities, wanted: LevelSet) -> Option<ShapeId> {
-    let sides = qualities.get(wanted.child)?.sides;
-    let lacks = |wanted: bool, promise: Promise| wanted && promise != Promise::Exact;
-    if !lacks(wanted.outside, sides.outside) && !lacks(wanted.inside, sides.inside) {
-        return None;
-    }
-    let mut cause = wanted.child;
-    let is_exact = |shape: ShapeId| qualities.get(shape).is_some_and(|q| q.sides.is_exact());
-    while let Some(&below) = graph.shape(cause).children.iter().find(|&&child| !is_exact(child)) {
-        cause = below;
+    let sides = |shape: ShapeId| qualities.get(shape).map(|quality| quality.sides);
+    let lacks = |shape: ShapeId| {
+        let lacking = |wanted: bool, promise: Promise| wanted && promise != Promise::Exact;
+        sides(shape).is_some_and(|sides| {
+            lacking(wanted.outside, sides.outside) || lacking(wanted.inside, sides.inside)
+        })
+    };
+    let is_exact = |shape: ShapeId| sides(shape).is_some_and(Sides::is_exact);
+    let mut cause = Some(wanted.child).filter(|&child| lacks(child))?;
+    let below = |shape: ShapeId| {
+        let children = graph.shape(shape).children.iter().copied();
+        children
+            .clone()
+            .find(|&child| lacks(child))
+            .or(children.into_iter().find(|&c| !is_exact(c)))
+    };
+    while let Some(child) = below(cause) {
+        cause = child;
     }
     Some(cause)
 }

@@ -179,6 +179,9 @@ codes! {
     NOTHING_DRAWN "W0604" "A file that draws nothing"
         "It can be imported, not rendered. Every solid that stands alone at top level is drawn."
         "write a solid on a line of its own; to be imported, a file need not draw";
+    SOFT_SHADOW "W0605" "Soft shadows of a field that is not the distance"
+        "A soft shadow is made of the distances by which rays to the lamp pass what throws it. Where the field is less than the distance, edges are wider and darker than `soft(...)` says; where nothing is known of the field they may be anything. The note says where the field stops being the distance: a smooth blend, an intersection, a shape bent or stretched. Outside a hard union of exact shapes the field is the distance."
+        "`shadow: hard` needs no distances; or leave it if it looks right";
 }
 
 #[cfg(test)]

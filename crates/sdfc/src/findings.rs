@@ -36,14 +36,38 @@ pub(crate) fn warnings(
             );
             let mut warning = Diagnostic::warning(Code::NOT_EXACT, site.span, message);
             if let Some(cause) = places.of(part.cause) {
-                let line = sources.line_column(cause.span.file, cause.span.start).line;
-                let note = format!("a bound since `{}` at line {line}", cause.name);
-                warning = warning.note_at(cause.span, note);
+                warning = warning.note_at(cause.span, since("a bound", cause, sources));
             }
             found.push(warning);
         }
     }
+    found.extend(soft_shadows(elaborated, report, &places, sources));
     found
+}
+
+/// Soft shadows of a field that is not the distance outside (W0605).
+fn soft_shadows(
+    elaborated: &Elaborated,
+    report: &Report,
+    places: &Places<'_>,
+    sources: &Sources,
+) -> Vec<Diagnostic> {
+    let Some(cause) = report.inexact_outside else { return Vec::new() };
+    let message = "soft shadows are made of distances, which this scene's field is not everywhere";
+    let warning = |&span| {
+        let warning = Diagnostic::warning(Code::SOFT_SHADOW, span, message);
+        match places.of(cause) {
+            Some(cause) => warning.note_at(cause.span, since("not the distance", cause, sources)),
+            None => warning,
+        }
+    };
+    elaborated.soft_shadows.iter().map(warning).collect()
+}
+
+/// `a bound since `smooth` at line 3`.
+fn since(what: &str, cause: &Site, sources: &Sources) -> String {
+    let line = sources.line_column(cause.span.file, cause.span.start).line;
+    format!("{what} since `{}` at line {line}", cause.name)
 }
 
 /// Clauses of the scene's own shapes that sampling refutes (E0502), at most one for each declaration.

@@ -89,3 +89,21 @@ fn an_operator_that_wants_a_distance_warns_of_a_bound() {
     assert_eq!(codes(&format!("{skin}skin(box(1))")), []);
     assert_eq!(codes(&format!("{skin}skin(sphere(1) | box(1))")), [("W0601", 2)]);
 }
+
+#[test]
+fn a_soft_shadow_wants_distances_outside() {
+    let lamp = "sun(direction: [1, 2, 1], shadow: soft(8))\n";
+    let found = |scene: &str| codes(&format!("{lamp}{scene}"));
+    assert_eq!(found("sphere(1) | box(1) | plane(y: -1)"), []);
+    assert_eq!(found("sphere(1) & box(1)"), [("W0605", 1)]);
+    assert_eq!(codes("sun(shadow: hard)\nsphere(1) & box(1)"), []);
+    assert_eq!(
+        codes("point_light([1, 2, 3], shadow: soft(4))\nellipsoid([1, 2, 1])"),
+        [("W0605", 1)]
+    );
+    // The union is no distance inside, but that is not where shadows are made.
+    let text =
+        format!("{lamp}(sphere(1) | box(1))\n  | union(sphere(2), box(1), blend: smooth(0.2))");
+    let said = check("scene.sdf", &text, &NoFiles).diagnostics_text(false);
+    assert!(said.contains("not the distance since `union` at line 3"), "{said}");
+}

@@ -87,6 +87,9 @@ impl<'p> Elaborator<'p> {
             Shadow::Soft(node) => self.graph.as_number(node),
             Shadow::Off | Shadow::Hard => None,
         };
+        if matches!(shadow, Shadow::Soft(_)) {
+            self.soft_shadows.push(expr.span);
+        }
         if sharpness.is_some_and(|value| !(POSITIVE[0]..=POSITIVE[1]).contains(&value)) {
             let message = "the sharpness of a soft shadow is above 0";
             let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);

@@ -66,6 +66,8 @@ pub struct Elaborated {
     pub slots: Vec<crate::slots::Slot>,
     /// The shapes that the scene and what it imports declare, with the places of their clauses.
     pub declared: Vec<Declared>,
+    /// Where the scene asks for soft shadows.
+    pub soft_shadows: Vec<Span>,
 }
 
 /// A declared shape and where its clauses stand.
@@ -129,7 +131,9 @@ pub(crate) fn elaborate_with(
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let declared = shape::declared(program, &elaborator.definitions);
-    let elaborated = Elaborated { scene, sites: elaborator.sites, slots: Vec::new(), declared };
+    let soft_shadows = elaborator.soft_shadows;
+    let elaborated =
+        Elaborated { scene, sites: elaborator.sites, slots: Vec::new(), declared, soft_shadows };
     ((!failed).then_some(elaborated), elaborator.diagnostics, elaborator.offer)
 }
 
@@ -179,6 +183,8 @@ struct Elaborator<'p> {
     /// Made when the first bounds are asked for.
     bounds: Option<Bounds>,
     sites: Vec<Site>,
+    /// Where the scene asks for soft shadows.
+    soft_shadows: Vec<Span>,
     seen_sites: FxHashSet<(ShapeId, Span)>,
     /// Calls from the outermost inwards.
     frames: Vec<Frame<'p>>,
@@ -215,6 +221,7 @@ impl<'p> Elaborator<'p> {
             closures: FxHashMap::default(),
             bounds: None,
             sites: Vec::new(),
+            soft_shadows: Vec::new(),
             seen_sites: FxHashSet::default(),
             frames: Vec::new(),
             active: vec![0; program.functions.len()],
