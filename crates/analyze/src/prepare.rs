@@ -1,6 +1,6 @@
 //! The passes, in order, from a scene to a flat program.
 
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
     Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, ShapeId,
     fold_transforms, gradient, uniforms,
@@ -10,6 +10,7 @@ use crate::clip::clip;
 use crate::closed::{Parts, parts, rest};
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
+use crate::lipschitz::Reason;
 use crate::quality::{Qualities, Sides, shapes_below};
 use crate::sound::{Uncertified, sound_field};
 use crate::spans::first;
@@ -74,6 +75,8 @@ pub struct ShapeReport {
     pub lipschitz: Lipschitz,
     /// Whether the distance was divided by it.
     pub divided: bool,
+    /// The operation at which the field, or one that it samples, may jump; `None` where it has a constant, or nothing jumps.
+    pub jump: Option<&'static str>,
 }
 
 /// A Lipschitz constant as people want to read it.
@@ -222,14 +225,23 @@ fn shape_reports(
 ) -> Vec<ShapeReport> {
     let divided: FxHashSet<ShapeId> = divided.iter().copied().collect();
     let mut shapes = Vec::new();
+    let mut jumps: FxHashMap<ShapeId, &'static str> = FxHashMap::default();
     for shape in shapes_below(graph, root) {
         let Some(quality) = qualities.get(shape) else { continue };
+        let jump = match &quality.lipschitz {
+            Ok(_) => None,
+            Err(Reason::Jump(what)) => Some(*what),
+            Err(_) => {
+                graph.shape(shape).children.iter().find_map(|child| jumps.get(child).copied())
+            }
+        };
+        jumps.extend(jump.map(|what| (shape, what)));
         let lipschitz = match &quality.lipschitz {
             Ok(node) => graph.as_number(*node).map_or(Lipschitz::PerFrame, Lipschitz::Number),
             Err(reason) => Lipschitz::Unknown(reason.to_string()),
         };
         let divided = divided.contains(&shape);
-        shapes.push(ShapeReport { shape, sides: quality.sides, lipschitz, divided });
+        shapes.push(ShapeReport { shape, sides: quality.sides, lipschitz, divided, jump });
     }
     shapes
 }

@@ -90,6 +90,15 @@ pub struct Bounds {
     pub max: [Option<f64>; 3],
 }
 
+impl Bounds {
+    /// Of two corners.
+    pub(crate) fn of(corners: [[f64; 3]; 2]) -> Self {
+        let [min, max] =
+            corners.map(|corner| corner.map(|value| value.is_finite().then_some(value)));
+        Self { min, max }
+    }
+}
+
 /// A param or other per-frame input.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Knob {
@@ -116,7 +125,14 @@ pub struct QualityRow {
     pub inside: String,
     /// Its Lipschitz constant; null where it follows a param or is not known.
     pub lipschitz: Option<f64>,
-    /// Whether it has one.
+    /// The operation at which its field may jump; null where it has a constant.
+    pub jump: Option<&'static str>,
+    /// How far an operator may carry the surface: where all distances that it joins exceed this, nothing of it is. Null for a shape
+    /// that joins none, and where it is not known.
+    pub blend_margin: Option<f64>,
+    /// Where it lies about its own origin, at the params' defaults.
+    pub bounds: Bounds,
+    /// Whether it has a constant or is a bound without one.
     pub certified: bool,
     /// Why it is not certified, or what is done about a constant above 1.
     pub why: Option<String>,
@@ -151,27 +167,40 @@ impl std::fmt::Display for Explanation {
             writeln!(f, "knob                {}: per {}{unused}", knob.name, knob.stage)?;
         }
         if !self.quality.is_empty() {
-            writeln!(f, "\n  line  shape             outside  inside   lipschitz")?;
+            writeln!(
+                f,
+                "\n  line  shape             outside  inside   lipschitz  jump   blend    bounds"
+            )?;
         }
         for row in &self.quality {
             let constant = row.lipschitz.map_or_else(
                 || if row.certified { "per frame".to_owned() } else { "unknown".to_owned() },
-                |value| {
-                    format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
-                },
+                short,
             );
             write!(
                 f,
-                "{:>6}  {:<16}  {:<7}  {:<7}  {constant}",
-                row.line, row.name, row.outside, row.inside
+                "{:>6}  {:<16}  {:<7}  {:<7}  {constant:<9}  {:<5}  {:<7}  {}",
+                row.line,
+                row.name,
+                row.outside,
+                row.inside,
+                row.jump.unwrap_or("-"),
+                row.blend_margin.map_or_else(|| "-".to_owned(), short),
+                row.bounds
             )?;
             match &row.why {
-                Some(why) => writeln!(f, "  ({why})")?,
+                Some(why) if row.certified => writeln!(f, "  ({why})")?,
+                Some(why) => writeln!(f, "  (uncertified: {why})")?,
                 None => writeln!(f)?,
             }
         }
         Ok(())
     }
+}
+
+/// A number with up to four digits behind the point.
+fn short(value: f64) -> String {
+    format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Names, each once with how often it stands there.

@@ -41,6 +41,7 @@ mod marched;
 mod origin;
 mod params;
 mod picture;
+mod quality;
 mod reflection;
 mod sampler;
 mod scene;

@@ -366,6 +366,25 @@ mod tests {
     }
 
     #[test]
+    fn parts_tell_of_jumps_blends_and_bounds() {
+        let text = "solid stairs() = p.y - 0.2 * floor(p.x)\n\
+                    union(sphere(0.5), box(1), blend: smooth(0.4))\n\
+                    sphere(1).round(0.1) - circle(0.2).extrude(3)\nstairs()";
+        let found = reflection(text, Target::Wgsl);
+        let parts = found["certificate"]["parts"].as_array().unwrap();
+        let part = |name: &str| parts.iter().find(|part| part["name"] == name).unwrap();
+        let margin = |name| part(name)["blend_margin"].as_f64().unwrap();
+        assert!((margin("union") - 0.1).abs() < 1e-3, "{}", margin("union"));
+        assert!((margin("round") - 0.1).abs() < 1e-3);
+        assert!(margin("difference") < 1e-6, "a hard operator carries nothing");
+        assert!(part("sphere")["blend_margin"].is_null());
+        assert_eq!(part("stairs")["jump"], "floor");
+        assert!(part("union")["jump"].is_null());
+        assert_eq!(part("circle")["bounds"]["max"], serde_json::json!([0.2, 0.2, null]));
+        assert_eq!(part("sphere")["bounds"]["max"], serde_json::json!([0.5, 0.5, 0.5]));
+    }
+
+    #[test]
     fn without_a_constant_nothing_is_certified() {
         let found = reflection("solid s() = p.x * p.x + p.y * p.y - 1\ns()", Target::Glsl);
         let certificate = &found["certificate"];

@@ -1,12 +1,11 @@
 //! A compiled scene's field on the CPU, as a shader, and explained.
 
-use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
 
-use crate::explain::{Bounds, Explanation, Knob, QualityRow, feature_names};
+use crate::explain::{Bounds, Explanation, Knob, feature_names};
 use crate::marched::with_stretches;
 use crate::{Error, Scene};
 
@@ -117,11 +116,7 @@ impl Scene {
 
     pub(crate) fn finite_bounds(&self) -> Bounds {
         let frame = FrameValues::defaults(self.params());
-        let finite = |corner: [f64; 3]| corner.map(|value| value.is_finite().then_some(value));
-        match self.bounds_at(&frame) {
-            Some([lo, hi]) => Bounds { min: finite(lo), max: finite(hi) },
-            None => Bounds::default(),
-        }
+        self.bounds_at(&frame).map(Bounds::of).unwrap_or_default()
     }
 
     fn knobs(&self) -> Vec<Knob> {
@@ -156,47 +151,5 @@ impl Scene {
         roots.extend(program.material.into_iter().flatten());
         roots.extend(program.settings.nodes());
         roots
-    }
-
-    /// One row for each call in the scene's own files whose shape is drawn.
-    pub(crate) fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
-        let mut rows: Vec<QualityRow> = Vec::new();
-        for site in self.sites() {
-            let Some(shape) = self.report.shapes.iter().find(|s| s.shape == site.shape) else {
-                continue;
-            };
-            let place = sources.line_column(site.span.file, site.span.start);
-            rows.push(self.quality_row(shape, &site.name, place.line, place.column));
-        }
-        rows.sort_by_key(|row| (row.line, row.column));
-        rows
-    }
-
-    fn quality_row(&self, shape: &ShapeReport, name: &str, line: u32, column: u32) -> QualityRow {
-        let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
-        let lipschitz = match shape.lipschitz {
-            Lipschitz::Number(value) => Some(value),
-            Lipschitz::PerFrame | Lipschitz::Unknown(_) => None,
-        };
-        let why = match (&shape.lipschitz, uncertified) {
-            (_, Some(found)) => Some(found.reason.to_string()),
-            (Lipschitz::Unknown(_), None) if shape.sides.is_bound() => {
-                Some("a bound, which needs no constant".to_owned())
-            }
-            (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
-            (_, None) if shape.divided => Some("divided by its constant".to_owned()),
-            (_, None) => None,
-        };
-        QualityRow {
-            name: name.to_owned(),
-            line,
-            column,
-            outside: shape.sides.outside.to_string(),
-            inside: shape.sides.inside.to_string(),
-            lipschitz,
-            certified: uncertified.is_none()
-                && (shape.sides.is_bound() || !matches!(shape.lipschitz, Lipschitz::Unknown(_))),
-            why,
-        }
     }
 }

@@ -5,7 +5,7 @@ use super::level_set::Question;
 use super::search::{Region, Search};
 use super::zone::Zone;
 use crate::eval::{Interval, Tape};
-use crate::{Node, NodeId, ShapeId, Type, reachable_where};
+use crate::{Node, NodeId, Shape, ShapeId, Type, reachable_where};
 
 /// An operator of more samples is not asked about each of them.
 const MOST_SINGLE: usize = 4;
@@ -26,19 +26,37 @@ struct Operator {
 impl Deriver<'_> {
     /// The zone of a formula that no rule fits.
     pub(super) fn opaque(&mut self, question: Question) -> Zone {
-        let graph = &*self.graph;
-        let is_sample = |id: NodeId| matches!(graph.node(id), Node::Sample(..));
-        let order = reachable_where(graph, &[question.node], |id| !is_sample(id));
-        let samples: Vec<NodeId> = order.iter().copied().filter(|&id| is_sample(id)).collect();
+        let samples = self.samples(question.node);
         if samples.is_empty() {
             return self.searched(question);
         }
+        match self.operator(question, samples) {
+            Some(operator) => self.by_samples(&operator).loose(),
+            None => Zone::everywhere(self.graph).loose(),
+        }
+    }
+
+    /// The distance which all that a shape samples must exceed for the shape to be positive.
+    pub(super) fn reach(&mut self, shape: ShapeId) -> Option<f64> {
+        let limit = self.graph.number(0.0);
+        let Shape { formula: node, level, dim, .. } = *self.graph.shape(shape);
+        let question = Question { node, limit, level, dim, above: false };
+        let samples = Some(self.samples(node)).filter(|samples| !samples.is_empty())?;
+        self.threshold(&self.operator(question, samples)?, |_| true)
+    }
+
+    fn samples(&self, formula: NodeId) -> Vec<NodeId> {
+        let graph = &*self.graph;
+        let is_sample = |id: NodeId| matches!(graph.node(id), Node::Sample(..));
+        let order = reachable_where(graph, &[formula], |id| !is_sample(id));
+        order.into_iter().filter(|&id| is_sample(id)).collect()
+    }
+
+    fn operator(&self, question: Question, samples: Vec<NodeId>) -> Option<Operator> {
         let limit = self.range(question.limit);
         let first = self.ranges.params.len() as u32;
-        let Ok(tape) = Tape::of_operator(self.graph, question.node, &samples, first) else {
-            return Zone::everywhere(self.graph).loose();
-        };
-        self.by_samples(&Operator { tape, samples, question, limit }).loose()
+        let tape = Tape::of_operator(self.graph, question.node, &samples, first).ok()?;
+        Some(Operator { tape, samples, question, limit })
     }
 
     /// If the formula exceeds the limit wherever some of its samples exceed a threshold, the zone lies

@@ -1,0 +1,81 @@
+//! What is known of each shape of a scene, at the call that made it.
+
+use sdfc_analyze::{Lipschitz, ShapeReport};
+use sdfc_diagnostics::Sources;
+use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::{Dim, NodeId};
+use sdfc_lang::Site;
+
+use crate::Scene;
+use crate::explain::{Bounds, QualityRow};
+
+impl Scene {
+    /// One row for each call in the scene's own files whose shape is drawn.
+    pub(crate) fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
+        let report = |site: &Site| self.report.shapes.iter().find(|s| s.shape == site.shape);
+        let sites: Vec<(&Site, &ShapeReport)> =
+            self.sites().iter().filter_map(|site| Some((site, report(site)?))).collect();
+
+        let mut graph = self.graph().graph.clone();
+        let mut derived = sdfc_graph::Bounds::new(self.params());
+        let mut corners: Vec<NodeId> = Vec::new();
+        let mut reaches = Vec::new();
+        for (site, _) in &sites {
+            corners.extend(derived.of(&mut graph, site.shape));
+            reaches.push(derived.reach(&mut graph, site.shape));
+        }
+        let corners = evaluate_frame(&graph, &corners, &FrameValues::defaults(self.params()));
+        let (corners, _) = corners.as_chunks::<2>();
+
+        let rows = sites.iter().zip(corners).zip(reaches);
+        let mut rows: Vec<QualityRow> = rows
+            .map(|(((site, shape), corners), reach)| {
+                let place = sources.line_column(site.span.file, site.span.start);
+                // A region has no third coordinate.
+                let far = if graph.shape(site.shape).dim == Dim::Two { f64::INFINITY } else { 0.0 };
+                let corner = |[x, y, z, _]: [f64; 4]| [x, y, z + far];
+                QualityRow {
+                    line: place.line,
+                    column: place.column,
+                    bounds: Bounds::of(corners.map(corner)),
+                    blend_margin: reach,
+                    ..self.quality_row(shape, &site.name)
+                }
+            })
+            .collect();
+        rows.sort_by_key(|row| (row.line, row.column));
+        rows
+    }
+
+    /// What the analysis found, wherever the call stands.
+    fn quality_row(&self, shape: &ShapeReport, name: &str) -> QualityRow {
+        let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
+        let lipschitz = match shape.lipschitz {
+            Lipschitz::Number(value) => Some(value),
+            Lipschitz::PerFrame | Lipschitz::Unknown(_) => None,
+        };
+        let why = match (&shape.lipschitz, uncertified) {
+            (_, Some(found)) => Some(found.reason.to_string()),
+            (Lipschitz::Unknown(_), None) if shape.sides.is_bound() => {
+                Some("a bound, which needs no constant".to_owned())
+            }
+            (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
+            (_, None) if shape.divided => Some("divided by its constant".to_owned()),
+            (_, None) => None,
+        };
+        QualityRow {
+            name: name.to_owned(),
+            line: 0,
+            column: 0,
+            outside: shape.sides.outside.to_string(),
+            inside: shape.sides.inside.to_string(),
+            lipschitz,
+            jump: shape.jump,
+            blend_margin: None,
+            bounds: Bounds::default(),
+            certified: uncertified.is_none()
+                && (shape.sides.is_bound() || !matches!(shape.lipschitz, Lipschitz::Unknown(_))),
+            why,
+        }
+    }
+}
