@@ -11,8 +11,10 @@
 //! # Ok::<(), sdfc_files::ReadError>(())
 //! ```
 
+mod format;
 mod write;
 
+pub use format::Format;
 pub use write::{check_writable, write};
 
 use std::io::{ErrorKind, Read};

@@ -7,7 +7,7 @@ use sdfc_codegen::render_module;
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
-    AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline,
+    AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline, Pose,
     Progress, RenderError, RenderOptions, Stats, View, Why, milliseconds_since, sample_places,
     uniform_values,
 };
@@ -35,6 +35,10 @@ pub struct PictureOptions {
     pub method: Option<String>,
     /// Where.
     pub backend: Backend,
+    /// From where; `None` takes the scene's camera, or one that sees all of it.
+    pub pose: Option<Pose>,
+    /// The knob of the method, for most its tolerance, as a multiple of the scene's.
+    pub tolerance: f64,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
     /// Rays from the eye for each pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes
@@ -47,8 +51,16 @@ pub struct PictureOptions {
 impl Default for PictureOptions {
     /// 640 by 360, everything else left to the scene and the machine.
     fn default() -> Self {
-        let (size, backend) = ([640, 360], Backend::Auto);
-        Self { size, method: None, backend, frame: None, samples: None, repetitions: 1 }
+        Self {
+            size: [640, 360],
+            method: None,
+            backend: Backend::Auto,
+            pose: None,
+            tolerance: 1.0,
+            frame: None,
+            samples: None,
+            repetitions: 1,
+        }
     }
 }
 
@@ -122,7 +134,7 @@ impl Scene {
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
-        let size = options.size;
+        let PictureOptions { size, pose, tolerance, .. } = *options;
         Ok(Painter {
             scene: self,
             program,
@@ -130,6 +142,8 @@ impl Scene {
             method,
             why,
             size,
+            pose,
+            tolerance,
             samples,
             compile,
             note,
@@ -185,6 +199,8 @@ pub struct Painter<'s> {
     /// Why this method, where it is not for a certified field.
     why: Option<String>,
     size: [u32; 2],
+    pose: Option<Pose>,
+    tolerance: f64,
     /// Where in a pixel its rays pass.
     samples: Vec<[f64; 2]>,
     compile: CompileTimes,
@@ -207,7 +223,7 @@ impl Painter<'_> {
         progress: &mut OnProgress<'_>,
     ) -> Result<Picture, Error> {
         let scene = self.scene;
-        let view = View::new(scene.drawn(), values, scene.bounds_at(values), self.size)?;
+        let view = self.view(values)?;
         let repetitions = repetitions.max(1);
         let (frame, spent) =
             repeated(repetitions, || self.averaged(&view, values, &mut *progress))?;
@@ -219,6 +235,16 @@ impl Painter<'_> {
         let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
         Ok(Picture { image: frame.image, stats, note: self.note.clone() })
+    }
+
+    fn view(&self, values: &FrameValues) -> Result<View, Error> {
+        let (program, bounds) = (self.scene.drawn(), self.scene.bounds_at(values));
+        let view = match &self.pose {
+            Some(pose) => View::from_pose(program, values, bounds, self.size, pose)?,
+            None => View::new(program, values, bounds, self.size)?,
+        };
+        let knob = sdfc_march::method(&self.method).and_then(|method| method.knob);
+        Ok(view.with_part(knob, self.tolerance))
     }
 
     fn adapter(&self) -> Option<&AdapterInfo> {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc::lang::slots::Slot;
+use sdfc::march::{Knob, method};
 use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
 
@@ -76,6 +77,11 @@ impl Model {
     /// The program that the engine was made from.
     pub fn marched(&self) -> &Program {
         self.enclosed.as_ref().unwrap_or(self.scene.drawn())
+    }
+
+    /// What the method can be made finer or coarser by.
+    pub fn knob(&self) -> Option<Knob> {
+        method(&self.method).and_then(|method| method.knob)
     }
 
     /// The values of a frame in which nothing has been changed.

@@ -31,6 +31,23 @@ pub struct Orbit {
     perspective: f64,
 }
 
+/// A camera as numbers, to be kept in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Kept {
+    /// Where it stands.
+    pub eye: [f64; 3],
+    /// What is in the middle of the picture.
+    pub target: [f64; 3],
+    /// Upward direction.
+    pub up: [f64; 3],
+    /// What it turns about.
+    pub pivot: [f64; 3],
+    /// Whether rays are parallel.
+    pub parallel: bool,
+    /// Half the height of the picture, at distance 1 unless rays are parallel.
+    pub half_height: f64,
+}
+
 /// A direction to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -57,6 +74,29 @@ impl Orbit {
         let (eye, pivot, parallel, half_height) =
             (pose.eye, pose.target, pose.parallel, pose.half_height);
         Self { eye, forward, up, pivot, parallel, half_height, perspective }
+    }
+
+    /// As numbers.
+    pub fn kept(&self) -> Kept {
+        let Pose { eye, target, up, parallel, half_height } = self.pose();
+        let [eye, target, up, pivot] = [eye, target, up, self.pivot].map(|it| it.to_array());
+        Kept { eye, target, up, pivot, parallel, half_height }
+    }
+
+    /// From numbers, unless they make no camera.
+    pub fn of_kept(kept: &Kept) -> Option<Self> {
+        let [eye, target, up, pivot] =
+            [kept.eye, kept.target, kept.up, kept.pivot].map(DVec3::from);
+        let (parallel, half_height) = (kept.parallel, kept.half_height);
+        let finite = [eye, target, up, pivot].into_iter().all(DVec3::is_finite);
+        let level = (target - eye).cross(up).length_squared() > 0.0;
+        let sized = half_height > 0.0 && half_height.is_finite();
+        if !(finite && level && sized) {
+            return None;
+        }
+        let mut orbit = Self::new(&Pose { eye, target, up, parallel, half_height });
+        orbit.set_pivot(pivot);
+        Some(orbit)
     }
 
     /// Where it stands and how it looks.
@@ -419,5 +459,21 @@ mod tests {
             assert_eq!(pose.parallel, own.parallel);
             assert!((pose.half_height / own.half_height - 1.0).abs() < 1e-3, "{text}");
         }
+    }
+
+    #[test]
+    fn a_kept_camera_is_the_same_and_nonsense_is_none() {
+        let pose = Pose::fitted(Some([[-1.0; 3], [1.0; 3]]), 1.5);
+        let mut orbit = Orbit::new(&pose);
+        orbit.turn(0.3, 0.1);
+        orbit.pan(0.2, 0.1);
+        let again = Orbit::of_kept(&orbit.kept()).unwrap();
+        assert!((again.pose().eye - orbit.pose().eye).length() < 1e-12);
+        assert!((again.pivot() - orbit.pivot()).length() < 1e-9);
+        assert!((again.forward - orbit.forward).length() < 1e-9);
+        for spoilt in [f64::NAN, 0.0, -1.0] {
+            assert_eq!(Orbit::of_kept(&Kept { half_height: spoilt, ..orbit.kept() }), None);
+        }
+        assert_eq!(Orbit::of_kept(&Kept { half_height: 1.0, ..Kept::default() }), None);
     }
 }

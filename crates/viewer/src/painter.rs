@@ -56,6 +56,8 @@ pub struct Request {
     pub refine: bool,
     /// Rays for each pixel when all else is done.
     pub samples: u32,
+    /// The knob of the method, as a multiple of the scene's.
+    pub tolerance: f64,
 }
 
 impl Request {
@@ -73,6 +75,7 @@ impl Request {
             && self.size == other.size
             && self.pose == other.pose
             && self.frame == other.frame
+            && self.tolerance == other.tolerance
     }
 }
 
@@ -258,7 +261,8 @@ impl<T: FnMut(Painted)> Studio<T> {
         let program = model.scene.drawn();
         let bounds = model.scene.bounds_at(values);
         let view = View::from_pose(program, values, bounds, size, &request.pose)
-            .map_err(|error| Stop::Error(error.into()))?;
+            .map_err(|error| Stop::Error(error.into()))?
+            .with_part(model.knob(), request.tolerance);
         let frame = self.frame(request, &view, gives_way)?;
         let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
         let request = Arc::clone(request);

@@ -1,5 +1,6 @@
 //! All that the window does, without the window: files in, pictures and findings out.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,7 +15,7 @@ use crate::document;
 use crate::findings::{Finding, Findings};
 use crate::knobs::Knobs;
 use crate::model::Model;
-use crate::orbit::Orbit;
+use crate::orbit::{Kept, Orbit};
 use crate::painter::{Painted, Painter, Picture, Request};
 use crate::views::{Mode, Slice};
 use crate::watch::Watch;
@@ -22,6 +23,9 @@ use crate::worker::{Build, News, Worker};
 
 /// How often in a row devices are opened anew, without a picture between, before the processor takes over.
 const MOST_RENEWALS: u32 = 3;
+
+/// Frames of an animation.
+const MOST_FRAMES: f64 = 20_000.0;
 
 /// What a look at a pixel tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +74,8 @@ pub struct Session {
     pub slice: Slice,
     /// Rays for each pixel when all rests.
     pub samples: Option<u32>,
+    /// The knob of the method, such as its tolerance, as a multiple of the scene's.
+    pub tolerance: f64,
     /// Whether fine pictures are drawn however long they take.
     pub refine: bool,
     /// The last good scene.
@@ -130,6 +136,7 @@ impl Session {
             mode: Mode::default(),
             slice: Slice::default(),
             samples: None,
+            tolerance: 1.0,
             refine: true,
             model: None,
             findings: Findings::default(),
@@ -174,9 +181,41 @@ impl Session {
         (self.orbit, self.model, self.picture, self.asked) = (None, None, None, None);
         (self.knobs, self.clock) = (Knobs::default(), Clock::default());
         (self.findings, self.trouble, self.no_picture) = (Findings::default(), None, None);
-        self.follows = true;
+        (self.follows, self.tolerance) = (true, 1.0);
         self.watch_own_folder();
         self.order();
+    }
+
+    /// Puts camera and params where they were left.
+    pub fn recall(&mut self, camera: Option<&Kept>, params: &BTreeMap<String, [f64; 4]>) {
+        if let Some(orbit) = camera.and_then(Orbit::of_kept) {
+            (self.orbit, self.follows) = (Some(orbit), false);
+        }
+        self.knobs.params = params.clone();
+    }
+
+    /// The camera where it has been moved.
+    pub fn moved_camera(&self) -> Option<Kept> {
+        self.orbit.filter(|_| !self.follows).map(|orbit| orbit.kept())
+    }
+
+    /// Where it stands and how it looks, where it has been moved.
+    pub fn moved_pose(&self) -> Option<Pose> {
+        self.orbit.filter(|_| !self.follows).map(|orbit| orbit.pose())
+    }
+
+    /// The values of frames from time 0 on, each of which lasts so many hundredths of a second.
+    pub fn frames(&self, model: &Model, seconds: f64, hundredths: u32) -> Vec<FrameValues> {
+        let length = f64::from(hundredths) / 100.0;
+        let count = (seconds / length).round().clamp(1.0, MOST_FRAMES) as u32;
+        let time = |number: u32| Clock { time: f64::from(number) * length, ..self.clock };
+        let times = (0..count).map(time);
+        times.map(|clock| self.knobs.frame(model, clock.time, clock.frame())).collect()
+    }
+
+    /// Where files are written.
+    pub fn clerk(&self) -> &Clerk {
+        &self.clerk
     }
 
     /// Takes in what the threads have to tell. Gives whether anything changed.
@@ -219,13 +258,19 @@ impl Session {
             slice: self.slice,
             moving,
             refine: self.refine,
-            samples: self.samples.or(model.scene.program().settings.samples).unwrap_or(4),
+            samples: self.samples(model),
+            tolerance: self.tolerance,
         };
         if self.asked.as_ref().is_some_and(|asked| asked.is(&request)) {
             return;
         }
         self.asked = Some(request.clone());
         self.painter.ask(request);
+    }
+
+    /// Rays for each pixel when all rests.
+    pub fn samples(&self, model: &Model) -> u32 {
+        self.samples.or(model.scene.program().settings.samples).unwrap_or(4)
     }
 
     /// The values of the frame as it stands.
@@ -355,11 +400,12 @@ impl Session {
         if !same_text {
             self.knobs.forget_literals();
         }
+        let edits = self.model.is_some();
         let before = self.stated_camera();
         self.model = Some(model);
         let after = self.stated_camera();
         // Whoever edits the camera wants to see it.
-        self.follows |= after.is_some() && before != after;
+        self.follows |= edits && after.is_some() && before != after;
         if self.orbit.is_none() {
             self.orbit = Some(Orbit::new(&Pose::fitted(None, 1.0)));
         }

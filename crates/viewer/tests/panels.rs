@@ -25,7 +25,8 @@ impl Fixture {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.sdf");
         std::fs::write(&path, SCENE).unwrap();
-        let mut app = App::new(&Context::default(), &path).unwrap();
+        let place = Some(folder.path().join("view.json"));
+        let mut app = App::new(&Context::default(), &path, place).unwrap();
         app.session().set_build(|build| build.on_cpu = true);
         let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
         let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
@@ -109,4 +110,52 @@ fn moved_numbers_are_written_into_the_file() {
     let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
+}
+
+#[test]
+fn a_picture_and_a_shader_are_saved_beside_the_scene() {
+    let mut fixture = Fixture::new();
+    let place = |name: &str| fixture.folder.path().join(name);
+    let (picture, shader) = (place("scene.png"), place("scene.wgsl"));
+    fixture.click("Save");
+    fixture.click("square");
+    fixture.harness.get_all_by_label("1").last().unwrap().click();
+    fixture.harness.run_steps(3);
+    fixture.harness.get_all_by_label("Save").last().unwrap().click();
+    fixture.until(|_| picture.exists());
+    assert_eq!(image::open(&picture).unwrap().width(), 2048);
+    fixture.click("Shader");
+    fixture.harness.get_all_by_label("Save").last().unwrap().click();
+    fixture.until(|_| shader.exists());
+    assert!(std::fs::read_to_string(&shader).unwrap().contains("fn sdf_distance"));
+}
+
+#[test]
+fn a_scene_is_opened_as_it_was_left() {
+    let mut fixture = Fixture::new();
+    fixture.click("Top");
+    let session = fixture.harness.state_mut().session();
+    session.knobs.params.insert("wall".to_owned(), [0.4, 0.0, 0.0, 0.0]);
+    let left = session.moved_camera().unwrap();
+    let context = fixture.harness.ctx.clone();
+    fixture.harness.state_mut().remember(&context);
+    let folder = fixture.folder.path();
+    let place = Some(folder.join("view.json"));
+    let mut again = App::new(&Context::default(), &folder.join("scene.sdf"), place.clone()).unwrap();
+    let session = again.session();
+    session.set_build(|build| build.on_cpu = true);
+    let start = Instant::now();
+    while session.model.is_none() {
+        assert!(start.elapsed() < PATIENCE);
+        std::thread::sleep(Duration::from_millis(5));
+        session.poll();
+        session.ask([30, 20], false);
+    }
+    session.ask([30, 20], false);
+    assert_eq!((session.moved_camera(), session.knobs.params["wall"][0]), (Some(left), 0.4));
+    // Another scene knows nothing of it.
+    let other = folder.join("other.sdf");
+    std::fs::write(&other, SCENE).unwrap();
+    let mut other = App::new(&Context::default(), &other, place).unwrap();
+    assert_eq!(other.session().moved_camera(), None);
 }

@@ -205,6 +205,10 @@ impl<'a> Window<'a> {
             .arg(scene)
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
+            .envs(
+                ["XDG_CONFIG_HOME", "XDG_DATA_HOME"]
+                    .map(|name| (name, scene.with_file_name("own"))),
+            )
             .stderr(Stdio::null())
             .spawn()?;
         let window = Self { viewer, display };

@@ -1,7 +1,5 @@
 //! `sdfc render`: pictures of a scene.
 
-mod format;
-
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +13,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::sequence::{self, Frames};
-use format::Format;
+use sdfc_files::Format;
 
 /// How often a frame is drawn for its figures.
 const TIMED_FRAMES: u32 = 5;
@@ -57,7 +55,7 @@ struct Outputs {
 impl Outputs {
     fn new(args: &Render) -> Result<Self, Failure> {
         let path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
-        let format = Format::of(&path)?;
+        let format = Format::of(&path).map_err(Failure::Call)?;
         let paths: Vec<&Path> =
             [Some(path.as_path()), args.depth.as_deref(), args.stats.as_deref()]
                 .into_iter()

@@ -225,6 +225,14 @@ impl View {
         view
     }
 
+    /// The view with a knob, where there is one, at a part or a multiple of its value.
+    pub fn with_part(&self, knob: Option<Knob>, part: f64) -> Self {
+        match knob {
+            Some(knob) => self.with_knob(knob, part * self.knob(knob)),
+            None => self.clone(),
+        }
+    }
+
     /// The view whose rays pass so many pixels to the right of the centres of pixels and below them.
     pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
         let [columns, rows] = self.size.map(|side| f64::from(side.max(1)));

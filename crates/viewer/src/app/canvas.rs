@@ -35,7 +35,7 @@ impl Canvas {
     /// Shows the picture in all of the space, takes input, and asks for the next.
     pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        ui.painter().rect_filled(rect, 0.0, style::GROUND);
+        ui.painter().rect_filled(rect, 0.0, style::of(ui).ground);
         self.refresh(ui, session);
         if let Some(texture) = &self.texture {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -101,7 +101,7 @@ fn waiting(ui: &Ui, rect: Rect, session: &Session) {
         (None, None, false) => "reading the scene…".to_owned(),
     };
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, style::WEAK);
+    ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, style::of(ui).weak);
 }
 
 /// Moves the camera. Gives whether it flies.
@@ -176,13 +176,13 @@ fn hover(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
     let Some(look) = response.hover_pos().and_then(|at| session.look(part(rect, at))) else {
         return;
     };
-    let lines = lines(&look);
+    let lines = lines(ui, &look);
     let area =
         egui::Area::new(ui.scope_id().with("hover")).order(egui::Order::Middle).interactable(false);
     let area =
         area.pivot(egui::Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(10.0, -10.0));
     area.show(ui.ctx(), |ui| {
-        card().show(ui, |ui| {
+        card(ui).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             for (line, color) in lines {
                 let text = RichText::new(line).monospace().size(11.5).color(color);
@@ -192,30 +192,30 @@ fn hover(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
     });
 }
 
-fn lines(look: &Look) -> Vec<(String, Color32)> {
+fn lines(ui: &Ui, look: &Look) -> Vec<(String, Color32)> {
     let point = |v: DVec3| format!("{:>9.4} {:>9.4} {:>9.4}", v.x, v.y, v.z);
     let mut lines = Vec::new();
     match look.status {
         HIT => {
-            lines.push((format!("point  {}", point(look.point)), style::TEXT));
+            lines.push((format!("point  {}", point(look.point)), style::of(ui).text));
             if let Some(normal) = look.normal {
-                lines.push((format!("normal {}", point(normal)), style::TEXT));
+                lines.push((format!("normal {}", point(normal)), style::of(ui).text));
             }
         }
-        CAPPED => lines.push(("the ray ran out of steps".to_owned(), style::WARNING)),
-        _ => lines.push(("the ray meets nothing".to_owned(), style::WEAK)),
+        CAPPED => lines.push(("the ray ran out of steps".to_owned(), style::of(ui).warning)),
+        _ => lines.push(("the ray meets nothing".to_owned(), style::of(ui).weak)),
     }
     let distance = look.distance.map_or(String::new(), |d| format!("   field {d:.2e}"));
     let text = format!("ray {:.4}{distance}   {} evaluations", look.depth, look.evaluations);
-    lines.push((text, style::WEAK));
+    lines.push((text, style::of(ui).weak));
     lines
 }
 
 /// A translucent card over the picture.
-pub fn card() -> egui::Frame {
+pub fn card(ui: &Ui) -> egui::Frame {
     egui::Frame::new()
-        .fill(Color32::from_rgba_unmultiplied(18, 20, 24, 225))
-        .stroke(egui::Stroke::new(1.0, style::LINE))
+        .fill(style::of(ui).card)
+        .stroke(egui::Stroke::new(1.0, style::of(ui).line))
         .corner_radius(6)
         .inner_margin(egui::Margin::symmetric(10, 7))
 }
@@ -231,10 +231,10 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
     let area =
         area.pivot(egui::Align2::RIGHT_BOTTOM).fixed_pos(rect.right_bottom() + vec2(-10.0, -10.0));
     area.show(ui.ctx(), |ui| {
-        card().show(ui, |ui| match legend {
+        card(ui).show(ui, |ui| match legend {
             Legend::None => {}
             Legend::Scale { label, ends, ramp } => {
-                ui.label(RichText::new(*label).small().color(style::WEAK));
+                ui.label(RichText::new(*label).small().color(style::of(ui).weak));
                 let (bar, _) = ui.allocate_exact_size(vec2(220.0, 10.0), Sense::hover());
                 const STEPS: usize = 44;
                 for step in 0..STEPS {
@@ -254,7 +254,7 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
                     (row.right_top(), egui::Align2::RIGHT_TOP, high),
                 ];
                 for (at, align, text) in places {
-                    ui.painter().text(at, align, text, font.clone(), style::TEXT);
+                    ui.painter().text(at, align, text, font.clone(), style::of(ui).text);
                 }
             }
             Legend::Keys(keys) => {

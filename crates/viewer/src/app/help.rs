@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 17] = [
+const ROWS: [(&str, &str); 18] = [
     ("drag", "turn about the pivot"),
     ("right or middle drag", "move sideways"),
     ("wheel", "come nearer to what is under the pointer"),
@@ -29,6 +29,7 @@ const ROWS: [(&str, &str); 17] = [
     ("C", "copy the camera, to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),
+    ("Ctrl S", "save a picture, an animation, the shader, the window"),
     ("Tab, T", "panel of knobs, panel of the text"),
     ("Esc", "stop refining, and go on"),
     ("drop a file", "show that scene"),
@@ -42,7 +43,7 @@ pub fn show(ctx: &Context, open: &mut bool) {
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
             for (key, what) in ROWS {
-                ui.label(egui::RichText::new(key).monospace().color(style::ACCENT));
+                ui.label(egui::RichText::new(key).monospace().color(style::of(ui).accent));
                 ui.label(what);
                 ui.end_row();
             }

@@ -3,20 +3,24 @@
 mod canvas;
 mod editor;
 mod help;
+mod menu;
 mod overlay;
 mod panels;
+mod save;
 mod source;
 mod status;
 mod style;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Key, Ui};
 
+use crate::memory::{self, Memory};
 use crate::session::Session;
 use canvas::Canvas;
+use save::Save;
 
 /// So long a remark stays in the status line.
 const REMARK: Duration = Duration::from_secs(4);
@@ -27,10 +31,12 @@ const REMARK: Duration = Duration::from_secs(4);
 ///
 /// Why there is no window, in one line.
 pub fn run(path: &Path) -> Result<(), String> {
+    let place = memory::usual_place();
+    let remembered = place.as_deref().map(Memory::read).unwrap_or_default();
     let viewport = egui::ViewportBuilder::default()
         .with_title(title(path))
         .with_app_id("sdfc-view")
-        .with_inner_size([1200.0, 760.0])
+        .with_inner_size(remembered.window.unwrap_or([1200.0, 760.0]))
         .with_min_inner_size([480.0, 320.0]);
     let options = eframe::NativeOptions {
         viewport,
@@ -39,7 +45,7 @@ pub fn run(path: &Path) -> Result<(), String> {
     };
     let path = path.to_owned();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
-        let app = App::new(&creation.egui_ctx, &path)?;
+        let app = App::new(&creation.egui_ctx, &path, place)?;
         Ok(Box::new(app))
     });
     eframe::run_native("sdfc-view", options, create).map_err(|error| error.to_string())
@@ -57,7 +63,12 @@ pub struct App {
     clipboard: Option<arboard::Clipboard>,
     remark: Option<(String, Instant)>,
     shows: Shows,
+    save: Save,
+    memory: Memory,
+    /// Where that is kept.
+    place: Option<PathBuf>,
     last_frame: Instant,
+    context: Option<Context>,
 }
 
 /// What is open.
@@ -65,6 +76,7 @@ pub struct App {
 struct Shows {
     knobs: bool,
     source: bool,
+    save: bool,
     help: bool,
     warnings: bool,
 }
@@ -78,22 +90,29 @@ enum Wish {
 }
 
 impl App {
-    /// With a scene open.
+    /// With a scene open, as it was left if the file at `place` remembers it.
     ///
     /// # Errors
     ///
     /// As [`Session::open`].
-    pub fn new(ctx: &Context, path: &Path) -> std::io::Result<Self> {
+    pub fn new(ctx: &Context, path: &Path, place: Option<PathBuf>) -> std::io::Result<Self> {
         style::apply(ctx);
+        let memory = place.as_deref().map(Memory::read).unwrap_or_default();
+        style::set_light(ctx, memory.light);
         let woken = ctx.clone();
-        let session = Session::open(path, Arc::new(move || woken.request_repaint()))?;
+        let mut session = Session::open(path, Arc::new(move || woken.request_repaint()))?;
+        recall(&memory, &mut session);
         Ok(Self {
             session,
             canvas: Canvas::default(),
             clipboard: None,
             remark: None,
-            shows: Shows { knobs: true, source: false, help: false, warnings: false },
+            shows: Shows { knobs: true, source: false, save: false, help: false, warnings: false },
+            save: Save::default(),
+            memory,
+            place,
             last_frame: Instant::now(),
+            context: None,
         })
     }
 
@@ -115,10 +134,16 @@ impl App {
         let mut wishes: Vec<Wish> = self.session.remarks.drain(..).map(Wish::Remark).collect();
         self.pass_time(&ctx);
         self.keys(&ctx, &mut wishes);
-        let bar = egui::Panel::top("bar").frame(bar_frame());
-        bar.show(ui, |ui| panels::bar(ui, &mut self.session, &mut self.shows));
+        let bar = egui::Panel::top("bar").frame(bar_frame(ui));
+        let (session, shows, memory) = (&mut self.session, &mut self.shows, &mut self.memory);
+        let chosen = bar.show(ui, |ui| panels::bar(ui, session, shows, memory)).inner;
+        match chosen {
+            Some(menu::Choice::Open(path)) => self.open(&ctx, path),
+            Some(menu::Choice::Failed(why)) => wishes.push(Wish::Remark(why)),
+            None => {}
+        }
         let remark = self.remark.as_ref().map(|(text, _)| text.as_str());
-        let line = egui::Panel::bottom("status").frame(bar_frame());
+        let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status::show(ui, &mut self.session, remark));
         if self.shows.knobs {
             let panel = egui::Panel::right("knobs").default_size(280.0).min_size(220.0);
@@ -134,6 +159,9 @@ impl App {
             overlay::show(ui, &self.session, &mut self.shows.warnings, &mut wishes);
         });
         help::show(&ctx, &mut self.shows.help);
+        self.save.open = self.shows.save;
+        self.save.show(&ctx, &self.session);
+        self.shows.save = self.save.open;
         wishes.into_iter().for_each(|wish| self.grant(wish));
         if let Some((_, since)) = &self.remark {
             if since.elapsed() < REMARK {
@@ -157,9 +185,28 @@ impl App {
     fn take_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         if let Some(path) = dropped.first().map(|file| file.path()) {
-            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(path)));
-            self.session.open_other(path.to_owned());
+            self.open(ctx, path.to_owned());
         }
+    }
+
+    /// Shows another scene, and remembers this one.
+    fn open(&mut self, ctx: &Context, path: PathBuf) {
+        self.remember(ctx);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
+        self.session.open_other(path);
+        recall(&self.memory, &mut self.session);
+    }
+
+    /// Keeps what is to be there the next time. Another window may have kept something since this one was opened.
+    pub fn remember(&mut self, ctx: &Context) {
+        let Some(place) = self.place.clone() else { return };
+        let mut memory = Memory { light: self.memory.light, ..Memory::read(&place) };
+        let session = &self.session;
+        memory.note(session.path(), session.moved_camera(), session.knobs.params.clone());
+        let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));
+        memory.window = size.or(memory.window);
+        memory.write(&place);
+        self.memory = memory;
     }
 
     /// Keys that work wherever the pointer is, unless a text is being typed.
@@ -194,6 +241,9 @@ impl App {
         if pressed(Key::V) {
             session.mode = panels::next_mode(session.mode);
         }
+        if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
+            self.shows.save = !self.shows.save;
+        }
         if pressed(Key::Tab) {
             self.shows.knobs = !self.shows.knobs;
         }
@@ -204,8 +254,8 @@ impl App {
             self.shows.help = !self.shows.help;
         }
         if pressed(Key::Escape) {
-            if self.shows.help {
-                self.shows.help = false;
+            if self.shows.help || self.shows.save {
+                (self.shows.help, self.shows.save) = (false, false);
             } else {
                 session.refine = !session.refine;
             }
@@ -236,6 +286,20 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         self.show(ui);
+        self.context = Some(ui.ctx().clone());
+    }
+
+    fn on_exit(&mut self) {
+        if let Some(ctx) = self.context.take() {
+            self.remember(&ctx);
+        }
+    }
+}
+
+/// Puts a scene as it was left.
+fn recall(memory: &Memory, session: &mut Session) {
+    if let Some(scene) = memory.scene(session.path()) {
+        session.recall(scene.camera.as_ref(), &scene.params);
     }
 }
 
@@ -245,6 +309,6 @@ impl std::fmt::Debug for App {
     }
 }
 
-fn bar_frame() -> egui::Frame {
-    egui::Frame::new().fill(style::PANEL).inner_margin(egui::Margin::symmetric(10, 5))
+fn bar_frame(ui: &Ui) -> egui::Frame {
+    egui::Frame::new().fill(style::of(ui).panel).inner_margin(egui::Margin::symmetric(10, 5))
 }

@@ -34,8 +34,9 @@ pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, wishes: &mut Ve
         if others > 0 {
             let text =
                 if others == 1 { "1 warning".to_owned() } else { format!("{others} warnings") };
-            let button = egui::Button::new(RichText::new(text).small().color(style::WARNING))
-                .fill(Color32::from_rgba_unmultiplied(18, 20, 24, 225));
+            let button =
+                egui::Button::new(RichText::new(text).small().color(style::of(ui).warning))
+                    .fill(style::of(ui).card);
             if ui.add(button).on_hover_text("Show or hide the warnings.").clicked() {
                 *warnings = !*warnings;
             }
@@ -44,8 +45,8 @@ pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, wishes: &mut Ve
 }
 
 fn finding(ui: &mut Ui, session: &Session, found: &Finding, wishes: &mut Vec<Wish>) {
-    let color = if found.is_error { style::ERROR } else { style::WARNING };
-    card().stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6))).show(ui, |ui| {
+    let color = if found.is_error { style::of(ui).error } else { style::of(ui).warning };
+    card(ui).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6))).show(ui, |ui| {
         ui.set_width(ui.available_width());
         ui.spacing_mut().item_spacing.y = 4.0;
         let kind = if found.is_error { "error" } else { "warning" };
@@ -54,9 +55,9 @@ fn finding(ui: &mut Ui, session: &Session, found: &Finding, wishes: &mut Vec<Wis
             ui.label(RichText::new(&found.message).strong());
         });
         place(ui, session, found, wishes);
-        ui.label(source_line(found, color));
+        ui.label(source_line(ui, found, color));
         for help in &found.help {
-            ui.label(RichText::new(help).color(style::WEAK));
+            ui.label(RichText::new(help).color(style::of(ui).weak));
         }
     });
 }
@@ -80,16 +81,16 @@ fn place(ui: &mut Ui, session: &Session, found: &Finding, wishes: &mut Vec<Wish>
 }
 
 /// The line, with what is meant marked in it and the label behind it.
-fn source_line(found: &Finding, color: Color32) -> LayoutJob {
+fn source_line(ui: &Ui, found: &Finding, color: Color32) -> LayoutJob {
     let font = FontId::monospace(12.0);
-    let plain = TextFormat::simple(font.clone(), style::TEXT);
+    let plain = TextFormat::simple(font.clone(), style::of(ui).text);
     let mut marked = TextFormat::simple(font.clone(), color);
     marked.underline = egui::Stroke::new(1.5, color);
     let part = |range: std::ops::Range<usize>| -> String {
         found.line.chars().skip(range.start).take(range.len()).collect()
     };
     let mut job = LayoutJob::default();
-    let number = TextFormat::simple(font.clone(), style::WEAK);
+    let number = TextFormat::simple(font.clone(), style::of(ui).weak);
     job.append(&format!("{:>4} ", found.place[0]), 0.0, number);
     job.append(&part(0..found.marked.start), 0.0, plain.clone());
     job.append(&part(found.marked.clone()), 0.0, marked);

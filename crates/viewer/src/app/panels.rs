@@ -2,10 +2,12 @@
 
 use eframe::egui::{self, RichText, Ui};
 use sdfc::graph::{Param, ParamKind};
-use sdfc::march::METHODS;
+use sdfc::march::{Knob, METHODS};
 
+use super::menu::{self, Choice};
 use super::{Shows, Wish, style};
 use crate::knobs::{display_text, value_text};
+use crate::memory::Memory;
 use crate::model::Model;
 use crate::orbit::Side;
 use crate::session::Session;
@@ -17,23 +19,48 @@ pub fn next_mode(mode: Mode) -> Mode {
     Mode::ALL[(at + 1) % Mode::ALL.len()]
 }
 
-/// Name of the scene, view, method, what is open.
-pub fn bar(ui: &mut Ui, session: &mut Session, shows: &mut Shows) {
-    ui.horizontal(|ui| {
-        let name = session.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let path = session.path().display().to_string();
-        ui.label(RichText::new(name).strong()).on_hover_text(path);
+/// The menu of scenes, view, method, what is open.
+pub fn bar(
+    ui: &mut Ui,
+    session: &mut Session,
+    shows: &mut Shows,
+    memory: &mut Memory,
+) -> Option<Choice> {
+    let row = ui.horizontal(|ui| {
+        let choice = menu::show(ui, session.path(), memory);
         state(ui, session);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.toggle_value(&mut shows.help, "?").on_hover_text("Keys and buttons.");
             ui.toggle_value(&mut shows.knobs, "Knobs").on_hover_text("Params, time, camera. Tab");
             ui.toggle_value(&mut shows.source, "Text")
                 .on_hover_text("The scene's text; its numbers can be dragged. T");
+            ui.toggle_value(&mut shows.save, "Save")
+                .on_hover_text("A picture, an animation, the shader, the window. Ctrl S");
             ui.separator();
+            tolerance(ui, session);
             methods(ui, session);
             modes(ui, session);
         });
+        choice
     });
+    row.inner
+}
+
+/// How fine the method is, where it has a knob.
+fn tolerance(ui: &mut Ui, session: &mut Session) {
+    let Some(knob) = session.model.as_ref().and_then(|model| model.knob()) else { return };
+    let what = match knob {
+        Knob::Steps => "How many steps a ray may take",
+        Knob::Epsilon => "How near to the surface a hit is, in scene units",
+        Knob::Tolerance => "How near to the surface a hit is, in widths of a pixel",
+    };
+    let speed = session.tolerance * 0.02;
+    let drag = drag(&mut session.tolerance).range(1e-3..=1e3).speed(speed).prefix("×");
+    let text = format!("{what}: a multiple of what the scene says. A double click resets it.");
+    let response = ui.add(drag).on_hover_text(text);
+    if response.double_clicked() {
+        session.tolerance = 1.0;
+    }
 }
 
 /// What the compiler is about.
@@ -42,9 +69,9 @@ fn state(ui: &mut Ui, session: &Session) {
     if errors > 0 {
         let text = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
         let shown = if session.model.is_some() { ", showing the last good scene" } else { "" };
-        ui.label(RichText::new(format!("{text}{shown}")).small().color(style::ERROR));
+        ui.label(RichText::new(format!("{text}{shown}")).small().color(style::of(ui).error));
     } else if session.building {
-        ui.label(RichText::new("building…").small().color(style::ACCENT));
+        ui.label(RichText::new("building…").small().color(style::of(ui).accent));
     }
 }
 
@@ -97,7 +124,7 @@ pub fn knobs(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
 }
 
 fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
-    let title = RichText::new(name).strong().color(style::WEAK);
+    let title = RichText::new(name).strong().color(style::of(ui).weak);
     egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);
@@ -108,7 +135,7 @@ fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
 fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
     if model.declared().is_empty() {
         let text = "none: `param r = 0.5 in 0..1` in the scene makes a slider here";
-        ui.label(RichText::new(text).small().color(style::WEAK));
+        ui.label(RichText::new(text).small().color(style::of(ui).weak));
         return;
     }
     let values = session.values(model);
@@ -116,7 +143,7 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
         let moved = session.knobs.params.contains_key(&param.name);
         let mut value = lanes;
         ui.horizontal(|ui| {
-            let color = if moved { style::ACCENT } else { style::TEXT };
+            let color = if moved { style::of(ui).accent } else { style::of(ui).text };
             let left = egui::Layout::left_to_right(egui::Align::Center);
             let label = ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
                 ui.set_min_width(84.0);

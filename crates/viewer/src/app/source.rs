@@ -28,7 +28,9 @@ pub fn show(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
                 ui.spacing_mut().button_padding = egui::vec2(2.0, 0.0);
                 ui.spacing_mut().interact_size = egui::vec2(12.0, height - 2.0);
                 let number = format!("{:>4}  ", row + 1);
-                ui.label(RichText::new(number).monospace().color(style::WEAK.gamma_multiply(0.6)));
+                ui.label(
+                    RichText::new(number).monospace().color(style::of(ui).weak.gamma_multiply(0.6)),
+                );
                 line(ui, session, &model, *start, text);
             });
         }
@@ -43,7 +45,7 @@ fn buttons(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<W
             1 => "1 number moved".to_owned(),
             moved => format!("{moved} numbers moved"),
         };
-        let color = if moved > 0 { style::ACCENT } else { style::WEAK };
+        let color = if moved > 0 { style::of(ui).accent } else { style::of(ui).weak };
         ui.label(RichText::new(what).small().color(color));
         ui.add_enabled_ui(moved > 0, |ui| {
             if ui.small_button("Write").on_hover_text("Write them into the file.").clicked() {
@@ -93,7 +95,7 @@ fn plain(ui: &mut Ui, text: &str) {
         return;
     }
     let comment = text.trim_start().starts_with("//");
-    let color = if comment { style::WEAK } else { style::TEXT };
+    let color = if comment { style::of(ui).weak } else { style::of(ui).text };
     ui.label(RichText::new(text).monospace().color(color));
 }
 
@@ -111,7 +113,7 @@ fn number(ui: &mut Ui, session: &mut Session, slot: &Slot, param: &Param) {
         .scope(|ui| {
             ui.style_mut().drag_value_text_style = egui::TextStyle::Monospace;
             if moved {
-                ui.visuals_mut().override_text_color = Some(style::ACCENT);
+                ui.visuals_mut().override_text_color = Some(style::of(ui).accent);
             }
             ui.add(drag)
         })

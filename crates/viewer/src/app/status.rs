@@ -15,10 +15,11 @@ pub fn show(ui: &mut Ui, session: &mut Session, remark: Option<&str>) {
             figures(ui, session, picture);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            saving(ui, session);
             let trouble = session.trouble.as_ref().or(session.no_picture.as_ref());
             match (remark, trouble, &session.model) {
-                (Some(remark), ..) => note(ui, remark, style::ACCENT),
-                (None, Some(trouble), _) => note(ui, trouble, style::WARNING),
+                (Some(remark), ..) => note(ui, remark, style::of(ui).accent),
+                (None, Some(trouble), _) => note(ui, trouble, style::of(ui).warning),
                 (None, None, Some(model)) => machine(ui, model),
                 (None, None, None) => {}
             }
@@ -31,8 +32,19 @@ fn note(ui: &mut Ui, text: &str, color: egui::Color32) {
     ui.add(label).on_hover_text(text);
 }
 
+/// How far a picture is that is being saved.
+fn saving(ui: &mut Ui, session: &Session) {
+    let Some(share) = session.clerk().progress() else { return };
+    if ui.small_button("cancel").on_hover_text("No file comes of it.").clicked() {
+        session.clerk().cancel();
+    }
+    let bar = egui::ProgressBar::new(share).desired_width(90.0).show_percentage();
+    ui.add(bar).on_hover_text("A picture is being drawn for a file.");
+}
+
 fn figures(ui: &mut Ui, session: &Session, picture: &Picture) {
-    let weak = |text: String| RichText::new(text).small().color(style::WEAK);
+    let color = style::of(ui).weak;
+    let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
     ui.label(weak(model.method.clone())).on_hover_text("The ray method.");
     let [width, height] = picture.request.size;
@@ -60,7 +72,7 @@ fn figures(ui: &mut Ui, session: &Session, picture: &Picture) {
     ui.label(weak(format!("{:.1} evaluations a pixel", evaluations.mean))).on_hover_text(text);
     if picture.counts.capped > 0 {
         let text = format!("{} capped", picture.counts.capped);
-        ui.label(RichText::new(text).small().color(style::WARNING))
+        ui.label(RichText::new(text).small().color(style::of(ui).warning))
             .on_hover_text("Rays that ran out of steps; the view “Capped rays” shows where.");
     }
     progress(ui, session, picture);
@@ -77,16 +89,16 @@ fn progress(ui: &mut Ui, session: &Session, picture: &Picture) {
         return;
     };
     let help = "The scene is too slow for every pixel at once. Esc stops refining, and goes on.";
-    ui.label(RichText::new(text).small().color(style::ACCENT)).on_hover_text(help);
+    ui.label(RichText::new(text).small().color(style::of(ui).accent)).on_hover_text(help);
 }
 
 fn machine(ui: &mut Ui, model: &Model) {
     let name = model.adapter().unwrap_or("the processor");
-    let text = RichText::new(name).small().color(style::WEAK);
+    let text = RichText::new(name).small().color(style::of(ui).weak);
     let note = model.note.as_deref().map_or(String::new(), |note| format!("{note}\n"));
     ui.label(text).on_hover_text(format!("{note}{}", built(model.stages, model.pipelines)));
     if model.note.is_some() {
-        ui.label(RichText::new("note").small().color(style::WARNING)).on_hover_text(note);
+        ui.label(RichText::new("note").small().color(style::of(ui).warning)).on_hover_text(note);
     }
 }
 

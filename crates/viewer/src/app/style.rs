@@ -1,33 +1,95 @@
-//! Colours and spacing: dark and calm, so that the picture is what one sees.
+//! Colours and spacing: calm, so that the picture is what one sees; dark or light.
 
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Visuals,
-    vec2,
+    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, Ui,
+    Visuals, vec2,
 };
 
-/// Behind everything.
-pub const GROUND: Color32 = Color32::from_rgb(18, 20, 24);
-/// Panels.
-pub const PANEL: Color32 = Color32::from_rgb(24, 27, 32);
-/// Widgets.
-pub const WIDGET: Color32 = Color32::from_rgb(38, 43, 51);
-/// Lines between panels.
-pub const LINE: Color32 = Color32::from_rgb(44, 49, 58);
-/// Text.
-pub const TEXT: Color32 = Color32::from_rgb(206, 212, 220);
-/// Text of less weight.
-pub const WEAK: Color32 = Color32::from_rgb(134, 143, 156);
-/// What is chosen or moved.
-pub const ACCENT: Color32 = Color32::from_rgb(232, 150, 76);
-/// Errors.
-pub const ERROR: Color32 = Color32::from_rgb(240, 98, 92);
-/// Warnings.
-pub const WARNING: Color32 = Color32::from_rgb(233, 185, 73);
+/// The colours of a theme.
+#[derive(Clone, Copy, Debug)]
+pub struct Palette {
+    /// Behind everything.
+    pub ground: Color32,
+    /// Panels.
+    pub panel: Color32,
+    /// Cards over the picture.
+    pub card: Color32,
+    /// Widgets: at rest, under the pointer, pressed.
+    pub widgets: [Color32; 3],
+    /// Lines between panels.
+    pub line: Color32,
+    /// Text.
+    pub text: Color32,
+    /// Text of what is under the pointer.
+    pub strong: Color32,
+    /// Text of less weight.
+    pub weak: Color32,
+    /// What is chosen or moved.
+    pub accent: Color32,
+    /// Behind what is chosen.
+    pub chosen: Color32,
+    /// Places to click.
+    pub link: Color32,
+    /// Errors.
+    pub error: Color32,
+    /// Warnings.
+    pub warning: Color32,
+}
+
+const DARK: Palette = Palette {
+    ground: Color32::from_rgb(18, 20, 24),
+    panel: Color32::from_rgb(24, 27, 32),
+    card: Color32::from_rgba_unmultiplied_const(18, 20, 24, 225),
+    widgets: [
+        Color32::from_rgb(38, 43, 51),
+        Color32::from_rgb(50, 57, 67),
+        Color32::from_rgb(60, 68, 80),
+    ],
+    line: Color32::from_rgb(44, 49, 58),
+    text: Color32::from_rgb(206, 212, 220),
+    strong: Color32::WHITE,
+    weak: Color32::from_rgb(134, 143, 156),
+    accent: Color32::from_rgb(232, 150, 76),
+    chosen: Color32::from_rgb(110, 72, 38),
+    link: Color32::from_rgb(122, 176, 232),
+    error: Color32::from_rgb(240, 98, 92),
+    warning: Color32::from_rgb(233, 185, 73),
+};
+
+const LIGHT: Palette = Palette {
+    ground: Color32::from_rgb(226, 228, 232),
+    panel: Color32::from_rgb(246, 247, 249),
+    card: Color32::from_rgba_unmultiplied_const(250, 251, 252, 235),
+    widgets: [
+        Color32::from_rgb(226, 229, 234),
+        Color32::from_rgb(213, 218, 225),
+        Color32::from_rgb(198, 205, 214),
+    ],
+    line: Color32::from_rgb(208, 213, 220),
+    text: Color32::from_rgb(40, 46, 54),
+    strong: Color32::BLACK,
+    weak: Color32::from_rgb(98, 107, 120),
+    accent: Color32::from_rgb(176, 88, 10),
+    chosen: Color32::from_rgb(255, 213, 170),
+    link: Color32::from_rgb(22, 94, 170),
+    error: Color32::from_rgb(194, 40, 36),
+    warning: Color32::from_rgb(150, 98, 0),
+};
+
+/// The colours of the theme that is shown.
+pub fn of(ui: &Ui) -> &'static Palette {
+    if ui.visuals().dark_mode { &DARK } else { &LIGHT }
+}
+
+/// Chooses the theme.
+pub fn set_light(ctx: &Context, light: bool) {
+    ctx.set_theme(if light { Theme::Light } else { Theme::Dark });
+}
 
 /// Sets the look of all windows.
 pub fn apply(ctx: &Context) {
-    ctx.set_theme(Theme::Dark);
-    ctx.set_visuals_of(Theme::Dark, visuals());
+    ctx.set_visuals_of(Theme::Dark, visuals(Visuals::dark(), &DARK));
+    ctx.set_visuals_of(Theme::Light, visuals(Visuals::light(), &LIGHT));
     ctx.all_styles_mut(|style| {
         let sans = |size| FontId::new(size, FontFamily::Proportional);
         style.text_styles = [
@@ -47,25 +109,26 @@ pub fn apply(ctx: &Context) {
     });
 }
 
-fn visuals() -> Visuals {
-    let mut visuals = Visuals::dark();
-    visuals.panel_fill = PANEL;
-    visuals.window_fill = PANEL;
-    visuals.window_stroke = Stroke::new(1.0, LINE);
-    visuals.extreme_bg_color = GROUND;
-    visuals.faint_bg_color = Color32::from_rgb(28, 32, 38);
-    visuals.selection.bg_fill = Color32::from_rgb(110, 72, 38);
-    visuals.selection.stroke = Stroke::new(1.0, ACCENT);
-    visuals.hyperlink_color = Color32::from_rgb(122, 176, 232);
+fn visuals(mut visuals: Visuals, palette: &Palette) -> Visuals {
+    let Palette { panel, text, line, strong, accent, .. } = *palette;
+    let [rest, hovered, pressed] = palette.widgets;
+    visuals.panel_fill = panel;
+    visuals.window_fill = panel;
+    visuals.window_stroke = Stroke::new(1.0, line);
+    visuals.extreme_bg_color = palette.ground;
+    visuals.faint_bg_color = palette.card;
+    visuals.selection.bg_fill = palette.chosen;
+    visuals.selection.stroke = Stroke::new(1.0, accent);
+    visuals.hyperlink_color = palette.link;
     visuals.slider_trailing_fill = true;
     let widgets = &mut visuals.widgets;
     let round = CornerRadius::same(4);
     let states = [
-        (&mut widgets.noninteractive, PANEL, TEXT, LINE),
-        (&mut widgets.inactive, WIDGET, TEXT, Color32::TRANSPARENT),
-        (&mut widgets.hovered, Color32::from_rgb(50, 57, 67), Color32::WHITE, LINE),
-        (&mut widgets.active, Color32::from_rgb(60, 68, 80), Color32::WHITE, ACCENT),
-        (&mut widgets.open, WIDGET, TEXT, LINE),
+        (&mut widgets.noninteractive, panel, text, line),
+        (&mut widgets.inactive, rest, text, Color32::TRANSPARENT),
+        (&mut widgets.hovered, hovered, strong, line),
+        (&mut widgets.active, pressed, strong, accent),
+        (&mut widgets.open, rest, text, line),
     ];
     for (state, fill, text, line) in states {
         (state.bg_fill, state.weak_bg_fill, state.corner_radius) = (fill, fill, round);

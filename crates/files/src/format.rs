@@ -4,8 +4,6 @@ use std::path::Path;
 
 use sdfc::render::{Animation, Image, RenderError};
 
-use crate::failure::Failure;
-
 /// How a picture is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -22,14 +20,14 @@ impl Format {
     ///
     /// # Errors
     ///
-    /// The ending is that of another format: the call is wrong.
-    pub fn of(path: &Path) -> Result<Self, Failure> {
+    /// The ending is that of another format; which there are.
+    pub fn of(path: &Path) -> Result<Self, String> {
         let Some(ending) = path.extension() else { return Ok(Self::Png) };
         let formats = [("png", Self::Png), ("exr", Self::Exr), ("gif", Self::Gif)];
         let found = formats.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
         found.map(|(_, format)| *format).ok_or_else(|| {
             let path = path.display();
-            Failure::Call(format!("{path}: pictures are written as .png, .exr or .gif"))
+            format!("{path}: pictures are written as .png, .exr or .gif")
         })
     }
 
