@@ -104,7 +104,8 @@ impl Scene {
     pub fn write_shader(&self, options: &ShaderOptions) -> Result<Written, Error> {
         let shader = self.shader(options)?;
         let (version, name) = (env!("CARGO_PKG_VERSION"), &self.origin.name);
-        let comment = format!("sdfc {version}, {name}, source {}", self.source_hash());
+        let doubt = if self.is_certified() { "" } else { ", field uncertified" };
+        let comment = format!("sdfc {version}, {name}, source {}{doubt}", self.source_hash());
         Ok(shader.write(options.target, &comment)?)
     }
 
@@ -153,6 +154,19 @@ const SHADERTOY_SIZE: [u32; 2] = [640, 360];
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_shader_says_where_its_field_is_uncertified() -> Result<(), crate::Error> {
+        let says = |text: &str| -> Result<bool, crate::Error> {
+            let scene = crate::compile("a.sdf", text).scene.ok_or(crate::Error::NothingDrawn)?;
+            let shader = scene.write_shader(&crate::ShaderOptions::default())?;
+            let sdfc_codegen::Code::Text(text) = shader.code else { return Ok(false) };
+            Ok(text.lines().next().is_some_and(|line| line.contains("uncertified")))
+        };
+        assert!(!says("sphere(1)")?);
+        assert!(says("solid s() = p.x * p.x + p.y * p.y - 1\ns()")?);
+        Ok(())
+    }
 
     #[test]
     fn the_hash_is_fnv() {

@@ -15,6 +15,11 @@ const SIZE: [u32; 2] = [96, 54];
 const UNDECIDED: f64 = 1e-3;
 /// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
 const DEPTH: f64 = 0.1;
+/// Error of normals that 99 of 100 pixels of smooth surfaces keep, in degrees.
+const NORMAL: f64 = 1e-3;
+/// Of a scene whose curvature has no limit: that of an involute grows without end towards its base circle, where roundings of
+/// the point turn its normal more the nearer it lies.
+const INVOLUTE: (&str, f64) = ("examples/gear", 5e-3);
 
 fn main() {
     let without_gpu = testing::without_gpu();
@@ -41,13 +46,17 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
         return Err(format!("the oracle leaves {undecided:.4} of the pixels undecided").into());
     }
     let row = chart.methods.first().ok_or("no row for `auto`")?;
-    let Row { missed, false_hits, nan, depth_px, .. } = row;
+    let Row { missed, false_hits, nan, depth_px, normal_deg, .. } = row;
     let wrong = [("missed", missed), ("false", false_hits), ("NaN", nan)];
     if let Some((what, count)) = wrong.into_iter().find(|(_, count)| **count > 0) {
         return Err(format!("{count} pixels are {what}").into());
     }
     if depth_px.p99 > DEPTH {
         return Err(format!("depths are off by {:.4} of a pixel (p99)", depth_px.p99).into());
+    }
+    let normal = if name == INVOLUTE.0 { INVOLUTE.1 } else { NORMAL };
+    if normal_deg.p99 > normal {
+        return Err(format!("normals are off by {:.5} degrees (p99)", normal_deg.p99).into());
     }
     Ok(())
 }

@@ -39,6 +39,9 @@ fn advice(chart: &Chart, error: f64, method: &str) -> Result<String, Failure> {
         chart.scene, chart.adapter, chart.driver
     );
     let now = chart.methods.iter().find(|row| row.default && row.method == method);
+    if !chart.certified {
+        text.insert_str(0, "the field is uncertified: this holds of the view that was measured\n");
+    }
     text += &line("cheapest", best);
     text += &now.map(|row| line("now", row)).unwrap_or_default();
     text += &match now {
