@@ -287,6 +287,29 @@ fn an_undecided_loop_ends_and_a_decided_one_is_tight() {
 }
 
 #[test]
+fn an_interval_of_a_place_in_a_list_is_that_place() {
+    let mut graph = Graph::new();
+    let case = Case {
+        name: "every third of a list",
+        cap: 6,
+        counted: false,
+        start: |graph| vec![graph.number(0.0)],
+        round: |graph, state, round| {
+            let three = graph.number(3.0);
+            let at = graph.mul(round, three);
+            let place = graph.element(list(), at);
+            let y = graph.component(place, 1);
+            (vec![graph.add(state[0], y)], None)
+        },
+    };
+    let root = looped(&mut graph, &case)[0];
+    let tape = Tape::new(&graph, &[root]).expect("flat");
+    let sum = tape.prepare::<Interval>(&FrameValues::default()).scalar([Interval::ENTIRE; 3]);
+    let expected: f64 = (0..6).map(|i| f64::from(3 * i).cos()).sum();
+    assert!(sum.contains(expected) && sum.hi() - sum.lo() < 1e-12, "{sum:?}, not {expected}");
+}
+
+#[test]
 fn equal_loops_are_one_and_their_gradient_computes_the_state_once() {
     let mut graph = Graph::new();
     let case = &cases()[1];

@@ -3,12 +3,22 @@
 use super::{Interval, MARGIN, lower, upper};
 use crate::eval::Number;
 
+/// The rounding of a smaller product may fall below the smallest number.
+const LEAST_CHECKED: f64 = 1e-200;
+
 impl Interval {
     pub(super) fn sum(self, y: Self) -> Self {
         Self { lo: sum_below(self.lo, y.lo), hi: -sum_below(-self.hi, -y.hi) }
     }
 
     pub(super) fn product(self, y: Self) -> Self {
+        if self.lo == self.hi && y.lo == y.hi {
+            // Places in lists are products of whole numbers: one that is rounded down is the place before.
+            let exact = self.lo * y.lo;
+            if exact.abs() > LEAST_CHECKED && self.lo.mul_add(y.lo, -exact) == 0.0 {
+                return Self { lo: exact, hi: exact };
+            }
+        }
         let ends = [
             product(self.lo, y.lo),
             product(self.lo, y.hi),
