@@ -8,15 +8,15 @@ use common::{each_node, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{
-    Dim, FrameInput, Graph, NodeId, Stage, Type, enclosure, reachable, slope_enclosure,
+    Dim, FrameInput, Graph, NodeId, Stage, Type, dump, enclosure, reachable, slope_enclosure,
 };
 
 /// Places of a stretch that are looked at, its ends among them.
 const PLACES: usize = 33;
 /// Values are compared whose size lies between these, or which are 0: beyond, f32 has other ideas.
 const SIZES: std::ops::Range<f64> = 1e-9..1e9;
-/// Numbers of a program count as infinite from here.
-const LARGE: f64 = 1e15;
+/// Numbers of a program count as infinite from here: the largest that a bound computed in f32 is.
+const LARGE: f32 = 1e15;
 
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -69,8 +69,12 @@ fn bounds(graph: &mut Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -
     let params = vec![[param; 4], [way[0], way[1], way[2], 0.0]];
     let frame = FrameValues { params, time: 0.0, frame: 0.0 };
     let found = tape.prepare::<f32>(&frame).eval(from.map(|x| x as f32)).to_vec();
-    let end = |i: usize| f64::from(found[i][0]);
+    let end = |i: usize| unless_endless(found[i][0]);
     Some(Bounds { value: [end(0), end(1)], slope: [end(2), end(3)] })
+}
+
+fn unless_endless(bound: f32) -> f64 {
+    if bound.abs() >= LARGE { f64::INFINITY.copysign(f64::from(bound)) } else { f64::from(bound) }
 }
 
 /// A root's values at the places in f64; `None` where one of them rests on a number that f32 has other ideas of.
@@ -121,19 +125,18 @@ proptest! {
                 let value = f64::from(value);
                 prop_assert!(
                     value.is_nan() || (lo <= value && value <= hi),
-                    "node {} is {:?}: {value} is not in {lo}..{hi}", root.index(), graph.node(root)
+                    "{value} is not in {lo}..{hi}, the bounds of:\n{}", dump(&graph, &[("it", root)])
                 );
             }
             let step = 1.0 / (PLACES - 1) as f64;
             for pair in values.windows(2) {
                 let rounding = 1e-12 * pair[0].abs().max(1.0);
                 let rise = pair[1] - pair[0];
-                let least = if slope[0] <= -LARGE { f64::NEG_INFINITY } else { slope[0] * step };
-                let most = if slope[1] >= LARGE { f64::INFINITY } else { slope[1] * step };
+                let [least, most] = slope.map(|end| end * step);
                 prop_assert!(
                     least - rounding <= rise && rise <= most + rounding,
-                    "node {} is {:?}: {rise} is not in {step} times {slope:?}",
-                    root.index(), graph.node(root)
+                    "{rise} is not in {step} times {slope:?}, the bounds of the slope of:\n{}",
+                    dump(&graph, &[("it", root)])
                 );
             }
         }

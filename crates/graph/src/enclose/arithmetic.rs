@@ -191,7 +191,7 @@ impl Enclosing<'_> {
             let margin = s.scaled(size, ROUNDING);
             let between = s.grown(between, margin);
             let Some(y) = fixed else { return between };
-            let [first, last] = s.wholes(x, y);
+            let [first, last] = s.wholes(x.into(), Extent::Fixed(y));
             let step = s.graph.mul(y, first);
             let moved = Span { lo: s.graph.sub(x.lo, step), hi: s.graph.sub(x.hi, step), ..x };
             let moved = s.grown(moved, margin);
@@ -200,12 +200,12 @@ impl Enclosing<'_> {
         })
     }
 
-    /// The floors of the least and the greatest quotient.
-    pub(super) fn wholes(&mut self, x: Span, y: NodeId) -> [NodeId; 2] {
-        [x.lo, x.hi].map(|end| {
-            let quotient = self.graph.div(end, y);
-            self.graph.unary(Unary::Floor, quotient)
-        })
+    /// The floors of the least and the greatest quotient: devices need not agree on which side of a whole number a
+    /// quotient beside it lies.
+    fn wholes(&mut self, x: Extent, y: Extent) -> [NodeId; 2] {
+        let quotient = self.quotient(x, y);
+        let Span { lo, hi, .. } = self.span(quotient);
+        [lo, hi].map(|end| self.graph.unary(Unary::Floor, end))
     }
 
     /// The scalar product of two vectors.
@@ -340,7 +340,8 @@ impl Enclosing<'_> {
         if !unit {
             let rest = self.one_minus(t);
             let (first, second) = (self.product(x, rest), self.product(y, t));
-            return self.sum(first, second);
+            let sum = self.sum(first, second);
+            return self.mixed_by_difference(sum, [x, y], span);
         }
         let (x, y) = (self.span(x), self.span(y));
         let mut mixed = |x, y, t| self.graph.ternary(Ternary::Mix, x, y, t);
@@ -351,6 +352,23 @@ impl Enclosing<'_> {
         let size = self.graph.max(sizes[0], sizes[1]);
         let margin = self.scaled(size, 2.0 * ROUNDING);
         let result = self.grown(Span { lo, hi, wild: x.wild || y.wild }, margin);
+        if result.wild { self.cut(result).into() } else { result.into() }
+    }
+
+    /// A mixture where devices may compute `x + t (y - x)`, whose terms may be larger than those of
+    /// `x (1 - t) + y t`.
+    fn mixed_by_difference(&mut self, mixture: Extent, ends: [Extent; 2], t: Span) -> Extent {
+        let [x, y] = ends.map(|end| {
+            let end = self.span(end);
+            self.magnitude(end)
+        });
+        let size = self.graph.max(x, y);
+        let share = self.magnitude(t);
+        let share = self.at_least(share, 1.0);
+        let size = self.graph.mul(size, share);
+        let margin = self.scaled(size, 2.0 * ROUNDING);
+        let mixture = self.span(mixture);
+        let result = self.grown(mixture, margin);
         if result.wild { self.cut(result).into() } else { result.into() }
     }
 

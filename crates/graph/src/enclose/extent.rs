@@ -12,7 +12,7 @@ pub(super) const ROUNDING: f64 = 1.0 / 4_194_304.0;
 /// Of a root or a quotient, which devices round less well: four units.
 pub(super) const COARSE: f64 = 2.0 * ROUNDING;
 /// Of an affine map's value, relative to the sum of its terms' magnitudes: eight units.
-const AFFINE: f64 = 4.0 * ROUNDING;
+pub(super) const AFFINE: f64 = 4.0 * ROUNDING;
 
 /// The values of a node along a stretch.
 #[derive(Clone, Copy, Debug)]

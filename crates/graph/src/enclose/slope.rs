@@ -4,7 +4,7 @@
 //! stretch has any slope. So values at two places of a stretch never differ by more than the slopes allow.
 
 use super::Enclosing;
-use super::extent::{Extent, Line, ROUNDING, Span, TINY};
+use super::extent::{AFFINE, Extent, Line, ROUNDING, Span, TINY};
 use crate::{Binary, Ternary, Type, Unary};
 
 /// What is known of a node.
@@ -293,20 +293,26 @@ impl Enclosing<'_> {
             return self.absolute_slope(x, slope);
         }
         if let (
-            Extent::Line(Line { ends, .. }),
-            Extent::Line(Line { ends: [direction, end], size }),
+            Extent::Line(Line { ends, size }),
+            Extent::Line(Line { ends: [direction, end], size: pace }),
         ) = (x, slope)
             && direction == end
         {
-            let ends = ends.map(|end| {
+            let (size, pace) = (self.graph.length(size), self.graph.length(pace));
+            let [lo, hi] = ends.map(|end| {
                 let along = self.graph.dot(end, direction);
                 let length = self.graph.length(end);
                 let length = self.at_least(length, TINY);
-                self.graph.div(along, length)
+                let slope = self.graph.div(along, length);
+                // Near the centre the rounding of the terms that it is a sum of turns the direction to it.
+                let turn = self.graph.div(size, length);
+                let turn = self.scaled(turn, 2.0 * AFFINE);
+                let turn = self.at_most(turn, 2.0);
+                let part = self.offset(turn, 4.0 * ROUNDING);
+                (slope, self.graph.mul(pace, part))
             });
-            let size = self.graph.length(size);
-            let margin = self.scaled(size, 4.0 * ROUNDING);
-            return self.grown(Span::new(ends[0], ends[1]), margin).into();
+            let (least, most) = (self.graph.sub(lo.0, lo.1), self.graph.add(hi.0, hi.1));
+            return Span::new(least, most).into();
         }
         let along = self.dot(x, slope);
         let ratio = self.quotient(along, length);
