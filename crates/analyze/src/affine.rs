@@ -118,7 +118,7 @@ pub(crate) fn linear_part(
     if graph.ty(node) == Type::Bool {
         return None;
     }
-    if graph.levels(node) <= level && graph.stage(node) < Stage::Point {
+    if is_fixed(graph, node, level) {
         return Some(Linear::new(width, |_| [ZERO; 3]));
     }
     match graph.node(node) {
@@ -140,20 +140,20 @@ pub(crate) fn linear_part(
             Some(by_place(a.lanes, difference))
         }
         Node::Binary(Binary::Mul, a, b) => {
-            let (fixed, varying) = if is_fixed(graph, a) { (a, b) } else { (b, a) };
-            if !is_fixed(graph, fixed) {
+            let (fixed, varying) = if is_fixed(graph, a, level) { (a, b) } else { (b, a) };
+            if !is_fixed(graph, fixed, level) {
                 return None;
             }
             let factors = lanes_of(graph, fixed);
             Some(of(varying)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
-        Node::Binary(Binary::Div, a, b) if is_fixed(graph, b) => {
+        Node::Binary(Binary::Div, a, b) if is_fixed(graph, b, level) => {
             let factors = lanes_of(graph, b).map(|divisor| ONE.over(graph, divisor));
             Some(of(a)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
         Node::Binary(Binary::Dot, a, b) => {
-            let (fixed, varying) = if is_fixed(graph, a) { (a, b) } else { (b, a) };
-            if !is_fixed(graph, fixed) {
+            let (fixed, varying) = if is_fixed(graph, a, level) { (a, b) } else { (b, a) };
+            if !is_fixed(graph, fixed, level) {
                 return None;
             }
             let weights = lanes_of(graph, fixed);
@@ -176,7 +176,7 @@ pub(crate) fn linear_part(
             Some(Linear::new(width, |lane| from.rows[usize::from(lanes[lane])]))
         }
         Node::Transform(columns, v) => {
-            if !columns.iter().all(|&column| is_fixed(graph, column)) {
+            if !columns.iter().all(|&column| is_fixed(graph, column, level)) {
                 return None;
             }
             let linear = of(v)?;
@@ -199,9 +199,9 @@ pub(crate) fn linear_part(
     }
 }
 
-/// Known before the point is.
-fn is_fixed(graph: &Graph, node: NodeId) -> bool {
-    graph.stage(node) < Stage::Point
+/// Whether the point of `level` does not move the node: known before it is, or from the points of formulas around alone.
+pub(crate) fn is_fixed(graph: &Graph, node: NodeId, level: u16) -> bool {
+    graph.stage(node) < Stage::Point || (graph.levels(node) <= level && graph.loops(node) == 0)
 }
 
 /// The lanes of a fixed node, the last one repeated.

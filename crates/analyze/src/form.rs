@@ -5,7 +5,7 @@ use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};
 
 use crate::lipschitz::Slopes;
-use crate::quality::scaled_sample;
+use crate::quality::{is_one, scaled_sample};
 
 /// How a node of a formula passes its value on.
 pub(crate) enum Form {
@@ -51,9 +51,16 @@ pub(crate) fn form(graph: &mut Graph, node: NodeId, slopes: &Slopes) -> Form {
         {
             Form::Chosen(condition, a, b)
         }
-        Node::Sample(child, q) if slopes.is_isometry(graph, q) => Form::Sampled(child, q),
+        Node::Sample(child, q)
+            if is_one(graph, child, slopes.level()) && slopes.is_isometry(graph, q) =>
+        {
+            Form::Sampled(child, q)
+        }
         Node::Binary(Binary::Mul, a, b) => match scaled_sample(graph, a, b) {
-            Some((factor, child, q)) if slopes.is_similarity(graph, q, factor) => {
+            Some((factor, child, q))
+                if is_one(graph, child, slopes.level())
+                    && slopes.is_similarity(graph, q, factor) =>
+            {
                 Form::Scaled(factor, child, q)
             }
             Some(_) | None => Form::Whole,

@@ -14,7 +14,8 @@
 //! # Limits
 //!
 //! Constants are derived by rules that hold everywhere. A product of two values that both depend on
-//! the point has no such constant; its shape is uncertified unless it states one.
+//! the point has no such constant; then interval derivatives find one that holds within the shape's bounds. A shape
+//! of which neither tells one is uncertified unless it states one.
 
 mod affine;
 mod clip;
@@ -31,6 +32,7 @@ mod refute;
 mod sound;
 mod spans;
 mod uneven;
+mod within;
 
 pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]

@@ -19,6 +19,8 @@ pub enum Reason {
     Jump(&'static str),
     /// An operation whose slope depends on where it is taken.
     Unbounded(&'static str),
+    /// An operation whose slope is, within the bounds, many times in places what it mostly is.
+    Uneven(&'static str),
     /// A shape that is built anew at each point.
     Varying(String),
     /// A child without a constant.
@@ -36,7 +38,18 @@ impl std::fmt::Display for Reason {
         match self {
             Self::Jump(what) => write!(f, "`{what}` of a value that depends on the point jumps"),
             Self::Unbounded(what) => {
-                write!(f, "the slope of `{what}` depends on the point; state it with `lipschitz`")
+                write!(
+                    f,
+                    "the slope of `{what}` depends on the point, and no bounds limit it; state \
+                     `lipschitz`, or finite `bounds`"
+                )
+            }
+            Self::Uneven(what) => {
+                write!(
+                    f,
+                    "the slope of `{what}` is in places many times what it mostly is, so that dividing by the \
+                     greatest would cost more than it is worth; state `lipschitz`, or closer `bounds`"
+                )
             }
             Self::Varying(name) => write!(f, "`{name}` is another shape at each point"),
             Self::Child(name) => write!(f, "`{name}` has no constant"),
@@ -68,6 +81,8 @@ const MOST_ROUNDS: u32 = 16;
 
 /// Constants of the nodes of one formula.
 pub(crate) struct Slopes {
+    /// The level of the formula's point.
+    level: u16,
     /// Arguments before their uses.
     nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
@@ -87,6 +102,7 @@ impl Slopes {
     ) -> Self {
         let nodes = with_claimed_arguments(graph, roots);
         let mut slopes = Self {
+            level,
             nodes: Vec::new(),
             constants: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
             linear: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
@@ -98,6 +114,11 @@ impl Slopes {
             }
         }
         Self { nodes, ..slopes }
+    }
+
+    /// The level of the formula's point.
+    pub(crate) fn level(&self) -> u16 {
+        self.level
     }
 
     /// The nodes of the formula, and those that claims there speak of; arguments before their uses.
@@ -238,7 +259,7 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Constant {
-        if graph.stage(node) < Stage::Point {
+        if affine::is_fixed(graph, node, level) {
             return Ok(graph.number(0.0));
         }
         if self.is_still(graph, node) {
@@ -445,9 +466,9 @@ impl Slopes {
 
     /// Lane by lane. What is no number of the point's own formula is taken to look at all of it.
     fn components_seen(&self, graph: &Graph, node: NodeId, level: u16) -> Seen {
-        let of = |id: NodeId| match graph.stage(id) {
-            Stage::Const | Stage::Frame => [0; 4],
-            Stage::Point => self.seen.get(&id).copied().unwrap_or(ANY),
+        let of = |id: NodeId| match affine::is_fixed(graph, id, level) {
+            true => [0; 4],
+            false => self.seen.get(&id).copied().unwrap_or(ANY),
         };
         let joined = |ids: &[NodeId]| {
             ids.iter().fold([0; 4], |all, &id| std::array::from_fn(|i| all[i] | of(id)[i]))

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Unary};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Unary};
 
 /// More terms than any product of three turns needs; beyond it the question is given up.
 const MAX_TERMS: usize = 256;
@@ -50,16 +50,13 @@ impl Polynomial {
         Self { terms: BTreeMap::from([(Monomial::from([(atom, 1)]), 1.0)]) }
     }
 
-    /// The polynomial of a scalar node known before the point is; `None` if it grows too large.
+    /// The polynomial of a scalar node; `None` if it grows too large.
     pub(crate) fn of(graph: &Graph, node: NodeId) -> Option<Self> {
         Self::of_within(graph, node, MAX_DEPTH, &mut { MAX_VISITS })
     }
 
     fn of_within(graph: &Graph, node: NodeId, depth: u32, visits: &mut u32) -> Option<Self> {
         *visits = visits.checked_sub(1)?;
-        if graph.stage(node) == Stage::Point {
-            return None;
-        }
         if depth == 0 {
             return Some(Self::atom(Atom::Other(node)));
         }

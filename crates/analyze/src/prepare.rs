@@ -77,6 +77,8 @@ pub struct ShapeReport {
     pub divided: bool,
     /// The operation at which the field, or one that it samples, may jump; `None` where it has a constant, or nothing jumps.
     pub jump: Option<&'static str>,
+    /// Whether it was found by interval derivatives, within the bounds.
+    pub found: bool,
 }
 
 /// A Lipschitz constant as people want to read it.
@@ -123,12 +125,13 @@ pub fn prepare_about(scene: &Scene, origin: [f64; 3]) -> Result<Prepared, Expand
 }
 
 fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report, ExpandError> {
+    let params = program.params.clone();
     let graph = &mut program.graph;
     let mut expander = Expander::new();
     let own_point = graph.point(0, Dim::Three);
     let origin = graph.constant(Dim::Three.point_type(), &program.origin);
     let point = graph.add(own_point, origin);
-    let qualities = Qualities::of_scene(graph, root);
+    let qualities = Qualities::of_scene(graph, root, &params);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
     let apart = parts(graph, &mut expander, &qualities, root, point)?;
@@ -241,7 +244,9 @@ fn shape_reports(
             Err(reason) => Lipschitz::Unknown(reason.to_string()),
         };
         let divided = divided.contains(&shape);
-        shapes.push(ShapeReport { shape, sides: quality.sides, lipschitz, divided, jump });
+        let found = quality.within.is_some();
+        let sides = quality.sides;
+        shapes.push(ShapeReport { shape, sides, lipschitz, divided, found, jump });
     }
     shapes
 }

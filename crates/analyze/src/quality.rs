@@ -4,12 +4,14 @@
 //! changes. `exact` implies both, a constant of at most 1 implies `bound` on both sides.
 
 use rustc_hash::FxHashMap;
+use sdfc_graph::eval::{FrameValues, Interval};
 use sdfc_graph::{
-    Binary, Contract, Graph, Node, NodeId, ShapeId, SidePromise, Stage, Ternary, Unary,
+    Binary, Contract, Graph, Node, NodeId, Param, ShapeId, SidePromise, Stage, Ternary, Unary,
 };
 
 use crate::fault::Rule;
 use crate::lipschitz::{Constant, Reason, Slopes};
+use crate::within::steepest_within;
 
 /// What |f| is on one side of the surface, from weak to strong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -80,6 +82,8 @@ pub struct Quality {
     pub lipschitz: Constant,
     /// Whether the constant holds at every point, or only within the shape's bounds.
     pub everywhere: bool,
+    /// The bounds within which it was found, where no rule and no clause gives one.
+    pub within: Option<[NodeId; 2]>,
 }
 
 /// What a shape's own clauses say, its children's shortcomings counted.
@@ -100,20 +104,30 @@ impl Stated {
 }
 
 /// Qualities of all shapes that were asked for and their children.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Qualities {
     of: FxHashMap<ShapeId, Quality>,
+    params: Vec<Param>,
+    ranges: FrameValues<Interval>,
 }
 
 impl Qualities {
-    /// The qualities of `root` and of every shape below it.
-    pub fn of_scene(graph: &mut Graph, root: ShapeId) -> Self {
-        let mut qualities = Self::default();
+    /// The qualities of `root` and of every shape below it, for all values of the params.
+    pub fn of_scene(graph: &mut Graph, root: ShapeId, params: &[Param]) -> Self {
+        let ranges = FrameValues::ranges(params);
+        let mut qualities = Self { of: FxHashMap::default(), params: params.to_vec(), ranges };
         for shape in shapes_below(graph, root) {
             let quality = qualities.derive(graph, shape);
             qualities.of.insert(shape, quality);
         }
         qualities
+    }
+
+    /// All values that a number can have which is known before the point is.
+    pub(crate) fn range(&self, graph: &Graph, node: NodeId) -> Interval {
+        graph
+            .as_number(node)
+            .map_or_else(|| self.ranges.range(graph, node), |number| Interval::new(number, number))
     }
 
     /// The quality of a shape of the scene.
@@ -181,7 +195,12 @@ impl Qualities {
         let children = graph.shape(shape).children.clone();
         let stated = self.stated_sides(graph, &contract, &children);
         if stated.is_exact() {
-            return Quality { sides: stated, lipschitz: Ok(graph.number(1.0)), everywhere: true };
+            return Quality {
+                sides: stated,
+                lipschitz: Ok(graph.number(1.0)),
+                everywhere: true,
+                within: None,
+            };
         }
         let formula = graph.shape(shape).formula;
         let slopes = self.slopes(graph, shape);
@@ -210,11 +229,36 @@ impl Qualities {
             }
             None => (derived, children_everywhere),
         };
-        let mut sides = stated.stronger(self.structural(graph, &slopes, formula));
+        let lipschitz = known_early(graph, shape, lipschitz);
+        let (lipschitz, everywhere, within) = match lipschitz {
+            Err(Reason::Unbounded(what)) if contract.lipschitz.is_none() => {
+                self.found_within(graph, shape, what)
+            }
+            known => (known, everywhere, None),
+        };
+        let mut sides = stated.stronger(self.structural(graph, &slopes, shape));
         if lipschitz.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l <= 1.0)) {
             sides = sides.stronger(Sides::both(Promise::Bound));
         }
-        Quality { sides, lipschitz, everywhere }
+        Quality { sides, lipschitz, everywhere, within }
+    }
+
+    /// A constant by interval derivatives, that it does not hold everywhere, and the bounds within which it does.
+    fn found_within(
+        &self,
+        graph: &mut Graph,
+        shape: ShapeId,
+        what: &'static str,
+    ) -> (Constant, bool, Option<[NodeId; 2]>) {
+        let bounds = match graph.shape(shape).contract.bounds {
+            Some(bounds) => bounds,
+            None => sdfc_graph::bounds(graph, shape, &self.params),
+        };
+        match steepest_within(graph, shape, bounds, &self.params) {
+            Some(slope) if slope.is_even() => (Ok(graph.number(slope.most)), false, Some(bounds)),
+            Some(_) => (Err(Reason::Uneven(what)), false, None),
+            None => (Err(Reason::Unbounded(what)), false, None),
+        }
     }
 
     /// A stated constant holds for 1-Lipschitz children: times max(1, the largest child's).
@@ -239,10 +283,11 @@ impl Qualities {
     }
 
     /// Promises that follow from the form of a formula alone.
-    fn structural(&self, graph: &mut Graph, slopes: &Slopes, formula: NodeId) -> Sides {
+    fn structural(&self, graph: &mut Graph, slopes: &Slopes, shape: ShapeId) -> Sides {
+        let (formula, level) = (graph.shape(shape).formula, graph.shape(shape).level);
         let mut sides: FxHashMap<NodeId, Sides> = FxHashMap::default();
         for &node in slopes.nodes() {
-            let value = self.structural_node(graph, node, slopes, &sides);
+            let value = self.structural_node(graph, node, level, slopes, &sides);
             sides.insert(node, value);
         }
         sides.get(&formula).copied().unwrap_or(Sides::NONE)
@@ -252,13 +297,16 @@ impl Qualities {
         &self,
         graph: &mut Graph,
         node: NodeId,
+        level: u16,
         slopes: &Slopes,
         sides: &FxHashMap<NodeId, Sides>,
     ) -> Sides {
         let of = |id: NodeId| sides.get(&id).copied().unwrap_or(Sides::NONE);
         match graph.node(node) {
             // Sampled through an isometry, a field keeps its promises.
-            Node::Sample(child, q) if slopes.is_isometry(graph, q) => {
+            Node::Sample(child, q)
+                if is_one(graph, child, level) && slopes.is_isometry(graph, q) =>
+            {
                 self.get(child).map_or(Sides::NONE, |quality| quality.sides)
             }
             Node::Binary(Binary::Min, a, b) if graph.ty(node).width() == 1 => {
@@ -270,14 +318,16 @@ impl Qualities {
                 Sides { outside: both.outside.min(Promise::Bound), inside: both.inside }
             }
             Node::Unary(Unary::Neg, a) => of(a).swapped(),
-            // A parallel surface outwards: exact outside if both sides are.
-            Node::Binary(Binary::Sub, a, r) if graph.as_number(r).is_some_and(|r| r >= 0.0) => {
-                let outside = if of(a).is_exact() { Promise::Exact } else { Promise::None };
-                Sides { outside, inside: Promise::None }
+            // A parallel surface: beyond it the distance is that to the first one, less what lies between.
+            Node::Binary(Binary::Sub | Binary::Add, a, r) if graph.stage(r) < Stage::Point => {
+                let outwards = matches!(graph.node(node), Node::Binary(Binary::Sub, ..));
+                offset(of(a), self.range(graph, r), outwards)
             }
             // A scaled copy: s * a(p / s); a negative factor turns it inside out.
             Node::Binary(Binary::Mul, a, b) => scaled_sample(graph, a, b)
-                .filter(|(factor, _, q)| slopes.is_similarity(graph, *q, *factor))
+                .filter(|(factor, child, q)| {
+                    is_one(graph, *child, level) && slopes.is_similarity(graph, *q, *factor)
+                })
                 .and_then(|(factor, child, _)| Some((factor, self.get(child)?.sides)))
                 .map_or(Sides::NONE, |(factor, sides)| match graph.as_number(factor) {
                     Some(factor) if factor >= 0.0 => sides,
@@ -306,6 +356,34 @@ impl Qualities {
             | Node::MaterialAt(..) => Sides::NONE,
         }
     }
+}
+
+/// Whether a shape is the same wherever a formula of that level samples it.
+pub(crate) fn is_one(graph: &Graph, shape: ShapeId, level: u16) -> bool {
+    graph.shape(shape).level <= level
+}
+
+/// A shape that is built anew at each point may have a constant that depends on the point: of no use.
+fn known_early(graph: &Graph, shape: ShapeId, constant: Constant) -> Constant {
+    match constant {
+        Ok(node) if graph.stage(node) == Stage::Point => {
+            Err(Reason::Varying(graph.shape(shape).definition.clone()))
+        }
+        known => known,
+    }
+}
+
+/// What is left of exactness where a field is lowered (`outwards`) or raised by a number in the range.
+fn offset(sides: Sides, by: Interval, outwards: bool) -> Sides {
+    let (grows, shrinks) = match outwards {
+        true => (by.lo() >= 0.0, by.hi() <= 0.0),
+        false => (by.hi() <= 0.0, by.lo() >= 0.0),
+    };
+    let kept = |promise: Promise, holds: bool| match promise {
+        Promise::Exact if holds => Promise::Exact,
+        Promise::Exact | Promise::Bound | Promise::None => Promise::None,
+    };
+    Sides { outside: kept(sides.outside, grows), inside: kept(sides.inside, shrinks) }
 }
 
 /// Whether the derived constant bears the stated one out, up to rounding.

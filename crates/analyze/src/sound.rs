@@ -77,7 +77,8 @@ impl Pass<'_> {
         let Some(quality) = self.qualities.get(shape) else {
             return self.expander.field_under(self.graph, shape, outer, point);
         };
-        let (everywhere, constant) = (quality.everywhere, quality.lipschitz.clone());
+        let (everywhere, within) = (quality.everywhere, quality.within);
+        let constant = quality.lipschitz.clone();
         // What never exceeds the distance needs no constant.
         let is_bound = constant.is_err() && quality.sides.is_bound();
         if everywhere && (is_bound || self.is_at_most_one(&constant)) {
@@ -91,10 +92,9 @@ impl Pass<'_> {
             // A stated constant trusts that the children's hold wherever the formula samples them.
             self.trust_children(shape, self.graph.shape(shape).formula);
         }
-        let value = match (constant, contract.lipschitz, contract.bounds) {
-            (Ok(constant), Some(_), Some(bounds))
-                if !everywhere && !Rule::Continuation.is_broken() =>
-            {
+        let bounds = within.or(contract.lipschitz.and(contract.bounds));
+        let value = match (constant, contract.lipschitz, bounds) {
+            (Ok(constant), _, Some(bounds)) if !everywhere && !Rule::Continuation.is_broken() => {
                 self.drawn_into(shape, constant, bounds, &points)?
             }
             (constant, Some(_), _) => self.by_constant(shape, constant, &points)?,

@@ -20,7 +20,7 @@ pub struct Uneven {
 pub(crate) fn uneven(graph: &Graph, qualities: &Qualities, root: ShapeId) -> Vec<Uneven> {
     let shapes = shapes_below(graph, root).into_iter();
     let found = shapes.filter_map(|shape| {
-        let cause = cause(graph, qualities, level_set(graph, shape)?)?;
+        let cause = cause(graph, qualities, level_set(graph, qualities, shape)?)?;
         Some(Uneven { shape, cause })
     });
     found.collect()
@@ -43,7 +43,7 @@ struct LevelSet {
 }
 
 /// What a formula `a ± r` or `abs(a) ± r` wants of `a`.
-fn level_set(graph: &Graph, shape: ShapeId) -> Option<LevelSet> {
+fn level_set(graph: &Graph, qualities: &Qualities, shape: ShapeId) -> Option<LevelSet> {
     let (value, offset, sign) = match graph.node(graph.shape(shape).formula) {
         Node::Binary(Binary::Sub, a, r) if graph.stage(r) < Stage::Point => (a, r, 1.0),
         Node::Binary(Binary::Add, a, r) if graph.stage(r) < Stage::Point => (a, r, -1.0),
@@ -63,8 +63,9 @@ fn level_set(graph: &Graph, shape: ShapeId) -> Option<LevelSet> {
         | Node::Sample(..)
         | Node::MaterialAt(..) => return None,
     };
-    let range = graph.range(offset);
-    let (out, within) = if sign > 0.0 { (range.hi, -range.lo) } else { (-range.lo, range.hi) };
+    let range = qualities.range(graph, offset);
+    let (lo, hi) = (range.lo(), range.hi());
+    let (out, within) = if sign > 0.0 { (hi, -lo) } else { (-lo, hi) };
     let skin = folded(graph, value);
     let child = sampled(graph, skin.unwrap_or(value))?;
     let both = skin.is_some();

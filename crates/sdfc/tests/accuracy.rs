@@ -1,4 +1,5 @@
-//! `auto` against the oracle, on every certified scene under `examples`.
+//! `auto` against the oracle, on every scene under `examples`. Certified scenes keep one bound; those that cannot are on a
+//! list, each with its reason and its own.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -10,52 +11,76 @@ use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
 use sdfc::{ChartOptions, OracleOptions, unwatched};
 
-const SIZE: [u32; 2] = [96, 54];
-/// Most of a picture's pixels that the oracle may leave undecided.
-const UNDECIDED: f64 = 1e-3;
-/// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
-const DEPTH: f64 = 0.1;
-/// Error of normals that 99 of 100 pixels of smooth surfaces keep, in degrees.
-const NORMAL: f64 = 1e-3;
-/// Of a scene whose curvature has no limit: that of an involute grows without end towards its base circle, where roundings of
-/// the point turn its normal more the nearer it lies.
-const INVOLUTE: (&str, f64) = ("examples/gear", 5e-3);
+/// What a scene keeps, seen at a size; no pixel is missed, false, out of steps or no number.
+struct Bound {
+    size: [u32; 2],
+    /// Most of a picture's pixels that the oracle may leave undecided, as a share.
+    undecided: f64,
+    /// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
+    depth: f64,
+    /// Error of normals that 99 of 100 pixels of smooth surfaces keep, in degrees.
+    normal: f64,
+}
+
+const CERTIFIED: Bound = Bound { size: [96, 54], undecided: 1e-3, depth: 0.1, normal: 1e-3 };
+
+/// Scenes of which less can be promised, and why.
+const EXCEPTIONS: &[(&str, &str, Bound)] = &[
+    (
+        "examples/mandelbulb",
+        "its field is an estimate without a constant, and intervals over its rounds prove misses alone",
+        Bound { size: [8, 5], undecided: 0.4, ..CERTIFIED },
+    ),
+    (
+        "examples/gear",
+        "the curvature of an involute grows without end towards its base circle, where roundings of the point turn its \
+         normal more the nearer it lies",
+        Bound { normal: 5e-3, ..CERTIFIED },
+    ),
+];
 
 fn main() {
     let without_gpu = testing::without_gpu();
     let trial = |(name, text): (String, String)| {
-        // Of fields that may lie the test `lying` has its own.
-        let uncertified = sdfc::compile(&name, &text).scene.is_some_and(|s| !s.is_certified());
         let title = name.clone();
-        Trial::test(title, move || auto_is_right(&name, &text))
-            .with_ignored_flag(without_gpu || uncertified)
+        Trial::test(title, move || auto_is_right(&name, &text)).with_ignored_flag(without_gpu)
     };
-    let trials = scene_files().into_iter().map(trial).collect();
+    let files = scene_files();
+    for (listed, ..) in EXCEPTIONS {
+        assert!(files.iter().any(|(name, _)| name == listed), "there is no {listed}");
+    }
+    let trials = files.into_iter().map(trial).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
 fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let scene = sdfc::compile(name, text).scene.ok_or("the scene does not compile")?;
+    let exception = EXCEPTIONS.iter().find(|(listed, ..)| *listed == name);
+    if !scene.is_certified() && exception.is_none() {
+        return Err("the scene is not certified, and not on the list of those that are not".into());
+    }
+    let Bound { size, undecided, depth, normal } = exception.map_or(&CERTIFIED, |(.., bound)| bound);
+    let pixels = f64::from(size[0] * size[1]);
     let gpu = Gpu::new()?;
     let methods = vec!["auto".to_owned()];
     let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
-    let options = ChartOptions { size: SIZE, methods, ..once };
+    let options = ChartOptions { size: *size, methods, ..once };
     let chart = scene.chart(name, &gpu, &options, OracleOptions::default(), &mut unwatched)?;
-    let undecided = chart.oracle.undecided as f64 / f64::from(SIZE[0] * SIZE[1]);
-    if undecided > UNDECIDED {
-        return Err(format!("the oracle leaves {undecided:.4} of the pixels undecided").into());
+    let open = chart.oracle.undecided as f64 / pixels;
+    if open > *undecided {
+        return Err(format!("the oracle leaves {open:.4} of the pixels undecided").into());
     }
     let row = chart.methods.first().ok_or("no row for `auto`")?;
-    let Row { missed, false_hits, nan, depth_px, normal_deg, .. } = row;
-    let wrong = [("missed", missed), ("false", false_hits), ("NaN", nan)];
+    let Row { missed, false_hits, capped, nan, depth_px, normal_deg, .. } = row;
+    let wrong =
+        [("missed", missed), ("false", false_hits), ("out of steps", capped), ("NaN", nan)];
     if let Some((what, count)) = wrong.into_iter().find(|(_, count)| **count > 0) {
         return Err(format!("{count} pixels are {what}").into());
     }
-    if depth_px.p99 > DEPTH {
+    if depth_px.p99 > *depth {
         return Err(format!("depths are off by {:.4} of a pixel (p99)", depth_px.p99).into());
     }
-    let normal = if name == INVOLUTE.0 { INVOLUTE.1 } else { NORMAL };
-    if normal_deg.p99 > normal {
+    if normal_deg.p99 > *normal {
         return Err(format!("normals are off by {:.5} degrees (p99)", normal_deg.p99).into());
     }
     Ok(())

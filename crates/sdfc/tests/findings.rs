@@ -65,8 +65,8 @@ fn no_clause_of_the_library_is_refuted() {
 #[test]
 fn what_no_constant_covers_is_a_warning_with_its_reason() {
     let found = findings("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
-    let reason =
-        "`odd` is uncertified: the slope of `*` depends on the point; state it with `lipschitz`";
+    let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no bounds limit it; state \
+         `lipschitz`, or finite `bounds`";
     assert_eq!(found, [("W0602", 3, reason.to_owned())]);
     // What an entry of the library builds for itself is told at the scene's call of it.
     assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);
@@ -85,6 +85,13 @@ fn an_operator_that_wants_a_distance_warns_of_a_bound() {
     assert_eq!(codes("union(sphere(1), box(1)).round(0.1)"), []);
     assert_eq!(codes("(sphere(1) & box(1)).round(0.1)"), [("W0601", 1)]);
     assert_eq!(codes("solid eroded(a: solid) = a(p) + 0.1\neroded(sphere(1) & box(1.5))"), []);
+    // A rounded distance is one outside again.
+    assert_eq!(codes("box(1).round(0.1).round(0.1).round(0.1)"), []);
+    assert_eq!(codes("param r = 0.1 in 0..0.2\nbox(1).round(r).round(r).round(r)"), []);
+    assert_eq!(
+        codes("solid grown(a: solid) = a(p) + 0.1\ngrown(box(1).round(0.2))"),
+        [("W0601", 2)]
+    );
     let skin = "solid skin(a: solid) = abs(a(p)) - 0.1\n";
     assert_eq!(codes(&format!("{skin}skin(box(1))")), []);
     assert_eq!(codes(&format!("{skin}skin(sphere(1) | box(1))")), [("W0601", 2)]);

@@ -154,7 +154,12 @@ const COMPOSED: &[(&str, Promise, Promise)] = &[
     ("box([1, 0.6, 0.8]) & sphere(0.5)", Promise::Bound, Promise::Exact),
     ("box([1, 0.6, 0.8]) - sphere(0.5)", Promise::Bound, Promise::Exact),
     ("torus(major: 0.7, minor: 0.2).round(0.1)", Promise::Exact, Promise::Bound),
-    ("(box([1, 0.6, 0.8]) | sphere(0.5)).round(0.1)", Promise::Bound, Promise::Bound),
+    ("(box([1, 0.6, 0.8]) | sphere(0.5)).round(0.1)", Promise::Exact, Promise::Bound),
+    (
+        "(box([1, 0.6, 0.8]) | sphere(0.5)).round(k - 0.4).round(0.1)",
+        Promise::Exact,
+        Promise::Bound,
+    ),
     ("union(box(0.8), sphere(0.5), blend: smooth(0.3))", Promise::Bound, Promise::Bound),
     ("ellipsoid([0.9, 0.3, 0.5]).rotate(x: 40deg)", Promise::Bound, Promise::Bound),
     ("ellipsoid_fast([0.9, 0.3, 0.5])", Promise::Bound, Promise::Bound),

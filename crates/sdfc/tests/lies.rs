@@ -53,7 +53,7 @@ fn a_jump_of_which_nothing_is_stated() {
 
 #[test]
 fn a_slope_without_end() {
-    told("solid a() = exp(length(p)) - 2\na()", "W0602", "a()");
+    told("solid a() = exp(p.x) - 2 * p.y\na()", "W0602", "a()");
     told("solid a() = p.y - p.x * p.x * p.x\na()", "W0602", "a()");
 }
 

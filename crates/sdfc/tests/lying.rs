@@ -19,7 +19,7 @@ const DEPTH: f64 = 0.1;
 const SCENES: [(&str, &str); 3] = [
     (
         "thin walls, the steeper the farther out",
-        "solid fin() = max(pow(length(p.xy), 4) - 1, (abs(p.z) - 0.03) * (3 + dot(p, p)))
+        "solid fin() = max(abs(p.y) - 1, (abs(p.z) - 0.03) * (3 + dot(p, p)))
          fin().rotate(y: 30deg)
          fin().rotate(y: 80deg).translate(x: 0.4, z: -1)
          camera(eye: [0.5, 1, 4], target: [0, 0, 0], fov: 40deg)",

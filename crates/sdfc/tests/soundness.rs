@@ -8,6 +8,7 @@
 use sdfc::graph::eval::{FrameValues, Tape};
 use sdfc::graph::{Dim, Expander};
 use sdfc::{Scene, compile};
+use sdfc_analyze::Promise;
 
 /// Pairs of points for each scene.
 const PAIRS: usize = 20_000;
@@ -45,6 +46,28 @@ const SCENES: &[(&str, &str)] = &[
         "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * cos(8 * q.x + q.y))",
     ),
     ("ellipsoid", "ellipsoid([1, 0.2, 0.5])"),
+    // No rule gives a constant: interval derivatives over the bounds do.
+    (
+        "product of coordinates",
+        "solid saddle()\n  bounds -0.8 .. 0.8\n  = max(abs(p.y - p.x * p.z) - 0.1, length(p.xz) - 0.7)\nsaddle()",
+    ),
+    (
+        "power by a param",
+        "param k = 2 in 1..3\nsolid lens()\n  bounds -0.8 .. 0.8\n  = k * (dot(p, p) - 0.5)\n\
+         lens() | sphere(0.1).translate(y: 0.8)",
+    ),
+    // What differs from cell to cell is fixed within each.
+    (
+        "copies that vary",
+        "repeat(fn(c) = sphere(0.14 + 0.06 * hash(3, c)).translate(0.3 * (hash3(1, c) - 0.5)), \
+         spacing: 0.8)",
+    ),
+    (
+        "copies turned and sized",
+        "solid pebble(c: vec3)\n  bounds -0.3 .. 0.3\n\
+         = ellipsoid([0.2, 0.1, 0.15] * (0.5 + 0.5 * hash(1, c))).rotate(y: hash(2, c) * 1turn)(p)\n\
+         repeat(fn(c) = pebble(c), spacing: 0.8)",
+    ),
     (
         "own steep field",
         "solid steep(k: number = 3)\n  lipschitz k\n  bounds -1..1\n  = k * (length(p) - 1)\nsteep(4)",
@@ -109,12 +132,26 @@ fn a_blend_that_reaches_past_a_constants_bounds_is_not_certified() {
     assert!(scene("alone", &format!("{own}bar()")).report().uncertified.is_empty());
 }
 
+/// Of a shape that is another at each point no promise of its own is left.
+#[test]
+fn a_shape_that_moves_with_the_point_promises_nothing() {
+    let text = "solid wave()\n  bounds -1 .. 1\n  = sphere(0.5 + 0.4 * sin(5 * p.x))(p)\nwave()";
+    let scene = scene("wave", text);
+    let wave = scene.report().shapes.last().expect("there is a shape");
+    assert_eq!((wave.sides.outside, wave.sides.inside), (Promise::None, Promise::None));
+    assert!(!scene.report().uncertified.is_empty());
+}
+
 #[test]
 fn a_field_without_a_constant_is_told_with_its_reason() {
     let scene = scene("product", "solid odd() = p.x * p.y - 0.1\nodd()");
     let reasons: Vec<String> =
         scene.report().uncertified.iter().map(|found| found.reason.to_string()).collect();
-    assert_eq!(reasons, ["the slope of `*` depends on the point; state it with `lipschitz`"]);
+    assert_eq!(
+        reasons,
+        ["the slope of `*` depends on the point, and no bounds limit it; state \
+         `lipschitz`, or finite `bounds`"]
+    );
 }
 
 fn scene(name: &str, text: &str) -> Scene {

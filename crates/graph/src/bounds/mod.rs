@@ -21,7 +21,7 @@ use rustc_hash::FxHashMap;
 
 use self::level_set::Question;
 use self::zone::Zone;
-use crate::eval::{FrameValues, Interval, Number, direct};
+use crate::eval::{FrameValues, Interval, Number, Tape, direct};
 use crate::{
     Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
 };
@@ -58,11 +58,7 @@ impl Bounds {
     /// Nothing derived yet. Bounds will hold for all values in the params' ranges; a number without a range
     /// can be any.
     pub fn new(params: &[Param]) -> Self {
-        let ranges = FrameValues {
-            params: params.iter().map(|param| [range_of(param); 4]).collect(),
-            time: Interval::ENTIRE,
-            frame: Interval::ENTIRE,
-        };
+        let ranges = FrameValues::ranges(params);
         Self { ranges, memo: Memo::default(), known: FxHashMap::default() }
     }
 
@@ -85,6 +81,23 @@ impl Bounds {
     /// to be less than 2^-22.
     pub fn reach(&mut self, graph: &mut Graph, shape: ShapeId) -> Option<f64> {
         Deriver { graph, ranges: &self.ranges, memo: &mut self.memo }.reach(shape)
+    }
+}
+
+impl FrameValues<Interval> {
+    /// All values that per-frame inputs can have, those of params by their ranges. A number without a range can be any.
+    pub fn ranges(params: &[Param]) -> Self {
+        Self {
+            params: params.iter().map(|param| [range_of(param); 4]).collect(),
+            time: Interval::ENTIRE,
+            frame: Interval::ENTIRE,
+        }
+    }
+
+    /// The values that the first lane of a node can have, whatever the point.
+    pub fn range(&self, graph: &Graph, node: NodeId) -> Interval {
+        let tape = Tape::new(graph, &[node]);
+        tape.map_or(Interval::ENTIRE, |tape| tape.prepare_in(self).scalar([Interval::ENTIRE; 3]))
     }
 }
 

@@ -119,7 +119,7 @@ fn one(
     }
     let Some(field) = Field::new(scene, id) else { return Ok(()) };
     let mut graph = scene.graph.clone();
-    let qualities = Qualities::of_scene(&mut graph, id);
+    let qualities = Qualities::of_scene(&mut graph, id, &scene.params);
     let told = |what: String| format!("`{}` in {text}: {what}", shape.definition);
     let samples = Samples::of(&field).map_err(&told)?;
     let clauses = if is_of(scene, entry, id) { &*entry.clauses } else { &[] };
