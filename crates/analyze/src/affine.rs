@@ -3,11 +3,9 @@
 //! A node is affine if each of its lanes is `c0 x + c1 y + c2 z + t` with coefficients known before
 //! the point is (constants or per-frame). Its Lipschitz constant is the largest singular value of the
 //! matrix. For constant matrices that is computed; for per-frame ones a multiple of a rotation is
-//! recognised at every angle by an identity (see [`crate::polynomial`]).
+//! recognised at every angle by an identity (see [`sdfc_graph::Polynomial`]).
 
-use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
-
-use crate::polynomial::Polynomial;
+use sdfc_graph::{Binary, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square};
 
 /// A coefficient, known before the point is. Numbers stay out of the arena: most are only steps to others.
 #[derive(Clone, Copy, Debug)]
@@ -274,22 +272,8 @@ pub(crate) fn similarity(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
             Some([x?, y?, z?])
         })
         .collect();
-    let rows = rows?;
-    let product = |a: &[Polynomial; 3], b: &[Polynomial; 3]| -> Option<Polynomial> {
-        (0..3).try_fold(Polynomial::zero(), |sum, i| Some(sum.plus(&a[i].times(&b[i])?)))
-    };
-    let norm = product(&rows[0], &rows[0])?;
-    for (i, row) in rows.iter().enumerate() {
-        if product(row, row)? != norm {
-            return None;
-        }
-        for other in &rows[i + 1..] {
-            if product(row, other)? != Polynomial::zero() {
-                return None;
-            }
-        }
-    }
-    if let Some(value) = norm.constant() {
+    let square = common_square(&rows?)?;
+    if let Some(value) = square.constant() {
         return Some(graph.number(value.sqrt()));
     }
     let first = linear.rows()[0].map(|coefficient| coefficient.node(graph));

@@ -17,7 +17,8 @@ pub struct Cost {
 /// The cost of evaluating `roots` together.
 pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
     let mut cost = Cost::default();
-    for node in reachable(graph, roots) {
+    let nodes = reachable(graph, roots);
+    for &node in &nodes {
         cost.nodes += 1;
         if !is_arithmetic(&graph.node(node)) {
             continue;
@@ -29,7 +30,7 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
             Stage::Point => cost.operations += 1,
         }
     }
-    let outside = reachable(graph, roots).into_iter().filter(|&node| graph.loops(node) == 0);
+    let outside = nodes.into_iter().filter(|&node| graph.loops(node) == 0);
     cost.operations += in_loops(graph, outside);
     cost
 }

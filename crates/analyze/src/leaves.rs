@@ -1,7 +1,7 @@
 //! How many leaf shapes one evaluation of a scene's field looks at.
 
 use rustc_hash::FxHashSet;
-use sdfc_graph::{ExpandError, Expander, Graph, Node, NodeId, ShapeId, reachable};
+use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, reachable};
 
 /// Childless shapes at distinct points: a leaf that two samples see at one point counts once, as in the
 /// shader.
@@ -21,23 +21,7 @@ pub(crate) fn count_leaves(
         let formula = graph.shape(shape).formula;
         let samples: Vec<(ShapeId, NodeId)> = reachable(graph, &[formula])
             .into_iter()
-            .filter_map(|node| match graph.node(node) {
-                Node::Sample(child, q) => Some((child, q)),
-                Node::Const(_)
-                | Node::Point(..)
-                | Node::Frame(..)
-                | Node::Unary(..)
-                | Node::Binary(..)
-                | Node::Ternary(..)
-                | Node::Splat(..)
-                | Node::Compose(..)
-                | Node::Swizzle(..)
-                | Node::Transform(..)
-                | Node::Variable(..)
-                | Node::Loop(..)
-                | Node::Element(..)
-                | Node::MaterialAt(..) => None,
-            })
+            .filter_map(|node| graph.as_sample(node))
             .collect();
         if samples.is_empty() {
             leaves += 1;

@@ -20,12 +20,12 @@
 mod affine;
 mod clip;
 mod closed;
+mod components;
 mod cost;
 mod fault;
 mod form;
 mod leaves;
 mod lipschitz;
-mod polynomial;
 mod prepare;
 mod quality;
 mod refute;

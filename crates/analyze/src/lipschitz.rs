@@ -5,12 +5,13 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use sdfc_graph::{
-    Binary, Dim, Graph, LoopId, Node, NodeId, Place, ShapeId, Stage, Ternary, Unary, reachable,
+    Binary, Graph, LoopId, Node, NodeId, Place, Polynomial, ShapeId, Stage, Ternary, Unary,
+    reachable,
 };
 
 use crate::affine::{self, Linear};
+use crate::components::Components;
 use crate::fault::{self, Rule};
-use crate::polynomial::Polynomial;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,12 +71,6 @@ impl std::fmt::Display for Reason {
 /// A constant, or why there is none.
 pub type Constant = Result<NodeId, Reason>;
 
-/// Components of the point as bits, lane by lane; none beyond a node's width.
-type Seen = [u8; 4];
-
-/// All components of the point.
-const ANY: Seen = [7; 4];
-
 /// Rounds of a loop that are followed to find how far a constant grows.
 const MOST_ROUNDS: u32 = 16;
 
@@ -87,8 +82,7 @@ pub(crate) struct Slopes {
     nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
     linear: FxHashMap<NodeId, Linear>,
-    /// Which components of the point each lane of each node looks at.
-    seen: FxHashMap<NodeId, Seen>,
+    components: Components,
 }
 
 impl Slopes {
@@ -106,7 +100,7 @@ impl Slopes {
             nodes: Vec::new(),
             constants: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
             linear: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
-            seen: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
+            components: Components::default(),
         };
         for &node in &nodes {
             if graph.loops(node) == 0 {
@@ -133,7 +127,7 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) {
-        self.seen.insert(node, self.components_seen(graph, node, level));
+        self.components.visit(graph, node, level);
         let lookup = |id: NodeId| self.linear.get(&id).copied();
         let linear = affine::linear_part(graph, node, level, &lookup);
         let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
@@ -271,7 +265,7 @@ impl Slopes {
             Node::Element(..) => Err(Reason::Jump("[ ]")),
             Node::Point(..) => Ok(graph.number(1.0)),
             Node::Unary(op, a) => self.unary(op, a),
-            Node::Binary(Binary::Add | Binary::Sub, a, b) if self.look_apart(&[a, b]) => {
+            Node::Binary(Binary::Add | Binary::Sub, a, b) if self.components.are_apart(&[a, b]) => {
                 let constants = [self.constant(a)?, self.constant(b)?];
                 Ok(hypotenuse(graph, &constants))
             }
@@ -403,7 +397,7 @@ impl Slopes {
         let (x, y) = (self.constant(a)?, self.constant(b)?);
         let (of_a, of_b) = (graph.number(of_a), graph.number(of_b));
         let parts = [graph.mul(x, of_b), graph.mul(y, of_a)];
-        if self.look_apart(&[a, b]) && graph.ty(a).width() == 1 {
+        if self.components.are_apart(&[a, b]) && graph.ty(a).width() == 1 {
             return Ok(hypotenuse(graph, &parts));
         }
         Ok(graph.add(parts[0], parts[1]))
@@ -445,62 +439,10 @@ impl Slopes {
     fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
         let constants: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
-        if self.look_apart(parts) {
+        if self.components.are_apart(parts) {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
         Ok(hypotenuse(graph, &constants))
-    }
-
-    /// Whether no component of the point is looked at by two of the nodes: the squares of their changes then add up
-    /// as those of the components do.
-    fn look_apart(&self, nodes: &[NodeId]) -> bool {
-        let seen = |node: &NodeId| {
-            self.seen.get(node).unwrap_or(&ANY).iter().fold(0, |all, lane| all | lane)
-        };
-        if Rule::Apart.is_broken() {
-            return true;
-        }
-        let counted: u32 = nodes.iter().map(|node| seen(node).count_ones()).sum();
-        counted == nodes.iter().fold(0, |all, node| all | seen(node)).count_ones()
-    }
-
-    /// Lane by lane. What is no number of the point's own formula is taken to look at all of it.
-    fn components_seen(&self, graph: &Graph, node: NodeId, level: u16) -> Seen {
-        let of = |id: NodeId| match affine::is_fixed(graph, id, level) {
-            true => [0; 4],
-            false => self.seen.get(&id).copied().unwrap_or(ANY),
-        };
-        let joined = |ids: &[NodeId]| {
-            ids.iter().fold([0; 4], |all, &id| std::array::from_fn(|i| all[i] | of(id)[i]))
-        };
-        let mixed = |ids: &[NodeId]| [joined(ids).iter().fold(0, |x, y| x | y); 4];
-        match graph.node(node) {
-            Node::Const(_) | Node::Frame(..) => [0; 4],
-            Node::Point(at, Dim::Three) if at == level => [1, 2, 4, 0],
-            Node::Point(at, Dim::Two) if at == level => [1, 2, 0, 0],
-            Node::Unary(Unary::Length | Unary::Normalize, a) => mixed(&[a]),
-            Node::Unary(_, a) => of(a),
-            Node::Binary(Binary::Dot | Binary::Cross, a, b) => mixed(&[a, b]),
-            Node::Binary(_, a, b) => joined(&[a, b]),
-            Node::Ternary(Ternary::Select, [condition, a, b]) => {
-                joined(&[a, b]).map(|seen| seen | of(condition)[0])
-            }
-            Node::Ternary(_, arguments) => joined(&arguments),
-            Node::Splat(_, a) => [of(a)[0]; 4],
-            Node::Compose(ty, parts) => {
-                std::array::from_fn(|i| if i < ty.width() { of(parts[i])[0] } else { 0 })
-            }
-            Node::Swizzle(ty, a, lanes) => {
-                std::array::from_fn(
-                    |i| {
-                        if i < ty.width() { of(a)[usize::from(lanes[i])] } else { 0 }
-                    },
-                )
-            }
-            Node::Transform([a, b, c], v) => mixed(&[a, b, c, v]),
-            Node::Sample(_, q) | Node::MaterialAt(_, q, _) => mixed(&[q]),
-            Node::Point(..) | Node::Variable(..) | Node::Loop(..) | Node::Element(..) => ANY,
-        }
     }
 
     fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {

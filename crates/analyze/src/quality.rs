@@ -223,8 +223,8 @@ impl Qualities {
                 let one =
                     stated.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l >= 1.0));
                 let exact_beyond = outside == Promise::Exact && one;
-                // One that was found from bounds is continued beyond them.
-                let said = contract.everywhere || contract.is_local || contract.bounds.is_none();
+                let said =
+                    contract.everywhere || contract.is_continued || contract.bounds.is_none();
                 (stated, children_everywhere && (confirmed || exact_beyond || said))
             }
             None => (derived, children_everywhere),
@@ -402,13 +402,8 @@ pub(crate) fn scaled_sample(
     a: NodeId,
     b: NodeId,
 ) -> Option<(NodeId, ShapeId, NodeId)> {
-    if let Node::Sample(child, q) = graph.node(b) {
-        return Some((a, child, q));
-    }
-    if let Node::Sample(child, q) = graph.node(a) {
-        return Some((b, child, q));
-    }
-    None
+    let of = |factor, sample| graph.as_sample(sample).map(|(child, q)| (factor, child, q));
+    of(a, b).or_else(|| of(b, a))
 }
 
 /// What the clauses say, their conditions decided; an undecided condition counts as false.

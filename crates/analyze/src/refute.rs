@@ -80,7 +80,8 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
     let mut bounds = Bounds::new(&scene.params);
     let mut found = Vec::new();
     for &shape in shapes.iter().filter(|&&shape| scene.graph.shape(shape).level == 0) {
-        let stated = Qualities::of_scene(&mut graph, shape, &scene.params).stated(&mut graph, shape);
+        let stated =
+            Qualities::of_scene(&mut graph, shape, &scene.params).stated(&mut graph, shape);
         if let Some(refuted) = refuted_hits(scene, shape) {
             found.push(refuted);
             continue;

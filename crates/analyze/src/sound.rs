@@ -8,7 +8,7 @@
 //! ([`sdfc_graph::Graph::continued`]).
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{ExpandError, Expander, Graph, Node, NodeId, ShapeId, Stage};
+use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, Stage};
 
 use crate::fault::Rule;
 use crate::form::{self, Form};
@@ -97,7 +97,10 @@ impl Pass<'_> {
             (Ok(constant), _, Some(bounds)) if !everywhere && !Rule::Continuation.is_broken() => {
                 self.drawn_into(shape, constant, bounds, &points)?
             }
-            (constant, Some(_), _) => self.by_constant(shape, constant, &points)?,
+            (constant, Some(_), _) => {
+                let formula = self.graph.shape(shape).formula;
+                self.by_constant(shape, formula, constant, &points)?
+            }
             (_, None, _) => {
                 let formula = self.graph.shape(shape).formula;
                 let slopes = self.qualities.slopes(self.graph, shape);
@@ -108,15 +111,15 @@ impl Pass<'_> {
         Ok(value)
     }
 
-    /// The whole formula of a shape by its stated constant.
+    /// A node of a shape's formula, or all of it, by a constant.
     fn by_constant(
         &mut self,
         shape: ShapeId,
+        node: NodeId,
         constant: Constant,
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
-        let formula = self.graph.shape(shape).formula;
-        let value = self.expander.node(self.graph, formula, points)?;
+        let value = self.expander.node(self.graph, node, points)?;
         match constant {
             Ok(constant) => {
                 let constant = self.expander.node(self.graph, constant, points)?;
@@ -180,21 +183,11 @@ impl Pass<'_> {
         slopes: &Slopes,
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
-        let value = self.expander.node(self.graph, node, points)?;
         if self.graph.stage(node) < Stage::Point {
-            return Ok(value);
+            return self.expander.node(self.graph, node, points);
         }
         self.trust_children(shape, node);
-        match slopes.constant(node) {
-            Ok(constant) => {
-                let constant = self.expander.node(self.graph, constant, points)?;
-                Ok(self.quotient(shape, value, constant))
-            }
-            Err(reason) => {
-                self.uncertified.push(Uncertified { shape, reason });
-                Ok(value)
-            }
-        }
+        self.by_constant(shape, node, slopes.constant(node), points)
     }
 
     /// `value / max(constant, 1)`
@@ -223,7 +216,7 @@ impl Pass<'_> {
     /// A sampled child whose constant holds only within its bounds.
     fn child_within_bounds(&self, node: NodeId) -> Option<ShapeId> {
         sdfc_graph::reachable(self.graph, &[node]).into_iter().find_map(|id| {
-            let Node::Sample(child, _) = self.graph.node(id) else { return None };
+            let (child, _) = self.graph.as_sample(id)?;
             let quality = self.qualities.get(child)?;
             (!quality.everywhere && quality.lipschitz.is_ok()).then_some(child)
         })

@@ -67,17 +67,13 @@ fn level_set(graph: &Graph, qualities: &Qualities, shape: ShapeId) -> Option<Lev
     let (lo, hi) = (range.lo(), range.hi());
     let (out, within) = if sign > 0.0 { (hi, -lo) } else { (-lo, hi) };
     let skin = folded(graph, value);
-    let child = sampled(graph, skin.unwrap_or(value))?;
+    let (child, _) = graph.as_sample(skin.unwrap_or(value))?;
     let both = skin.is_some();
     Some(LevelSet { child, outside: out > 0.0, inside: within > 0.0 || (both && out > 0.0) })
 }
 
 fn folded(graph: &Graph, node: NodeId) -> Option<NodeId> {
     if let Node::Unary(Unary::Abs, inner) = graph.node(node) { Some(inner) } else { None }
-}
-
-fn sampled(graph: &Graph, node: NodeId) -> Option<ShapeId> {
-    if let Node::Sample(child, _) = graph.node(node) { Some(child) } else { None }
 }
 
 /// The lowest shape on the way down that is not exact although all below it is; by way of those that lack what is wanted,

@@ -6,7 +6,7 @@ use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, rea
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
-use crate::lower::{function_of, store_function, struct_function, value_function};
+use crate::lower::{function_of, store_function, struct_function};
 use crate::names::{check_prefix, make_public};
 use crate::reflect::{Parts, Role};
 use crate::tables::Tables;
@@ -82,7 +82,8 @@ pub fn measured_module(
     }
     if let Some(distance) = distance {
         let types = &mut module.types;
-        let function = value_function(program, &inputs, types, stubs::FIELD, distance)?;
+        let field = Filling::of_point(None, stubs::FIELD, distance);
+        let function = field.function(program, &inputs, types)?;
         link::fill(&mut module, stubs::FIELD, function)?;
     }
     let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };

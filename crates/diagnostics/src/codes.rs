@@ -153,7 +153,7 @@ codes! {
         "A loop known at compile time runs at most 4,096 rounds."
         "go through fewer rounds";
 
-    NOT_YET "E0411" "A part of the language that this version does not have"
+    NOT_YET "E0411" "A ray method that this version does not have"
         "The specification has it, this version of the compiler does not; nothing is drawn in its place."
         "remove it; nothing is drawn in its place";
     TOO_MANY_LIGHTS "E0412" "More lights than are drawn"

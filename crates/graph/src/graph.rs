@@ -83,11 +83,6 @@ impl Graph {
         self.nodes.is_empty()
     }
 
-    /// How many shapes there are.
-    pub fn shape_count(&self) -> usize {
-        self.shapes.len()
-    }
-
     /// The node.
     pub fn node(&self, id: NodeId) -> Node {
         self.nodes[id.index()]
@@ -117,6 +112,11 @@ impl Graph {
     /// The loops whose bodies the node lies in, one bit by depth: those whose variables it depends on.
     pub fn loops(&self, id: NodeId) -> u8 {
         self.facts[id.index()].loops
+    }
+
+    /// The shape and the place of a sample; `None` of any other node.
+    pub fn as_sample(&self, id: NodeId) -> Option<(ShapeId, NodeId)> {
+        if let Node::Sample(shape, place) = self.node(id) { Some((shape, place)) } else { None }
     }
 
     /// The node's type.

@@ -39,7 +39,8 @@
 //! # Limits
 //!
 //! Simplification is exact over the reals, not bit by bit: `x / 3` becomes `x * (1 / 3)`. Expansion stops at
-//! [`NODE_LIMIT`] nodes. No pass recurses on the depth of its input.
+//! [`NODE_LIMIT`] nodes. Passes over nodes do not recurse; those over shapes recurse as deep as shapes are nested, on a stack
+//! that grows.
 
 mod bounds;
 mod build;
@@ -53,6 +54,7 @@ mod graph;
 mod hoist;
 mod ids;
 mod node;
+mod polynomial;
 mod program;
 mod range;
 mod repeat;
@@ -74,6 +76,7 @@ pub use node::{
     Binary, Const, Dim, FrameInput, LoopId, MaterialField, Node, NodeId, Place, ShapeId, Stage,
     TableId, Ternary, Type, Unary,
 };
+pub use polynomial::{Polynomial, common_square};
 pub use program::{Program, Rays};
 pub use range::Range;
 pub use repeat::{Loop, LoopBody, MAX_LOOP_DEPTH, Table};

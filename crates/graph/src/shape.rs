@@ -41,9 +41,10 @@ pub struct Contract {
     pub lipschitz: Option<NodeId>,
     /// Whether the constant is stated to hold beyond the bounds too.
     pub everywhere: bool,
-    /// Whether the constant was found from bounds. The formula is then continued beyond those of the shape
-    /// ([`crate::Graph::continued`]), and the constant holds everywhere.
+    /// Whether the constant was found from bounds, so that it holds within those of the shape.
     pub is_local: bool,
+    /// Whether the formula is continued beyond the bounds ([`crate::Graph::continued`]), so that the constant holds there too.
+    pub is_continued: bool,
     /// Lowest and highest point; `lo > hi` nowhere, infinities allowed.
     pub bounds: Option<[NodeId; 2]>,
 }

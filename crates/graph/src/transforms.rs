@@ -33,11 +33,6 @@ pub struct Rewritten {
 }
 
 impl Rewritten {
-    /// What a node became; `None` for one that no root was computed from.
-    pub fn new_id(&self, old: NodeId) -> Option<NodeId> {
-        self.nodes.get(old)
-    }
-
     /// Names of the old nodes, carried over to the new ones. Constants and points have none.
     pub fn names(
         &self,

@@ -27,9 +27,8 @@
 //!
 //! # Limits
 //!
-//! Those of the parser ([`sdfc_syntax`]), of [`import`] and of elaboration ([`elab`]). Strings
-//! other than choices, soft shadows and the settings that need more than one light bounce are
-//! refused with `E0411`.
+//! Those of the parser ([`sdfc_syntax`]), of [`import`] and of elaboration ([`elab`]). A ray
+//! method that this version does not have is refused with `E0411`.
 
 mod check;
 pub mod elab;

@@ -60,6 +60,9 @@ impl Scene {
                 Some("a bound, which needs no constant".to_owned())
             }
             (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
+            (_, None) if shape.found => {
+                Some("found by interval derivatives, within its bounds".to_owned())
+            }
             (_, None) if shape.divided => Some("divided by its constant".to_owned()),
             (_, None) => None,
         };

@@ -58,6 +58,12 @@ fn a_slope_without_end() {
 }
 
 #[test]
+fn a_constant_below_zero() {
+    told("solid a() lipschitz -1 = p.y\na()", "E0309", "-1");
+    told("fn f(x: number) lipschitz -3 = 2 * x\nsolid a() = f(p.y)\na()", "E0309", "-3");
+}
+
+#[test]
 fn bounds_that_cut_the_surface_off() {
     told("solid a() lipschitz 1 bounds -0.4..0.4 = length(p) - 0.5\na()", "E0502", "-0.4..0.4");
 }

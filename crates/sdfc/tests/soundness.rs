@@ -91,6 +91,45 @@ const SCENES: &[(&str, &str)] = &[
     ),
 ];
 
+/// Scenes that tempt a rule to a constant that is too small. They may have none; one that they have holds.
+const LURES: &[(&str, &str)] = &[
+    (
+        "another shape at each point",
+        "solid wobble(r: length) = sphere(r * (1 + 0.3 * sin(20 * p.y)))(p)\nwobble(0.5)",
+    ),
+    (
+        "a scaled copy of another shape at each point",
+        "solid ball(r: length) = sphere(1 + 0.5 * sin(r))(p)\n\
+         solid wave() = 10 * ball(sin(p.y))(p / 10)\nwave()",
+    ),
+    (
+        "a small coefficient by a large param, stretched",
+        "param k = 1e8 in 1e7..1e9\n\
+         solid long(a: solid) = a([p.x * (k * 1e-7), p.y * (k * 2e-7), p.z * (k * 3e-7)]) / (k * 1e-7)\n\
+         long(sphere(1))",
+    ),
+    (
+        "a small coefficient by a large param, in a wave",
+        "param k = 1e8 in 1e7..1e9\nsolid wave() = p.y * 0.1 - sin(p.x * (k * 1e-7))\nwave()",
+    ),
+    (
+        "a function that holds a loop's state",
+        "fn apply(f: fn(number) -> number, x: number) lipschitz 1 = f(x)\n\
+         solid odd() = iterate(40, p.x, fn(s) = clamp(apply(fn(x: number) = x + 100 * s, p.z), -1, 1))\n\
+         odd()",
+    ),
+    (
+        "a list that holds a loop's state",
+        "fn apply(l: list(number), x: number) lipschitz 1 = x + l[0]\n\
+         solid odd() = iterate(40, p.x, fn(s) = clamp(apply([100 * s], p.z), -1, 1))\nodd()",
+    ),
+    (
+        "a constant from bounds that is less than 1",
+        "solid bowl(a: solid) lipschitz 0.5 * bounds(a).hi.x = 0.25 * p.x * p.x - 0.1 + 0.0001 * a(p)\n\
+         bowl(sphere(1))",
+    ),
+];
+
 #[test]
 fn marched_fields_change_no_faster_than_the_point() {
     for (name, text) in SCENES {
@@ -98,6 +137,18 @@ fn marched_fields_change_no_faster_than_the_point() {
         assert!(scene.report().uncertified.is_empty(), "{name}: {:?}", scene.report().uncertified);
         let steepest = steepest(&scene);
         assert!(steepest <= 1.0 + ROUNDING, "{name}: slope {steepest}");
+    }
+}
+
+#[test]
+fn what_has_no_constant_is_given_none() {
+    for (name, text) in LURES {
+        let scene = scene(name, text);
+        let steepest = steepest(&scene);
+        assert!(
+            !scene.is_certified() || steepest <= 1.0 + ROUNDING,
+            "{name}: certified, with slope {steepest}"
+        );
     }
 }
 
@@ -165,23 +216,43 @@ fn tape(scene: &Scene) -> Tape {
     Tape::new(&scene.program().graph, &[distance]).expect("the program is flat")
 }
 
-/// The largest slope between pairs of points, near ones and far ones.
+/// The largest slope between pairs of points, near ones and far ones, with the params at their defaults and at both ends of
+/// their ranges.
 fn steepest(scene: &Scene) -> f64 {
     let tape = tape(scene);
-    let mut field = tape.prepare::<f64>(&FrameValues::defaults(scene.params()));
-    let mut random = Random(3);
     let mut steepest = 0.0f64;
-    for pair in 0..PAIRS {
-        let p = random.point(4.0);
-        let reach = [1e-3, 0.1, 2.0][pair % 3];
-        let offset = random.point(reach);
-        let q = [p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]];
-        let apart = offset.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if apart > 1e-4 {
-            steepest = steepest.max((field.scalar(p) - field.scalar(q)).abs() / apart);
+    for frame in frames(scene) {
+        let mut field = tape.prepare::<f64>(&frame);
+        let mut random = Random(3);
+        for pair in 0..PAIRS {
+            let p = random.point(4.0);
+            let reach = [1e-3, 0.1, 2.0][pair % 3];
+            let offset = random.point(reach);
+            let q = [p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]];
+            let apart = offset.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if apart > 1e-4 {
+                steepest = steepest.max((field.scalar(p) - field.scalar(q)).abs() / apart);
+            }
         }
     }
     steepest
+}
+
+fn frames(scene: &Scene) -> Vec<FrameValues<f64>> {
+    let defaults = FrameValues::defaults(scene.params());
+    if scene.params().is_empty() {
+        return vec![defaults];
+    }
+    let at = |end: fn([f64; 2]) -> f64| {
+        let mut frame = defaults.clone();
+        for (value, param) in frame.params.iter_mut().zip(scene.params()) {
+            if let Some(range) = param.range {
+                *value = [end(range); 4];
+            }
+        }
+        frame
+    };
+    vec![at(|[lo, _]| lo), at(|[_, hi]| hi), defaults]
 }
 
 /// Xorshift64* (Vigna 2016): repeatable points.

@@ -25,21 +25,6 @@ use uses::{Uses, is_component};
 /// A value within the function.
 type Value = Handle<Expression>;
 
-/// A function of the point that yields one node's value.
-pub(crate) fn value_function(
-    program: &Program,
-    inputs: &Inputs,
-    types: &mut UniqueArena<naga::Type>,
-    name: &str,
-    root: NodeId,
-) -> Result<Function, Error> {
-    let mut lowering = Lowering::new(program, inputs, types, &[root]);
-    lowering.visit_all()?;
-    let value = lowering.value(root)?;
-    let result = types::value(lowering.types, program.graph.ty(root));
-    Ok(lowering.finish(name, value, result))
-}
-
 /// A function of several points, by level, that yields one node's value.
 pub(crate) fn function_of(
     program: &Program,

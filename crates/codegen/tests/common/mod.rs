@@ -131,14 +131,13 @@ pub fn twisted() -> Program {
     let mut graph = Graph::new();
     let p = point(&mut graph);
     let rate = graph.number(2.0);
-    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(p, lane));
-    let angle = graph.mul(y, rate);
+    let height = graph.component(p, 1);
+    let angle = graph.mul(height, rate);
     let (sin, cos) = (graph.unary(Unary::Sin, angle), graph.unary(Unary::Cos, angle));
     let (zero, one) = (graph.number(0.0), graph.number(1.0));
     let minus = graph.neg(sin);
     let columns =
         [[cos, zero, minus], [zero, one, zero], [sin, zero, cos]].map(|c| graph.compose(&c));
-    let _ = (x, z);
     let turned = graph.transform(columns, p);
     let half = graph.constant(Type::Vec3, &[0.5, 1.0, 0.2]);
     let folded = graph.abs(turned);

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Deriver;
 use super::ends::Ends;
 use super::zone::Zone;
-use crate::eval::{FrameValues, evaluate_frame};
+use crate::polynomial::{Polynomial, common_square};
 use crate::{Binary, Dim, Node, NodeId, Unary, reachable};
 
 /// `slopes · p + offset`, in scalar nodes that do not depend on p.
@@ -221,52 +221,15 @@ impl Deriver<'_> {
         self.is_rigid(rows).then(|| (0..n).map(transposed).collect())
     }
 
-    /// Whether the rows are orthonormal whatever the params are. Their products are made of sums, products,
-    /// sines and cosines only, so they are analytic: equal to the identity at a few places that
-    /// nobody chose is equal everywhere.
-    fn is_rigid(&mut self, rows: &[Form]) -> bool {
-        let slopes: Vec<NodeId> = rows.iter().flat_map(|row| row.slopes).collect();
-        if !reachable(self.graph, &slopes).into_iter().all(|id| self.is_analytic(id)) {
-            return false;
-        }
-        let mut seed = 0x9e37_79b9_u32;
-        let mut next = || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(seed >> 8) / f64::from(1 << 22) - 2.0
+    /// Whether the rows are orthonormal whatever the params are.
+    fn is_rigid(&self, rows: &[Form]) -> bool {
+        let polynomials = |row: &Form| {
+            let [x, y, z] = row.slopes.map(|slope| Polynomial::of(self.graph, slope));
+            Some([x?, y?, z?])
         };
-        (0..6).all(|_| {
-            let params = self.ranges.params.iter().map(|_| [next(), next(), next(), next()]);
-            let frame = FrameValues { params: params.collect(), time: next(), frame: next() };
-            let values = evaluate_frame(self.graph, &slopes, &frame);
-            let entry = |i: usize, j: usize| values[3 * i + j][0];
-            let n = rows.len();
-            (0..n).all(|i| {
-                (0..n).all(|j| {
-                    let dot: f64 = (0..3).map(|k| entry(i, k) * entry(j, k)).sum();
-                    (dot - f64::from(u8::from(i == j))).abs() < 1e-9
-                })
-            })
-        })
-    }
-
-    fn is_analytic(&self, id: NodeId) -> bool {
-        match self.graph.node(id) {
-            Node::Const(_)
-            | Node::Frame(..)
-            | Node::Splat(..)
-            | Node::Compose(..)
-            | Node::Swizzle(..)
-            | Node::Transform(..) => true,
-            Node::Unary(op, _) => matches!(op, Unary::Neg | Unary::Sin | Unary::Cos),
-            Node::Binary(op, ..) => matches!(op, Binary::Add | Binary::Sub | Binary::Mul),
-            Node::Point(..)
-            | Node::Ternary(..)
-            | Node::Variable(..)
-            | Node::Loop(..)
-            | Node::Element(..)
-            | Node::Sample(..)
-            | Node::MaterialAt(..) => false,
-        }
+        let rows: Option<Vec<_>> = rows.iter().map(polynomials).collect();
+        let square = rows.and_then(|rows| common_square(&rows)?.constant());
+        square.is_some_and(|square| (square - 1.0).abs() < 1e-12)
     }
 
     /// The box around the target, taken back by the offsets and through a linear map.

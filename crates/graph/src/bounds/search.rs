@@ -100,6 +100,9 @@ impl Work<'_> {
             return;
         }
         for power in (NEAREST..=FARTHEST).step_by(2) {
+            if self.budget == 0 {
+                return;
+            }
             let place = 2_f64.powi(power);
             let (slab, face) = match side {
                 Side::Lower => ([lo, (-place).min(hi)], [-place, hi.max(-place)]),

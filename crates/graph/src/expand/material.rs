@@ -25,7 +25,7 @@ pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Fields {
         MaterialRule::Stated(fields) => return fields,
         MaterialRule::Shares(rule) => rule,
     };
-    let order = reachable_where(graph, &[rule], |id| !is_sample(graph, id));
+    let order = reachable_where(graph, &[rule], |id| graph.as_sample(id).is_none());
     let samples = samples_in_order(graph, shape, &order);
     match samples[..] {
         [] => unpainted(graph),
@@ -44,10 +44,6 @@ fn unpainted(graph: &mut Graph) -> Fields {
     MaterialField::ALL.map(|field| graph.constant(field.ty(), &field.unpainted()))
 }
 
-fn is_sample(graph: &Graph, id: NodeId) -> bool {
-    matches!(graph.node(id), Node::Sample(..))
-}
-
 /// The rule's samples: by the order in which the formula first uses the shapes, then by age.
 fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<NodeId> {
     let children = &graph.shape(shape).children;
@@ -55,7 +51,7 @@ fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<Node
         children.iter().enumerate().rev().map(|(place, &child)| (child, place)).collect();
     let mut samples: Vec<(usize, NodeId)> = Vec::new();
     for &id in order {
-        if let Node::Sample(child, _) = graph.node(id) {
+        if let Some((child, _)) = graph.as_sample(id) {
             samples.push((place.get(&child).copied().unwrap_or(children.len()), id));
         }
     }
@@ -64,7 +60,7 @@ fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<Node
 }
 
 fn material_of(graph: &mut Graph, sample: NodeId) -> Fields {
-    let Node::Sample(shape, point) = graph.node(sample) else { return unpainted(graph) };
+    let Some((shape, point)) = graph.as_sample(sample) else { return unpainted(graph) };
     MaterialField::ALL.map(|field| graph.material_at(shape, point, field))
 }
 
@@ -128,7 +124,7 @@ impl<'a> Selection<'a> {
         let mut live = IdSet::default();
         for &id in order {
             let mut arguments = graph.arguments(id);
-            if is_sample(graph, id) || arguments.any(|argument| live.contains(argument)) {
+            if graph.as_sample(id).is_some() || arguments.any(|argument| live.contains(argument)) {
                 live.insert(id);
             }
         }

@@ -5,10 +5,6 @@ use crate::{Binary, Graph, Node, NodeId, Type, Unary};
 
 impl Graph {
     pub(super) fn simplified_compose(&mut self, parts: &[NodeId]) -> Option<NodeId> {
-        let ty = Type::of_width(parts.len())?;
-        if parts.iter().all(|&part| part == parts[0]) {
-            return Some(self.splat(ty, parts[0]));
-        }
         self.gathered(parts).or_else(|| self.vectorised(parts))
     }
 

@@ -133,12 +133,12 @@ impl<'p> Elaborator<'p> {
             match argument {
                 Value::Node(node) if self.graph.stage(node) < Stage::Point => {}
                 Value::Node(node) => varying.push(node),
-                other if other.levels(&self.graph) > 0 => return Ok(()),
+                other if other.moves(&self.graph) => return Ok(()),
                 _ => {}
             }
         }
         let outer = std::mem::replace(&mut self.in_clause, true);
-        let constant = self.number(env, stated);
+        let constant = self.stated_constant(env, stated);
         self.in_clause = outer;
         let constant = constant?;
         let known = match self.graph.stage(constant) {
@@ -270,7 +270,7 @@ impl<'p> Elaborator<'p> {
 
     /// A stated relation that is false: always, or somewhere within the params' ranges. Nothing
     /// is said of what depends on the point.
-    fn refute(&self, holds: NodeId) -> Option<super::probe::Refutation> {
+    pub(super) fn refute(&self, holds: NodeId) -> Option<super::probe::Refutation> {
         match self.graph.stage(holds) {
             Stage::Const | Stage::Frame => self.probe(holds),
             Stage::Point => None,

@@ -171,7 +171,8 @@ impl<'p> Elaborator<'p> {
         let next = self.closures.len() as u32;
         let id = *self.closures.entry(key).or_insert(next);
         let levels = highest(captures.iter().map(|value| value.levels(&self.graph)));
-        Value::Closure(Rc::new(Closure { id, code, captures, levels }))
+        let moves = captures.iter().any(|value| value.moves(&self.graph));
+        Value::Closure(Rc::new(Closure { id, code, captures, levels, moves }))
     }
 
     fn global(&mut self, id: GlobalId) -> Outcome<Value<'p>> {

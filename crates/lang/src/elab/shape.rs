@@ -6,7 +6,7 @@ use sdfc_graph::{
     Binary, Contract, Dim, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
 };
 
-use super::report::Frame;
+use super::report::{Frame, show_lanes};
 use super::value::{Value, highest};
 use super::{Declared, DeclaredPromise, Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site};
 use crate::hir::{self, Expr, Promise, ShapeDef, ShapeDefId};
@@ -131,7 +131,7 @@ impl<'p> Elaborator<'p> {
 
     /// The bounds beyond which a formula is to be continued, and how fast.
     fn continuation(&mut self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
-        let constant = contract.lipschitz.filter(|_| contract.is_local)?;
+        let constant = contract.lipschitz.filter(|_| contract.is_continued)?;
         let bounds = contract.bounds.filter(|_| self.graph.is_finite(constant))?;
         // A field that is nowhere above the distance goes on as one.
         let is_bound = contract.outside != SidePromise::default();
@@ -201,12 +201,12 @@ impl<'p> Elaborator<'p> {
         }
         if let Some(stated) = &definition.lipschitz {
             self.asked_bounds = false;
-            let constant = self.number(env, stated)?;
-            let constant = self.known(constant, f64::INFINITY);
+            let constant = self.stated_constant(env, stated)?;
             contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
             contract.everywhere = definition.everywhere;
             let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
-            contract.is_local = self.asked_bounds && steep && !definition.everywhere;
+            contract.is_local = self.asked_bounds && !definition.everywhere;
+            contract.is_continued = contract.is_local && steep;
         }
         if let Some(stated) = &definition.bounds {
             let Value::Range(lo, hi) = self.eval(env, stated)? else {
@@ -244,6 +244,25 @@ impl<'p> Elaborator<'p> {
             });
         }
         Ok(())
+    }
+
+    /// A stated Lipschitz constant, infinite where it is no number. One below 0 is refused.
+    pub(super) fn stated_constant(
+        &mut self,
+        env: &mut Env<'p>,
+        stated: &'p Expr,
+    ) -> Outcome<NodeId> {
+        let constant = self.number(env, stated)?;
+        let constant = self.known(constant, f64::INFINITY);
+        let nought = self.graph.number(0.0);
+        let holds = self.graph.le(nought, constant);
+        let Some(found) = self.refute(holds) else { return Ok(constant) };
+        let value = self.value_at(constant, &found).map_or("…".to_owned(), |v| show_lanes(&v));
+        let can_be = if found.inputs.is_empty() { "is" } else { "can be" };
+        let message = format!("this Lipschitz constant {can_be} {value}, and none is below 0");
+        let help = "it is the most by which the value changes where its argument changes by 1";
+        Err(self
+            .report(Diagnostic::error(ErrorCode::OUT_OF_RANGE, stated.span, message).help(help)))
     }
 
     fn is_early(&self, node: NodeId) -> bool {

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId};
+use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId, Stage};
 
 use crate::hir::{FnId, Lambda};
 
@@ -33,6 +33,8 @@ pub(super) struct Closure<'p> {
     pub captures: Vec<Value<'p>>,
     /// The highest level among the captures.
     pub levels: u16,
+    /// Whether a capture moves, see [`Value::moves`].
+    pub moves: bool,
 }
 
 /// What a call of a closure runs.
@@ -77,6 +79,24 @@ impl Value<'_> {
             Self::Material(fields) => highest(fields.iter().map(|&field| graph.levels(field))),
             Self::Shadow(Shadow::Soft(node)) => graph.levels(*node),
             Self::Shadow(Shadow::Off | Shadow::Hard) => 0,
+        }
+    }
+
+    /// Whether the value changes with a point or from one round of a loop to the next.
+    pub(super) fn moves(&self, graph: &Graph) -> bool {
+        let varies = |node: &NodeId| graph.stage(*node) == Stage::Point;
+        match self {
+            Self::Node(node) | Self::Choice(node, _) => varies(node),
+            Self::Text(_) => false,
+            Self::Range(lo, hi) => varies(lo) || varies(hi),
+            Self::List(items) => items.iter().any(|item| item.moves(graph)),
+            Self::Closure(closure) => closure.moves,
+            Self::Shape(id) => {
+                graph.shape(*id).level > 0 || graph.loops(graph.shape(*id).formula) > 0
+            }
+            Self::Material(fields) => fields.iter().any(varies),
+            Self::Shadow(Shadow::Soft(node)) => varies(node),
+            Self::Shadow(Shadow::Off | Shadow::Hard) => false,
         }
     }
 

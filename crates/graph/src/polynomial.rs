@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use sdfc_graph::{Binary, Graph, Node, NodeId, Unary};
+use crate::{Binary, Graph, Node, NodeId, Unary};
 
 /// More terms than any product of three turns needs; beyond it the question is given up.
 const MAX_TERMS: usize = 256;
@@ -24,34 +24,65 @@ enum Atom {
 /// Atoms with their powers, in order.
 type Monomial = BTreeMap<Atom, u32>;
 
+/// What rounding may leave of numbers that cancel, relative to their magnitudes.
+const ROUNDING: f64 = 1e-12;
+
+/// A coefficient, and the magnitudes of all that was summed into it.
+#[derive(Clone, Copy, Debug)]
+struct Coefficient {
+    value: f64,
+    size: f64,
+}
+
+impl Coefficient {
+    fn new(value: f64) -> Self {
+        Self { value, size: value.abs() }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, size: self.size + other.size }
+    }
+
+    fn times(self, other: Self) -> Self {
+        Self { value: self.value * other.value, size: self.size * other.size }
+    }
+
+    /// Whether it is 0 but for rounding. Params can be as large as they like, so no coefficient is small by itself.
+    fn is_zero(self) -> bool {
+        self.value.abs() <= ROUNDING * self.size
+    }
+}
+
 /// A sum of monomials with coefficients; in lowest terms, so equal polynomials compare equal.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Polynomial {
-    terms: BTreeMap<Monomial, f64>,
+pub struct Polynomial {
+    terms: BTreeMap<Monomial, Coefficient>,
 }
 
 impl PartialEq for Polynomial {
     /// Equal up to rounding of the coefficients.
     fn eq(&self, other: &Self) -> bool {
-        self.plus(&other.times_number(-1.0)).terms.values().all(|c| c.abs() < 1e-12)
+        self.plus(&other.times_number(-1.0)).terms.values().all(|c| c.is_zero())
     }
 }
 
 impl Polynomial {
-    pub(crate) fn zero() -> Self {
+    /// The polynomial without terms.
+    pub fn zero() -> Self {
         Self::default()
     }
 
     fn number(value: f64) -> Self {
-        Self { terms: BTreeMap::from([(Monomial::new(), value)]) }
+        Self { terms: BTreeMap::from([(Monomial::new(), Coefficient::new(value))]) }
     }
 
     fn atom(atom: Atom) -> Self {
-        Self { terms: BTreeMap::from([(Monomial::from([(atom, 1)]), 1.0)]) }
+        let one = Coefficient::new(1.0);
+        Self { terms: BTreeMap::from([(Monomial::from([(atom, 1)]), one)]) }
     }
 
     /// The polynomial of a scalar node; `None` if it grows too large.
-    pub(crate) fn of(graph: &Graph, node: NodeId) -> Option<Self> {
+    pub fn of(graph: &Graph, node: NodeId) -> Option<Self> {
         Self::of_within(graph, node, MAX_DEPTH, &mut { MAX_VISITS })
     }
 
@@ -87,34 +118,37 @@ impl Polynomial {
     }
 
     /// The number, if there is no atom left.
-    pub(crate) fn constant(&self) -> Option<f64> {
+    pub fn constant(&self) -> Option<f64> {
         let mut value = 0.0;
         for (monomial, coefficient) in &self.terms {
             if monomial.is_empty() {
-                value = *coefficient;
-            } else if coefficient.abs() >= 1e-12 {
+                value = coefficient.value;
+            } else if !coefficient.is_zero() {
                 return None;
             }
         }
         Some(value)
     }
 
-    pub(crate) fn plus(&self, other: &Self) -> Self {
+    /// The sum.
+    pub fn plus(&self, other: &Self) -> Self {
         let mut sum = self.clone();
         for (monomial, coefficient) in &other.terms {
-            *sum.terms.entry(monomial.clone()).or_insert(0.0) += coefficient;
+            let place = sum.terms.entry(monomial.clone()).or_insert(Coefficient::new(0.0));
+            *place = place.plus(*coefficient);
         }
-        sum.terms.retain(|_, coefficient| *coefficient != 0.0);
+        sum.terms.retain(|_, coefficient| coefficient.value != 0.0);
         sum
     }
 
     fn times_number(&self, factor: f64) -> Self {
-        let terms = self.terms.iter().map(|(m, c)| (m.clone(), c * factor)).collect();
+        let factor = Coefficient::new(factor);
+        let terms = self.terms.iter().map(|(m, c)| (m.clone(), c.times(factor))).collect();
         Self { terms }
     }
 
     /// The product, or `None` beyond [`MAX_TERMS`].
-    pub(crate) fn times(&self, other: &Self) -> Option<Self> {
+    pub fn times(&self, other: &Self) -> Option<Self> {
         let mut product = Self::zero();
         for (a, x) in &self.terms {
             for (b, y) in &other.terms {
@@ -122,7 +156,7 @@ impl Polynomial {
                 for (atom, power) in b {
                     *monomial.entry(*atom).or_insert(0) += power;
                 }
-                product = product.plus(&reduced(monomial, x * y)?);
+                product = product.plus(&reduced(monomial, x.times(*y))?);
                 if product.terms.len() > MAX_TERMS {
                     return None;
                 }
@@ -132,8 +166,28 @@ impl Polynomial {
     }
 }
 
+/// The squared length of the rows of a matrix, if all have the same and any two are orthogonal, whatever the values of the
+/// atoms: the square of the factor of a similarity.
+pub fn common_square(rows: &[[Polynomial; 3]]) -> Option<Polynomial> {
+    let product = |a: &[Polynomial; 3], b: &[Polynomial; 3]| -> Option<Polynomial> {
+        (0..3).try_fold(Polynomial::zero(), |sum, i| Some(sum.plus(&a[i].times(&b[i])?)))
+    };
+    let square = product(rows.first()?, rows.first()?)?;
+    for (i, row) in rows.iter().enumerate() {
+        if product(row, row)? != square {
+            return None;
+        }
+        for other in &rows[i + 1..] {
+            if product(row, other)? != Polynomial::zero() {
+                return None;
+            }
+        }
+    }
+    Some(square)
+}
+
 /// The monomial with every sin² replaced by 1 - cos².
-fn reduced(monomial: Monomial, coefficient: f64) -> Option<Polynomial> {
+fn reduced(monomial: Monomial, coefficient: Coefficient) -> Option<Polynomial> {
     let square = monomial.iter().find_map(|(atom, power)| match atom {
         Atom::Sin(angle) if *power >= 2 => Some(*angle),
         Atom::Sin(_) | Atom::Cos(_) | Atom::Other(_) => None,
@@ -149,13 +203,16 @@ fn reduced(monomial: Monomial, coefficient: f64) -> Option<Polynomial> {
     }
     let mut with_cos = rest.clone();
     *with_cos.entry(Atom::Cos(angle)).or_insert(0) += 2;
-    Some(reduced(rest, coefficient)?.plus(&reduced(with_cos, -coefficient)?))
+    Some(
+        reduced(rest, coefficient)?
+            .plus(&reduced(with_cos, coefficient.times(Coefficient::new(-1.0)))?),
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sdfc_graph::{FrameInput, Type};
+    use crate::{FrameInput, Type};
 
     #[test]
     fn coefficients_that_share_nodes_without_end_are_given_up() {
@@ -166,6 +223,20 @@ mod tests {
             (a, b) = (graph.add(a, b), graph.sub(a, b));
         }
         assert!(Polynomial::of(&graph, a).is_none());
+    }
+
+    #[test]
+    fn a_small_coefficient_is_not_nothing() {
+        let mut graph = Graph::new();
+        let k = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+        let small = graph.number(1e-10);
+        let shear = graph.mul(small, k);
+        let shear = Polynomial::of(&graph, shear).unwrap();
+        assert!(shear != Polynomial::zero());
+        let one = Polynomial::number(1.0);
+        let rows = [[one.clone(), shear], [Polynomial::zero(), one]]
+            .map(|[x, y]| [x, y, Polynomial::zero()]);
+        assert!(common_square(&rows).is_none());
     }
 
     #[test]
