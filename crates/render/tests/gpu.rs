@@ -77,9 +77,10 @@ fn gpu_and_cpu_agree() -> Outcome {
         common::occluded(1.0),
         common::parallel(4.0),
     ] {
+        let program = program.enclosed(true, false);
         let view = common::view(&program, size);
         let scene = CpuScene::new(&program)?;
-        for method in ["sphere", "auto"] {
+        for method in ["sphere", "auto", "interval"] {
             let tiles = TileSize::default();
             let on_gpu = draw(&gpu, &program, &frame, size, method, tiles)?.image;
             let options = RenderOptions::default();
@@ -88,9 +89,13 @@ fn gpu_and_cpu_agree() -> Outcome {
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
             assert!(close.color <= 1 && close.mean_color < 0.1, "{method}: {close:?}");
             assert!(close.compared > 3000, "{method}: {close:?}");
-            // Rounding ends a few rays a step sooner or later.
+            // Rounding ends a few rays a step sooner or later; it moves the cuts of `interval`, so that of its many
+            // stretches one more or less is looked at.
+            let slack = |count: u32| if method == "interval" { 1 + count / 16 } else { 0 };
             let pairs = on_gpu.pixels().iter().zip(on_cpu.pixels());
-            let differing = pairs.filter(|(one, other)| one.evaluations != other.evaluations);
+            let differing = pairs.filter(|(one, other)| {
+                one.evaluations.abs_diff(other.evaluations) > slack(one.evaluations)
+            });
             assert!(differing.count() < 40, "{method}");
 
             let double = scene.depth_map::<f64>(&view, &frame, method)?;

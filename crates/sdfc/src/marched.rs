@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use sdfc_analyze::cost;
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{Node, NodeId, Program, reachable};
+use sdfc_graph::{NodeId, Program};
 use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
 use sdfc_render::{CpuScene, HIT, MISS, View};
 
@@ -45,10 +45,11 @@ impl Scene {
             }
             Some(_) | None => (name, None),
         };
-        let method = self.marched_by(known).to_owned();
+        let method = self.marched_by(known);
+        let program = with_stretches(self.drawn(), method);
         let notes: Vec<String> = other.into_iter().chain(self.why_marched_by(known)).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
-        Marched { program: Cow::Borrowed(self.drawn()), method, note }
+        Marched { program, method: method.to_owned(), note }
     }
 
     /// The ray method that marches where one is asked for by name: `auto` is `interval` where the field may exceed the
@@ -92,15 +93,7 @@ impl Scene {
     fn intervals_end(&self) -> bool {
         // A scene of which no ray can be tried has no picture either.
         let tried = || self.capped_by_intervals().unwrap_or(0) <= MOST_CAPPED;
-        *self.intervals_end.get_or_init(|| !self.has_loop() && tried())
-    }
-
-    /// The rounds of a loop widen bounds beyond what numbers of 32 bits hold; the CPU's, which rays are tried
-    /// with, hold more.
-    fn has_loop(&self) -> bool {
-        let (graph, distance) = (&self.program.graph, self.program.distance);
-        let nodes = reachable(graph, distance.as_slice());
-        nodes.into_iter().any(|node| matches!(graph.node(node), Node::Loop(..)))
+        *self.intervals_end.get_or_init(tried)
     }
 
     /// How many of a few rays run out of steps.
@@ -108,7 +101,8 @@ impl Scene {
         let frame = FrameValues::defaults(self.params());
         let view = self.view(&frame, TRIED)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
-        let depths = CpuScene::new(self.drawn())?.depth_map::<f64>(&view, &frame, UNCERTIFIED)?;
+        let program = with_stretches(self.drawn(), UNCERTIFIED);
+        let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, UNCERTIFIED)?;
         let ended = |status: u32| status == HIT || status == MISS;
         Ok(depths.pixels().iter().filter(|pixel| !ended(pixel.status)).count())
     }

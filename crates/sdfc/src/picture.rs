@@ -126,7 +126,7 @@ impl Scene {
                 (engine, compile, None)
             }
             Err(note) => {
-                let scene = CpuScene::new(self.drawn())?;
+                let scene = CpuScene::new(&program)?;
                 (Engine::Cpu(Box::new(scene)), cpu_times(start), note)
             }
         };

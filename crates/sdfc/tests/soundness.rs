@@ -95,11 +95,11 @@ const SCENES: &[(&str, &str)] = &[
 const LURES: &[(&str, &str)] = &[
     (
         "another shape at each point",
-        "solid wobble(r: length) = sphere(r * (1 + 0.3 * sin(20 * p.y)))(p)\nwobble(0.5)",
+        "solid wobble(r: length) = {\n let s = sphere(r * (1 + 0.3 * sin(20 * p.y)))\n s(p)\n}\nwobble(0.5)",
     ),
     (
         "a scaled copy of another shape at each point",
-        "solid ball(r: length) = sphere(1 + 0.5 * sin(r))(p)\n\
+        "solid ball(r: length) = {\n let s = sphere(1 + 0.5 * sin(r))\n s(p)\n}\n\
          solid wave() = 10 * ball(sin(p.y))(p / 10)\nwave()",
     ),
     (
@@ -120,7 +120,7 @@ const LURES: &[(&str, &str)] = &[
     ),
     (
         "a list that holds a loop's state",
-        "fn apply(l: list(number), x: number) lipschitz 1 = x + l[0]\n\
+        "fn apply(l: [number], x: number) lipschitz 1 = x + l[0]\n\
          solid odd() = iterate(40, p.x, fn(s) = clamp(apply([100 * s], p.z), -1, 1))\nodd()",
     ),
     (

@@ -18,7 +18,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use sdfc_graph::{
     Program,
-    eval::{Evaluator, FrameValues, Interval, Packet, Tape, TapeError},
+    eval::{Evaluator, FrameValues, Packet, Tape, TapeError},
 };
 use sdfc_march::PixelBlock;
 
@@ -49,6 +49,8 @@ pub struct CpuScene {
     field: Tape,
     /// What is known of rays, for methods that ask.
     ahead: Option<AheadTapes>,
+    /// Bounds of the field between two points, for the method that asks.
+    range: Option<Tape>,
     gradient: Option<Tape>,
     material: Option<Tape>,
 }
@@ -67,9 +69,11 @@ impl CpuScene {
         let distance = program.distance.ok_or(RenderError::NothingDrawn)?;
         let refused = |error: TapeError| RenderError::Evaluator(error.to_string());
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
+        let range = program.range.map(|range| Tape::of_rays(&program.graph, &[range]));
         Ok(Self {
             field: tape(&[distance])?,
             ahead: AheadTapes::new(program).map_err(refused)?,
+            range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: program.material.map(|fields| tape(&fields)).transpose()?,
         })
@@ -80,7 +84,7 @@ impl CpuScene {
     /// # Errors
     ///
     /// [`RenderError::MethodNotOnCpu`], [`RenderError::Size`], [`RenderError::OutOfMemory`],
-    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient.
+    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient, or for `interval` no range.
     pub fn render(
         &self,
         view: &View,
@@ -108,7 +112,7 @@ impl CpuScene {
         if self.gradient.is_none() {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
-        let method = Method::of_name(method)?;
+        let method = self.method(method)?;
         self.draw(view, options, progress, &self.wave::<T>(view, frame, method, true))
     }
 
@@ -123,8 +127,16 @@ impl CpuScene {
         frame: &FrameValues,
         method: &str,
     ) -> Result<Image, RenderError> {
-        let wave = self.wave::<T>(view, frame, Method::of_name(method)?, false);
+        let wave = self.wave::<T>(view, frame, self.method(method)?, false);
         Ok(self.draw(view, &RenderOptions::default(), &mut unwatched, &wave)?.image)
+    }
+
+    fn method(&self, name: &str) -> Result<Method, RenderError> {
+        let method = Method::of_name(name)?;
+        if method == Method::Interval && self.range.is_none() {
+            return Err(RenderError::Evaluator("the program has no range".to_owned()));
+        }
+        Ok(method)
     }
 
     fn wave<'a, T: Real>(
@@ -145,7 +157,7 @@ impl CpuScene {
             },
             field: prepare(&self.field),
             ahead: self.ahead.as_ref().filter(|_| method.looks_ahead()).map(|a| a.prepare(frame)),
-            range: self.field.prepare(frame),
+            range: self.range.as_ref().map(|tape| tape.prepare(frame)),
             gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
             material: self.material.as_ref().filter(|_| shaded).map(prepare),
         }
@@ -200,8 +212,8 @@ struct Wave<'a, T> {
     limits: Limits<T>,
     field: Batch<'a, T>,
     ahead: Option<AheadBatch<'a, T>>,
-    /// The field over boxes.
-    range: Evaluator<'a, Interval>,
+    /// Bounds of the field between two points.
+    range: Option<Evaluator<'a, T>>,
     /// `None`: depths only.
     gradient: Option<Batch<'a, T>>,
     material: Option<Batch<'a, T>>,
@@ -275,7 +287,7 @@ impl<T: Real> Wave<'_, T> {
         let rays: Vec<_> = rays.iter().copied().zip(known).collect();
         let marched = self.ahead.as_mut().filter(|_| !watched).and_then(|a| a.marched.as_mut());
         let limits = Limits { watched, ..self.limits };
-        trace(marched.unwrap_or(&mut self.field), &mut self.range, &rays, &limits)
+        trace(marched.unwrap_or(&mut self.field), self.range.as_mut(), &rays, &limits)
     }
 
     /// Adds what lies behind where sights met nothing, and what lights what they met.

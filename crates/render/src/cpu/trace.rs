@@ -4,7 +4,7 @@ mod interval;
 
 use std::ops::{Add, Mul, Sub};
 
-use sdfc_graph::eval::{Evaluator, Interval, Number, Packet};
+use sdfc_graph::eval::{Evaluator, Number, Packet};
 
 use super::ahead::Ahead;
 use crate::{
@@ -52,6 +52,14 @@ impl Method {
     pub(super) fn of_name(name: &str) -> Result<Self, RenderError> {
         let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
         found.map(|(_, method)| method).ok_or_else(|| RenderError::MethodNotOnCpu(name.to_owned()))
+    }
+
+    /// How many evaluations a sample is; `interval` counts those of stretches, to whose ends its samples belong.
+    fn counted(self) -> u32 {
+        match self {
+            Self::Sphere | Self::Auto => 1,
+            Self::Interval => 0,
+        }
     }
 
     /// Whether it asks what is known of rays before they are marched.
@@ -115,14 +123,6 @@ pub(super) struct Limits<T> {
 }
 
 impl<T: Real> Limits<T> {
-    /// At most so many evaluations a ray.
-    fn most(&self) -> u32 {
-        match self.method {
-            Method::Sphere | Method::Auto => self.steps,
-            Method::Interval => self.steps.saturating_mul(interval::BOXES),
-        }
-    }
-
     /// How near to the surface a hit is.
     pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
         match self.method {
@@ -204,9 +204,9 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: &mut Evaluator<'_, Interval>,
+        range: Option<&mut Evaluator<'_, T>>,
     ) -> Option<Trace<T>> {
-        self.evaluations += 1;
+        self.evaluations += limits.method.counted();
         if limits.watched {
             self.pass(distance);
         }
@@ -214,7 +214,10 @@ impl<T: Real> Walk<T> {
             Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
             Method::Sphere => Turn::Onward(self.t + distance),
             Method::Auto => self.auto(distance, limits.tolerance(&self.ray, self.t)),
-            Method::Interval => self.interval(distance, limits, range),
+            Method::Interval => match range {
+                Some(range) => self.interval(distance, limits, range),
+                None => return self.ends(self.t, CAPPED),
+            },
         };
         match turn {
             Turn::Hit(t) => return self.ends(t, HIT),
@@ -224,7 +227,7 @@ impl<T: Real> Walk<T> {
         let within = self.inside.is_some() || self.t <= self.ahead.end;
         if !within {
             self.unmet()
-        } else if self.evaluations >= limits.most() {
+        } else if self.evaluations >= limits.steps {
             self.ends(self.t, CAPPED)
         } else {
             None
@@ -305,7 +308,7 @@ impl<T: Real> Walk<T> {
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
 pub(super) fn trace<T: Real>(
     field: &mut Batch<'_, T>,
-    range: &mut Evaluator<'_, Interval>,
+    mut range: Option<&mut Evaluator<'_, T>>,
     rays: &[(Ray<T>, Ahead<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
@@ -329,7 +332,7 @@ pub(super) fn trace<T: Real>(
         let Packet(distances) = field.scalar(packed(&points));
         for (lane, distance) in lanes.iter_mut().zip(distances) {
             let Some((index, walk)) = lane else { continue };
-            if let Some(ended) = walk.see(distance, limits, range) {
+            if let Some(ended) = walk.see(distance, limits, range.as_deref_mut()) {
                 traces[*index] = ended;
                 *lane = waiting.next();
             }

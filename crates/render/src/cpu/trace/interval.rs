@@ -1,12 +1,9 @@
-//! `interval` on the CPU: boxes about stretches of the ray, bounded in f64. The shader bounds stretches themselves; boxes
-//! are wider, so that more of them are looked at.
+//! `interval` on the CPU, as in the shader.
 
-use sdfc_graph::eval::{Evaluator, Interval};
+use sdfc_graph::eval::Evaluator;
 
 use super::{Limits, Real, Turn, Walk};
 
-/// As many boxes are looked at for each stretch that the shader may look at.
-pub(super) const BOXES: u32 = 8;
 /// Of what is not free this part at most is looked at next, and this part at least.
 const CAUTION: f64 = 0.9;
 const SHORTEST: f64 = 0.0625;
@@ -21,13 +18,15 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: &mut Evaluator<'_, Interval>,
+        range: &mut Evaluator<'_, T>,
     ) -> Turn<T> {
         let zero = T::constant(0.0);
-        if self.evaluations == 1 && distance < zero {
+        if self.evaluations == 0 && distance < zero {
+            self.evaluations = 1;
             return Turn::Hit(self.t);
         }
         self.keep(distance);
+        self.evaluations += u32::from(self.inside.is_some());
         let (last, above) = self.outside.unwrap_or((zero, zero));
         let near = limits.tolerance(&self.ray, last);
         if let Some(turn) = self.closing_in(self.hit_within(near)) {
@@ -43,11 +42,11 @@ impl<T: Real> Walk<T> {
         }
         let mut shortened = false;
         let mut end = last;
-        while self.evaluations < limits.most() {
+        while self.evaluations < limits.steps {
             end = (last + self.stretch).min(self.ray.t_max);
             self.evaluations += 1;
-            let least = T::constant(range.scalar(self.box_about(last, end)).lo());
-            let spent = f64::from(self.evaluations) / f64::from(limits.most());
+            let least = range.eval_ray(self.ray.at(last), self.ray.at(end))[0][0];
+            let spent = f64::from(self.evaluations) / f64::from(limits.steps);
             let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
             let finest = finest.max(rounding);
             if least > zero || self.stretch <= finest {
@@ -62,13 +61,5 @@ impl<T: Real> Walk<T> {
         }
         self.stretch = if shortened { zero } else { self.stretch + self.stretch };
         Turn::Onward(end)
-    }
-
-    fn box_about(&self, from: T, to: T) -> [Interval; 3] {
-        let (a, b) = (self.ray.at(from), self.ray.at(to));
-        std::array::from_fn(|axis| {
-            let (a, b): (f64, f64) = (a[axis].into(), b[axis].into());
-            Interval::new(a.min(b), a.max(b))
-        })
     }
 }
