@@ -361,6 +361,11 @@ impl Graph {
         self.claims.get(&node)
     }
 
+    /// Gives a shape another material; what has been expanded keeps the one that it had.
+    pub fn set_material(&mut self, id: ShapeId, material: crate::MaterialRule) {
+        self.shapes[id.index()].material = material;
+    }
+
     /// Names a shape after the scene's `let`; the first name stays.
     pub fn name_shape(&mut self, id: ShapeId, name: &str) {
         let shape = &mut self.shapes[id.index()];

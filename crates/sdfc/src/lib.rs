@@ -66,6 +66,7 @@ pub use sampler::Sampler;
 pub use shader::{Emit, ShaderOptions};
 
 pub use sdfc_accuracy as accuracy_data;
+pub use sdfc_analyze as analyze;
 pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
 pub use sdfc_diagnostics as diagnostics;

@@ -25,6 +25,7 @@ pub mod clock;
 pub mod document;
 pub mod examples;
 pub mod findings;
+pub mod identity;
 pub mod knobs;
 pub mod mailbox;
 pub mod memory;

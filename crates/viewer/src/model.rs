@@ -8,6 +8,7 @@ use sdfc::march::{Knob, method};
 use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
 
+use crate::identity::Shapes;
 use crate::probe::Probe;
 
 /// What draws a scene.
@@ -47,6 +48,8 @@ pub struct Model {
     pub enclosed: Option<Program>,
     /// Its field on the CPU.
     pub probe: Probe,
+    /// Its shapes by name.
+    pub shapes: Shapes,
     /// Whether the picture depends on time or frame.
     pub moves: bool,
     /// Where the time went.

@@ -238,7 +238,10 @@ impl<T: FnMut(Painted)> Studio<T> {
         {
             self.pass(&request, divisor / 2, true)?;
         }
-        self.smooth(&request)
+        self.smooth(&request)?;
+        // For the pointer, which cannot wait for it.
+        request.model.shapes.leaves(&request.model.scene);
+        Ok(())
     }
 
     /// How coarse a first pass must be.
@@ -346,6 +349,8 @@ impl<T: FnMut(Painted)> Studio<T> {
             image: &drawn.image,
             view: &drawn.view,
             probe: &request.model.probe,
+            scene: &request.model.scene,
+            shapes: &request.model.shapes,
             frame: &request.frame,
             slice: request.slice,
             origin: request.model.scene.drawn().origin,

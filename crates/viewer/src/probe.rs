@@ -28,22 +28,32 @@ impl Probe {
 
     /// Distances and gradients at points, by all threads; `None` stays `None`.
     pub fn at_all(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<Dual>> {
-        let mut out = vec![None; points.len()];
-        let Some(tape) = &self.tape else { return out };
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let share = points.len().div_ceil(threads).max(GROUP);
-        std::thread::scope(|scope| {
-            for (out, points) in out.chunks_mut(share).zip(points.chunks(share)) {
-                scope.spawn(move || {
-                    let mut field = tape.prepare::<Dual>(frame);
-                    for (out, point) in out.iter_mut().zip(points) {
-                        *out = point.map(|point| field.scalar(Dual::point(point)));
-                    }
-                });
-            }
-        });
-        out
+        let Some(tape) = &self.tape else { return vec![None; points.len()] };
+        in_parallel(points, || {
+            let mut field = tape.prepare::<Dual>(frame);
+            move |point: &Option<[f64; 3]>| point.map(|point| field.scalar(Dual::point(point)))
+        })
     }
+}
+
+/// A function of each place, by all threads; each thread makes its own.
+pub fn in_parallel<P: Sync, T: Default + Clone + Send, F: FnMut(&P) -> T>(
+    places: &[P],
+    function: impl Fn() -> F + Sync,
+) -> Vec<T> {
+    let mut out = vec![T::default(); places.len()];
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = places.len().div_ceil(threads).max(GROUP);
+    std::thread::scope(|scope| {
+        for (out, places) in out.chunks_mut(share).zip(places.chunks(share)) {
+            let function = &function;
+            scope.spawn(move || {
+                let mut of = function();
+                out.iter_mut().zip(places).for_each(|(out, place)| *out = of(place));
+            });
+        }
+    });
+    out
 }
 
 #[cfg(test)]

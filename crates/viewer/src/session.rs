@@ -28,7 +28,7 @@ const MOST_RENEWALS: u32 = 3;
 const MOST_FRAMES: f64 = 20_000.0;
 
 /// What a look at a pixel tells.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// The pixel's ray ended like this: [`HIT`] and its like.
     pub status: u32,
@@ -42,6 +42,8 @@ pub struct Look {
     pub normal: Option<DVec3>,
     /// Evaluations of the field for this pixel.
     pub evaluations: u32,
+    /// What the shape is called, and where it is written, once that is known.
+    pub shape: Option<String>,
 }
 
 /// Wakes the window.
@@ -332,6 +334,11 @@ impl Session {
         // Rays and field are counted from there.
         let origin = DVec3::from(request.model.scene.drawn().origin);
         let gradient = field.map(|field| DVec3::from(field.partials));
+        let (shapes, scene) = (&request.model.shapes, &request.model.scene);
+        let shape = shapes.known_leaves().filter(|_| pixel.status == HIT).and_then(|leaves| {
+            let place = leaves.at(&request.frame, &[Some(point.to_array())]).pop()??;
+            Some(shapes.label(scene, *leaves.shapes().get(place)?))
+        });
         Some(Look {
             status: pixel.status,
             depth,
@@ -339,6 +346,7 @@ impl Session {
             distance: field.map(|field| field.value),
             normal: gradient.and_then(DVec3::try_normalize).filter(|_| pixel.status == HIT),
             evaluations: pixel.evaluations,
+            shape,
         })
     }
 

@@ -1,14 +1,17 @@
 //! A finished picture as colours for the screen: shaded, or what its rays met and what that cost. Each view
 //! is a function of the picture and, where it says so, of the field at the places that the picture shows.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use glam::DVec3;
-use sdfc::FrameValues;
+use sdfc::graph::ShapeId;
 use sdfc::graph::eval::Dual;
 use sdfc::march::PixelBlock;
 use sdfc::render::{CAPPED, EvaluationCounts, HIT, Image, View, is_finite, linear_to_srgb8};
+use sdfc::{FrameValues, Scene};
 
+use crate::identity::{Quality, Shapes};
 use crate::probe::Probe;
 
 /// What is shown.
@@ -29,13 +32,17 @@ pub enum Mode {
     Overshoot,
     /// Length of the gradient.
     Slope,
+    /// Which shape it is.
+    Shapes,
+    /// What the field promises.
+    Quality,
     /// The field on a plane.
     Slice,
 }
 
 impl Mode {
     /// All of them, in the order in which they are offered.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Shaded,
         Self::Normals,
         Self::Depth,
@@ -43,6 +50,8 @@ impl Mode {
         Self::Capped,
         Self::Overshoot,
         Self::Slope,
+        Self::Shapes,
+        Self::Quality,
         Self::Slice,
     ];
 
@@ -56,6 +65,8 @@ impl Mode {
             Self::Capped => "Capped rays",
             Self::Overshoot => "Overshoot",
             Self::Slope => "Gradient length",
+            Self::Shapes => "Shapes",
+            Self::Quality => "Distance quality",
             Self::Slice => "Slice",
         }
     }
@@ -83,6 +94,13 @@ impl Mode {
             Self::Slope => {
                 "The length of the gradient where each ray stopped: 1 is a distance, above 1 the field \
                  grows faster than the distance and rays may step through."
+            }
+            Self::Shapes => {
+                "Each shape in a colour of its own; where two blend, that of the one with the greater share."
+            }
+            Self::Quality => {
+                "What the field of each part promises outside: the distance itself, a bound of it, or a bound \
+                 after division by a constant. Nothing keeps rays from stepping through what is uncertified."
             }
             Self::Slice => {
                 "The field on a plane: warm inside, cool outside, with lines of equal distance."
@@ -177,6 +195,8 @@ const INSIDE: [u8; 3] = [224, 122, 63];
 const OUTSIDE: [u8; 3] = [58, 124, 165];
 /// Of a pixel's width: where a ray must not be deeper inside.
 const QUARTER: f64 = 0.25;
+/// Lines of a legend.
+const MOST_KEYS: usize = 12;
 
 /// What a view is made from.
 #[derive(Clone, Copy, Debug)]
@@ -189,6 +209,10 @@ pub struct Seen<'a> {
     pub view: &'a View,
     /// The field.
     pub probe: &'a Probe,
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its shapes.
+    pub shapes: &'a Shapes,
     /// The frame's values.
     pub frame: &'a FrameValues,
     /// The plane of [`Mode::Slice`].
@@ -207,6 +231,8 @@ pub fn paint(mode: Mode, seen: Seen<'_>) -> (Vec<u8>, Legend) {
         Mode::Capped => seen.capped(),
         Mode::Overshoot => seen.overshoot(),
         Mode::Slope => seen.slope(),
+        Mode::Shapes => seen.shapes(),
+        Mode::Quality => seen.quality(),
         Mode::Slice => seen.slice(),
     }
 }
@@ -226,15 +252,19 @@ impl Seen<'_> {
         self.view.ray((index % columns) as u32, (index / columns) as u32)
     }
 
-    /// The field where rays met something.
-    fn at_hits(&self) -> Vec<Option<Dual>> {
+    /// Where rays met something.
+    fn hits(&self) -> Vec<Option<[f64; 3]>> {
         let point = |(index, pixel): (usize, &PixelBlock)| {
             let [start, direction] = self.ray(index);
             let hit = pixel.status == HIT && pixel.depth.is_finite();
             hit.then(|| (start + direction * f64::from(pixel.depth)).to_array())
         };
-        let points: Vec<_> = self.image.pixels().iter().enumerate().map(point).collect();
-        self.probe.at_all(self.frame, &points)
+        self.image.pixels().iter().enumerate().map(point).collect()
+    }
+
+    /// The field there.
+    fn at_hits(&self) -> Vec<Option<Dual>> {
+        self.probe.at_all(self.frame, &self.hits())
     }
 
     fn normals(&self) -> (Vec<u8>, Legend) {
@@ -326,6 +356,55 @@ impl Seen<'_> {
         (self.each(color), Legend::Scale { label, ends: [0.0, 2.0], ramp: Ramp::Balance })
     }
 
+    fn shapes(&self) -> (Vec<u8>, Legend) {
+        let identity = self.shapes.leaves(self.scene);
+        let places = identity.at(self.frame, &self.hits());
+        let label = |place: usize| self.shapes.label(self.scene, identity.shapes()[place]);
+        (self.keyed(&places, own_color), self.most_seen(&places, own_color, label))
+    }
+
+    fn quality(&self) -> (Vec<u8>, Legend) {
+        let identity = self.shapes.parts(self.scene);
+        let places = identity.at(self.frame, &self.hits());
+        let quality = |part: &ShapeId| Quality::of(self.scene, *part) as usize;
+        let qualities: Vec<usize> = identity.shapes().iter().map(quality).collect();
+        let kinds: Vec<_> =
+            places.iter().map(|place| place.map(|place| qualities[place])).collect();
+        let color = |kind: usize| [FINE, OUTSIDE, NOTICE, ALARM][kind];
+        let names = ["the distance", "a bound", "a bound, divided by a constant", "uncertified"];
+        let legend = self.most_seen(&kinds, color, |kind| names[kind].to_owned());
+        (self.keyed(&kinds, color), legend)
+    }
+
+    /// A colour for each number, under the light of the picture.
+    fn keyed(&self, numbers: &[Option<usize>], color: impl Fn(usize) -> [u8; 3]) -> Vec<u8> {
+        self.each(|index, shown| match numbers[index] {
+            Some(number) => {
+                let [red, green, blue] = shaded(shown).map(f64::from);
+                let light = (0.3 * red + 0.59 * green + 0.11 * blue) / 255.0;
+                mix([0; 3], color(number), 0.45 + 0.55 * light)
+            }
+            None => NOTHING,
+        })
+    }
+
+    /// The numbers that most pixels have.
+    fn most_seen(
+        &self,
+        numbers: &[Option<usize>],
+        color: impl Fn(usize) -> [u8; 3],
+        label: impl Fn(usize) -> String,
+    ) -> Legend {
+        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+        for number in numbers.iter().flatten() {
+            *counts.entry(*number).or_default() += 1;
+        }
+        let mut most: Vec<(usize, usize)> = counts.into_iter().collect();
+        most.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        most.truncate(MOST_KEYS);
+        Legend::Keys(most.into_iter().map(|(number, _)| (color(number), label(number))).collect())
+    }
+
     fn slice(&self) -> (Vec<u8>, Legend) {
         let Slice { axis, offset, spacing } = self.slice;
         let axis = axis.min(2);
@@ -353,6 +432,17 @@ impl Seen<'_> {
         ];
         (self.each(color), Legend::Keys(keys))
     }
+}
+
+/// Neighbours in the list have hues far from each other: the golden angle apart.
+fn own_color(number: usize) -> [u8; 3] {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let hue = (number as f64 * GOLDEN).fract() * 6.0;
+    let value = if number % 2 == 0 { 250.0 } else { 205.0 };
+    [0.0, 4.0, 2.0].map(|shift| {
+        let part = ((hue + shift) % 6.0 - 3.0).abs() - 1.0;
+        (value * (0.3 + 0.7 * part.clamp(0.0, 1.0))) as u8
+    })
 }
 
 /// The colour of a value on the slice: by side, darker away from the surface, with a line at each multiple
@@ -420,7 +510,9 @@ mod tests {
         let slice = Slice::default();
         let (image, view, frame) = (&image, &view, &frame);
         let origin = program.origin;
-        let seen = Seen { colors: image, image, view, probe: &probe, frame, slice, origin };
+        let (scene, shapes) = (&scene, &Shapes::default());
+        let probe = &probe;
+        let seen = Seen { colors: image, image, view, probe, scene, shapes, frame, slice, origin };
         let (bytes, legend) = paint(mode, seen);
         (bytes.chunks_exact(4).map(|it| [it[0], it[1], it[2]]).collect(), legend)
     }
@@ -509,5 +601,21 @@ mod tests {
         assert!(red > blue, "{:?}", colors[MIDDLE]);
         let [red, _, blue] = colors[0];
         assert!(blue > red, "{:?}", colors[0]);
+    }
+
+    #[test]
+    fn shapes_and_what_their_fields_promise_have_colours_and_names() {
+        let text = "sphere(0.8).translate(x: -1)\nbox(1).twist(40deg).translate(x: 1)\n\
+                    camera(eye: [0, 0, 6], target: [0, 0, 0], fov: 40deg)";
+        let (left, right) = (12 * 32 + 9, 12 * 32 + 22);
+        let (colors, legend) = painted(text, Mode::Shapes, |_| {});
+        assert!(colors[left] != colors[right] && colors[0] == NOTHING);
+        let Legend::Keys(keys) = legend else { panic!("{legend:?}") };
+        assert_eq!(keys.len(), 2);
+        let (_, legend) = painted(text, Mode::Quality, |_| {});
+        let Legend::Keys(mut keys) = legend else { panic!("{legend:?}") };
+        keys.sort();
+        let names: Vec<_> = keys.iter().map(|(color, name)| (*color, name.as_str())).collect();
+        assert_eq!(names, [(FINE, "the distance"), (NOTICE, "a bound, divided by a constant")]);
     }
 }

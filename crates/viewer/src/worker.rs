@@ -23,6 +23,7 @@ use sdfc::{Compiled, Error, FrameValues, Marched, Scene};
 
 use crate::document::{Document, Imports};
 use crate::findings::Findings;
+use crate::identity::Shapes;
 use crate::mailbox::Mailbox;
 use crate::model::{Engine, Model, Stages, reads_time};
 use crate::probe::Probe;
@@ -190,6 +191,7 @@ impl<T: FnMut(News)> Shop<T> {
         let options = Options { slots: build.live };
         let mut compiled = sdfc::compile_with(&document.name, &document.text, &imports, options);
         let scene = compiled.scene.take();
+        let shapes = scene.as_ref().map(|scene| Shapes::new(scene, &compiled.sources));
         let findings = self.findings(&document, &imports, compiled, scene.is_some());
         let folders = imports.folders();
         self.last = Some(Met { build: build.clone(), text: document.text.clone(), imports });
@@ -201,7 +203,7 @@ impl<T: FnMut(News)> Shop<T> {
             }
             Some(scene) => {
                 (self.tell)(News::Compiled { findings, folders, builds: true });
-                self.ready(build, document, scene);
+                self.ready(build, document, scene, shapes.unwrap_or_default());
             }
         }
     }
@@ -220,7 +222,7 @@ impl<T: FnMut(News)> Shop<T> {
         Findings::of(&sdfc::compile_with_imports(&document.name, &document.text, imports))
     }
 
-    fn ready(&mut self, build: &Build, document: Document, scene: Scene) {
+    fn ready(&mut self, build: &Build, document: Document, scene: Scene, shapes: Shapes) {
         let times = scene.times();
         let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
         // Derived when first asked for, which is not to be where input is heard.
@@ -245,6 +247,7 @@ impl<T: FnMut(News)> Shop<T> {
                     method,
                     enclosed,
                     probe,
+                    shapes,
                     moves,
                     stages,
                     pipelines,

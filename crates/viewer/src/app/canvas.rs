@@ -197,6 +197,9 @@ fn lines(ui: &Ui, look: &Look) -> Vec<(String, Color32)> {
     let mut lines = Vec::new();
     match look.status {
         HIT => {
+            if let Some(shape) = &look.shape {
+                lines.push((shape.clone(), style::of(ui).accent));
+            }
             lines.push((format!("point  {}", point(look.point)), style::of(ui).text));
             if let Some(normal) = look.normal {
                 lines.push((format!("normal {}", point(normal)), style::of(ui).text));

@@ -1,0 +1,129 @@
+//! From an edit on disk to its first picture, as a session without a window shows it, with the stages apart.
+//!
+//! ```text
+//! MESA_SHADER_CACHE_DIR=$(mktemp -d) cargo bench -p sdfc-viewer --bench latency
+//! ```
+//!
+//! A *literal* is another number of the same text. A *structure* differs from all before it: of six more leaves, each is
+//! a ball or a block as the digits of the edit's number say, so that no driver has met the shader.
+
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "a benchmark prints, and fails by panicking"
+)]
+
+use std::fmt::Write;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use sdfc::render::milliseconds_since;
+use sdfc_viewer::session::Session;
+
+const SIZE: [u32; 2] = [640, 360];
+/// Edits of each kind; six leaves spell as many numbers.
+const EDITS: u32 = 64;
+const MORE_LEAVES: u32 = 6;
+/// Longer than any edit takes.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Milliseconds of one edit.
+struct Spent {
+    total: f64,
+    front: f64,
+    analyze: f64,
+    lower: f64,
+    pipeline: f64,
+    frame: f64,
+}
+
+fn main() {
+    println!("| edit | p50 | p99 | watch | front end | analysis | lowering | pipeline | frame |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let suite = sdfc::suite();
+    for (scene, leaves) in [("bench/thirty.sdf", 30), ("generated 300", 300)] {
+        let (_, text) = suite.iter().find(|(name, _)| name == scene).unwrap();
+        let literal = |edit: u32| format!("{text}\nsphere(0.1{edit:03}).translate(y: 3)\n");
+        row(&format!("literal, {leaves} leaves"), literal);
+        row(&format!("structure, {leaves} leaves"), |edit| format!("{text}\n{}", spelt(edit)));
+    }
+}
+
+/// Six leaves that are a number in binary digits.
+fn spelt(number: u32) -> String {
+    let mut out = String::new();
+    for digit in 0..MORE_LEAVES {
+        let leaf = if number >> digit & 1 == 0 { "sphere(0.1)" } else { "box(0.15)" };
+        // Writing to a String cannot fail.
+        let _ = writeln!(out, "{leaf}.translate([0.3 * {digit}, 3, 0])");
+    }
+    out
+}
+
+fn row(name: &str, text: impl Fn(u32) -> String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.sdf");
+    std::fs::write(&path, text(0)).unwrap();
+    let mut session = Session::open(&path, Arc::new(|| ())).unwrap();
+    session.samples = Some(1);
+    shown(&mut session, &text(0), Instant::now());
+    let mut all = Vec::new();
+    for edit in 1..EDITS {
+        // What refines the last picture is over, as it is for someone who looks before he types.
+        finished(&mut session);
+        let text = text(edit);
+        let start = Instant::now();
+        std::fs::write(&path, &text).unwrap();
+        all.push(shown(&mut session, &text, start));
+    }
+    let figure = |of: &dyn Fn(&Spent) -> f64, share: f64| {
+        let mut sorted: Vec<f64> = all.iter().map(of).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+    };
+    let median = |of: &dyn Fn(&Spent) -> f64| format!("{:.1}", figure(of, 0.5));
+    let watch = |it: &Spent| it.total - it.front - it.analyze - it.lower - it.pipeline - it.frame;
+    println!(
+        "| {name} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} |",
+        figure(&|it| it.total, 0.5),
+        figure(&|it| it.total, 0.99),
+        median(&watch),
+        median(&|it| it.front),
+        median(&|it| it.analyze),
+        median(&|it| it.lower),
+        median(&|it| it.pipeline),
+        median(&|it| it.frame)
+    );
+}
+
+/// Waits for the first picture of a text, as the window does.
+fn shown(session: &mut Session, text: &str, start: Instant) -> Spent {
+    wait(session, |session| {
+        session.picture.as_ref().is_some_and(|it| it.request.model.text == text)
+    });
+    let total = milliseconds_since(start);
+    let picture = session.picture.as_ref().unwrap();
+    let stages = picture.request.model.stages;
+    Spent {
+        total,
+        front: stages.front,
+        analyze: stages.analyze,
+        lower: stages.lower,
+        pipeline: stages.pipeline.unwrap_or(0.0),
+        frame: picture.latency,
+    }
+}
+
+fn finished(session: &mut Session) {
+    wait(session, |session| session.picture.as_ref().is_some_and(|picture| picture.finished));
+}
+
+fn wait(session: &mut Session, holds: impl Fn(&Session) -> bool) {
+    let start = Instant::now();
+    while !holds(session) {
+        assert!(start.elapsed() < PATIENCE, "{:?} {:?}", session.findings, session.trouble);
+        std::thread::sleep(Duration::from_micros(200));
+        session.poll();
+        session.ask(SIZE, false);
+    }
+}
