@@ -438,7 +438,7 @@ impl Seen<'_> {
 fn own_color(number: usize) -> [u8; 3] {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let hue = (number as f64 * GOLDEN).fract() * 6.0;
-    let value = if number % 2 == 0 { 250.0 } else { 205.0 };
+    let value = if number.is_multiple_of(2) { 250.0 } else { 205.0 };
     [0.0, 4.0, 2.0].map(|shift| {
         let part = ((hue + shift) % 6.0 - 3.0).abs() - 1.0;
         (value * (0.3 + 0.7 * part.clamp(0.0, 1.0))) as u8
