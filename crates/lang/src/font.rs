@@ -1,7 +1,7 @@
 //! Letters as curves: text laid out in an outline font.
 //!
 //! The font's own tables are read and its kerning, ligatures and scripts applied by `harfrust`; what is left
-//! here are the curves of the glyphs, all of them quadratic.
+//! here are the curves of the glyphs, all of them quadratic, which are given out as arcs of circles.
 //!
 //! Lengths are in ems; the first line's baseline is y = 0.
 
@@ -11,6 +11,7 @@ use harfrust::font::{Font, glyph::outline};
 use harfrust::{Buffer, GlyphId, ShapeOptions, ShaperFont, shape};
 use rustc_hash::FxHashMap;
 
+use crate::arcs::arcs;
 use crate::import::{self, Resolver};
 use crate::outline::{Curve, Piece, Point, boundary, mix, sub};
 use outline::{DrawMemory, DrawOptions, PathElement};
@@ -74,7 +75,7 @@ impl<'r> Fonts<'r> {
             .ok_or_else(|| format!("`{path}` is no TrueType or OpenType font"))
     }
 
-    /// The boundary of a text. Lines end at `\n`.
+    /// The boundary of a text, in arcs. Lines end at `\n`.
     ///
     /// # Errors
     ///
@@ -86,7 +87,7 @@ impl<'r> Fonts<'r> {
             let baseline = -(number as f64) * setting.leading;
             set_line(&font, line, baseline, setting, &mut curves)?;
         }
-        Ok(boundary(curves))
+        Ok(arcs(boundary(curves)))
     }
 }
 

@@ -30,6 +30,7 @@
 //! Those of the parser ([`sdfc_syntax`]), of [`import`] and of elaboration ([`elab`]). A ray
 //! method that this version does not have is refused with `E0411`.
 
+pub mod arcs;
 mod check;
 pub mod elab;
 pub mod font;

@@ -191,12 +191,12 @@ fn apart([low, high]: [Point; 2], [other_low, other_high]: [Point; 2]) -> bool {
 }
 
 /// A point of a curve.
-fn at(&[a, b, c]: &Curve, t: f64) -> Point {
+pub(crate) fn at(&[a, b, c]: &Curve, t: f64) -> Point {
     mix(mix(a, b, t), mix(b, c, t), t)
 }
 
 /// The part of a curve from s to t, by blossoming.
-fn part(curve: &Curve, s: f64, t: f64) -> Curve {
+pub(crate) fn part(curve: &Curve, s: f64, t: f64) -> Curve {
     if (s, t) == (0.0, 1.0) {
         return *curve;
     }
@@ -214,7 +214,8 @@ pub(crate) fn sub(a: Point, b: Point) -> Point {
     [0, 1].map(|axis| a[axis] - b[axis])
 }
 
-fn distance(a: Point, b: Point) -> f64 {
+/// How far apart two points are.
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
     let [x, y] = sub(a, b);
     x.hypot(y)
 }

@@ -223,6 +223,14 @@ fn plain() -> Vec<Case> {
                 .map(|[x, y]| [0.7 * x, 0.4 * y])
                 .collect(),
         ),
+        // A loop within a loop, which is empty.
+        filled(
+            "polygon([for i in 0..150: (0.2 + 0.5 * cos(2.4deg * i)) * [cos(2.4deg * i), sin(2.4deg * i)]])",
+            (0..150)
+                .map(|i| (2.4 * f64::from(i)).to_radians())
+                .map(|t| [t.cos(), t.sin()].map(|part| (0.2 + 0.5 * t.cos()) * part))
+                .collect(),
+        ),
         filled("staircase([1.2, 0.8], n: 4)", staircase([1.2, 0.8], 4)),
         filled("staircase([0.3, 1.4], n: 7)", staircase([0.3, 1.4], 7)),
         filled("staircase([1, 0.2], n: 1)", staircase([1.0, 0.2], 1)),
@@ -449,7 +457,7 @@ impl Expected {
     }
 }
 
-/// Outlines of letters, as the font has them, in which every curve is drawn by points.
+/// Outlines of letters, in which every arc is drawn by points.
 fn letters(words: &str, size: f64, setting: Setting) -> Expected {
     let curves = Fonts::new(&NoFiles).curves(words, "sans", setting).expect("the font has them");
     let mut outlines: Vec<Vec<Point>> = Vec::new();
@@ -460,16 +468,25 @@ fn letters(words: &str, size: f64, setting: Setting) -> Expected {
             outlines.push(Vec::new());
         }
         last = Some(c);
-        let piece = (0..400).map(|i| {
-            let t = f64::from(i) / 400.0;
-            [0, 1].map(|i| {
-                let (from, to) = (a[i] + (b[i] - a[i]) * t, b[i] + (c[i] - b[i]) * t);
-                from + (to - from) * t
-            })
-        });
+        let piece = (0..400).map(|i| on_arc([a, b, c], f64::from(i) / 400.0));
         outlines.last_mut().expect("one was begun").extend(piece);
     }
     Filled(outlines)
+}
+
+/// A point of an arc of a circle from a to c whose tangents there meet in b, which is the middle of a straight one.
+fn on_arc([a, b, c]: [Point; 3], t: f64) -> Point {
+    let middle = [0, 1].map(|i| (a[i] + c[i]) / 2.0);
+    let (half, up) = ([0, 1].map(|i| (c[i] - a[i]) / 2.0), [0, 1].map(|i| b[i] - middle[i]));
+    let long = half[0].hypot(half[1]);
+    let turn = f64::atan2(half[0] * up[1] - half[1] * up[0], long * long);
+    let angle = turn * (2.0 * t - 1.0);
+    let (along, height) = if turn.abs() < 1e-9 {
+        (2.0 * t - 1.0, 0.0)
+    } else {
+        (angle.sin() / turn.sin(), (angle.cos() - turn.cos()) / turn.sin())
+    };
+    [middle[0] + half[0] * along - half[1] * height, middle[1] + half[1] * along + half[0] * height]
 }
 
 fn texts() -> Vec<Case> {

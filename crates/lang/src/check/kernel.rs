@@ -182,7 +182,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "soft" Builtin::Soft, "soft(sharpness)", "A shadow with penumbra, for a light's `shadow`.", "soft(8)";
     }
     "text" {
-        "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font: \"sans\", align: \"left\", spacing: 0, leading: 1.2)", "The boundary of a text in ems, the first baseline at y = 0: a list of quadratic curves, inside on their left. Each is a list of start, control point, end, and what a point is whose nearest is the start, the end: 1 outside, -1 inside, 0 what the side tells.", "len(glyph_curves(\"a\"))";
+        "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font: \"sans\", align: \"left\", spacing: 0, leading: 1.2)", "The boundary of a text in ems, the first baseline at y = 0: a list of arcs of circles, inside on their left, which keep within 2e-5 ems of the font's quadratic curves. Each is a list of start, the point where the tangents at both ends meet, end, and what a point is whose nearest is the start, the end: 1 outside, -1 inside, 0 what the side tells.", "len(glyph_curves(\"a\"))";
     }
 };
 

@@ -1,0 +1,145 @@
+//! Quadratic curves as arcs of circles.
+//!
+//! The nearest point of a parabola is the root of a cubic; that of an arc takes one square root, and its range over a box is
+//! narrow. Two arcs that meet without a kink have the ends of a curve and its directions there (a biarc: Bolton, "Biarc
+//! curves", 1975), and are off by the third power of its length.
+
+use crate::outline::{Curve, Piece, Point, distance, mix, part, sub};
+
+/// How far arcs may be off the curves that they stand for, in ems: a fiftieth of a unit of most fonts.
+pub const TOLERANCE: f64 = 2e-5;
+/// The middle of a straight piece is as near as this to its control point.
+const STRAIGHT: f64 = 1e-12;
+/// Most pairs of arcs for one curve.
+const MAX_PAIRS: u32 = 64;
+/// Points of each part of a curve at which the arcs are held against it.
+const SAMPLES: u32 = 16;
+
+/// The same boundary in arcs: of each the start, the point where the tangents at its ends meet, and the end. Straight pieces
+/// stay as they are.
+pub fn arcs(pieces: Vec<Piece>) -> Vec<Piece> {
+    pieces.into_iter().flat_map(|piece| pairs(&piece)).collect()
+}
+
+/// The arcs of a piece; its corners are at the first one's start and the last one's end.
+fn pairs(piece: &Piece) -> Vec<Piece> {
+    let [a, b, c] = piece.curve;
+    if distance(mix(a, c, 0.5), b) < STRAIGHT {
+        return vec![*piece];
+    }
+    let mut fit = fitted(&piece.curve, 1);
+    let mut count = 1;
+    while fit.0 > TOLERANCE && count < MAX_PAIRS {
+        count += 1;
+        fit = fitted(&piece.curve, count);
+    }
+    let (_, arcs) = fit;
+    let end = arcs.len().saturating_sub(1);
+    let corner = |at: bool, corner: f64| if at { corner } else { 0.0 };
+    let piece = |(index, curve): (usize, Curve)| Piece {
+        curve,
+        corners: [corner(index == 0, piece.corners[0]), corner(index == end, piece.corners[1])],
+    };
+    arcs.into_iter().enumerate().map(piece).collect()
+}
+
+/// So many pairs of arcs for a curve, and how far they are off it.
+fn fitted(curve: &Curve, count: u32) -> (f64, Vec<Curve>) {
+    let place = |index: u32| f64::from(index) / f64::from(count);
+    let mut off = 0.0_f64;
+    let mut arcs = Vec::with_capacity(2 * count as usize);
+    for index in 0..count {
+        let mut part = part(curve, place(index), place(index + 1));
+        if index + 1 == count {
+            part[2] = curve[2]; // to the last bit, since the next curve begins there
+        }
+        let pair = biarc(&part);
+        for sample in 1..SAMPLES {
+            let t = f64::from(sample) / f64::from(SAMPLES);
+            let point = crate::outline::at(&part, t);
+            off = off.max(pair.iter().map(|arc| beside(arc, point).abs()).fold(f64::MAX, f64::min));
+        }
+        arcs.extend(pair);
+    }
+    (off, arcs)
+}
+
+/// Two arcs from the start to the end, in the directions of the curve there, whose tangents are equally long.
+fn biarc(&[a, b, c]: &Curve) -> [Curve; 2] {
+    let dot = |u: Point, v: Point| u[0] * v[0] + u[1] * v[1];
+    let unit = |from: Point, to: Point| {
+        let long = distance(from, to).max(f64::MIN_POSITIVE);
+        sub(to, from).map(|part| part / long)
+    };
+    let (leaves, arrives, chord) = (unit(a, b), unit(b, c), sub(c, a));
+    let (square, along) = (dot(chord, chord), dot(chord, leaves) + dot(chord, arrives));
+    // The root of 2 (1 - leaves . arrives) d² + 2 d along = chord²: where the tangents' ends are 2 d apart.
+    let turn = 2.0 * (1.0 - dot(leaves, arrives)) * square;
+    let d = square / (along + (along * along + turn).sqrt()).max(f64::MIN_POSITIVE);
+    let first = [0, 1].map(|axis| a[axis] + d * leaves[axis]);
+    let second = [0, 1].map(|axis| c[axis] - d * arrives[axis]);
+    let middle = mix(first, second, 0.5);
+    [[a, first, middle], [middle, second, c]]
+}
+
+/// How far a point lies on the right of an arc's circle, without cancelling where that is large.
+fn beside(&[a, b, c]: &Curve, q: Point) -> f64 {
+    let half = 0.5 * distance(a, c);
+    let along = sub(c, a).map(|part| part / (2.0 * half));
+    let local = |p: Point| {
+        let v = sub(p, mix(a, c, 0.5));
+        [v[0] * along[0] + v[1] * along[1], along[0] * v[1] - along[1] * v[0]]
+    };
+    let bend = -local(b)[1] / (half * half);
+    let [x, y] = local(q);
+    let norm = (bend * x).hypot(bend * y - 1.0) + (bend * half).hypot(1.0);
+    (bend * (x * x + y * y - half * half) - 2.0 * y) / norm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CURVE: Curve = [[0.0, 0.0], [0.3, 0.5], [0.9, 0.1]];
+
+    fn smooth(first: &Curve, second: &Curve) -> bool {
+        let (u, v) = (sub(first[2], first[1]), sub(second[1], second[0]));
+        first[2] == second[0]
+            && (u[0] * v[1] - u[1] * v[0]).abs() < 1e-12
+            && u[0] * v[0] + u[1] * v[1] > 0.0
+    }
+
+    #[test]
+    fn arcs_keep_to_their_curve_and_have_no_kinks() {
+        let arcs = arcs(vec![Piece { curve: CURVE, corners: [1.0, -1.0] }]);
+        assert!(arcs.len() > 4, "{}", arcs.len());
+        assert_eq!((arcs[0].curve[0], arcs[arcs.len() - 1].curve[2]), (CURVE[0], CURVE[2]));
+        assert!(arcs.windows(2).all(|pair| smooth(&pair[0].curve, &pair[1].curve)));
+        for i in 0..=1000 {
+            let point = crate::outline::at(&CURVE, f64::from(i) / 1000.0);
+            let off = arcs.iter().map(|arc| {
+                let inside =
+                    distance(arc.curve[0], point) < 0.1 || distance(arc.curve[2], point) < 0.1;
+                if inside { beside(&arc.curve, point).abs() } else { f64::MAX }
+            });
+            assert!(off.fold(f64::MAX, f64::min) < 1.01 * TOLERANCE, "at {point:?}");
+        }
+        let corners: Vec<f64> = arcs.iter().flat_map(|arc| arc.corners).collect();
+        assert_eq!((corners[0], corners[corners.len() - 1]), (1.0, -1.0));
+        assert!(corners[1..corners.len() - 1].iter().all(|corner| *corner == 0.0));
+    }
+
+    #[test]
+    fn the_tangents_of_each_arc_are_equally_long() {
+        let [first, second] = biarc(&CURVE);
+        for [a, b, c] in [first, second] {
+            assert!((distance(a, b) - distance(b, c)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn straight_pieces_stay() {
+        let line = Piece { curve: [[0.0, 0.0], [0.5, 1.0], [1.0, 2.0]], corners: [1.0, 0.0] };
+        assert_eq!(arcs(vec![line]), [line]);
+    }
+}
