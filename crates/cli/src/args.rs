@@ -14,7 +14,8 @@ use crate::sequence::{self, Frames};
 #[derive(Debug, Parser)]
 #[command(name = "sdfc", version, propagate_version = true, max_term_width = 100)]
 #[command(
-    after_help = "Exit status: 0 done, 1 the scene is wrong, 2 the call is wrong, 3 the machine cannot."
+    after_help = "Exit status: 0 done, 1 the scene is wrong, 2 the call is wrong, 3 the machine cannot, \
+                  130 stopped by ctrl-C."
 )]
 pub struct Args {
     /// Options that every command takes.

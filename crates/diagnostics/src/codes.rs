@@ -171,7 +171,7 @@ codes! {
         "`round`, `shell` and every other formula `a(p) - r` or `abs(a(p)) - w` use the value of the distance, not only its sign; of a bound the result is a surface too, but at a distance that varies. The note says where the field stops being the distance: a smooth blend, an intersection (outside), a union (inside). Round the parts instead of the whole, or leave it as it is if it looks right."
         "do this to the parts before they are joined, or leave it if it looks right";
     UNCERTIFIED "W0602" "No Lipschitz constant could be derived"
-        "Rays may step through this part. A formula whose slope depends on the point has a constant within finite bounds: cut the shape, or state `bounds`. Else state a constant with `lipschitz`, or use an operator whose constant is known. A shape bent or twisted without bounds (a plane) has none: cut it first."
+        "Steps as long as the distance may lead through this part; `auto` proves stretches of rays free instead (`interval`), unless that does not end within a ray's steps. A formula whose slope depends on the point has a constant within finite bounds: cut the shape, or state `bounds`. Else state a constant with `lipschitz`, or use an operator whose constant is known. A shape bent or twisted without bounds (a plane) has none: cut it first."
         "state what holds with `lipschitz` and `bounds`";
     UNUSED "W0603" "A private name, a local `let` or an import that nothing uses"
         "Remove it, or use it. Names with a leading `_` are private to their file."

@@ -23,7 +23,8 @@ pub(crate) fn warnings(
         if seen.insert((Code::UNCERTIFIED, site.span)) {
             let message = format!("`{}` is uncertified: {}", site.name, part.reason);
             let warning = Diagnostic::warning(Code::UNCERTIFIED, site.span, message);
-            let help = "rays may step through it; state what holds with `lipschitz` and `bounds`";
+            let help = "steps may lead through it, so `auto` proves stretches of rays where it can, which takes \
+                        longer; state what holds with `lipschitz` and `bounds`";
             found.push(warning.help(help));
         }
     }

@@ -11,6 +11,9 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::Output;
 
+/// How a page of charts begins.
+const TITLE: &str = "# Charts\n";
+
 /// Writes `NAME.svg`, `NAME.png` and `NAME.json` of each scene into the folder, and `README.md`.
 ///
 /// # Errors
@@ -22,17 +25,50 @@ pub fn run(
     folder: &Path,
     console: &Console,
 ) -> Result<(), Failure> {
+    if args.json.is_some() {
+        let why = "into a folder each scene's figures go beside its chart; --json is for one scene without a folder";
+        return Err(Failure::Call(why.to_owned()));
+    }
+    let index = folder.join("README.md");
+    own_page(&index)?;
+    let names = names(files)?;
     let mut charts = Vec::new();
-    for file in files {
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    for (file, name) in files.iter().zip(names) {
+        let path = |ending: &str| Output::new(&folder.join(format!("{name}.{ending}")));
+        let [svg, png, json] = ["svg", "png", "json"].map(path);
+        [&svg, &png, &json].into_iter().try_for_each(Output::check)?;
         let chart = charted(args, file, console)?;
-        let path = |ending: &str| folder.join(format!("{name}.{ending}"));
-        Output::new(&path("svg")).write(&drawn(&chart, Form::Svg, false)?)?;
-        Output::new(&path("png")).write(&drawn(&chart, Form::Png, args.dark)?)?;
-        Output::new(&path("json")).write(&super::json(&chart)?)?;
+        svg.write(&drawn(&chart, Form::Svg, false)?)?;
+        png.write(&drawn(&chart, Form::Png, args.dark)?)?;
+        json.write(&super::json(&chart)?)?;
         charts.push((name, chart));
     }
-    Output::new(&folder.join("README.md")).write(page(&charts).as_bytes())
+    Output::new(&index).write(page(args, &charts).as_bytes())
+}
+
+/// The names of the files in the folder: those of the scenes, of which no two may be the same.
+fn names(files: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let mut names: Vec<String> = Vec::with_capacity(files.len());
+    for file in files {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if names.contains(&name) {
+            let why = format!("two of the scenes are called {name}, and so would their charts be");
+            return Err(Failure::Call(why));
+        }
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Refuses to overwrite a page that no such call has written.
+fn own_page(path: &Path) -> Result<(), Failure> {
+    match std::fs::read_to_string(path) {
+        Ok(text) if !text.starts_with(TITLE) => Err(Failure::Call(format!(
+            "{} is not a page of charts and would be overwritten; give another folder",
+            path.display()
+        ))),
+        Ok(_) | Err(_) => Ok(()),
+    }
 }
 
 /// Writes the lines of the summary alone.
@@ -48,19 +84,33 @@ pub fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), F
         let name = file.with_extension("").to_string_lossy().into_owned();
         charts.push((name, charted(args, file, console)?));
     }
-    let head = head("What `auto` does, scene by scene", "--table", &charts);
+    let head = head("# What `auto` does, scene by scene\n", &call(args, "--table FILE"), &charts);
     output.write((head + &summary(&charts)).as_bytes())
 }
 
 /// What was measured on what.
-fn head(title: &str, how: &str, charts: &[(String, Figures)]) -> String {
-    let mut text = format!("# {title}\n\nWritten by `sdfc chart FILE... {how}`.\n");
+fn head(title: &str, call: &str, charts: &[(String, Figures)]) -> String {
+    let mut text = format!("{title}\nWritten by\n\n```\n{call}\n```\n\n");
     if let Some((_, chart)) = charts.first() {
         let [width, height] = chart.size;
         let made = chart.made.iter().map(|made| format!("; {made}")).collect::<String>();
         let _ = writeln!(text, "{width}x{height} on {}, {}{made}.", chart.adapter, chart.driver);
     }
     text
+}
+
+/// The call that writes it again.
+fn call(args: &Chart, output: &str) -> String {
+    let mut text = "sdfc chart".to_owned();
+    for file in &args.files {
+        let _ = write!(text, " {}", file.display());
+    }
+    let [width, height] = args.size;
+    let _ = write!(text, " --size {width}x{height} {output}");
+    if !args.march.is_empty() {
+        let _ = write!(text, " --march {}", args.march.join(","));
+    }
+    text + if args.note.is_some() { " --note TEXT" } else { "" }
 }
 
 /// A line for each scene: `auto` beside `sphere-cone`, and which methods are on the front.
@@ -109,8 +159,8 @@ fn summary_line(name: &str, chart: &Figures) -> String {
 }
 
 /// The summary, then every method as it is used unless told otherwise, scene by scene.
-fn page(charts: &[(String, Figures)]) -> String {
-    let mut text = head("Charts", "-o FOLDER", charts) + &summary(charts);
+fn page(args: &Chart, charts: &[(String, Figures)]) -> String {
+    let mut text = head(TITLE, &call(args, "-o FOLDER"), charts) + &summary(charts);
     for (name, chart) in charts {
         let field = if chart.certified { "" } else { ", field uncertified" };
         let _ =

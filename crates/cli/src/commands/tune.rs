@@ -24,14 +24,20 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     let methods = if args.march.is_empty() { all() } else { args.march.clone() };
     let options = ChartOptions { size: args.size, methods, ..ChartOptions::default() };
     let chart = figures(&args.file, &scene, &options, &args.cache, console)?;
-    if json != Some(Output::Stdout) {
-        output::to_stdout(advice(&chart, args.max_error, scene.method())?.as_bytes())?;
+    // The figures say why no method keeps the error, if none does.
+    if let Some(json) = &json {
+        json.write(&super::json(&chart)?)?;
     }
-    json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
+    let advice = advice(&chart, args.max_error, scene.method())?;
+    if json == Some(Output::Stdout) { Ok(()) } else { output::to_stdout(advice.as_bytes()) }
 }
 
 /// What to write, and what it costs beside what the scene has.
 fn advice(chart: &Chart, error: f64, method: &str) -> Result<String, Failure> {
+    if chart.oracle.hit == 0 {
+        let why = "nothing is seen at this size, so no method can be told from another; try a greater --size";
+        return Err(Failure::Call(why.to_owned()));
+    }
     let Some(best) = chart.cheapest(error) else { return Err(none_keeps(chart, error)) };
     let [width, height] = chart.size;
     let mut text = format!(
