@@ -10,7 +10,14 @@ type Mutant = (&'static str, &'static str, &'static str, &'static str);
 
 const TAKEN_BACK: &str = "if stride > radius + abs(distance) {";
 
-const MUTANTS: [Mutant; 7] = [
+const MUTANTS: [Mutant; 9] = [
+    (
+        "auto",
+        "if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {",
+        "if false {",
+        "stability/thin_shell",
+    ),
+    ("auto", "if abs(distance) < hit {", "if abs(distance) < 64.0 * hit {", "stability/bumps"),
     ("relaxed", TAKEN_BACK, "if false {", "stability/plates"),
     ("accelerated", TAKEN_BACK, "if false {", "stability/thin_shell"),
     ("auto-relaxed", TAKEN_BACK, "if false {", "stability/thin_shell"),

@@ -79,7 +79,7 @@ impl Method {
 pub const METHODS: [Method; 10] = [
     Method {
         name: "auto",
-        summary: "Sphere tracing to a quarter of a pixel, then secants, or a bracket once the sign changes.",
+        summary: "Relaxed steps to a quarter of a pixel, then secants, or a bracket once the sign changes.",
         source: include_str!("wgsl/auto.wgsl"),
         gradient: None,
         looks_ahead: true,
@@ -344,6 +344,7 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         include_str!("wgsl/frame.wgsl"),
         RANGES,
         RAY,
+        BRACKET,
         PASSED,
     ];
     files.extend(method.files());
@@ -365,7 +366,7 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
 pub fn ray_source(method: &Method) -> String {
     let [field, _] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");
-    let mut files = vec![features, field, RANGES, RAY, PASSED];
+    let mut files = vec![features, field, RANGES, RAY, BRACKET, PASSED];
     files.extend(method.files());
     files.push(include_str!("wgsl/anchor.wgsl"));
     files.join("\n")
@@ -373,6 +374,7 @@ pub fn ray_source(method: &Method) -> String {
 
 const RANGES: &str = include_str!("wgsl/ranges.wgsl");
 const RAY: &str = include_str!("wgsl/ray.wgsl");
+const BRACKET: &str = include_str!("wgsl/bracket.wgsl");
 const PASSED: &str = include_str!("wgsl/passed.wgsl");
 
 /// What stands before the functions of [`Form::Shadertoy`] in the text for shadertoy.com, in GLSL.

@@ -1,21 +1,19 @@
-// Sphere tracing to a part of a pixel, wherever on the ray that is. That near to a surface the ray closes in by
-// secants, so that a ray that only passes by an edge is not taken for a hit on it; where the field led through the
-// surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
+// Steps as long as those of `auto-relaxed`, to a part of a pixel, wherever on the ray that is. That near to a surface the ray
+// closes in by secants, so that a ray that only passes by an edge is not taken for a hit on it; where the field led
+// through the surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
 
-// A hit is nearer than this part of the tolerance.
-const HIT_PART: f32 = 0.00390625;
-// The ray is never taken to approach a surface at less than this slope: steps are at most its inverse
-// times the distance.
-const LEAST_SLOPE: f32 = 0.125;
+// Weight of the last step's slope in the mean.
+const NEWEST: f32 = 0.5;
+// Steps are at most so many distances: straight away from a surface there is no end to them.
+const MOST_RELAXATION: f32 = 4.0;
+// A secant is at most the inverse of this times the distance, or that part of the tolerance.
+const LEAST_SLOPE: f32 = 0.25;
+const LEAST_PART: f32 = 0.25;
+// What is left of the way at a hit is at most the inverse of this times the distance.
+const LEAST_LAST_SLOPE: f32 = 0.0078125;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return part_of_footprint(ray, t);
-}
-
-// How far along the ray the line through two samples reaches zero.
-fn secant(before: vec2f, t: f32, distance: f32) -> f32 {
-    let slope = (before.y - distance) / (t - before.x);
-    return distance / max(slope, LEAST_SLOPE);
 }
 
 fn trace(ray: Ray) -> Trace {
@@ -36,48 +34,60 @@ fn trace(ray: Ray) -> Trace {
 }
 
 fn march(ray: Ray, start: f32, end: f32) -> Trace {
-    // Last sample outside and first sample inside, as (t, distance).
-    var outside = vec2f(0.0);
-    var inside = vec2f(0.0);
-    var crossed = false;
-    var t = start;
+    var bracket = Bracket(vec2f(start, 0.0), vec2f(), false);
+    // From the last place outside to the next one.
+    var stride = 0.0;
+    // What the distance gains per unit of length, in the mean: straight towards a surface at first.
+    var slope = -1.0;
+    // Whether the last place is nearer to a surface than the tolerance.
+    var close = false;
     for (var step = 0u; step < ray.steps; step++) {
+        let last = bracket.outside;
+        let t = last.x + stride;
         let distance = along(ray_point(ray, t));
-        passed(t, distance);
         // A ray that starts inside is at its hit.
         if step == 0u && distance < 0.0 {
             return Trace(t, HIT, 1u);
         }
         let near = tolerance(ray, t);
-        let hit = max(HIT_PART * near, rounding(ray, t));
-        var stride = distance;
-        if abs(distance) < near && step > 0u {
-            stride = secant(outside, t, distance);
+        let hit = hit_within(ray, t, near);
+        // The balls of free space do not meet: something may lie between them. A secant is short enough without that.
+        if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {
+            stride = last.y;
+            slope = -1.0;
+            continue;
         }
+        passed(t, distance);
+        let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
         if abs(distance) < hit {
-            return Trace(t + stride, HIT, step + 1u);
+            return Trace(t + distance / max(-gain, LEAST_LAST_SLOPE), HIT, step + 1u);
         }
-        if distance < 0.0 {
-            inside = vec2f(t, distance);
-            crossed = true;
-        } else {
-            outside = vec2f(t, distance);
-        }
-        if crossed {
-            if inside.x - outside.x < hit {
-                return Trace(inside.x, HIT, step + 1u);
+        bracket = narrowed(bracket, t, distance);
+        if bracket.crossed {
+            if width(bracket) < hit {
+                return Trace(bracket.inside.x, HIT, step + 1u);
             }
-            // False position, kept off the ends so that the bracket always shrinks.
-            let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
-            t = mix(outside.x, inside.x, part);
-        } else {
-            // Only the distance is known to be free.
-            let free = t + distance;
-            if !(free <= end) {
-                return Trace(free, MISS, step + 1u);
-            }
-            t = min(t + stride, end);
+            stride = between(bracket) - bracket.outside.x;
+            continue;
         }
+        // Only the distance is known to be free.
+        let free = t + distance;
+        if !(free <= end) {
+            return Trace(free, MISS, step + 1u);
+        }
+        slope = mix(slope, gain, NEWEST);
+        close = distance < near;
+        if close {
+            stride = distance / max(-gain, LEAST_SLOPE);
+            // Along a surface, and hardly towards it: what is that short does not matter.
+            if gain > -LEAST_SLOPE {
+                stride = max(stride, LEAST_PART * near);
+            }
+        } else {
+            // Two balls touch at a step z = r + (r + slope z).
+            stride = 2.0 / clamp(1.0 - slope, 2.0 / MOST_RELAXATION, 2.0) * distance;
+        }
+        stride = min(paced(stride, distance), end - t);
     }
-    return Trace(t, CAPPED, ray.steps);
+    return Trace(bracket.outside.x + stride, CAPPED, ray.steps);
 }

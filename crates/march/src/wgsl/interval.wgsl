@@ -4,8 +4,6 @@
 // is as long as the field is high there, or twice as long as the last. After A. Knoll et al., Fast Ray Tracing of Arbitrary Implicit Surfaces
 // with Interval and Affine Arithmetic (2009).
 
-// A hit is nearer than this part of the tolerance.
-const HIT_PART: f32 = 0.00390625;
 // No stretch is cut shorter than this part of it; nor, of a ray that has spent its steps, than so many tolerances: bounds of what
 // jumps stay wide however short the stretch is.
 const FINEST: f32 = 0.0625;
@@ -19,10 +17,8 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 }
 
 fn trace(ray: Ray) -> Trace {
-    // Last sample outside, up to which the ray is free, and first sample inside, as (t, distance).
-    var outside = vec2f(0.0);
-    var inside = vec2f(0.0);
-    var crossed = false;
+    // The ray is free up to the last place outside.
+    var bracket: Bracket;
     var t = 0.0;
     var stretch = ray.t_max;
     // Of the field's range; a sample at the end of a stretch belongs to it.
@@ -34,21 +30,15 @@ fn trace(ray: Ray) -> Trace {
         if evaluations == 0u && distance < 0.0 {
             return Trace(t, HIT, 1u);
         }
-        if distance < 0.0 {
-            inside = vec2f(t, distance);
-            crossed = true;
-        } else {
-            outside = vec2f(t, distance);
-        }
-        let near = tolerance(ray, outside.x);
-        if crossed {
+        bracket = narrowed(bracket, t, distance);
+        let free = bracket.outside.x;
+        let near = tolerance(ray, free);
+        if bracket.crossed {
             evaluations++;
-            if inside.x - outside.x < max(HIT_PART * near, rounding(ray, t)) {
-                return Trace(inside.x, HIT, evaluations);
+            if width(bracket) < hit_within(ray, t, near) {
+                return Trace(bracket.inside.x, HIT, evaluations);
             }
-            // False position, kept off the ends so that the bracket always shrinks.
-            let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
-            t = mix(outside.x, inside.x, part);
+            t = between(bracket);
             continue;
         }
         if !(t < ray.t_max) {
@@ -57,8 +47,8 @@ fn trace(ray: Ray) -> Trace {
         stretch = paced(max(stretch, max(distance, rounding(ray, t))), max(distance, near));
         var shortened = false;
         while evaluations < ray.steps {
-            let end = min(outside.x + stretch, ray.t_max);
-            let least = field_range(ray_point(ray, outside.x), ray_point(ray, end)).x;
+            let end = min(free + stretch, ray.t_max);
+            let least = field_range(ray_point(ray, free), ray_point(ray, end)).x;
             evaluations++;
             let spent = f32(evaluations) / f32(ray.steps);
             let finest = max(max(FINEST, COARSEST * spent) * near, rounding(ray, t));
@@ -68,10 +58,10 @@ fn trace(ray: Ray) -> Trace {
             }
             // As far as the field would stay above 0 if it fell evenly to its least value.
             let part = clamp(CAUTION * distance / max(distance - least, 1e-30), SHORTEST, CAUTION);
-            stretch = max(part * (end - outside.x), finest);
+            stretch = max(part * (end - free), finest);
             shortened = true;
         }
         stretch = select(2.0 * stretch, 0.0, shortened);
     }
-    return Trace(outside.x, CAPPED, ray.steps);
+    return Trace(bracket.outside.x, CAPPED, ray.steps);
 }

@@ -3,8 +3,6 @@
 // the bracket. After E. Galin et al., Segment Tracing Using Local Lipschitz Bounds (2020); there the bound is of the slope's
 // magnitude, here of how steeply the field falls.
 
-// A hit is nearer than this part of the tolerance.
-const HIT_PART: f32 = 0.00390625;
 // The next stretch is so many times as long as the step made.
 const GROWTH: f32 = 2.0;
 
@@ -13,10 +11,7 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 }
 
 fn trace(ray: Ray) -> Trace {
-    // Last sample outside and first sample inside, as (t, distance).
-    var outside = vec2f(0.0);
-    var inside = vec2f(0.0);
-    var crossed = false;
+    var bracket: Bracket;
     var t = 0.0;
     var stretch = ray.t_max;
     for (var step = 0u; step < ray.steps; step++) {
@@ -27,20 +22,12 @@ fn trace(ray: Ray) -> Trace {
             return Trace(t, HIT, 1u);
         }
         let near = tolerance(ray, t);
-        let hit = max(HIT_PART * near, rounding(ray, t));
-        if distance < 0.0 {
-            inside = vec2f(t, distance);
-            crossed = true;
-        } else {
-            outside = vec2f(t, distance);
-        }
-        if crossed {
-            if inside.x - outside.x < hit {
-                return Trace(inside.x, HIT, step + 1u);
+        bracket = narrowed(bracket, t, distance);
+        if bracket.crossed {
+            if width(bracket) < hit_within(ray, t, near) {
+                return Trace(bracket.inside.x, HIT, step + 1u);
             }
-            // False position, kept off the ends so that the bracket always shrinks.
-            let part = clamp(outside.y / (outside.y - inside.y), 0.1, 0.9);
-            t = mix(outside.x, inside.x, part);
+            t = between(bracket);
         } else {
             let end = min(t + stretch, ray.t_max);
             let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);

@@ -39,7 +39,7 @@ impl Real for f64 {}
 pub(super) enum Method {
     /// Steps as long as the distance, up to an absolute tolerance.
     Sphere,
-    /// Steps as long as the distance up to a quarter of a pixel, then secants; or closing in on a sign change.
+    /// Steps to where balls of free space just meet, up to a quarter of a pixel, then secants; or closing in on a sign change.
     Auto,
     /// Stretches of the ray are proven free or cut, the nearer part first, down to a part of the pixel.
     Interval,
@@ -91,9 +91,15 @@ const ROUNDING: f64 = 1e-6;
 
 /// A hit of `auto` is nearer than this part of the tolerance.
 const HIT_PART: f64 = 0.00390625;
-
-/// Steps of `auto` are at most the inverse of this times the distance.
-const LEAST_SLOPE: f64 = 0.125;
+/// Weight of the last step's slope in the mean.
+const NEWEST: f64 = 0.5;
+/// Steps of `auto` are at most so many distances.
+const MOST_RELAXATION: f64 = 4.0;
+/// A secant of `auto` is at most the inverse of this times the distance, or that part of the tolerance.
+const LEAST_SLOPE: f64 = 0.25;
+const LEAST_PART: f64 = 0.25;
+/// What is left of the way at a hit is at most the inverse of this times the distance.
+const LEAST_LAST_SLOPE: f64 = 0.0078125;
 
 impl<T: Real> Ray<T> {
     pub(super) fn at(&self, t: T) -> [T; 3] {
@@ -159,6 +165,11 @@ struct Walk<T> {
     /// Last place outside and first place inside, with the distances there (`auto`, `interval`).
     outside: Option<(T, T)>,
     inside: Option<(T, T)>,
+    /// From the last place outside to this one, and what the distance gains per length in the mean (`auto`).
+    stride: T,
+    slope: T,
+    /// Whether the last place outside is nearer to a surface than the tolerance (`auto`).
+    close: bool,
     /// Length of the next stretch that is looked at (`interval`).
     stretch: T,
 }
@@ -181,6 +192,9 @@ impl<T: Real> Walk<T> {
             before: (zero, zero),
             outside: None,
             inside: None,
+            stride: zero,
+            slope: T::constant(-1.0),
+            close: false,
             stretch: ray.t_max,
         }
     }
@@ -213,7 +227,7 @@ impl<T: Real> Walk<T> {
         let turn = match limits.method {
             Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
             Method::Sphere => Turn::Onward(self.t + distance),
-            Method::Auto => self.auto(distance, limits.tolerance(&self.ray, self.t)),
+            Method::Auto => self.auto(distance, limits),
             Method::Interval => match range {
                 Some(range) => self.interval(distance, limits, range),
                 None => return self.ends(self.t, CAPPED),
@@ -254,23 +268,60 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn auto(&mut self, distance: T, near: T) -> Turn<T> {
+    fn auto(&mut self, distance: T, limits: &Limits<T>) -> Turn<T> {
         let zero = T::constant(0.0);
         if self.evaluations == 1 && distance < zero {
             return Turn::Hit(self.t);
         }
+        let near = limits.tolerance(&self.ray, self.t);
+        let (last, above) = self.outside.unwrap_or((self.t, zero));
         let hit = self.hit_within(near);
-        let stride = if distance.abs() < near { self.secant(distance) } else { distance };
+        // Balls of free space that do not meet may have something between them; secants are short.
+        let checked = self.inside.is_none() && !self.close;
+        if checked && self.stride > above + distance.max(zero) + hit {
+            (self.stride, self.slope) = (above, T::constant(-1.0));
+            return Turn::Onward(last + above);
+        }
+        let gain = if self.stride > zero {
+            (distance - above).div(self.stride)
+        } else {
+            T::constant(-1.0)
+        };
         if distance.abs() < hit {
-            return Turn::Hit(self.t + stride);
+            return Turn::Hit(self.t + secant(distance, gain, LEAST_LAST_SLOPE));
         }
         self.keep(distance);
-        self.closing_in(hit).unwrap_or_else(|| {
-            // Only the distance is known to be free.
-            let free = self.t + distance;
-            let onward = (self.t + stride).min(self.ahead.end);
-            Turn::Onward(if free <= self.ahead.end { onward } else { free })
-        })
+        if let Some(turn) = self.closing_in(hit) {
+            if let (Turn::Onward(t), Some((last, _))) = (&turn, self.outside) {
+                self.stride = *t - last;
+            }
+            return turn;
+        }
+        // Only the distance is known to be free.
+        let (free, end) = (self.t + distance, self.ahead.end);
+        let goes_on = free <= end;
+        if !goes_on {
+            return Turn::Onward(free);
+        }
+        self.slope = self.slope + T::constant(NEWEST) * (gain - self.slope);
+        self.close = distance < near;
+        let step = if self.close {
+            let step = secant(distance, gain, LEAST_SLOPE);
+            // Along a surface no step need be shorter.
+            if gain > T::constant(-LEAST_SLOPE) {
+                step.max(T::constant(LEAST_PART) * near)
+            } else {
+                step
+            }
+        } else {
+            // Two balls beside a plane touch.
+            let apart = (T::constant(1.0) - self.slope)
+                .clamp(T::constant(2.0 / MOST_RELAXATION), T::constant(2.0));
+            (T::constant(2.0) * distance).div(apart)
+        };
+        let step = if limits.watched { step.min(distance) } else { step };
+        self.stride = step.min(end - self.t);
+        Turn::Onward(self.t + self.stride)
     }
 
     /// How near to the surface a hit is, in terms of what is near.
@@ -296,13 +347,11 @@ impl<T: Real> Walk<T> {
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
         Some(Turn::Onward(last + part * (first - last)))
     }
+}
 
-    /// How far along the ray a line through the last sample outside and this one reaches zero.
-    fn secant(&self, here: T) -> T {
-        let Some((t, before)) = self.outside else { return here };
-        let slope = (before - here).div(self.t - t);
-        here.div(slope.max(T::constant(LEAST_SLOPE)))
-    }
+/// How far it is to the surface beside which the distance gains so much per length, but at least by a slope of `least`.
+fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
+    distance.div((T::constant(0.0) - gain).max(T::constant(least)))
 }
 
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
