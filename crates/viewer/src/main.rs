@@ -3,18 +3,27 @@
 //! Exit statuses as those of `sdfc`: 0, the window was closed; 2, the call is wrong; 3, there is no window to
 //! be had.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: sdfc-view FILE\n\n\
-    Shows the scene in FILE in a window and follows its text as it is edited.";
+use sdfc_viewer::examples::EXAMPLES;
+use sdfc_viewer::memory::examples_folder;
+
+const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
+    Shows the scene in FILE in a window and follows its text as it is edited; without FILE, an example.";
+/// The example that is shown where no file is named: it has something to drag.
+const FIRST: &str = "params";
 
 #[allow(clippy::print_stdout, clippy::print_stderr, reason = "a program says what it has to say")]
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
-    let [argument] = &arguments[..] else {
-        eprintln!("{USAGE}");
-        return ExitCode::from(2);
+    let argument = match &arguments[..] {
+        [] => return example(),
+        [argument] => argument,
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
     };
     match argument.to_str() {
         Some("-h" | "--help") => {
@@ -37,7 +46,28 @@ fn main() -> ExitCode {
         eprintln!("error: {error}");
         return ExitCode::from(2);
     }
-    match sdfc_viewer::app::run(&path) {
+    window(&path)
+}
+
+#[allow(clippy::print_stderr, reason = "a program says what it has to say")]
+fn example() -> ExitCode {
+    let first = EXAMPLES.iter().find(|example| example.name == FIRST);
+    let Some((example, folder)) = first.zip(examples_folder()) else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
+    };
+    match example.file_in(&folder) {
+        Ok(path) => window(&path),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(3)
+        }
+    }
+}
+
+#[allow(clippy::print_stderr, reason = "a program says what it has to say")]
+fn window(path: &Path) -> ExitCode {
+    match sdfc_viewer::app::run(path) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: no window: {error}");

@@ -163,3 +163,12 @@ fn a_scene_is_opened_as_it_was_left() {
     let mut other = App::new(&Context::default(), &other, place).unwrap();
     assert_eq!(other.session().moved_camera(), None);
 }
+
+#[test]
+fn a_scene_from_stdin_and_two_files_are_refused() {
+    for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing.sdf"]] {
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
+        let output = program.args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");
+    }
+}
