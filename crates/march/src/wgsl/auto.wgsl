@@ -34,7 +34,7 @@ fn trace(ray: Ray) -> Trace {
 }
 
 fn march(ray: Ray, start: f32, end: f32) -> Trace {
-    var bracket = Bracket(vec2f(start, 0.0), vec2f(), false);
+    var bracket = Bracket(vec2f(start, 0.0), vec2f(0.0), false);
     // From the last place outside to the next one.
     var stride = 0.0;
     // What the distance gains per unit of length, in the mean: straight towards a surface at first.
