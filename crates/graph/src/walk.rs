@@ -15,14 +15,11 @@ pub fn reachable_where(
     roots: &[NodeId],
     enter: impl Fn(NodeId) -> bool,
 ) -> Vec<NodeId> {
-    let mut seen = IdSet::default();
-    let mut pending = roots.to_vec();
-    while let Some(id) = pending.pop() {
-        if seen.insert(id) && enter(id) {
+    visited(roots, |id, pending| {
+        if enter(id) {
             pending.extend(graph.arguments(id));
         }
-    }
-    seen.to_vec()
+    })
 }
 
 /// As [`reachable_where`], without what loops compute inside: a loop's arguments are what it reads from outside.
@@ -31,11 +28,20 @@ pub(crate) fn computed_where(
     roots: &[NodeId],
     enter: impl Fn(NodeId) -> bool,
 ) -> Vec<NodeId> {
+    visited(roots, |id, pending| {
+        if enter(id) {
+            pending.extend(graph.inputs(id));
+        }
+    })
+}
+
+/// Each node that a step from another leads to, once, in ascending order.
+fn visited(roots: &[NodeId], step: impl Fn(NodeId, &mut Vec<NodeId>)) -> Vec<NodeId> {
     let mut seen = IdSet::default();
     let mut pending = roots.to_vec();
     while let Some(id) = pending.pop() {
-        if seen.insert(id) && enter(id) {
-            pending.extend(graph.inputs(id));
+        if seen.insert(id) {
+            step(id, &mut pending);
         }
     }
     seen.to_vec()
