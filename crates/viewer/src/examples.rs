@@ -19,8 +19,8 @@ macro_rules! examples {
 
 /// All of them by name.
 pub const EXAMPLES: &[Example] = examples![
-    "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "materials"
-    "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "polyhedra" "profiles" "recursion" "round"
+    "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "mandelbulb" "materials"
+    "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "polyhedra" "profiles" "recursion" "round"
     "snowman" "solids" "table" "terrain" "time" "transforms" "twist"
 ];
 
