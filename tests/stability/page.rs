@@ -75,6 +75,9 @@ fn rounded(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return value.to_string();
     }
+    if value.abs() >= 1e5 {
+        return format!("{value:.1e}");
+    }
     let digits = 1 - value.abs().log10().floor() as i32;
     let scale = 10f64.powi(digits);
     let places = usize::try_from(digits).unwrap_or(0);

@@ -24,6 +24,8 @@ fn main() {
         trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
     let charts = Trial::test("charts into a folder", charts_into_a_folder);
     trials.push(charts.with_ignored_flag(without_gpu()));
+    let tuned = Trial::test("figures of what cannot be tuned", figures_of_what_cannot_be_tuned);
+    trials.push(tuned.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -91,4 +93,21 @@ fn charts_into_a_folder() -> Result<(), Failed> {
 fn while_measuring() -> Result<(), Failed> {
     let (_, names) = lost("3", "bench a.sdf --size 32x20 --json b.json")?;
     if names != ["a.sdf"] { Err(format!("left {names:?}").into()) } else { Ok(()) }
+}
+
+/// Where no method keeps the error the figures are written all the same.
+fn figures_of_what_cannot_be_tuned() -> Result<(), Failed> {
+    let folder = folder(&[("a.sdf", "sphere(0.8).twist(90deg)\n")]);
+    let args = "tune a.sdf --size 24x16 --max-error 1e-30 --json t.json --no-cache --march sphere";
+    let output = run_in(folder.path(), args, b"", &[]);
+    let said = said(&output);
+    if output.status.code() != Some(2) || !said.contains("no method keeps") {
+        return Err(format!("{:?}, {said}", output.status).into());
+    }
+    let figures: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("t.json"))?)?;
+    if figures["methods"].as_array().is_none_or(Vec::is_empty) {
+        return Err("no figures".into());
+    }
+    Ok(())
 }

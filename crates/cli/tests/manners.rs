@@ -57,6 +57,19 @@ fn a_folder() {
 }
 
 #[test]
+fn charts_that_would_overwrite() {
+    let folder = folder(&[("a.sdf", BALL), ("README.md", "# A program of mine\n")]);
+    std::fs::create_dir_all(folder.path().join("b")).unwrap();
+    std::fs::create_dir_all(folder.path().join("out")).unwrap();
+    std::fs::write(folder.path().join("b/a.sdf"), BALL).unwrap();
+    let refused = |args: &str, word: &str| ends(folder.path(), args, b"", 2, &[word]);
+    refused("chart a.sdf -o .", "README.md is not a page of charts");
+    refused("chart a.sdf b/a.sdf -o out", "two of the scenes are called a");
+    refused("chart a.sdf -o out --json f.json", "--json is for one scene without a folder");
+    assert_eq!(names(&folder.path().join("out")), Vec::<String>::new());
+}
+
+#[test]
 fn binary_bytes() {
     let folder = folder(&[]);
     std::fs::write(folder.path().join("a.sdf"), b"sphere(1)\n\xff\xfe\x00").unwrap();
