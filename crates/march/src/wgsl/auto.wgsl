@@ -2,6 +2,8 @@
 // closes in by secants, so that a ray that only passes by an edge is not taken for a hit on it; where the field led
 // through the surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
 
+// A ray may take so many times the steps that it has by other methods: the few that do graze a floor on their way to the horizon.
+const PATIENCE: u32 = 2;
 // Weight of the last step's slope in the mean.
 const NEWEST: f32 = 0.5;
 // Steps are at most so many distances: straight away from a surface there is no end to them.
@@ -41,7 +43,7 @@ fn march(ray: Ray, start: f32, end: f32) -> Trace {
     var slope = -1.0;
     // Whether the last place is nearer to a surface than the tolerance.
     var close = false;
-    for (var step = 0u; step < ray.steps; step++) {
+    for (var step = 0u; step < PATIENCE * ray.steps; step++) {
         let last = bracket.outside;
         let t = last.x + stride;
         let distance = along(ray_point(ray, t));
@@ -89,5 +91,5 @@ fn march(ray: Ray, start: f32, end: f32) -> Trace {
         }
         stride = min(paced(stride, distance), end - t);
     }
-    return Trace(bracket.outside.x + stride, CAPPED, ray.steps);
+    return Trace(bracket.outside.x + stride, CAPPED, PATIENCE * ray.steps);
 }

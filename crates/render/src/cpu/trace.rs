@@ -54,6 +54,14 @@ impl Method {
         found.map(|(_, method)| method).ok_or_else(|| RenderError::MethodNotOnCpu(name.to_owned()))
     }
 
+    /// How many times the steps of the view a ray may take.
+    fn patience(self) -> u32 {
+        match self {
+            Self::Sphere | Self::Interval => 1,
+            Self::Auto => 2,
+        }
+    }
+
     /// How many evaluations a sample is; `interval` counts those of stretches, to whose ends its samples belong.
     fn counted(self) -> u32 {
         match self {
@@ -241,7 +249,7 @@ impl<T: Real> Walk<T> {
         let within = self.inside.is_some() || self.t <= self.ahead.end;
         if !within {
             self.unmet()
-        } else if self.evaluations >= limits.steps {
+        } else if self.evaluations >= limits.method.patience() * limits.steps {
             self.ends(self.t, CAPPED)
         } else {
             None
