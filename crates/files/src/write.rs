@@ -26,7 +26,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Fails now where [`write`] would fail after long work.
+/// Fails now where [`write()`] would fail after long work.
 ///
 /// # Errors
 ///

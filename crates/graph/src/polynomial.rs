@@ -147,7 +147,7 @@ impl Polynomial {
         Self { terms }
     }
 
-    /// The product, or `None` beyond [`MAX_TERMS`].
+    /// The product, or `None` beyond 256 terms.
     pub fn times(&self, other: &Self) -> Option<Self> {
         let mut product = Self::zero();
         for (a, x) in &self.terms {
