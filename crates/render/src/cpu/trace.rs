@@ -249,7 +249,7 @@ impl<T: Real> Walk<T> {
         let within = self.inside.is_some() || self.t <= self.ahead.end;
         if !within {
             self.unmet()
-        } else if self.evaluations >= limits.method.patience() * limits.steps {
+        } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
             self.ends(self.t, CAPPED)
         } else {
             None
