@@ -11,6 +11,8 @@ use sdfc_viewer::memory::examples_folder;
 
 const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
     Shows the scene in FILE in a window and follows its text as it is edited; without FILE, an example.";
+const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL (Mesa's software \
+    drivers do: Debian's mesa-vulkan-drivers or libgl1-mesa-dri); `sdfc render --backend cpu` needs neither";
 /// The example that is shown where no file is named: it has something to drag.
 const FIRST: &str = "params";
 
@@ -71,6 +73,7 @@ fn window(path: &Path) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: no window: {error}");
+            eprintln!("help: {NO_WINDOW}");
             ExitCode::from(3)
         }
     }

@@ -26,10 +26,12 @@ fn main() -> ExitCode {
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 3] = [
+    let trials: [(&str, Test); 5] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
+        ("without_an_adapter_the_processor_draws_in_a_window", no_adapter),
+        ("without_any_driver_it_says_what_to_do", no_driver),
     ];
     let trial = |(name, test): (&str, Test)| {
         let run = move || Display::open().and_then(test);
@@ -100,6 +102,30 @@ fn comes_back(display: Display) -> Result<(), Failed> {
     std::fs::rename(&aside, &scene.path)?;
     let back = window.settled(|picture| is_green(picture, PLACE))?;
     expect(differ(&back, &gone, PICTURE) > 2000, "the new file is not seen")
+}
+
+/// No driver for Vulkan: OpenGL shows the window.
+const NO_VULKAN: (&str, &str) = ("VK_ICD_FILENAMES", "/nonexistent");
+/// None for OpenGL either.
+const NO_OPENGL: (&str, &str) = ("LIBGL_DRIVERS_PATH", "/nonexistent");
+
+fn no_adapter(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(BALL)?;
+    let window = Window::open_with(&display, &scene.path, &[NO_VULKAN])?;
+    let ball = window.settled(|picture| is_red(picture, PLACE))?;
+    window.keep(&ball, "processor")?;
+    scene.write(&BALL.replace("#d94f30", "#30d94f"))?;
+    window.settled(|picture| is_green(picture, PLACE))?;
+    Ok(())
+}
+
+fn no_driver(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(BALL)?;
+    let environment = [NO_VULKAN, NO_OPENGL];
+    let output = viewer(&display, &scene.path, &environment).stderr(Stdio::piped()).output()?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    expect(output.status.code() == Some(3), &format!("{output:?}"))?;
+    expect(said.contains("error: no window: ") && said.contains("sdfc render"), &said)
 }
 
 fn expect(holds: bool, otherwise: &str) -> Result<(), Failed> {
@@ -193,6 +219,19 @@ impl Drop for Display {
     }
 }
 
+/// The viewer, with settings and data of its own.
+fn viewer(display: &Display, scene: &Path, environment: &[(&str, &str)]) -> Command {
+    let own = scene.with_file_name("own");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
+    program
+        .arg(scene)
+        .env("DISPLAY", &display.name)
+        .env_remove("WAYLAND_DISPLAY")
+        .envs(["XDG_CONFIG_HOME", "XDG_DATA_HOME"].map(|name| (name, &own)))
+        .envs(environment.iter().copied());
+    program
+}
+
 /// The viewer on it.
 struct Window<'a> {
     viewer: Child,
@@ -201,16 +240,15 @@ struct Window<'a> {
 
 impl<'a> Window<'a> {
     fn open(display: &'a Display, scene: &Path) -> Result<Self, Failed> {
-        let viewer = Command::new(env!("CARGO_BIN_EXE_sdfc-view"))
-            .arg(scene)
-            .env("DISPLAY", &display.name)
-            .env_remove("WAYLAND_DISPLAY")
-            .envs(
-                ["XDG_CONFIG_HOME", "XDG_DATA_HOME"]
-                    .map(|name| (name, scene.with_file_name("own"))),
-            )
-            .stderr(Stdio::null())
-            .spawn()?;
+        Self::open_with(display, scene, &[])
+    }
+
+    fn open_with(
+        display: &'a Display,
+        scene: &Path,
+        environment: &[(&str, &str)],
+    ) -> Result<Self, Failed> {
+        let viewer = viewer(display, scene, environment).stderr(Stdio::null()).spawn()?;
         let window = Self { viewer, display };
         // Without a window manager nobody gives it the whole screen, or the keyboard.
         let [width, height] = SIZE.map(|side| side.to_string());

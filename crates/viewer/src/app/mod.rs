@@ -25,12 +25,39 @@ use save::Save;
 /// So long a remark stays in the status line.
 const REMARK: Duration = Duration::from_secs(4);
 
+/// What shows the window, in the order in which it is tried: OpenGL is also where Vulkan, Metal and DirectX 12 are not.
+const RENDERERS: [eframe::Renderer; 2] = [eframe::Renderer::Wgpu, eframe::Renderer::Glow];
+
 /// Opens a window on a scene, and stays until it is closed.
 ///
 /// # Errors
 ///
 /// Why there is no window, in one line.
 pub fn run(path: &Path) -> Result<(), String> {
+    let mut refusals = Vec::new();
+    for renderer in RENDERERS {
+        match window(path, renderer) {
+            Err(error) if is_refusal(&error) => refusals.push(error.to_string()),
+            ended => return ended.map_err(|error| error.to_string()),
+        }
+    }
+    Err(refusals.join("; "))
+}
+
+/// Whether another renderer may serve.
+fn is_refusal(error: &eframe::Error) -> bool {
+    match error {
+        eframe::Error::Wgpu(_)
+        | eframe::Error::Glutin(_)
+        | eframe::Error::NoGlutinConfigs(..)
+        | eframe::Error::OpenGL(_) => true,
+        eframe::Error::AppCreation(_)
+        | eframe::Error::Winit(_)
+        | eframe::Error::WinitEventLoop(_) => false,
+    }
+}
+
+fn window(path: &Path, renderer: eframe::Renderer) -> eframe::Result {
     let place = memory::usual_place();
     let remembered = place.as_deref().map(Memory::read).unwrap_or_default();
     let viewport = egui::ViewportBuilder::default()
@@ -38,17 +65,13 @@ pub fn run(path: &Path) -> Result<(), String> {
         .with_app_id("sdfc-view")
         .with_inner_size(remembered.window.unwrap_or([1200.0, 760.0]))
         .with_min_inner_size([480.0, 320.0]);
-    let options = eframe::NativeOptions {
-        viewport,
-        renderer: eframe::Renderer::Wgpu,
-        ..eframe::NativeOptions::default()
-    };
+    let options = eframe::NativeOptions { viewport, renderer, ..eframe::NativeOptions::default() };
     let path = path.to_owned();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
         let app = App::new(&creation.egui_ctx, &path, place)?;
         Ok(Box::new(app))
     });
-    eframe::run_native("sdfc-view", options, create).map_err(|error| error.to_string())
+    eframe::run_native("sdfc-view", options, create)
 }
 
 fn title(path: &Path) -> String {
@@ -289,7 +312,7 @@ impl eframe::App for App {
         self.context = Some(ui.ctx().clone());
     }
 
-    fn on_exit(&mut self) {
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
         if let Some(ctx) = self.context.take() {
             self.remember(&ctx);
         }

@@ -92,13 +92,13 @@ fn progress(ui: &mut Ui, session: &Session, picture: &Picture) {
     ui.label(RichText::new(text).small().color(style::of(ui).accent)).on_hover_text(help);
 }
 
+/// What draws; where that is otherwise than asked, why.
 fn machine(ui: &mut Ui, model: &Model) {
     let name = model.adapter().unwrap_or("the processor");
     let text = RichText::new(name).small().color(style::of(ui).weak);
-    let note = model.note.as_deref().map_or(String::new(), |note| format!("{note}\n"));
-    ui.label(text).on_hover_text(format!("{note}{}", built(model.stages, model.pipelines)));
-    if model.note.is_some() {
-        ui.label(RichText::new("note").small().color(style::of(ui).warning)).on_hover_text(note);
+    ui.label(text).on_hover_text(built(model.stages, model.pipelines));
+    if let Some(why) = &model.note {
+        note(ui, why, style::of(ui).warning);
     }
 }
 
