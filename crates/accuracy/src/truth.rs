@@ -1,5 +1,7 @@
 //! The oracle's verdict on every pixel of a picture.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 use sdfc_graph::eval::FrameValues;
 
@@ -104,16 +106,31 @@ impl Truth {
         camera: Camera,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Self {
-        let mut found = vec![(Verdict::Miss, [0.0; 3], 0); camera.pixels()];
-        found.par_chunks_mut(GROUP).enumerate().for_each_init(
-            || oracle.prober(frame),
-            |prober, (group, pixels)| {
-                for (index, place) in pixels.iter_mut().enumerate() {
-                    *place = look(prober, &camera.ray(group * GROUP + index));
-                }
-                progress(pixels.len());
-            },
-        );
+        let goes_on = |pixels| {
+            progress(pixels);
+            true
+        };
+        Self::of(camera, &looks(oracle, frame, &camera, &goes_on))
+    }
+
+    /// As [`Truth::find`], unless `progress` says that it is not to go on: then there is none.
+    pub fn find_while(
+        oracle: &Oracle,
+        frame: &FrameValues,
+        camera: Camera,
+        progress: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Option<Self> {
+        let stopped = AtomicBool::new(false);
+        let goes_on = |pixels| {
+            let on = progress(pixels);
+            stopped.fetch_or(!on, Ordering::Relaxed);
+            on
+        };
+        let found = looks(oracle, frame, &camera, &goes_on);
+        (!stopped.into_inner()).then(|| Self::of(camera, &found))
+    }
+
+    fn of(camera: Camera, found: &[Look]) -> Self {
         let verdicts: Vec<Verdict> = found.iter().map(|(verdict, ..)| *verdict).collect();
         let gradients: Vec<[f64; 3]> = found.iter().map(|(_, gradient, _)| *gradient).collect();
         let kinds = edges(&camera, &verdicts, &gradients);
@@ -138,7 +155,31 @@ impl Truth {
 }
 
 /// A verdict, the gradient where it is a hit, and what it took.
-fn look(prober: &mut Prober<'_>, ray: &Ray) -> (Verdict, [f64; 3], u32) {
+type Look = (Verdict, [f64; 3], u32);
+
+/// Of each pixel, on all threads. Once `goes_on` denies it, the rest is left out.
+fn looks(
+    oracle: &Oracle,
+    frame: &FrameValues,
+    camera: &Camera,
+    goes_on: &(dyn Fn(usize) -> bool + Sync),
+) -> Vec<Look> {
+    let mut found = vec![(Verdict::Miss, [0.0; 3], 0); camera.pixels()];
+    let groups = found.par_chunks_mut(GROUP).enumerate();
+    // What ends it early is known to who denied it.
+    let _ = groups.try_for_each_init(
+        || oracle.prober(frame),
+        |prober, (group, pixels)| {
+            for (index, place) in pixels.iter_mut().enumerate() {
+                *place = look(prober, &camera.ray(group * GROUP + index));
+            }
+            goes_on(pixels.len()).then_some(())
+        },
+    );
+    found
+}
+
+fn look(prober: &mut Prober<'_>, ray: &Ray) -> Look {
     let probe = prober.first_hit(ray);
     let gradient = match probe.verdict {
         Verdict::Hit(t) => prober.gradient(ray.at(t)),

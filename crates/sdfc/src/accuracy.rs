@@ -216,7 +216,7 @@ fn methods(names: &[String]) -> Result<Vec<&'static Method>, Error> {
     names.iter().map(found).collect()
 }
 
-fn camera(view: &View) -> Camera {
+pub(crate) fn camera(view: &View) -> Camera {
     Camera {
         size: view.size,
         parallel: view.parallel,

@@ -32,6 +32,7 @@
 mod accuracy;
 pub mod baseline;
 mod bench;
+mod comparison;
 mod compile;
 mod error;
 mod explain;
@@ -49,6 +50,7 @@ mod shader;
 
 pub use accuracy::{ChartOptions, OracleOptions};
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
+pub use comparison::Comparison;
 pub use compile::{
     Compiled, FrontTimes, Scene, check, compile, compile_with, compile_with_imports, format,
 };

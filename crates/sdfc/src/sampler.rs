@@ -54,13 +54,18 @@ impl Sampler<'_> {
 fn sample(pixel: &PixelBlock) -> PixelSample {
     let [x, y, z, _] = pixel.color.map(f64::from);
     PixelSample {
-        status: match pixel.status {
-            HIT => Status::Hit,
-            MISS => Status::Miss,
-            _ => Status::Capped,
-        },
+        status: status(pixel),
         t: f64::from(pixel.depth),
         evaluations: pixel.primary_evaluations,
         normal: Some([x, y, z]),
+    }
+}
+
+/// How the ray of a pixel ended.
+pub(crate) fn status(pixel: &PixelBlock) -> Status {
+    match pixel.status {
+        HIT => Status::Hit,
+        MISS => Status::Miss,
+        _ => Status::Capped,
     }
 }

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The window ([`app`]) only shows a [`session`] and hands input to it; everything else knows nothing of
-//! windows and is tested without one. The worker and the painter are threads with a [`mailbox`] that keeps
+//! windows and is tested without one. The worker, the painter and the [`judge`] are threads with a [`mailbox`] that keeps
 //! the newest order only. Nothing that can be slow runs where input is heard: not reading files, not
 //! compiling, not a driver's shader compiler, not drawing.
 //!
@@ -26,6 +26,7 @@ pub mod document;
 pub mod examples;
 pub mod findings;
 pub mod identity;
+pub mod judge;
 pub mod knobs;
 pub mod mailbox;
 pub mod memory;

@@ -13,6 +13,7 @@ use crate::clerk::{Clerk, Errand, Outcome};
 use crate::clock::Clock;
 use crate::document;
 use crate::findings::{Finding, Findings};
+use crate::judge::{Case, Judge, Judged, Judgement};
 use crate::knobs::Knobs;
 use crate::model::Model;
 use crate::orbit::{Kept, Orbit};
@@ -59,6 +60,8 @@ pub struct Session {
     painted: Receiver<Painted>,
     clerk: Clerk,
     outcomes: Receiver<Outcome>,
+    judge: Judge,
+    judged: Receiver<Judged>,
     watch: Watch,
     /// The order that a change on disk repeats.
     standing: Arc<Mutex<Build>>,
@@ -96,6 +99,14 @@ pub struct Session {
     pub pictures: u64,
     /// What came of what was to be written, to be told once.
     pub remarks: Vec<String>,
+    /// How far off a picture was.
+    pub judgement: Option<Box<Judgement>>,
+    /// Why that of the last one is not known.
+    pub unjudged: Option<String>,
+    /// Whether each picture is compared with the oracle once it rests.
+    pub judges: bool,
+    /// The last one that was to be.
+    tried: Option<Case>,
     asked: Option<Request>,
     size: [u32; 2],
     /// Devices that were lost since the last picture.
@@ -117,7 +128,10 @@ impl Session {
         let woken = Arc::clone(&wake);
         let painter = Painter::new(sender, move || woken())?;
         let (sender, outcomes) = channel();
-        let clerk = Clerk::new(sender, move || wake())?;
+        let woken = Arc::clone(&wake);
+        let clerk = Clerk::new(sender, move || woken())?;
+        let (sender, judged) = channel();
+        let judge = Judge::new(sender, move || wake())?;
         let standing = Arc::new(Mutex::new(build.clone()));
         let (orders, repeated) = (worker.orders(), Arc::clone(&standing));
         let watch = Watch::new(move || orders.put(lock(&repeated).clone()));
@@ -129,6 +143,8 @@ impl Session {
             painted,
             clerk,
             outcomes,
+            judge,
+            judged,
             watch,
             standing,
             orbit: None,
@@ -148,6 +164,10 @@ impl Session {
             picture: None,
             pictures: 0,
             remarks: Vec::new(),
+            judgement: None,
+            unjudged: None,
+            judges: false,
+            tried: None,
             asked: None,
             size: [16, 9],
             lost: 0,
@@ -184,6 +204,8 @@ impl Session {
         (self.knobs, self.clock) = (Knobs::default(), Clock::default());
         (self.findings, self.trouble, self.no_picture) = (Findings::default(), None, None);
         (self.follows, self.tolerance) = (true, 1.0);
+        self.stop_comparing();
+        (self.judgement, self.unjudged) = (None, None);
         self.watch_own_folder();
         self.order();
     }
@@ -235,6 +257,16 @@ impl Session {
             self.remarks.push(outcome.unwrap_or_else(|why| why));
             changed = true;
         }
+        while let Ok(judged) = self.judged.try_recv() {
+            match judged {
+                Judged::Judgement(judgement) => {
+                    (self.judgement, self.unjudged) = (Some(judgement), None);
+                }
+                Judged::Failed(why) => self.unjudged = Some(why),
+                Judged::Cancelled => {}
+            }
+            changed = true;
+        }
         changed
     }
 
@@ -264,10 +296,58 @@ impl Session {
             tolerance: self.tolerance,
         };
         if self.asked.as_ref().is_some_and(|asked| asked.is(&request)) {
+            self.compare_what_rests();
             return;
         }
         self.asked = Some(request.clone());
         self.painter.ask(request);
+    }
+
+    /// What is asked for, as the judge takes it.
+    fn case(&self, all: bool) -> Option<Case> {
+        let Request { model, frame, pose, size, tolerance, .. } = self.asked.as_ref()?.clone();
+        Some(Case { model, frame, pose, size, tolerance, all })
+    }
+
+    /// Has what is shown compared with the oracle, or all methods.
+    pub fn compare(&mut self, all: bool) {
+        let Some(case) = self.case(all) else { return };
+        self.unjudged = None;
+        self.tried = Some(case.clone());
+        self.judge.ask(case);
+    }
+
+    /// Gives up comparing.
+    pub fn stop_comparing(&mut self) {
+        self.judge.cancel();
+        (self.judges, self.tried) = (false, None);
+    }
+
+    /// The part that is done of what is being compared.
+    pub fn comparing(&self) -> Option<(f32, &'static str)> {
+        self.judge.progress()
+    }
+
+    /// Whether the figures are those of what is asked for.
+    pub fn judgement_is_of_this(&self) -> bool {
+        let now = self.case(false);
+        self.judgement.as_ref().zip(now).is_some_and(|(it, now)| it.case.draws_as(&now))
+    }
+
+    /// After drawing, so that both do not share the processor.
+    fn compare_what_rests(&mut self) {
+        let rests = |picture: &Picture| {
+            let asked = self.asked.as_ref();
+            picture.finished && asked.is_some_and(|asked| asked.is(&picture.request))
+        };
+        if !self.judges || !self.picture.as_deref().is_some_and(rests) {
+            return;
+        }
+        let now = self.case(false);
+        let known = self.tried.as_ref().zip(now).is_some_and(|(it, now)| it.draws_as(&now));
+        if !known {
+            self.compare(false);
+        }
     }
 
     /// Rays for each pixel when all rests.

@@ -26,13 +26,14 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 6] = [
+    let tests: [(&str, Test); 7] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("broken_text_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_smoothed", refined),
         ("all_views_are_drawn_from_one_picture", views),
         ("all_methods_draw_as_the_command_line_does", methods),
         ("lost_devices_are_opened_anew", lost),
+        ("all_methods_are_compared_with_the_oracle", compared),
     ];
     let trial = |(name, test)| Trial::test(name, test).with_ignored_flag(ignored);
     libtest_mimic::run(&arguments, tests.map(trial).into()).exit_code()
@@ -224,4 +225,25 @@ fn lost() -> Result<(), Failed> {
     }
     expect(!fixture.session.build().on_cpu, "the processor draws")?;
     expect(fixture.session.build().renewed == 6, "devices are opened once for each loss")
+}
+
+fn compared() -> Result<(), Failed> {
+    let blend = "union(sphere(0.8), box([1, 1, 1]).translate(x: 0.8), blend: smooth(0.4))\n";
+    let mut fixture = Fixture::new(blend)?;
+    fixture.finish()?;
+    fixture.session.compare(true);
+    fixture.until(|session| session.comparing().is_none())?;
+    fixture.session.poll();
+    let judgement = fixture.session.judgement.as_ref().ok_or("there are no figures")?;
+    expect(judgement.finished && judgement.refused.is_empty(), &format!("{judgement:?}"))?;
+    let settings: usize = METHODS.iter().map(|method| method.charted.len()).sum();
+    expect(judgement.all.len() == settings, &format!("{} figures", judgement.all.len()))?;
+    let auto = judgement.all.iter().find(|it| (it.method.as_str(), it.part) == ("auto", 1.0));
+    let auto = auto.ok_or("auto is missing")?;
+    expect(auto.failed() == 0 && auto.metrics.depth.pixels.p99 < 0.25, &format!("{auto:?}"))?;
+    expect(auto.metrics == judgement.shown.metrics, "auto draws otherwise than what is shown")?;
+    // With a quarter of the steps that it needs, it does not get there.
+    let fixed = judgement.all.iter().find(|it| (it.method.as_str(), it.part) == ("fixed", 0.25));
+    let fixed = fixed.ok_or("fixed is missing")?;
+    expect(fixed.metrics.missed > 100, &format!("{fixed:?}"))
 }

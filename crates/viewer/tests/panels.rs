@@ -131,6 +131,23 @@ fn a_picture_and_a_shader_are_saved_beside_the_scene() {
 }
 
 #[test]
+fn the_picture_is_compared_with_the_oracle() {
+    let mut fixture = Fixture::new();
+    assert!(fixture.has("proven ray by ray"));
+    fixture.click("Compare");
+    fixture.until(|harness| harness.query_by_label("99 of 100").is_some());
+    fixture.until(|harness| harness.query_by_label("Compare").is_some());
+    let session = fixture.harness.state_mut().session();
+    assert!(session.judgement_is_of_this());
+    assert_eq!(session.judgement.as_ref().unwrap().shown.failed(), 0);
+    fixture.click("Top");
+    assert!(fixture.has("of another picture than this"));
+    // Compared anew of its own accord.
+    fixture.click("at rest");
+    fixture.until(|harness| harness.query_by_label_contains("of another picture").is_none());
+}
+
+#[test]
 fn a_scene_is_opened_as_it_was_left() {
     let mut fixture = Fixture::new();
     fixture.click("Top");

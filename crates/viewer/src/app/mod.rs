@@ -1,5 +1,6 @@
 //! The window: shows a [`Session`] and hands input to it.
 
+mod accuracy;
 mod canvas;
 mod editor;
 mod help;

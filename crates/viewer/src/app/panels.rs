@@ -5,7 +5,7 @@ use sdfc::graph::{Param, ParamKind};
 use sdfc::march::{Knob, METHODS};
 
 use super::menu::{self, Choice};
-use super::{Shows, Wish, style};
+use super::{Shows, Wish, accuracy, style};
 use crate::knobs::{display_text, value_text};
 use crate::memory::Memory;
 use crate::model::Model;
@@ -119,6 +119,7 @@ pub fn knobs(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
         if session.mode == Mode::Slice {
             section(ui, "Slice", |ui| slice(ui, session));
         }
+        section(ui, "Accuracy", |ui| accuracy::show(ui, session));
         section(ui, "Drawing", |ui| drawing(ui, session));
     });
 }
