@@ -193,7 +193,9 @@ fn hover(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
 }
 
 fn lines(ui: &Ui, look: &Look) -> Vec<(String, Color32)> {
-    let point = |v: DVec3| format!("{:>9.4} {:>9.4} {:>9.4}", v.x, v.y, v.z);
+    // Rounded first, and without the sign that a zero may have.
+    let number = |it: f64| format!("{:>9.4}", (it * 1e4).round() / 1e4 + 0.0);
+    let point = |v: DVec3| v.to_array().map(number).join(" ");
     let mut lines = Vec::new();
     match look.status {
         HIT => {

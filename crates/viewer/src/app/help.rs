@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 18] = [
+const ROWS: [(&str, &str); 19] = [
     ("drag", "turn about the pivot"),
     ("right or middle drag", "move sideways"),
     ("wheel", "come nearer to what is under the pointer"),
@@ -34,6 +34,7 @@ const ROWS: [(&str, &str); 18] = [
     ("Esc", "stop refining, and go on"),
     ("drop a file", "show that scene"),
     ("?", "this"),
+    ("Ctrl Q", "close the window"),
 ];
 
 /// The window with all of it.

@@ -268,6 +268,9 @@ impl App {
         if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
             self.shows.save = !self.shows.save;
         }
+        if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
         if pressed(Key::Tab) {
             self.shows.knobs = !self.shows.knobs;
         }

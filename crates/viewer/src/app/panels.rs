@@ -13,6 +13,9 @@ use crate::orbit::Side;
 use crate::session::Session;
 use crate::views::Mode;
 
+/// What stands beside the slider of a param.
+const BESIDE_SLIDER: f32 = 106.0;
+
 /// The view after this one.
 pub fn next_mode(mode: Mode) -> Mode {
     let at = Mode::ALL.iter().position(|it| *it == mode).unwrap_or(0);
@@ -151,6 +154,8 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
                 let name = RichText::new(&param.name).color(color);
                 ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param)).id
             });
+            // Room for the number and for `reset`, so that the panel does not grow when something is moved.
+            ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
             knob(ui, param, &mut value, label.inner);
             let back = egui::Button::new(RichText::new("reset").small()).frame(false);
             let text = format!("Back to {}.", value_text(param, param.default));

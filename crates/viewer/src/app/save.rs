@@ -94,7 +94,7 @@ impl Save {
     }
 
     fn contents(&mut self, ui: &mut Ui, session: &Session) {
-        ui.set_width(360.0);
+        ui.set_width(400.0);
         ui.horizontal(|ui| {
             for (what, name, help) in What::ALL {
                 if ui.selectable_value(&mut self.what, what, name).on_hover_text(help).clicked() {
@@ -116,13 +116,18 @@ impl Save {
             What::Window => {}
         }
         labelled(ui, "file", |ui| {
-            ui.add(egui::TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY));
+            let edit = egui::TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
+            ui.add(edit).on_hover_text(&self.path);
         });
         let path = PathBuf::from(&self.path);
         let trouble = self.trouble(&path, session);
         ui.horizontal(|ui| {
             let ready = trouble.is_none() && session.model.is_some();
-            if ui.add_enabled(ready, egui::Button::new("Save")).clicked() {
+            let button = ui.add_enabled(ready, egui::Button::new("Save"));
+            let button =
+                button.on_hover_text("Written in the background, whole or not at all. Enter");
+            let entered = ready && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if button.clicked() || entered {
                 self.save(ui.ctx(), path.clone(), session);
             }
             let (text, color) = match trouble {
