@@ -4,11 +4,11 @@
 use sdfc_march::{LightBlock, PixelBlock, ViewBlock};
 
 /// Bytes of one [`PixelBlock`].
-pub(crate) const PIXEL_BYTES: usize = size_of::<PixelBlock>();
+pub const PIXEL_BYTES: usize = size_of::<PixelBlock>();
 /// Bytes of one [`ViewBlock`].
-pub(crate) const VIEW_BYTES: usize = size_of::<ViewBlock>();
+pub const VIEW_BYTES: usize = size_of::<ViewBlock>();
 /// Bytes of one per-frame value.
-pub(crate) const UNIFORM_BYTES: usize = 16;
+pub const UNIFORM_BYTES: usize = 16;
 
 /// Bytes in the order of the machine, which is the order of its GPU.
 #[derive(Default)]
@@ -80,14 +80,14 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
 }
 
 /// Per-frame values, one `vec4f` each.
-pub(crate) fn uniform_bytes(values: &[[f32; 4]]) -> Vec<u8> {
+pub fn uniform_bytes(values: &[[f32; 4]]) -> Vec<u8> {
     let mut bytes = Bytes::default();
     bytes.floats(values.as_flattened());
     bytes.0
 }
 
 /// The pixel block in `PIXEL_BYTES` bytes; what is missing is read as 0.
-pub(crate) fn pixel_from_bytes(bytes: &[u8]) -> PixelBlock {
+pub fn pixel_from_bytes(bytes: &[u8]) -> PixelBlock {
     let mut words = bytes.chunks_exact(4).map(|word| match word {
         &[a, b, c, d] => u32::from_ne_bytes([a, b, c, d]),
         _ => 0,

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use crate::RenderError;
+use crate::{AdapterInfo, RenderError};
 
 /// An open device without a window.
 ///
@@ -20,19 +20,6 @@ pub struct Gpu {
     info: AdapterInfo,
     timestamps: bool,
     faults: Arc<Faults>,
-}
-
-/// What an adapter says of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterInfo {
-    /// Its name.
-    pub name: String,
-    /// Its driver, with the version.
-    pub driver: String,
-    /// `vulkan`, `metal` or `dx12`.
-    pub backend: String,
-    /// Whether a CPU does its work.
-    pub software: bool,
 }
 
 /// Errors that came when nobody waited for them: the first of each kind.

@@ -28,6 +28,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Features
+//!
+//! Both are on by default: `gpu`, without which there is the CPU renderer alone and no wgpu, and `files`: PNG, GIF and EXR.
+//!
 //! # Limits
 //!
 //! Pictures have up to 16,384 pixels a side and 2^26 in all, scenes up to 8 lights. The CPU renderer
@@ -37,29 +41,38 @@
 mod blocks;
 mod compare;
 mod cpu;
+#[cfg(feature = "gpu")]
 mod device;
 mod error;
 mod frame;
+#[cfg(feature = "gpu")]
 mod gpu;
 mod image;
 mod stats;
+#[cfg(feature = "gpu")]
 pub mod testing;
 mod tiles;
 mod view;
 
-pub use blocks::view_bytes;
+pub use blocks::{
+    PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes,
+};
 pub use compare::{Difference, compare, edges};
 pub use cpu::{CpuScene, Real};
-pub use device::{AdapterInfo, Gpu};
+#[cfg(feature = "gpu")]
+pub use device::Gpu;
 pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, uniform_values, unwatched};
+#[cfg(feature = "gpu")]
 pub use gpu::Pipeline;
+#[cfg(feature = "files")]
+pub use image::Animation;
 pub use image::{
-    Animation, CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts, is_finite,
+    CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts, is_finite,
     linear_to_srgb, linear_to_srgb8, sample_places,
 };
 pub use stats::{
-    Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,
+    AdapterInfo, Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,
     milliseconds_since,
 };
 pub use tiles::{Tile, TileSize};

@@ -8,7 +8,20 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::{AdapterInfo, Frame, Image, PixelCounts};
+use crate::{Frame, Image, PixelCounts};
+
+/// What an adapter says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterInfo {
+    /// Its name.
+    pub name: String,
+    /// Its driver, with the version.
+    pub driver: String,
+    /// `vulkan`, `metal` or `dx12`.
+    pub backend: String,
+    /// Whether a CPU does its work.
+    pub software: bool,
+}
 
 /// Reasons by the key of the missing figure.
 pub type Why = BTreeMap<&'static str, String>;

@@ -6,9 +6,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use sdfc_accuracy::chart::{Chart, FrameMs, Row};
 use sdfc_accuracy::{Camera, Oracle, OracleError, Truth, TruthStore, compare};
+use sdfc_analyze::cost;
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
-use sdfc_march::{METHODS, Method, method};
+use sdfc_graph::{NodeId, Program};
+use sdfc_march::{METHODS, Method, method, stubs};
 use sdfc_render::{
     Clock, FrameTimes, Gpu, OnProgress, Pipeline, Progress, RenderOptions, View, uniform_values,
 };
@@ -87,15 +89,6 @@ impl Scene {
             Some(store) => Truth::kept_or_found(store, &oracle, frame, camera, &report),
             None => Truth::find(&oracle, frame, camera, &report),
         })
-    }
-
-    /// The view of a frame that a picture of that size has.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::View`].
-    pub fn view(&self, frame: &FrameValues, size: [u32; 2]) -> Result<View, Error> {
-        Ok(View::new(self.drawn(), frame, self.bounds_at(frame), size)?)
     }
 
     /// The scene's field, to be asked where rays meet it.
@@ -178,6 +171,20 @@ impl Scene {
         }
         chart.mark_front();
         Ok(chart)
+    }
+
+    /// Operations of so many evaluations by a method, in a program of [`with_stretches`]. An evaluation by a method that
+    /// looks at stretches is the field and what it asks of a stretch, what they share counted once.
+    fn operations_of(&self, program: &Program, name: &str, evaluations: f64) -> f64 {
+        let Some(method) = method(name) else { return f64::NAN };
+        let stretches = [(stubs::RANGE, program.range), (stubs::SLOPE_RANGE, program.slope_range)];
+        let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));
+        let asked: Vec<NodeId> = asked.filter_map(|asked| asked.1).collect();
+        if asked.is_empty() {
+            return self.report.operations(evaluations, method.looks_ahead);
+        }
+        let roots: Vec<NodeId> = program.distance.into_iter().chain(asked).collect();
+        evaluations * cost(&program.graph, &roots).operations as f64
     }
 
     /// The time that a picture takes.

@@ -24,31 +24,46 @@
 //! # Ok::<(), sdfc::Error>(())
 //! ```
 //!
+//! # Features
+//!
+//! All are on by default. Without any this is the compiler: a scene on the CPU and as a shader, without wgpu.
+//!
+//! - `render`: pictures, drawn with wgpu or on the CPU, and written as files.
+//! - `measure`: the oracle, charts and benchmarks; needs `render`.
+//!
 //! # Limits
 //!
 //! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
 //! them in, see [`compile_with_imports`].
 
+#[cfg(feature = "measure")]
 mod accuracy;
+#[cfg(feature = "measure")]
 pub mod baseline;
+#[cfg(feature = "measure")]
 mod bench;
 mod comparison;
 mod compile;
 mod error;
 mod explain;
+#[cfg(feature = "measure")]
 mod faults;
 mod findings;
 mod marched;
 mod origin;
 mod params;
+#[cfg(feature = "render")]
 mod picture;
 mod quality;
 mod reflection;
+#[cfg(feature = "measure")]
 mod sampler;
 mod scene;
 mod shader;
 
+#[cfg(feature = "measure")]
 pub use accuracy::{ChartOptions, OracleOptions};
+#[cfg(feature = "measure")]
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
 pub use comparison::Comparison;
 pub use compile::{
@@ -56,17 +71,21 @@ pub use compile::{
 };
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
+#[cfg(feature = "measure")]
 pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
 pub use marched::Marched;
 pub use params::ParamError;
+#[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{
     BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
     StructRow, UniformRow,
 };
+#[cfg(feature = "measure")]
 pub use sampler::Sampler;
 pub use shader::{Emit, ShaderOptions};
 
+#[cfg(feature = "measure")]
 pub use sdfc_accuracy as accuracy_data;
 pub use sdfc_analyze as analyze;
 pub use sdfc_codegen as codegen;

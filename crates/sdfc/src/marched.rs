@@ -2,9 +2,8 @@
 
 use std::borrow::Cow;
 
-use sdfc_analyze::cost;
+use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{NodeId, Program};
 use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
 use sdfc_render::{CpuScene, HIT, MISS, View};
 
@@ -29,6 +28,11 @@ pub struct Marched<'s> {
 }
 
 impl Scene {
+    /// The method that pictures are marched with unless told otherwise.
+    pub fn method(&self) -> &str {
+        self.program.settings.march.method.as_deref().unwrap_or(sdfc_march::METHODS[0].name)
+    }
+
     /// What draws pictures where the ray method of that name is asked for, on an adapter.
     pub fn marched(&self, name: &str) -> Marched<'_> {
         let method = self.marched_by(name);
@@ -74,20 +78,6 @@ impl Scene {
                  `{name}` takes it for the distance"
             )
         })
-    }
-
-    /// Operations of so many evaluations by a method, in a program of [`with_stretches`]. An evaluation by a method that
-    /// looks at stretches is the field and what it asks of a stretch, what they share counted once.
-    pub(crate) fn operations_of(&self, program: &Program, name: &str, evaluations: f64) -> f64 {
-        let Some(method) = method(name) else { return f64::NAN };
-        let stretches = [(stubs::RANGE, program.range), (stubs::SLOPE_RANGE, program.slope_range)];
-        let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));
-        let asked: Vec<NodeId> = asked.filter_map(|asked| asked.1).collect();
-        if asked.is_empty() {
-            return self.report.operations(evaluations, method.looks_ahead);
-        }
-        let roots: Vec<NodeId> = program.distance.into_iter().chain(asked).collect();
-        evaluations * cost(&program.graph, &roots).operations as f64
     }
 
     fn intervals_end(&self) -> bool {

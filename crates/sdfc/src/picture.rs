@@ -76,11 +76,6 @@ pub struct Picture {
 }
 
 impl Scene {
-    /// The method that pictures are marched with unless told otherwise.
-    pub fn method(&self) -> &str {
-        self.program.settings.march.method.as_deref().unwrap_or(sdfc_march::METHODS[0].name)
-    }
-
     /// Draws the scene. `progress` is called now and then and may cancel.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
+use sdfc_render::View;
 
 use crate::explain::{Bounds, Explanation, Knob, feature_names};
 use crate::marched::with_stretches;
@@ -59,6 +60,15 @@ impl Scene {
         let values = evaluate_frame(&derived.graph, &derived.corners, frame);
         let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
         Some([corner(values.first()?), corner(values.get(1)?)])
+    }
+
+    /// The view of a frame that a picture of that size has.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::View`].
+    pub fn view(&self, frame: &FrameValues, size: [u32; 2]) -> Result<View, Error> {
+        Ok(View::new(self.drawn(), frame, self.bounds_at(frame), size)?)
     }
 
     fn derive_bounds(&self) -> Option<DerivedBounds> {

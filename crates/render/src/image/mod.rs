@@ -1,11 +1,13 @@
 //! A finished picture in linear light, with what the rays met.
 
+#[cfg(feature = "files")]
 mod file;
 mod samples;
 
 use sdfc_march::PixelBlock;
 
 use crate::{Footprint, RenderError, Tile};
+#[cfg(feature = "files")]
 pub use file::Animation;
 pub use samples::{MAX_SAMPLES, sample_places};
 
