@@ -47,7 +47,7 @@ const RESERVED: [(&str, &[&str]); 10] = [
     ("eframe", &["viewer"]),
     ("notify", &["viewer"]),
     ("naga", &["codegen"]),
-    ("wgpu", &["render"]),
+    ("wgpu", &["render", "sdfc"]),
     ("logos", &["syntax"]),
     ("codespan-reporting", &["diagnostics"]),
     ("clap", &["cli"]),
@@ -75,7 +75,7 @@ fn short(package: &str) -> &str {
     package.strip_prefix("sdfc-").unwrap_or(package)
 }
 
-/// (crate, dependency) for every dependency that ends up in a product.
+/// (crate, dependency) for every dependency that ends up in a product. Examples stand outside.
 fn dependencies() -> Vec<(String, String)> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
@@ -85,8 +85,13 @@ fn dependencies() -> Vec<(String, String)> {
     let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
     let list = |value: &Value, key: &str| value[key].as_array().unwrap().clone();
     let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
+    let crates = root().join("crates").canonicalize().unwrap();
+    let is_crate = |package: &Value| {
+        Path::new(package["manifest_path"].as_str().unwrap()).starts_with(&crates)
+    };
     list(&metadata, "packages")
         .iter()
+        .filter(|package| is_crate(package))
         .flat_map(|package| {
             let of_product =
                 list(package, "dependencies").into_iter().filter(|d| d["kind"].is_null());

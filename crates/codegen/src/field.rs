@@ -1,7 +1,7 @@
 //! The functions of a scene by themselves, for those who embed them.
 
 use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeInner};
-use sdfc_graph::{MaterialField, Program, Type};
+use sdfc_graph::{Graph, MaterialField, NodeId, Program, Type};
 use sdfc_march::{Features, Method, ray_source, stubs};
 
 use crate::inputs::{declare_members, raw_inputs};
@@ -38,7 +38,7 @@ impl Default for FieldOptions {
 }
 
 /// The functions `<prefix>distance`, `<prefix>gradient` and `<prefix>material` of a program, without
-/// an entry point.
+/// an entry point. The gradient has the distance in its fourth lane.
 ///
 /// Params, `time` and `frame`, as far as the functions use them, are members of one uniform
 /// structure ([`crate::Reflection::members`]); what follows from them is computed in the functions.
@@ -51,8 +51,8 @@ pub fn field_module(program: &Program, options: &FieldOptions) -> Result<Shader,
     functions(program, None, options)
 }
 
-/// As [`field_module`], with `<prefix>trace` beside them: a ray method as a function of a ray, which
-/// yields where the ray met the surface, whether it did, and how often it evaluated the distance. The
+/// As [`field_module`], with `<prefix>trace` and `<prefix>intersect` beside them: a ray method as a function of a
+/// ray, which yields where the ray met the surface, whether it did, and how often it evaluated the distance. The
 /// structures are those of `ray.wgsl` in `sdfc-march`.
 ///
 /// # Errors
@@ -73,12 +73,15 @@ fn functions(
 ) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
-    let features = ray_features(program, method.is_some_and(|method| method.looks_ahead));
+    let mut program = program.clone();
+    let features = ray_features(&program, method.is_some_and(|method| method.looks_ahead));
     let mut fillings = vec![Filling::of_point(Some(Role::Distance), stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
+        let gradient = with_value(&mut program.graph, gradient, distance);
         fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
     }
+    let program = &program;
     fillings.extend(ahead(program, features));
     if let Some(method) = method {
         fillings.extend(stretches(program, method)?);
@@ -114,10 +117,18 @@ fn functions(
         let function = struct_function(program, &inputs, types, stub, &fields, structure)?;
         parts.functions.push((Role::Material, fill_or_add(&mut module, stub, function)?));
     }
-    parts.functions.extend(link::find_function(&module, stubs::TRACE).map(|f| (Role::Trace, f)));
+    for (role, name) in [(Role::Trace, stubs::TRACE), (Role::Intersect, stubs::INTERSECT)] {
+        parts.functions.extend(link::find_function(&module, name).map(|f| (role, f)));
+    }
     parts.lists = inputs.tables.into_buffer();
     make_public(&mut module, &parts, &options.prefix);
     Shader::new(module, parts, Features { materials: material.is_some(), ..features })
+}
+
+/// A derivative with what it is of behind it: a caller of one often wants both, and they share most of their work.
+fn with_value(graph: &mut Graph, derivative: NodeId, value: NodeId) -> NodeId {
+    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(derivative, lane));
+    graph.compose(&[x, y, z, value])
 }
 
 /// Replaces the stub of that name where a ray method calls it, else adds the function.

@@ -16,7 +16,7 @@ use crate::target::{Code, Written};
 pub enum Role {
     /// Signed distance.
     Distance,
-    /// Spatial gradient of the distance.
+    /// Spatial gradient of the distance; for embedding, with the distance behind it.
     Gradient,
     /// Material.
     Material,
@@ -26,6 +26,8 @@ pub enum Role {
     SlopeRange,
     /// Where a ray meets the surface.
     Trace,
+    /// The same of a ray without a footprint, from one place to another.
+    Intersect,
 }
 
 impl Role {
@@ -38,6 +40,7 @@ impl Role {
             Self::Range => "range",
             Self::SlopeRange => "slope_range",
             Self::Trace => "trace",
+            Self::Intersect => "intersect",
         }
     }
 }

@@ -362,13 +362,13 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
 }
 
 /// Text of a ray method by itself, for a shader of someone else's. Its entry point is there only to
-/// reach `trace`.
+/// reach `trace` and `intersect`.
 pub fn ray_source(method: &Method) -> String {
     let [field, _] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");
     let mut files = vec![features, field, RANGES, RAY, BRACKET, PASSED];
     files.extend(method.files());
-    files.push(include_str!("wgsl/anchor.wgsl"));
+    files.extend([include_str!("wgsl/intersect.wgsl"), include_str!("wgsl/anchor.wgsl")]);
     files.join("\n")
 }
 
@@ -409,6 +409,8 @@ pub mod stubs {
     pub const LOAD_FRAME: &str = "load_frame";
     /// `fn trace(ray: Ray) -> Trace`, which a method supplies and a host may call.
     pub const TRACE: &str = "trace";
+    /// `fn intersect(origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> Trace`, which a host may call.
+    pub const INTERSECT: &str = "intersect";
     /// `var<private> view: View` of [`super::Form::Shadertoy`], and the functions that fill it.
     pub const VIEW: &str = "view";
     /// `fn load_view()`, what of the view does not follow from the camera.

@@ -119,7 +119,7 @@ impl Scene {
         progress: &mut OnProgress<'_>,
     ) -> Result<Chart, Error> {
         let frame = options.frame.clone();
-        let frame = frame.unwrap_or_else(|| FrameValues::defaults(self.params()));
+        let frame = frame.unwrap_or_else(|| self.defaults());
         let view = self.view(&frame, options.size)?;
         let truth = self.asked(&view, &frame, asked)?;
         let oracle = self.oracle()?;

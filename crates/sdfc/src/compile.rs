@@ -1,17 +1,19 @@
 //! From text to a scene ready for code generation.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use sdfc_analyze::{Report, prepare};
 use sdfc_diagnostics::{
     Code, Diagnostic, FileId, Located, Sources, Span, has_errors, locate, render,
 };
+use sdfc_graph::eval::TapeError;
 use sdfc_graph::{Param, Program};
 use sdfc_lang::slots::Slot;
 use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
 use sdfc_render::milliseconds_since;
 
+use crate::field::Tapes;
 use crate::findings;
 use crate::scene::DerivedBounds;
 use crate::shader::Origin;
@@ -20,7 +22,7 @@ use crate::shader::Origin;
 #[derive(Debug)]
 pub struct Compiled {
     /// Texts of the scene and the library.
-    pub sources: Sources,
+    pub sources: Arc<Sources>,
     /// Findings in order of place.
     pub diagnostics: Vec<Diagnostic>,
     /// The scene, if there were no errors.
@@ -33,11 +35,38 @@ impl Compiled {
         render(&self.sources, &self.diagnostics, color)
     }
 
+    /// The scene, or all that is wrong with the source.
+    ///
+    /// # Errors
+    ///
+    /// [`SourceErrors`].
+    pub fn into_scene(self) -> Result<Scene, SourceErrors> {
+        let (text, found) = (self.diagnostics_text(false), self.located());
+        self.scene.ok_or(SourceErrors { found, text })
+    }
+
     /// The findings with lines and columns.
     pub fn located(&self) -> Vec<Located> {
         self.diagnostics.iter().map(|found| locate(&self.sources, found)).collect()
     }
 }
+
+/// Why a source gave no scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceErrors {
+    /// Each finding with its code, its place and ways to mend it, warnings included.
+    pub found: Vec<Located>,
+    text: String,
+}
+
+impl std::fmt::Display for SourceErrors {
+    /// All findings as text for people, each with the lines of the source.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.text.trim_end())
+    }
+}
+
+impl std::error::Error for SourceErrors {}
 
 /// Time spent in the front stages, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,6 +80,7 @@ pub struct FrontTimes {
 /// A compiled scene: all that is known of it before a target is chosen.
 #[derive(Debug)]
 pub struct Scene {
+    pub(crate) sources: Arc<Sources>,
     pub(crate) elaborated: Elaborated,
     pub(crate) program: Program,
     pub(crate) report: Report,
@@ -60,11 +90,37 @@ pub struct Scene {
     pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
     /// Whether `interval` ends on the field; found when first asked for.
     pub(crate) intervals_end: OnceLock<bool>,
+    /// What the field is computed by; made when it is first asked for.
+    pub(crate) tapes: OnceLock<Result<Option<Tapes>, TapeError>>,
     pub(crate) times: FrontTimes,
     pub(crate) origin: Origin,
 }
 
 impl Scene {
+    /// A scene without imports; `name` is what messages call it. Warnings, options and imports are for [`compile`] and
+    /// its kin.
+    ///
+    /// ```
+    /// use sdfc::{Scene, SourceErrors};
+    ///
+    /// let scene = Scene::from_source("ball.sdf", "sphere(0.5) | plane(y: -0.5)")?;
+    /// assert_eq!(scene.distance([0.0, 2.0, 0.0]).expect("something is drawn"), 1.5);
+    ///
+    /// let errors = Scene::from_source("ball.sdf", "spere(0.5)").expect_err("no such shape");
+    /// let [found] = &errors.found[..] else { panic!("one error") };
+    /// assert_eq!((found.code, found.start.line, found.start.column), ("E0201", 1, 1));
+    /// assert!(errors.to_string().contains("did you mean `sphere`?"));
+    /// # Ok::<(), SourceErrors>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`SourceErrors`]: all that is wrong with the source.
+    pub fn from_source(name: &str, text: &str) -> Result<Self, SourceErrors> {
+        let compiled = compile(name, text);
+        compiled.into_scene()
+    }
+
     /// The flat program.
     pub fn program(&self) -> &Program {
         &self.program
@@ -149,8 +205,9 @@ pub fn compile_with(name: &str, text: &str, resolver: &dyn Resolver, options: Op
         sdfc_lang::front_with(&mut sources, file, resolver, options);
     let front = milliseconds_since(start);
     let origin = Origin::new(&sources, file);
-    let scene =
-        elaborated.and_then(|elaborated| finish(elaborated, origin, front, file, &mut diagnostics));
+    let sources = Arc::new(sources);
+    let scene = elaborated
+        .and_then(|elaborated| finish(elaborated, &sources, origin, front, file, &mut diagnostics));
     if let Some(scene) = &scene {
         diagnostics.extend(findings::warnings(&scene.elaborated, &scene.report, &sources));
     }
@@ -196,6 +253,7 @@ pub fn format(name: &str, text: &str, color: bool) -> Result<String, String> {
 
 fn finish(
     elaborated: Elaborated,
+    sources: &Arc<Sources>,
     origin: Origin,
     front: f64,
     file: FileId,
@@ -206,14 +264,16 @@ fn finish(
         Ok(prepared) => {
             let times = FrontTimes { front, analyze: milliseconds_since(start) };
             let (program, report) = (prepared.program, prepared.report);
-            let (rebased, bounds, intervals_end) = Default::default();
+            let (rebased, bounds, intervals_end, tapes) = Default::default();
             Some(Scene {
+                sources: Arc::clone(sources),
                 elaborated,
                 program,
                 report,
                 rebased,
                 bounds,
                 intervals_end,
+                tapes,
                 times,
                 origin,
             })

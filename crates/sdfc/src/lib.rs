@@ -29,6 +29,7 @@
 //! All are on by default. Without any this is the compiler: a scene on the CPU and as a shader, without wgpu.
 //!
 //! - `render`: pictures, drawn with wgpu or on the CPU, and written as files.
+//! - `wgpu`: the buffers and the bind group that a written shader wants of its host: [`bind`].
 //! - `measure`: the oracle, charts and benchmarks; needs `render`.
 //!
 //! # Limits
@@ -42,12 +43,16 @@ mod accuracy;
 pub mod baseline;
 #[cfg(feature = "measure")]
 mod bench;
+#[cfg(feature = "wgpu")]
+pub mod bind;
+#[cfg(feature = "measure")]
 mod comparison;
 mod compile;
 mod error;
 mod explain;
 #[cfg(feature = "measure")]
 mod faults;
+mod field;
 mod findings;
 mod marched;
 mod origin;
@@ -60,21 +65,25 @@ mod reflection;
 mod sampler;
 mod scene;
 mod shader;
+mod uniforms;
 
 #[cfg(feature = "measure")]
 pub use accuracy::{ChartOptions, OracleOptions};
 #[cfg(feature = "measure")]
 pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
+#[cfg(feature = "measure")]
 pub use comparison::Comparison;
 pub use compile::{
-    Compiled, FrontTimes, Scene, check, compile, compile_with, compile_with_imports, format,
+    Compiled, FrontTimes, Scene, SourceErrors, check, compile, compile_with, compile_with_imports,
+    format,
 };
 pub use error::Error;
 pub use explain::{Bounds, Explanation, Knob, QualityRow};
 #[cfg(feature = "measure")]
 pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
+pub use field::{Field, Material};
 pub use marched::Marched;
-pub use params::ParamError;
+pub use params::{ParamError, Value};
 #[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{
@@ -92,9 +101,12 @@ pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
 pub use sdfc_diagnostics as diagnostics;
 pub use sdfc_graph as graph;
-pub use sdfc_graph::eval::FrameValues;
+pub use sdfc_graph::eval::{FieldSample, FrameValues};
 pub use sdfc_lang as lang;
 pub use sdfc_lang::Resolver;
 pub use sdfc_march as march;
 pub use sdfc_render as render;
 pub use sdfc_render::{Progress, unwatched};
+pub use uniforms::uniform_bytes;
+#[cfg(feature = "wgpu")]
+pub use wgpu;

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use sdfc_graph::Program;
-use sdfc_graph::eval::FrameValues;
 use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
 use sdfc_render::{CpuScene, HIT, MISS, View};
 
@@ -88,7 +87,7 @@ impl Scene {
 
     /// How many of a few rays run out of steps.
     fn capped_by_intervals(&self) -> Result<usize, Error> {
-        let frame = FrameValues::defaults(self.params());
+        let frame = self.defaults();
         let view = self.view(&frame, TRIED)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
         let program = with_stretches(self.drawn(), UNCERTIFIED);

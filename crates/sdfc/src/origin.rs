@@ -5,7 +5,7 @@
 //! there too, in f64. Texts for other engines, and all that asks for the field at a place, have the scene's own.
 
 use sdfc_analyze::prepare_about;
-use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::eval::evaluate_frame;
 use sdfc_graph::{Camera, Program};
 
 use crate::Scene;
@@ -25,7 +25,7 @@ impl Scene {
 
     /// What the camera looks at by default, if that is far from the origin.
     fn place_seen(&self) -> Option<[f64; 3]> {
-        let frame = FrameValues::defaults(self.params());
+        let frame = self.defaults();
         let (place, reach) = match &self.program.settings.camera {
             Some(Camera { eye, target, .. }) => {
                 let values = evaluate_frame(&self.program.graph, &[*eye, *target], &frame);

@@ -57,7 +57,94 @@ impl std::fmt::Display for ParamError {
 
 impl std::error::Error for ParamError {}
 
+/// A value of a param.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value<'a> {
+    /// Of a number, a whole number, or an angle in radians.
+    Number(f64),
+    /// Of a truth value.
+    Bool(bool),
+    /// Of a colour: linear red, green, blue, alpha.
+    Color([f64; 4]),
+    /// The name of a choice.
+    Choice(&'a str),
+}
+
+impl From<f64> for Value<'_> {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<f32> for Value<'_> {
+    fn from(number: f32) -> Self {
+        Self::Number(f64::from(number))
+    }
+}
+
+impl From<i32> for Value<'_> {
+    fn from(number: i32) -> Self {
+        Self::Number(f64::from(number))
+    }
+}
+
+impl From<bool> for Value<'_> {
+    fn from(truth: bool) -> Self {
+        Self::Bool(truth)
+    }
+}
+
+impl From<[f64; 4]> for Value<'_> {
+    fn from(color: [f64; 4]) -> Self {
+        Self::Color(color)
+    }
+}
+
+impl<'a> From<&'a str> for Value<'a> {
+    fn from(choice: &'a str) -> Self {
+        Self::Choice(choice)
+    }
+}
+
+impl std::fmt::Display for Value<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Bool(truth) => truth.fmt(f),
+            Self::Color(lanes) => write!(f, "{lanes:?}"),
+            Self::Choice(name) => f.write_str(name),
+        }
+    }
+}
+
 impl Scene {
+    /// Sets one param of a frame.
+    ///
+    /// ```
+    /// use sdfc::Scene;
+    ///
+    /// let text = "param r = 1 in 0..2\nparam lid = true\nsphere(r)";
+    /// let scene = Scene::from_source("a.sdf", text)?;
+    /// let mut frame = scene.defaults();
+    /// scene.set(&mut frame, "r", 0.5)?;
+    /// scene.set(&mut frame, "lid", false)?;
+    /// assert_eq!([frame.params[0][0], frame.params[1][0]], [0.5, 0.0]);
+    /// assert!(scene.set(&mut frame, "r", f64::NAN).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`ParamError`], also for what is infinite or not a number; the frame is left as it was.
+    pub fn set<'v>(
+        &self,
+        frame: &mut FrameValues,
+        name: &str,
+        value: impl Into<Value<'v>>,
+    ) -> Result<(), ParamError> {
+        set(self.params(), frame, name, value.into())
+    }
+
     /// Sets one param of a frame. The text is written as in a scene: `0.5`, `-2`, `90deg`, `true`,
     /// `#d94f30`; a choice by its name.
     ///
@@ -80,28 +167,47 @@ impl Scene {
         name: &str,
         text: &str,
     ) -> Result<(), ParamError> {
-        let found = self.params().iter().position(|param| param.name == name);
-        let known = || self.params().iter().map(|param| param.name.clone()).collect();
-        let Some((index, param)) = found.and_then(|i| Some((i, self.params().get(i)?))) else {
-            return Err(ParamError::Unknown { name: name.to_owned(), known: known() });
-        };
-        let value = value(param, text)?;
-        if frame.params.len() < self.params().len() {
-            frame.params = FrameValues::defaults(self.params()).params;
-        }
-        frame.params[index] = value;
-        Ok(())
+        put(self.params(), frame, name, |param| value(param, text))
     }
+}
+
+/// Sets one param of a frame.
+pub(crate) fn set(
+    params: &[Param],
+    frame: &mut FrameValues,
+    name: &str,
+    value: Value<'_>,
+) -> Result<(), ParamError> {
+    put(params, frame, name, |param| {
+        let text = value.to_string();
+        let lanes = value.lanes(param).ok_or_else(|| refused(param, &text))?;
+        within_range(param, lanes, &text)
+    })
+}
+
+fn put(
+    params: &[Param],
+    frame: &mut FrameValues,
+    name: &str,
+    value: impl FnOnce(&Param) -> Result<[f64; 4], ParamError>,
+) -> Result<(), ParamError> {
+    let found = params.iter().position(|param| param.name == name);
+    let known = || params.iter().map(|param| param.name.clone()).collect();
+    let Some((index, param)) = found.and_then(|i| Some((i, params.get(i)?))) else {
+        return Err(ParamError::Unknown { name: name.to_owned(), known: known() });
+    };
+    let value = value(param)?;
+    if frame.params.len() < params.len() {
+        frame.params = FrameValues::defaults(params).params;
+    }
+    frame.params[index] = value;
+    Ok(())
 }
 
 /// The lanes of a param for a text.
 fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
     let text = text.trim();
-    let refused = || ParamError::NotAValue {
-        name: param.name.clone(),
-        text: text.to_owned(),
-        expected: expected(param),
-    };
+    let refused = || refused(param, text);
     if param.kind == ParamKind::Choice {
         let index = param.choices.iter().position(|choice| choice == text.trim_matches('"'));
         return index.map(|index| [index as f64, 0.0, 0.0, 0.0]).ok_or_else(refused);
@@ -119,6 +225,35 @@ fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
     if !fits {
         return Err(refused());
     }
+    within_range(param, lanes, text)
+}
+
+impl Value<'_> {
+    /// The lanes that a param of that kind has for it.
+    fn lanes(self, param: &Param) -> Option<[f64; 4]> {
+        let one = |number: f64| number.is_finite().then_some([number, 0.0, 0.0, 0.0]);
+        match (self, param.kind) {
+            (Self::Number(number), ParamKind::Number | ParamKind::Angle) => one(number),
+            (Self::Number(number), ParamKind::Int) => one(number).filter(|_| number.fract() == 0.0),
+            (Self::Bool(truth), ParamKind::Bool) => one(f64::from(u8::from(truth))),
+            (Self::Color(lanes), ParamKind::Color) => {
+                Some(lanes).filter(|lanes| lanes.iter().all(|lane| lane.is_finite()))
+            }
+            (Self::Choice(name), ParamKind::Choice) => {
+                one(param.choices.iter().position(|choice| choice == name)? as f64)
+            }
+            (Self::Number(_) | Self::Bool(_) | Self::Color(_) | Self::Choice(_), _) => None,
+        }
+    }
+}
+
+fn refused(param: &Param, text: &str) -> ParamError {
+    let (name, text) = (param.name.clone(), text.to_owned());
+    ParamError::NotAValue { name, text, expected: expected(param) }
+}
+
+fn within_range(param: &Param, lanes: [f64; 4], text: &str) -> Result<[f64; 4], ParamError> {
+    let [number, ..] = lanes;
     match param.range {
         Some([lo, hi]) if !(lo..=hi).contains(&number) => Err(ParamError::Outside {
             name: param.name.clone(),

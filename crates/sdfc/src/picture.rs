@@ -87,7 +87,7 @@ impl Scene {
         options: &PictureOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Picture, Error> {
-        let defaults = || FrameValues::defaults(self.params());
+        let defaults = || self.defaults();
         let values = options.frame.clone().unwrap_or_else(defaults);
         self.painter(options)?.paint(&values, options.repetitions, progress)
     }

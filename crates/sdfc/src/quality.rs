@@ -1,8 +1,7 @@
 //! What is known of each shape of a scene, at the call that made it.
 
 use sdfc_analyze::{Lipschitz, ShapeReport};
-use sdfc_diagnostics::Sources;
-use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::eval::evaluate_frame;
 use sdfc_graph::{Dim, NodeId};
 use sdfc_lang::Site;
 
@@ -11,7 +10,7 @@ use crate::explain::{Bounds, QualityRow};
 
 impl Scene {
     /// One row for each call in the scene's own files whose shape is drawn.
-    pub(crate) fn quality_rows(&self, sources: &Sources) -> Vec<QualityRow> {
+    pub(crate) fn quality_rows(&self) -> Vec<QualityRow> {
         let report = |site: &Site| self.report.shapes.iter().find(|s| s.shape == site.shape);
         let sites: Vec<(&Site, &ShapeReport)> =
             self.sites().iter().filter_map(|site| Some((site, report(site)?))).collect();
@@ -24,13 +23,13 @@ impl Scene {
             corners.extend(derived.of(&mut graph, site.shape));
             reaches.push(derived.reach(&mut graph, site.shape));
         }
-        let corners = evaluate_frame(&graph, &corners, &FrameValues::defaults(self.params()));
+        let corners = evaluate_frame(&graph, &corners, &self.defaults());
         let (corners, _) = corners.as_chunks::<2>();
 
         let rows = sites.iter().zip(corners).zip(reaches);
         let mut rows: Vec<QualityRow> = rows
             .map(|(((site, shape), corners), reach)| {
-                let place = sources.line_column(site.span.file, site.span.start);
+                let place = self.sources.line_column(site.span.file, site.span.start);
                 // A region has no third coordinate.
                 let far = if graph.shape(site.shape).dim == Dim::Two { f64::INFINITY } else { 0.0 };
                 let corner = |[x, y, z, _]: [f64; 4]| [x, y, z + far];

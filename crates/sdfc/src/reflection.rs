@@ -2,7 +2,6 @@
 
 use sdfc_analyze::{Promise, Sides as ShapeSides};
 use sdfc_codegen::{Buffer, BufferRole, Member, Structure, Written};
-use sdfc_diagnostics::Sources;
 use sdfc_graph::{FrameInput, Param, ParamKind, Type};
 use serde::Serialize;
 
@@ -172,13 +171,8 @@ pub struct Sides<T> {
 }
 
 impl Scene {
-    /// What a shader that was written with these options offers. `sources` are those of the compilation.
-    pub fn reflect(
-        &self,
-        sources: &Sources,
-        options: &ShaderOptions,
-        written: &Written,
-    ) -> ShaderReflection {
+    /// What a shader that was written with these options offers.
+    pub fn reflect(&self, options: &ShaderOptions, written: &Written) -> ShaderReflection {
         let found = &written.reflection;
         let functions = found.functions.iter().map(|function| FunctionRow {
             role: function.role.name(),
@@ -206,7 +200,7 @@ impl Scene {
             lists: found.lists.as_flattened().to_vec(),
             structs: found.structures.iter().map(struct_row).collect(),
             entry_points: entries.collect(),
-            certificate: self.certificate(sources),
+            certificate: self.certificate(),
         }
     }
 
@@ -239,7 +233,7 @@ impl Scene {
         }
     }
 
-    fn certificate(&self, sources: &Sources) -> Certificate {
+    fn certificate(&self) -> Certificate {
         let certified = self.report.uncertified.is_empty();
         let root = self.graph().root;
         let root = self.report.shapes.iter().find(|shape| Some(shape.shape) == root);
@@ -255,7 +249,7 @@ impl Scene {
             lipschitz: Sides { outside: constant, inside: constant },
             promise: Sides { outside: promise(|s| s.outside), inside: promise(|s| s.inside) },
             step_scale: 1.0,
-            parts: self.quality_rows(sources),
+            parts: self.quality_rows(),
         }
     }
 }
@@ -320,7 +314,7 @@ mod tests {
         let scene = compiled.scene.unwrap();
         let options = ShaderOptions { target, group: 1, binding: 2, ..Default::default() };
         let written = scene.write_shader(&options).unwrap();
-        serde_json::to_value(scene.reflect(&compiled.sources, &options, &written)).unwrap()
+        serde_json::to_value(scene.reflect(&options, &written)).unwrap()
     }
 
     const SCENE: &str = "param r = 0.5 in 0.1..1\nparam tint = #ff0000\n\

@@ -1,8 +1,7 @@
 //! A compiled scene's field on the CPU, as a shader, and explained.
 
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
-use sdfc_diagnostics::Sources;
-use sdfc_graph::eval::{FrameValues, evaluate_frame, sample_field};
+use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
 use sdfc_render::View;
 
@@ -18,18 +17,6 @@ pub(crate) struct DerivedBounds {
 }
 
 impl Scene {
-    /// Signed distance at a point, in f64, with the params' defaults; never more than the true distance
-    /// where the scene is certified.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NothingDrawn`].
-    pub fn distance(&self, point: [f64; 3]) -> Result<f64, Error> {
-        let frame = FrameValues::defaults(self.params());
-        let samples = sample_field(&self.program, &frame, &[point])?;
-        samples.first().map(|sample| sample.distance).ok_or(Error::NothingDrawn)
-    }
-
     /// Whether the field is known nowhere to exceed the distance.
     pub fn is_certified(&self) -> bool {
         self.report.uncertified.is_empty()
@@ -82,7 +69,7 @@ impl Scene {
     /// # Errors
     ///
     /// [`Error::NothingDrawn`], [`Error::Codegen`].
-    pub fn explain(&self, sources: &Sources) -> Result<Explanation, Error> {
+    pub fn explain(&self) -> Result<Explanation, Error> {
         let program = &self.program;
         if program.distance.is_none() {
             return Err(Error::NothingDrawn);
@@ -111,7 +98,7 @@ impl Scene {
             certified: self.is_certified(),
             bounds: self.finite_bounds(),
             knobs: self.knobs(),
-            quality: self.quality_rows(sources),
+            quality: self.quality_rows(),
         })
     }
 
@@ -125,7 +112,7 @@ impl Scene {
     }
 
     pub(crate) fn finite_bounds(&self) -> Bounds {
-        let frame = FrameValues::defaults(self.params());
+        let frame = self.defaults();
         self.bounds_at(&frame).map(Bounds::of).unwrap_or_default()
     }
 

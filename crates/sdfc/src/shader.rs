@@ -5,7 +5,6 @@ use sdfc_codegen::{
     picture_module, shadertoy_module,
 };
 use sdfc_diagnostics::{FileId, Sources};
-use sdfc_graph::eval::FrameValues;
 use sdfc_render::{Tile, View, view_bytes};
 
 use crate::marched::with_stretches;
@@ -142,7 +141,7 @@ impl Scene {
 
     /// The view at the defaults, as a buffer would hold it. Its size says how wide it is, no more.
     fn default_view(&self) -> Result<Vec<u8>, Error> {
-        let frame = FrameValues::defaults(self.params());
+        let frame = self.defaults();
         let view = View::new(&self.program, &frame, self.bounds_at(&frame), SHADERTOY_SIZE)?;
         Ok(view_bytes(&view.block(Tile { origin: [0, 0], size: SHADERTOY_SIZE })))
     }

@@ -27,7 +27,7 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {
-        let reflection = scene.reflect(&compiled.sources, &options, &written);
+        let reflection = scene.reflect(&options, &written);
         results.push((Output::new(path), super::json(&reflection)?));
     }
     results.push((Output::new(&args.output), written.code.into_bytes()));

@@ -1,0 +1,204 @@
+//! What an embedder hands in may be anything: it comes back as an error, and opens no file.
+#![allow(missing_docs)]
+
+use std::sync::Mutex;
+
+use proptest::prelude::*;
+use sdfc::lang::{NoFiles, Resolver};
+use sdfc::{
+    Compiled, Emit, Error, Field, FrameValues, Scene, ShaderOptions, SourceErrors, Target, compile,
+    compile_with_imports, uniform_bytes,
+};
+
+const SCENE: &str = "param r = 1 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt = 10deg in \
+                     0deg..45deg\nparam lid = true\nparam wood = #8a5a34\nparam style = \"round\" \
+                     in [\"round\", \"flat\"]\nlet ball = if lid { sphere(r) } else { box(r) }\n\
+                     ball.rotate(y: tilt).color(wood)\ntorus(major: n, minor: 0.1).translate(x: time)";
+
+fn scene() -> Scene {
+    Scene::from_source("a.sdf", SCENE).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+#[test]
+fn threads_may_share_scenes() {
+    fn shared<T: Send + Sync>() {}
+    shared::<Scene>();
+    shared::<Compiled>();
+    shared::<Field<'_>>();
+    shared::<SourceErrors>();
+    shared::<Error>();
+    shared::<sdfc::ParamError>();
+    shared::<sdfc::Written>();
+    shared::<sdfc::bind::Bindings>();
+}
+
+/// Words that make a text more likely to be a scene.
+fn words() -> impl Strategy<Value = String> {
+    const KNOWN: [&str; 30] = [
+        "sphere",
+        "(",
+        ")",
+        "1",
+        "\n",
+        "box",
+        ",",
+        ".",
+        "param r = ",
+        " in ",
+        "0..1",
+        "union",
+        "|",
+        "translate",
+        "x: ",
+        "p",
+        "solid s() = ",
+        "length(p)",
+        "-",
+        "for i in 0..9: ",
+        "[",
+        "]",
+        "import a from \"b.sdf\"",
+        "camera",
+        "1e308",
+        "if ",
+        " { ",
+        " } else { ",
+        "color",
+        "#f00",
+    ];
+    let word =
+        prop_oneof![4 => prop::sample::select(&KNOWN[..]).prop_map(str::to_owned), 1 => ".{0,3}"];
+    prop::collection::vec(word, 0..40).prop_map(|words| words.concat())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn any_bytes_are_a_scene_or_errors(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        one_or_the_other(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn any_words_are_a_scene_or_errors(text in words()) {
+        one_or_the_other(&text);
+    }
+
+    #[test]
+    fn any_value_is_taken_or_refused(
+        name in prop::sample::select(&["r", "n", "tilt", "lid", "wood", "style", "", "q"][..]),
+        number in any::<f64>(),
+        lanes in any::<[f64; 4]>(),
+        text in ".{0,12}",
+    ) {
+        let scene = scene();
+        let mut frame = scene.defaults();
+        let _ = scene.set(&mut frame, name, number);
+        let _ = scene.set(&mut frame, name, lanes);
+        let _ = scene.set(&mut frame, name, text.as_str());
+        let _ = scene.set_param(&mut frame, name, &text);
+        // What was taken is a number, and so is the field of it.
+        prop_assert!(frame.params.as_flattened().iter().all(|lane| lane.is_finite()));
+        let mut field = scene.field(&frame)?;
+        prop_assert!(field.distance([0.1, 0.2, 0.3]).is_finite());
+    }
+
+    #[test]
+    fn any_frame_gives_some_field(
+        params in prop::collection::vec(any::<[f64; 4]>(), 0..9),
+        time in any::<f64>(),
+        point in any::<[f64; 3]>(),
+    ) {
+        let scene = scene();
+        let frame = FrameValues { params, time, frame: time };
+        let mut field = scene.field(&frame)?;
+        let points = [point; 9];
+        prop_assert_eq!(field.distances(&points).len(), 9);
+        prop_assert_eq!(field.gradients(&points).len(), 9);
+        prop_assert_eq!(field.materials(&points).len(), 9);
+        let _ = scene.bounds_at(&frame);
+        let written = scene.write_shader(&ShaderOptions::default())?;
+        prop_assert_eq!(uniform_bytes(&written.reflection, &frame).len() % 16, 0);
+    }
+
+    #[test]
+    fn any_names_and_places_are_taken_or_refused(
+        prefix in ".{0,8}",
+        group in any::<u32>(),
+        binding in any::<u32>(),
+        method in prop::option::of("[a-z-]{0,12}"),
+        target in prop::sample::select(&Target::ALL[..]),
+        emit in prop::sample::select(&[Emit::Field, Emit::March][..]),
+    ) {
+        let options = ShaderOptions { target, emit, method, prefix, group, binding, ..Default::default() };
+        let _ = scene().write_shader(&options);
+    }
+}
+
+/// A batch is what its points are one by one.
+#[test]
+fn a_batch_is_its_points() -> Result<(), Error> {
+    let scene = scene();
+    let mut field = scene.field(&scene.defaults())?;
+    let points: Vec<_> = (0..19).map(|i| [0.1 * f64::from(i), 0.3, -0.05 * f64::from(i)]).collect();
+    let one_by_one: Vec<_> = points.iter().map(|&point| field.distance(point)).collect();
+    assert_eq!(field.distances(&points), one_by_one);
+    let gradients = field.gradients(&points);
+    assert!(gradients.iter().zip(&one_by_one).all(|(found, d)| (found.distance - d).abs() < 1e-12));
+    assert_eq!(field.materials(&points).len(), points.len());
+    Ok(())
+}
+
+fn one_or_the_other(text: &str) {
+    match Scene::from_source("any.sdf", text) {
+        Err(errors) => assert!(!errors.found.is_empty()),
+        Ok(scene) => {
+            let _ = scene.distance([f64::NAN, f64::INFINITY, 0.0]);
+            let _ = scene.gradient([1e300, 0.0, 0.0]);
+            let _ = scene.material([0.0; 3]);
+            let _ = scene.write_shader(&ShaderOptions::default());
+        }
+    }
+}
+
+/// Gives nothing, and notes what it was asked for.
+#[derive(Default)]
+struct Asked(Mutex<Vec<String>>);
+
+impl Resolver for Asked {
+    fn read(&self, path: &str) -> Result<String, String> {
+        self.0.lock().expect("nothing panicked").push(path.to_owned());
+        Err("no".to_owned())
+    }
+}
+
+const READERS: [&str; 6] = [
+    "import a from \"/etc/passwd\"\nsphere(1)",
+    "import a from \"../secret.sdf\"\nsphere(1)",
+    "import a from \"parts/../../secret.sdf\"\nsphere(1)",
+    "import a from \"C:\\\\secret.sdf\"\nsphere(1)",
+    "import a from \"parts/gear.sdf\"\nsphere(1)",
+    "text(\"A\", font: \"parts/font.ttf\").extrude(1)",
+];
+
+#[test]
+fn a_scene_reads_no_file_unless_its_resolver_does() {
+    for text in READERS {
+        // Files of the repository are there to be read, by whoever would.
+        let compiled = compile_with_imports("crates/sdfc/a.sdf", text, &NoFiles);
+        assert!(compiled.scene.is_none(), "{text}");
+        assert!(compile("a.sdf", text).scene.is_none(), "{text}");
+    }
+}
+
+#[test]
+fn a_resolver_is_asked_for_nothing_outside_the_folder_of_the_scene() {
+    let asked = Asked::default();
+    for text in READERS {
+        assert!(compile_with_imports("a.sdf", text, &asked).scene.is_none(), "{text}");
+    }
+    assert_eq!(
+        asked.0.into_inner().expect("nothing panicked"),
+        ["parts/gear.sdf", "parts/font.ttf"]
+    );
+}

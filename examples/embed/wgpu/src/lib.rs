@@ -1,0 +1,23 @@
+//! Two sdfc scenes, each with its own params, in one shader of a program that has its own camera and light.
+//!
+//! Run it with `cargo run -p embed-wgpu -- embed.png`; the test compares its picture with that of `sdfc render`.
+
+mod renderer;
+mod target;
+
+pub use renderer::{Camera, Renderer};
+
+/// The scenes, by the names that their functions begin with.
+pub const SCENES: [(&str, &str); 2] =
+    [("bowl", include_str!("../../bowl.sdf")), ("ring", include_str!("../../ring.sdf"))];
+
+/// Opens an adapter without a window.
+///
+/// # Errors
+///
+/// There is none, or it gives no device.
+pub fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn std::error::Error>> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
+    Ok(pollster::block_on(adapter.request_device(&Default::default()))?)
+}

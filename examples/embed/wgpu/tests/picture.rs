@@ -1,0 +1,59 @@
+//! The program's picture against that of `sdfc render`.
+#![allow(missing_docs)]
+
+use embed_wgpu::{Camera, Renderer, SCENES, open};
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::render::testing;
+use sdfc::{Backend, PictureOptions, Scene, unwatched};
+
+const SIZE: [u32; 2] = [160, 120];
+/// Steps of 1/255.
+const MOST: u8 = 2;
+/// Pixels in a thousand that may see past another edge.
+const EDGES: usize = 5;
+
+fn main() {
+    let test = Trial::test("two_scenes_in_one_shader_are_drawn_as_sdfc_draws_them", same_picture);
+    let tests = vec![test.with_ignored_flag(testing::without_gpu())];
+    libtest_mimic::run(&Arguments::from_args(), tests).exit();
+}
+
+fn same_picture() -> Result<(), Failed> {
+    let (device, queue) = open()?;
+    let mut renderer = Renderer::new(device, queue)?;
+    let [bowl, ring] = &mut renderer.scenes[..] else { return Err("two scenes".into()) };
+    bowl.set("wall", 0.15)?;
+    bowl.set("opening", 0.4)?;
+    ring.frame_mut().time = 2.0;
+    let camera = Camera {
+        eye: [2.2, 2.4, 3.0],
+        target: [0.0, -0.2, 0.0],
+        fov: 40f32.to_radians(),
+        sun: [1.0, 2.0, 1.5],
+        ambient: 0.15,
+    };
+    let drawn = renderer.draw(SIZE, &camera)?;
+
+    let settings = "camera(eye: [2.2, 2.4, 3], target: [0, -0.2, 0], fov: 40deg)\n\
+                    sun(direction: [1, 2, 1.5])\nambient(strength: 0.15)\n\
+                    background(rgb(0.1, 0.2, 0.3))";
+    let [(_, bowl), (_, ring)] = SCENES;
+    let scene = Scene::from_source("both.sdf", &[bowl, ring, settings].join("\n"))?;
+    let mut frame = scene.defaults();
+    scene.set(&mut frame, "wall", 0.15)?;
+    scene.set(&mut frame, "opening", 0.4)?;
+    frame.time = 2.0;
+    let backend = Backend::Gpu;
+    let options = PictureOptions { size: SIZE, backend, frame: Some(frame), ..Default::default() };
+    let expected = scene.render(&options, &mut unwatched)?.image.to_srgb8();
+
+    let far = drawn
+        .chunks_exact(4)
+        .zip(expected.chunks_exact(3))
+        .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > MOST));
+    let (count, all) = (far.count(), expected.len() / 3);
+    if count * 1000 > EDGES * all {
+        return Err(format!("{count} of {all} pixels differ by more than {MOST}/255").into());
+    }
+    Ok(())
+}
