@@ -175,7 +175,7 @@ impl Scene {
 
     /// Operations of so many evaluations by a method, in a program of [`with_stretches`]. An evaluation by a method that
     /// looks at stretches is the field and what it asks of a stretch, what they share counted once.
-    fn operations_of(&self, program: &Program, name: &str, evaluations: f64) -> f64 {
+    pub(crate) fn operations_of(&self, program: &Program, name: &str, evaluations: f64) -> f64 {
         let Some(method) = method(name) else { return f64::NAN };
         let stretches = [(stubs::RANGE, program.range), (stubs::SLOPE_RANGE, program.slope_range)];
         let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));

@@ -173,7 +173,8 @@ fn make_buffer(device: &wgpu::Device, buffer: &Buffer, list_bytes: usize) -> wgp
     let (size, usage) = match buffer.role {
         BufferRole::Lists => (list_bytes, wgpu::BufferUsages::STORAGE),
         BufferRole::View | BufferRole::Params | BufferRole::Pixels => {
-            (buffer.size as usize, wgpu::BufferUsages::UNIFORM)
+            // WebGL wants whole vectors.
+            ((buffer.size as usize).next_multiple_of(16), wgpu::BufferUsages::UNIFORM)
         }
     };
     device.create_buffer(&wgpu::BufferDescriptor {

@@ -14,7 +14,7 @@ use sdfc_graph::{FrameInput, Type};
 /// let written = scene.write_shader(&ShaderOptions::default())?;
 /// let mut frame = scene.defaults();
 /// frame.time = 0.25;
-/// let words = [1f32, 0.25, 0.0, 0.0].map(f32::to_le_bytes).concat();
+/// let words = [1f32, 0.25].map(f32::to_le_bytes).concat();
 /// assert_eq!(uniform_bytes(&written.reflection, &frame), words);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
