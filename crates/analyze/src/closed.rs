@@ -35,6 +35,26 @@ pub(crate) struct Closed {
     pub value: NodeId,
     /// Where a ray is inside.
     pub spans: Vec<Span>,
+    /// As of [`Open`].
+    point: NodeId,
+    scale: NodeId,
+}
+
+impl Parts {
+    /// Leaves these of what is closed, by position, to be marched after all.
+    pub(crate) fn march(&mut self, positions: &[usize]) {
+        let (mut position, mut closed) = (0, Vec::new());
+        for part in std::mem::take(&mut self.closed) {
+            if positions.binary_search(&position).is_ok() {
+                let Closed { shape, value, point, scale, .. } = part;
+                self.open.push(Open { shape, value, point, scale });
+            } else {
+                closed.push(part);
+            }
+            position += 1;
+        }
+        self.closed = closed;
+    }
 }
 
 /// An operand that is left to march.
@@ -151,7 +171,9 @@ impl Pass<'_> {
         spans: Vec<Span>,
     ) -> Result<Parts, ExpandError> {
         let value = self.value(shape, place)?;
-        Ok(Parts { closed: vec![Closed { shape, value, spans }], open: Vec::new() })
+        let Place { point, scale, .. } = place;
+        let closed = vec![Closed { shape, value, spans, point, scale }];
+        Ok(Parts { closed, open: Vec::new() })
     }
 
     /// The sound field of a shape where it is sampled.

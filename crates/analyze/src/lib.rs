@@ -29,6 +29,7 @@ mod lipschitz;
 mod prepare;
 mod quality;
 mod refute;
+mod roll;
 mod sound;
 mod spans;
 mod uneven;
@@ -38,8 +39,11 @@ pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
-pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_about};
+pub use prepare::{
+    Lipschitz, MOST_INLINE, Prepared, Report, ShapeReport, Writing, prepare, prepare_about,
+};
 pub use quality::{Promise, Qualities, Quality, Sides};
 pub use refute::{Clause, ParamEnd, RayFault, Refuted, refute, refute_hits};
+pub use roll::Rolled;
 pub use sound::Uncertified;
 pub use uneven::Uneven;

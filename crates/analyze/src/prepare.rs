@@ -12,6 +12,7 @@ use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::lipschitz::Reason;
 use crate::quality::{Qualities, Sides, shapes_below};
+use crate::roll::{Rolled, alike, roll};
 use crate::sound::{Uncertified, sound_field};
 use crate::spans::first;
 use crate::uneven::{Uneven, inexact_outside, uneven};
@@ -25,9 +26,26 @@ pub struct Prepared {
     pub report: Report,
 }
 
+/// How a field of many parts is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Writing {
+    /// As costs less: [`Writing::Rolled`] where more than [`MOST_INLINE`] operations can become loops.
+    #[default]
+    Auto,
+    /// All that there is, one operation after the other.
+    Inline,
+    /// Parts that are equal up to constants as loops over lists, where there are such.
+    Rolled,
+}
+
+/// More operations of a field take drivers longer to compile than they save, if loops can take their place.
+pub const MOST_INLINE: usize = 1200;
+
 /// What was modelled and why.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
+    /// What became loops; empty where all is written out.
+    pub rolled: Vec<Rolled>,
     /// Leaf shapes evaluated per field evaluation: childless instances at distinct points.
     pub leaves: usize,
     /// Cost of the distance alone.
@@ -99,7 +117,7 @@ pub enum Lipschitz {
 ///
 /// When expansion passes the graph's node limit.
 pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
-    prepare_about(scene, [0.0; 3])
+    prepare_about(scene, [0.0; 3], Writing::Auto)
 }
 
 /// As [`prepare`], with the flat math's point counted from a place in the scene. Where a solid is moved to, less that
@@ -108,7 +126,11 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
 /// # Errors
 ///
 /// As [`prepare`].
-pub fn prepare_about(scene: &Scene, origin: [f64; 3]) -> Result<Prepared, ExpandError> {
+pub fn prepare_about(
+    scene: &Scene,
+    origin: [f64; 3],
+    writing: Writing,
+) -> Result<Prepared, ExpandError> {
     let mut program = Program {
         origin,
         graph: scene.graph.clone(),
@@ -117,14 +139,19 @@ pub fn prepare_about(scene: &Scene, origin: [f64; 3]) -> Result<Prepared, Expand
         ..Program::default()
     };
     let report = match scene.root {
-        Some(root) => flatten(&mut program, root, scene.painted)?,
+        Some(root) => flatten(&mut program, root, scene.painted, writing)?,
         None => Report::default(),
     };
     program.uniforms = uniforms(&program.graph, &program.roots());
     Ok(Prepared { program, report })
 }
 
-fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report, ExpandError> {
+fn flatten(
+    program: &mut Program,
+    root: ShapeId,
+    painted: bool,
+    writing: Writing,
+) -> Result<Report, ExpandError> {
     let params = program.params.clone();
     let graph = &mut program.graph;
     let mut expander = Expander::new();
@@ -134,7 +161,19 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
     let qualities = Qualities::of_scene(graph, root, &params);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
-    let apart = parts(graph, &mut expander, &qualities, root, point)?;
+    let mut apart = parts(graph, &mut expander, &qualities, root, point)?;
+    let rolls = match writing {
+        Writing::Auto => cost(graph, &[field.distance]).operations > MOST_INLINE,
+        Writing::Inline => false,
+        Writing::Rolled => true,
+    };
+    if rolls {
+        // What a list holds is met by marching: all of it met in closed form would be asked of each ray.
+        let values: Vec<NodeId> = apart.closed.iter().map(|part| part.value).collect();
+        let mut many = alike(graph, &values).concat();
+        many.sort_unstable();
+        apart.march(&many);
+    }
     let mut flat = vec![field.distance];
     if !apart.closed.is_empty() {
         flat.extend(least(graph, apart.closed.iter().map(|part| part.value)));
@@ -147,15 +186,17 @@ fn flatten(program: &mut Program, root: ShapeId, painted: bool) -> Result<Report
     let folded = fold_transforms(graph, &flat);
     program.names = folded.names(graph, &expander.names());
     let (fields, material) = folded.roots.split_at(fields);
+    let (fields, rolled) = if rolls { roll(graph, fields) } else { (fields.to_vec(), Vec::new()) };
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, own_point));
     let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
-    program.rays = rays(&apart, fields, asked);
+    program.rays = rays(&apart, &fields, asked);
     let Rays { hits, marched, clip, .. } = program.rays;
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
+        rolled,
         leaves,
         distance: cost(graph, &[distance]),
         gradient: cost(graph, program.gradient.as_slice()),

@@ -233,6 +233,9 @@ pub struct Render {
     /// What draws
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
+    /// How the field of many parts is written
+    #[arg(long, value_enum, default_value_t)]
+    pub writing: Writing,
     /// Give a param a value, written as in a scene: 0.5, 90deg, true, #d94f30, or a choice's name
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
@@ -283,6 +286,28 @@ pub enum Backend {
     Gpu,
     /// The processor
     Cpu,
+}
+
+/// How the field of many parts is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Writing {
+    /// As costs less
+    #[default]
+    Auto,
+    /// All that there is, one operation after the other
+    Inline,
+    /// Parts that are equal up to constants as loops over lists
+    Rolled,
+}
+
+impl From<Writing> for sdfc::Writing {
+    fn from(writing: Writing) -> Self {
+        match writing {
+            Writing::Auto => Self::Auto,
+            Writing::Inline => Self::Inline,
+            Writing::Rolled => Self::Rolled,
+        }
+    }
 }
 
 /// Arguments of `view`.

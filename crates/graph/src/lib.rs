@@ -79,7 +79,7 @@ pub use node::{
 pub use polynomial::{Polynomial, common_square};
 pub use program::{Program, Rays};
 pub use range::Range;
-pub use repeat::{Loop, LoopBody, MAX_LOOP_DEPTH, Table};
+pub use repeat::{Inert, Loop, LoopBody, MAX_LOOP_DEPTH, Table};
 pub use scene::{
     Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
     Settings, Shadow, Sky,

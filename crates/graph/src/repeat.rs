@@ -27,10 +27,22 @@ pub struct Loop {
     pub start: Vec<NodeId>,
     /// The parts after a round, over the variables; types as in `start`.
     pub next: Vec<NodeId>,
+    /// When a round may be left out, if that is known.
+    pub inert: Option<Inert>,
+}
+
+/// A round leaves the whole state as it is wherever `operand` is at least the state's first part, as the round finds it,
+/// and `margin` more. Whoever can tell that of a round for a part of space need not run it there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Inert {
+    /// A number over the round's variable and what lies outside the loop; it does not depend on the state.
+    pub operand: NodeId,
+    /// A number of 0 or more, known per frame.
+    pub margin: NodeId,
 }
 
 impl Loop {
-    /// Everything that it mentions: count, condition, start, next.
+    /// Everything that it mentions: count, condition, start, next, what makes a round inert.
     pub fn arguments(&self) -> impl Iterator<Item = NodeId> {
         (0..).map_while(|position| self.argument(position))
     }
@@ -41,8 +53,9 @@ impl Loop {
         if position < head {
             return if position == 0 { self.count.or(self.go_on) } else { self.go_on };
         }
-        let rest = self.start.iter().chain(&self.next);
-        rest.copied().nth(position - head)
+        let rest = self.start.iter().chain(&self.next).copied();
+        let inert = self.inert.into_iter().flat_map(|inert| [inert.operand, inert.margin]);
+        rest.chain(inert).nth(position - head)
     }
 
     /// The same loop over other nodes.
@@ -54,13 +67,17 @@ impl Loop {
             go_on: self.go_on.map(&mut map),
             start: self.start.iter().copied().map(&mut map).collect(),
             next: self.next.iter().copied().map(&mut map).collect(),
+            inert: self.inert.map(|Inert { operand, margin }| Inert {
+                operand: map(operand),
+                margin: map(margin),
+            }),
         }
     }
 
     /// Whether this one carries the state of the other, and more.
     pub(crate) fn extends(&self, other: &Self) -> bool {
-        let same = (self.depth, self.cap, self.count, self.go_on)
-            == (other.depth, other.cap, other.count, other.go_on);
+        let same = (self.depth, self.cap, self.count, self.go_on, self.inert)
+            == (other.depth, other.cap, other.count, other.go_on, other.inert);
         same && self.start.len() > other.start.len()
             && self.start.starts_with(&other.start)
             && self.next.starts_with(&other.next)

@@ -115,6 +115,7 @@ fn cases() -> Vec<Case> {
                     go_on: None,
                     start: vec![state[0]],
                     next: vec![next],
+                    inert: None,
                 };
                 let within = graph.repeat(repeated);
                 let tenth = graph.number(0.1);
@@ -149,7 +150,7 @@ fn looped(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
     let round = graph.variable(0, Place::Round, Type::Scalar);
     let (next, go_on) = (case.round)(graph, &state, round);
     let count = case.counted.then(|| count(graph));
-    graph.repeat(Loop { depth: 0, cap: case.cap, count, go_on, start, next })
+    graph.repeat(Loop { depth: 0, cap: case.cap, count, go_on, start, next, inert: None })
 }
 
 fn written_out(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
@@ -364,8 +365,15 @@ fn a_loop_that_changes_nothing_is_its_start() {
     let mut graph = Graph::new();
     let p = point(&mut graph);
     let variable = graph.variable(0, Place::State(0), Type::Vec3);
-    let still =
-        Loop { depth: 0, cap: 8, count: None, go_on: None, start: vec![p], next: vec![variable] };
+    let still = Loop {
+        depth: 0,
+        cap: 8,
+        count: None,
+        go_on: None,
+        start: vec![p],
+        next: vec![variable],
+        inert: None,
+    };
     assert_eq!(graph.repeat(still.clone()), [p]);
     let zero = graph.constant(Type::Vec3, &[0.0; 3]);
     assert_eq!(graph.repeat(Loop { cap: 0, next: vec![zero], ..still }), [p]);

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use sdfc_analyze::{Report, prepare};
+use sdfc_analyze::{Report, Writing, prepare, prepare_about};
 use sdfc_diagnostics::{
     Code, Diagnostic, FileId, Located, Sources, Span, has_errors, locate, render,
 };
@@ -14,9 +14,9 @@ use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
 use sdfc_render::milliseconds_since;
 
 use crate::field::Tapes;
-use crate::findings;
 use crate::scene::DerivedBounds;
 use crate::shader::Origin;
+use crate::{Error, findings};
 
 /// What compiling a source gave: findings, and the scene if none of them is an error.
 #[derive(Debug)]
@@ -84,6 +84,7 @@ pub struct Scene {
     pub(crate) elaborated: Elaborated,
     pub(crate) program: Program,
     pub(crate) report: Report,
+    pub(crate) writing: Writing,
     /// The program about another place, if pictures are drawn by such; made when the first is.
     pub(crate) rebased: OnceLock<Option<Program>>,
     /// Derived when first asked for; a shader needs none.
@@ -154,6 +155,20 @@ impl Scene {
     /// Whether the scene draws anything.
     pub fn draws(&self) -> bool {
         self.program.distance.is_some()
+    }
+
+    /// The same scene with its field written another way.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Expand`].
+    pub fn written(self, writing: Writing) -> Result<Self, Error> {
+        let start = Instant::now();
+        let prepared = prepare_about(&self.elaborated.scene, [0.0; 3], writing)?;
+        let (program, report) = (prepared.program, prepared.report);
+        let (rebased, tapes) = Default::default();
+        let times = FrontTimes { analyze: milliseconds_since(start), ..self.times };
+        Ok(Self { program, report, rebased, tapes, writing, times, ..self })
     }
 
     /// Time spent so far.
@@ -270,6 +285,7 @@ fn finish(
                 elaborated,
                 program,
                 report,
+                writing: Writing::Auto,
                 rebased,
                 bounds,
                 intervals_end,

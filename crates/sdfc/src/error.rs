@@ -1,5 +1,6 @@
 //! What can go wrong after a scene has compiled.
 
+use sdfc_graph::ExpandError;
 use sdfc_graph::eval::TapeError;
 use sdfc_render::{RenderError, ViewError};
 
@@ -8,6 +9,8 @@ use sdfc_render::{RenderError, ViewError};
 pub enum Error {
     /// The scene draws nothing.
     NothingDrawn,
+    /// The field takes more nodes than there may be.
+    Expand(ExpandError),
     /// The program could not be lowered or written.
     Codegen(sdfc_codegen::Error),
     /// The program could not be evaluated on the CPU.
@@ -26,6 +29,7 @@ impl Error {
         match self {
             Self::Render(error) => error.is_machine(),
             Self::NothingDrawn
+            | Self::Expand(_)
             | Self::Codegen(_)
             | Self::Evaluate(_)
             | Self::View(_)
@@ -40,9 +44,11 @@ impl Error {
             Self::Render(error) => {
                 matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
             }
-            Self::NothingDrawn | Self::Evaluate(_) | Self::View(_) | Self::Inexpressible(_) => {
-                false
-            }
+            Self::NothingDrawn
+            | Self::Expand(_)
+            | Self::Evaluate(_)
+            | Self::View(_)
+            | Self::Inexpressible(_) => false,
         }
     }
 }
@@ -53,6 +59,7 @@ impl std::fmt::Display for Error {
             Self::NothingDrawn => f.write_str(
                 "the scene draws nothing: every solid that stands alone on a line is drawn",
             ),
+            Self::Expand(error) => error.fmt(f),
             Self::Codegen(error) => error.fmt(f),
             Self::Evaluate(error) => error.fmt(f),
             Self::View(error) => error.fmt(f),
@@ -63,6 +70,12 @@ impl std::fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+impl From<ExpandError> for Error {
+    fn from(error: ExpandError) -> Self {
+        Self::Expand(error)
+    }
+}
 
 impl From<sdfc_codegen::Error> for Error {
     fn from(error: sdfc_codegen::Error) -> Self {

@@ -97,6 +97,7 @@ pub use shader::{Emit, ShaderOptions};
 #[cfg(feature = "measure")]
 pub use sdfc_accuracy as accuracy_data;
 pub use sdfc_analyze as analyze;
+pub use sdfc_analyze::Writing;
 pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
 pub use sdfc_diagnostics as diagnostics;

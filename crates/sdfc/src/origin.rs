@@ -18,7 +18,9 @@ impl Scene {
     pub fn drawn(&self) -> &Program {
         let rebased = self.rebased.get_or_init(|| {
             let origin = self.place_seen()?;
-            prepare_about(&self.elaborated.scene, origin).ok().map(|prepared| prepared.program)
+            prepare_about(&self.elaborated.scene, origin, self.writing)
+                .ok()
+                .map(|prepared| prepared.program)
         });
         rebased.as_ref().unwrap_or(&self.program)
     }

@@ -7,7 +7,7 @@ use sdfc::lang::Options;
 use sdfc::render::{Animation, RenderError};
 use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene};
 
-use crate::args::{Backend, Render};
+use crate::args::{Backend, Render, Writing};
 use crate::console::{Console, Progress};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
@@ -29,6 +29,12 @@ const MAX_GIF_RATE: f64 = 50.0;
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
     let scene = super::scene(&args.file, Options { slots: args.slots }, console)?;
+    let scene = match args.writing {
+        Writing::Auto => scene,
+        writing @ (Writing::Inline | Writing::Rolled) => {
+            scene.written(writing.into()).map_err(|e| super::lowering(&e, console))?
+        }
+    };
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }

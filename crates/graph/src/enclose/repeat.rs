@@ -74,6 +74,7 @@ impl Enclosing<'_> {
             go_on: go_on.map(|go_on| go_on.hi),
             start: carried.iter().map(|part| part.start).collect(),
             next: carried.iter().map(|part| part.next).collect(),
+            inert: None,
             ..repeated
         });
         // Another loop of this depth may share the body's nodes, not what is known of them.

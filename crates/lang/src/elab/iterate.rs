@@ -167,7 +167,8 @@ impl<'p> Elaborator<'p> {
             self.decides(limit);
         }
         let (cap, count) = (rounds.items.len() as u32, rounds.limit);
-        let repeated = Loop { depth, cap, count, go_on, start: vec![start], next: vec![next] };
+        let (start, next) = (vec![start], vec![next]);
+        let repeated = Loop { depth, cap, count, go_on, start, next, inert: None };
         Ok(self.graph.repeat(repeated).first().copied())
     }
 

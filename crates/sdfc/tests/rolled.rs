@@ -1,0 +1,116 @@
+//! A field of many alike parts as loops is the same field.
+
+#![allow(clippy::expect_used, reason = "a test stops where it fails")]
+
+use std::fmt::Write;
+
+use sdfc::graph::eval::{FrameValues, sample_field};
+use sdfc::{Scene, Writing};
+
+/// How many parts.
+const PARTS: usize = 60;
+
+/// Numbers that look irregular.
+fn number(seed: usize) -> f64 {
+    (seed as f64 * 0.618_033_988_75).fract() * 2.0 - 1.0
+}
+
+fn place(i: usize) -> String {
+    let [x, y, z] = [1, 2, 3].map(|axis| 2.0 * number(axis * 31 + 7 * i));
+    format!(".translate([{x:.4}, {y:.4}, {z:.4}])")
+}
+
+/// Balls, blocks and turned pairs, joined by a hard minimum.
+fn scattered() -> String {
+    let mut text = "plane(y: -3)\n".to_owned();
+    for i in 0..PARTS {
+        let (size, at) = (0.3 + 0.1 * number(i), place(i));
+        // Writing to a String cannot fail.
+        let _ = match i % 3 {
+            0 => writeln!(text, "sphere({size:.3}){at}"),
+            1 => writeln!(text, "box([{size:.3}, 0.2, 0.4]).rotate(y: {i}deg){at}"),
+            _ => writeln!(text, "difference(box({size:.3}), sphere(0.2)){at}"),
+        };
+    }
+    text
+}
+
+/// Balls, then blocks, blended in that order.
+fn chained(blend: &str) -> String {
+    let mut text = "union(\n".to_owned();
+    for i in 0..PARTS {
+        let shape = if i < PARTS / 2 { "sphere(0.3)" } else { "box([0.3, 0.4, 0.2])" };
+        let _ = writeln!(text, "  {shape}{},", place(i));
+    }
+    text + "  blend: " + blend + ")\n"
+}
+
+fn written(text: &str, writing: Writing) -> Scene {
+    let compiled = sdfc::compile("rolled.sdf", text);
+    assert_eq!(compiled.diagnostics_text(false), "");
+    compiled.scene.expect("no errors").written(writing).expect("few nodes")
+}
+
+/// Where fields are compared: on and off the parts.
+fn points() -> Vec<[f64; 3]> {
+    (0..400).map(|i| [1, 2, 3].map(|axis| 3.0 * number(axis * 17 + 13 * i))).collect()
+}
+
+fn compare(text: &str) -> Scene {
+    let scenes = [Writing::Inline, Writing::Rolled].map(|writing| written(text, writing));
+    let frame = FrameValues::defaults(scenes[0].params());
+    let samples = scenes
+        .each_ref()
+        .map(|scene| sample_field(scene.program(), &frame, &points()).expect("something is drawn"));
+    for (point, (inline, rolled)) in points().iter().zip(samples[0].iter().zip(&samples[1])) {
+        let off = (inline.distance - rolled.distance).abs();
+        assert!(off < 1e-12, "{point:?}: {} and {}", inline.distance, rolled.distance);
+        for axis in 0..3 {
+            let off = (inline.gradient[axis] - rolled.gradient[axis]).abs();
+            assert!(off < 1e-9, "{point:?}: {:?} and {:?}", inline.gradient, rolled.gradient);
+        }
+    }
+    assert!(scenes[0].report().rolled.is_empty());
+    let [_, rolled] = scenes;
+    rolled
+}
+
+#[test]
+fn of_a_hard_union_each_kind_is_a_loop() {
+    let rolled = compare(&scattered());
+    let mut loops = rolled.report().rolled.clone();
+    loops.sort_by_key(|found| found.operands);
+    assert_eq!(loops.iter().map(|found| found.operands).collect::<Vec<_>>(), [20, 20, 20]);
+    assert!(loops.iter().all(|found| !found.blended));
+    // The floor is met in closed form; what is in loops is marched.
+    assert_eq!(rolled.report().closed.len(), 1);
+}
+
+#[test]
+fn of_a_blended_union_each_run_is_a_loop() {
+    for blend in ["smooth(0.2)", "smooth_cubic(0.3)"] {
+        let rolled = compare(&chained(blend));
+        let loops = &rolled.report().rolled;
+        // The first ball is where the first loop starts.
+        let operands: Vec<usize> = loops.iter().map(|found| found.operands).collect();
+        assert_eq!(operands, [PARTS / 2 - 1, PARTS / 2]);
+        assert!(loops.iter().all(|found| found.blended));
+    }
+}
+
+#[test]
+fn params_stay_params() {
+    let text = format!(
+        "param r: length = 0.2 in 0..1\nparam k: length = 0.2 in 0.1..1\n{}",
+        chained("smooth(k)").replace("sphere(0.3)", "sphere(r)")
+    );
+    let rolled = compare(&text);
+    assert_eq!(rolled.report().rolled.len(), 2);
+}
+
+#[test]
+fn blends_that_do_not_end_and_few_alike_parts_stay_written_out() {
+    let rolled = compare(&chained("smooth_exp(0.1)"));
+    assert!(rolled.report().rolled.is_empty());
+    assert!(compare("sphere(1) | box(1.5)").report().rolled.is_empty());
+}
