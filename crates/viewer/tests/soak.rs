@@ -24,6 +24,8 @@ const FEW: usize = 240;
 const LOT: usize = 40;
 /// Growth of the memory from the first half to the end that is no leak, in MiB: allocators keep what they had.
 const SLACK: u64 = 48;
+/// Threads and files that are open for a moment.
+const FEW_MORE: u64 = 8;
 
 const BROKEN: [&str; 8] = [
     "sphere(",
@@ -71,8 +73,8 @@ fn edits_without_end() {
         samples[0],
     );
     let most = |of: fn(&Held) -> u64| samples[..=samples.len() / 2].iter().map(of).max().unwrap();
-    assert!(end.threads <= most(|held| held.threads), "threads: {samples:?}");
-    assert!(end.files <= most(|held| held.files), "open files: {samples:?}");
+    assert!(end.threads <= most(|held| held.threads) + FEW_MORE, "threads: {samples:?}");
+    assert!(end.files <= most(|held| held.files) + FEW_MORE, "open files: {samples:?}");
     assert!(end.memory <= most(|held| held.memory) + SLACK, "memory: {samples:?}");
 }
 
@@ -150,7 +152,7 @@ impl Soak {
         let turn = self.session.pictures;
         self.session.mode = Mode::ALL[turn as usize / 16 % Mode::ALL.len()];
         self.session.move_camera(|orbit| orbit.turn(0.01, 0.0));
-        self.session.ask(SIZE, turn % 3 == 0);
+        self.session.ask(SIZE, turn.is_multiple_of(3));
     }
 
     /// Until it is told what comes of the edit.

@@ -137,7 +137,7 @@ fn slider(display: Display) -> Result<(), Failed> {
 fn example(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(BALL)?;
     let window = Window::open_example(&display, &scene)?;
-    let shown = window.settled(|picture| has_a_picture(picture))?;
+    let shown = window.settled(has_a_picture)?;
     window.keep(&shown, "example")?;
     let folder = scene.own().join("sdfc/examples");
     expect(folder.join("params.sdf").is_file(), "the example is no file of the user's")?;
