@@ -29,6 +29,7 @@ pub mod identity;
 pub mod judge;
 pub mod knobs;
 pub mod mailbox;
+pub mod material;
 pub mod memory;
 pub mod model;
 pub mod orbit;

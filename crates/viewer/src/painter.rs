@@ -23,7 +23,7 @@ use crate::model::{Engine, Model};
 use crate::views::{Legend, Mode, Seen, Slice, paint};
 
 /// Milliseconds that a pass may take while the camera moves.
-const BUDGET: f64 = 30.0;
+pub const BUDGET: f64 = 30.0;
 /// A first pass that takes longer gives way to a newer request.
 const PATIENCE: Duration = Duration::from_millis(300);
 /// Milliseconds of one tile, after which another request can be heard.

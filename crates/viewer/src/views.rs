@@ -1,7 +1,7 @@
 //! A finished picture as colours for the screen: shaded, or what its rays met and what that cost. Each view
 //! is a function of the picture and, where it says so, of the field at the places that the picture shows.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
 use glam::DVec3;
@@ -12,6 +12,7 @@ use sdfc::render::{CAPPED, EvaluationCounts, HIT, Image, View, is_finite, linear
 use sdfc::{FrameValues, Scene};
 
 use crate::identity::{Quality, Shapes};
+use crate::material::{Material, Materials};
 use crate::probe::Probe;
 
 /// What is shown.
@@ -34,6 +35,8 @@ pub enum Mode {
     Slope,
     /// Which shape it is.
     Shapes,
+    /// What it is made of.
+    Materials,
     /// What the field promises.
     Quality,
     /// The field on a plane.
@@ -42,7 +45,7 @@ pub enum Mode {
 
 impl Mode {
     /// All of them, in the order in which they are offered.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Shaded,
         Self::Normals,
         Self::Depth,
@@ -51,6 +54,7 @@ impl Mode {
         Self::Overshoot,
         Self::Slope,
         Self::Shapes,
+        Self::Materials,
         Self::Quality,
         Self::Slice,
     ];
@@ -66,6 +70,7 @@ impl Mode {
             Self::Overshoot => "Overshoot",
             Self::Slope => "Gradient length",
             Self::Shapes => "Shapes",
+            Self::Materials => "Materials",
             Self::Quality => "Distance quality",
             Self::Slice => "Slice",
         }
@@ -97,6 +102,9 @@ impl Mode {
             }
             Self::Shapes => {
                 "Each shape in a colour of its own; where two blend, that of the one with the greater share."
+            }
+            Self::Materials => {
+                "The colour of each surface without light and shadow, and what the most seen materials are."
             }
             Self::Quality => {
                 "What the field of each part promises outside: the distance itself, a bound of it, or a bound \
@@ -232,6 +240,7 @@ pub fn paint(mode: Mode, seen: Seen<'_>) -> (Vec<u8>, Legend) {
         Mode::Overshoot => seen.overshoot(),
         Mode::Slope => seen.slope(),
         Mode::Shapes => seen.shapes(),
+        Mode::Materials => seen.materials(),
         Mode::Quality => seen.quality(),
         Mode::Slice => seen.slice(),
     }
@@ -361,6 +370,20 @@ impl Seen<'_> {
         let places = identity.at(self.frame, &self.hits());
         let label = |place: usize| self.shapes.label(self.scene, identity.shapes()[place]);
         (self.keyed(&places, own_color), self.most_seen(&places, own_color, label))
+    }
+
+    fn materials(&self) -> (Vec<u8>, Legend) {
+        let found = Materials::new(self.scene.drawn()).at(self.frame, &self.hits());
+        let kinds: BTreeSet<Material> = found.iter().flatten().copied().collect();
+        let kinds: Vec<Material> = kinds.into_iter().collect();
+        let numbers: Vec<Option<usize>> =
+            found.iter().map(|it| it.and_then(|it| kinds.binary_search(&it).ok())).collect();
+        let color = |index: usize, _: &PixelBlock| match found[index] {
+            Some(material) => material.color,
+            None => NOTHING,
+        };
+        let legend = self.most_seen(&numbers, |kind| kinds[kind].color, |kind| kinds[kind].text());
+        (self.each(color), legend)
     }
 
     fn quality(&self) -> (Vec<u8>, Legend) {

@@ -266,7 +266,10 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
                 for ([red, green, blue], text) in keys {
                     ui.horizontal(|ui| {
                         let (dot, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-                        ui.painter().rect_filled(dot, 2.0, Color32::from_rgb(*red, *green, *blue));
+                        let (fill, line) =
+                            (Color32::from_rgb(*red, *green, *blue), style::of(ui).line);
+                        let line = egui::Stroke::new(1.0, line);
+                        ui.painter().rect(dot, 2.0, fill, line, egui::StrokeKind::Outside);
                         ui.label(RichText::new(text).small());
                     });
                 }

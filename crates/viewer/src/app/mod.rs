@@ -170,11 +170,12 @@ impl App {
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status::show(ui, &mut self.session, remark));
         if self.shows.knobs {
-            let panel = egui::Panel::right("knobs").default_size(280.0).min_size(220.0);
+            let panel = egui::Panel::right("knobs").default_size(290.0).min_size(220.0);
             panel.show(ui, |ui| panels::knobs(ui, &mut self.session, &mut wishes));
         }
         if self.shows.source {
-            let panel = egui::Panel::left("source").default_size(400.0).min_size(220.0);
+            let size = (ui.available_width() * 0.42).clamp(220.0, 400.0);
+            let panel = egui::Panel::left("source").default_size(size).min_size(220.0);
             panel.show(ui, |ui| source::show(ui, &mut self.session, &mut wishes));
         }
         let center = egui::CentralPanel::no_frame();
@@ -182,6 +183,7 @@ impl App {
             self.canvas.show(ui, &mut self.session);
             overlay::show(ui, &self.session, &mut self.shows.warnings, &mut wishes);
         });
+        drop_hint(&ctx);
         help::show(&ctx, &mut self.shows.help);
         self.save.open = self.shows.save;
         self.save.show(&ctx, &self.session);
@@ -334,6 +336,19 @@ impl std::fmt::Debug for App {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("App").field("session", &self.session).finish_non_exhaustive()
     }
+}
+
+/// Says what becomes of a file that is held over the window.
+fn drop_hint(ctx: &Context) {
+    if ctx.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let (painter, screen) = (ctx.layer_painter(layer), ctx.content_rect());
+    painter.rect_filled(screen, 0.0, egui::Color32::from_black_alpha(160));
+    let font = egui::FontId::proportional(18.0);
+    let text = "Drop it to show that scene";
+    painter.text(screen.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }
 
 fn bar_frame(ui: &Ui) -> egui::Frame {

@@ -14,7 +14,7 @@ use crate::session::Session;
 use crate::views::Mode;
 
 /// What stands beside the slider of a param.
-const BESIDE_SLIDER: f32 = 106.0;
+const BESIDE_SLIDER: f32 = 96.0;
 
 /// The view after this one.
 pub fn next_mode(mode: Mode) -> Mode {
@@ -154,7 +154,7 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
                 let name = RichText::new(&param.name).color(color);
                 ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param)).id
             });
-            // Room for the number and for `reset`, so that the panel does not grow when something is moved.
+            // Room for the number and for the way back, so that the panel does not grow when something is moved.
             ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
             knob(ui, param, &mut value, label.inner);
             let back = egui::Button::new(RichText::new("reset").small()).frame(false);

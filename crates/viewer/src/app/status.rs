@@ -5,7 +5,7 @@ use sdfc::render::Clock;
 
 use super::style;
 use crate::model::{Model, Stages};
-use crate::painter::Picture;
+use crate::painter::{BUDGET, Picture};
 use crate::session::Session;
 
 /// The line.
@@ -81,14 +81,20 @@ fn figures(ui: &mut Ui, session: &Session, picture: &Picture) {
 /// How fine the picture is.
 fn progress(ui: &mut Ui, session: &Session, picture: &Picture) {
     let text = if picture.divisor > 1 {
-        let more = if session.refine { ", refining" } else { ", stopped" };
-        format!("showing 1/{} resolution{more}", picture.divisor)
+        let more = match (session.refine, picture.request.moving) {
+            (false, _) => ", stopped: Esc goes on",
+            (true, true) => "",
+            (true, false) => ", refining: Esc stops",
+        };
+        let full = picture.milliseconds * f64::from(picture.divisor * picture.divisor);
+        let why = if full > BUDGET { "too slow: " } else { "" };
+        format!("{why}showing 1/{} resolution{more}", picture.divisor)
     } else if !picture.finished && session.refine {
         format!("{} of {} rays a pixel", picture.samples, picture.request.samples)
     } else {
         return;
     };
-    let help = "The scene is too slow for every pixel at once. Esc stops refining, and goes on.";
+    let help = "Every pixel of this scene takes longer than a frame may while something moves. Esc stops refining, and goes on.";
     ui.label(RichText::new(text).small().color(style::of(ui).accent)).on_hover_text(help);
 }
 
