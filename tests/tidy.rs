@@ -13,7 +13,7 @@ use serde_json::Value;
 const MAX_LINES: usize = 800;
 
 /// What each crate may depend on of this workspace. A new crate needs a row.
-const MAY_KNOW: [(&str, &[&str]); 13] = [
+const MAY_KNOW: [(&str, &[&str]); 14] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
@@ -39,6 +39,7 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
     ),
     ("files", &["sdfc"]),
     ("cli", &["files", "sdfc"]),
+    ("capi", &["sdfc"]),
     ("viewer", &["files", "sdfc"]),
 ];
 

@@ -61,6 +61,7 @@ mod params;
 mod picture;
 mod quality;
 mod reflection;
+mod rows;
 #[cfg(feature = "measure")]
 mod sampler;
 mod scene;
@@ -90,6 +91,7 @@ pub use reflection::{
     BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
     StructRow, UniformRow,
 };
+pub use rows::DiagnosticRow;
 #[cfg(feature = "measure")]
 pub use sampler::Sampler;
 pub use shader::{Emit, ShaderOptions};
