@@ -1,5 +1,5 @@
 //! `sdfc.h` is what the functions are.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
 

@@ -11,9 +11,11 @@
 //! # Ok::<(), sdfc_files::ReadError>(())
 //! ```
 
+#[cfg(feature = "pictures")]
 mod format;
 mod write;
 
+#[cfg(feature = "pictures")]
 pub use format::Format;
 pub use write::{check_writable, write};
 

@@ -1,0 +1,3 @@
+fn main() -> Result<(), sdfc_build::Error> {
+    sdfc_build::Build::new().scene("../bowl.sdf")
+}
