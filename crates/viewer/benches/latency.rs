@@ -1,7 +1,7 @@
 //! From an edit on disk to its first picture, as a session without a window shows it, with the stages apart.
 //!
 //! ```text
-//! MESA_SHADER_CACHE_DIR=$(mktemp -d) cargo bench -p sdfc-viewer --bench latency
+//! MESA_SHADER_CACHE_DIR=$(mktemp -d) cargo bench -p sdfc-viewer --bench latency [-- PART OF A ROW'S NAME]
 //! ```
 //!
 //! A *literal* is another number of the same text. A *structure* differs from all before it: of six more leaves, each is
@@ -21,8 +21,9 @@ use sdfc::render::milliseconds_since;
 use sdfc_viewer::session::Session;
 
 const SIZE: [u32; 2] = [640, 360];
-/// Edits of each kind; six leaves spell as many numbers.
-const EDITS: u32 = 64;
+/// Scenes, their leaves, and how often each is edited in either way.
+const SCENES: [(&str, u32, u32); 2] = [("bench/thirty.sdf", 30, 63), ("generated 300", 300, 15)];
+/// They spell the numbers of the edits.
 const MORE_LEAVES: u32 = 6;
 /// Longer than any edit takes.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -38,14 +39,25 @@ struct Spent {
 }
 
 fn main() {
-    println!("| edit | p50 | p99 | watch | front end | analysis | lowering | pipeline | frame |");
-    println!("|---|---|---|---|---|---|---|---|---|");
+    // Cargo's own flag is no part of a name.
+    let wanted = std::env::args().skip(1).find(|it| !it.starts_with('-')).unwrap_or_default();
+    println!(
+        "| edit | edits | p50 | p99 | watch | front end | analysis | lowering | pipeline | frame |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let suite = sdfc::suite();
-    for (scene, leaves) in [("bench/thirty.sdf", 30), ("generated 300", 300)] {
+    for (scene, leaves, edits) in SCENES {
         let (_, text) = suite.iter().find(|(name, _)| name == scene).unwrap();
         let literal = |edit: u32| format!("{text}\nsphere(0.1{edit:03}).translate(y: 3)\n");
-        row(&format!("literal, {leaves} leaves"), literal);
-        row(&format!("structure, {leaves} leaves"), |edit| format!("{text}\n{}", spelt(edit)));
+        let structure = |edit: u32| format!("{text}\n{}", spelt(edit));
+        let rows: [(&str, &dyn Fn(u32) -> String); 2] =
+            [("literal", &literal), ("structure", &structure)];
+        for (kind, text) in rows {
+            let name = format!("{kind}, {leaves} leaves");
+            if name.contains(&wanted) {
+                row(&name, edits, text);
+            }
+        }
     }
 }
 
@@ -60,7 +72,7 @@ fn spelt(number: u32) -> String {
     out
 }
 
-fn row(name: &str, text: impl Fn(u32) -> String) {
+fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.sdf");
     std::fs::write(&path, text(0)).unwrap();
@@ -68,7 +80,7 @@ fn row(name: &str, text: impl Fn(u32) -> String) {
     session.samples = Some(1);
     shown(&mut session, &text(0), Instant::now());
     let mut all = Vec::new();
-    for edit in 1..EDITS {
+    for edit in 1..=edits {
         // What refines the last picture is over, as it is for someone who looks before he types.
         finished(&mut session);
         let text = text(edit);
@@ -84,7 +96,7 @@ fn row(name: &str, text: impl Fn(u32) -> String) {
     let median = |of: &dyn Fn(&Spent) -> f64| format!("{:.1}", figure(of, 0.5));
     let watch = |it: &Spent| it.total - it.front - it.analyze - it.lower - it.pipeline - it.frame;
     println!(
-        "| {name} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} |",
+        "| {name} | {edits} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} |",
         figure(&|it| it.total, 0.5),
         figure(&|it| it.total, 0.99),
         median(&watch),

@@ -520,6 +520,11 @@ impl Session {
                 if machine && renewed == self.build.renewed && !self.build.on_cpu {
                     self.lost += 1;
                     let gives_up = self.lost > MOST_RENEWALS;
+                    self.remarks.push(if gives_up {
+                        format!("the device was lost {} times: the processor draws", self.lost)
+                    } else {
+                        "the device was lost and is opened anew".to_owned()
+                    });
                     self.set_build(|build| {
                         (build.renewed, build.on_cpu) = (build.renewed + 1, gives_up)
                     });

@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::Context;
+use eframe::egui::{Context, DroppedFile};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sdfc_viewer::app::App;
@@ -145,6 +147,34 @@ fn the_picture_is_compared_with_the_oracle() {
     // Compared anew of its own accord.
     fixture.click("at rest");
     fixture.until(|harness| harness.query_by_label_contains("of another picture").is_none());
+}
+
+/// A file that is let go over the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_scene_is_shown_and_the_one_before_is_in_the_menu() {
+    let mut fixture = Fixture::new();
+    let other = fixture.folder.path().join("other.sdf");
+    std::fs::write(&other, SCENE.replace("param wall", "param rind").replace("- wall", "- rind"))
+        .unwrap();
+    fixture.harness.input_mut().dropped_files.push(Arc::new(Dropped(other)));
+    fixture.until(|harness| harness.query_all_by_label("rind").next().is_some());
+    fixture.click("other.sdf");
+    fixture.click("Open before");
+    fixture.click("scene.sdf");
+    fixture.until(|harness| harness.query_all_by_label("wall").next().is_some());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The bar above the picture, and the knobs beside it.
 
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Response, RichText, Ui};
 use sdfc::graph::{Param, ParamKind};
 use sdfc::march::{Knob, METHODS};
 
@@ -156,7 +156,7 @@ fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wi
             });
             // Room for the number and for the way back, so that the panel does not grow when something is moved.
             ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
-            knob(ui, param, &mut value, label.inner);
+            knob(ui, param, &mut value, label.inner).on_hover_text(hint(param));
             let back = egui::Button::new(RichText::new("reset").small()).frame(false);
             let text = format!("Back to {}.", value_text(param, param.default));
             if moved && ui.add(back).on_hover_text(text).clicked() {
@@ -195,42 +195,46 @@ fn hint(param: &Param) -> String {
 }
 
 /// The widget for a param; `label` is that of its name, for those who hear it.
-fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) {
+fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) -> Response {
     let [number, ..] = value;
     match param.kind {
         ParamKind::Number => number_knob(ui, number, param.range, "", label),
         ParamKind::Angle => {
             let mut degrees = number.to_degrees();
             let range = param.range.map(|ends| ends.map(f64::to_degrees));
-            number_knob(ui, &mut degrees, range, "°", label);
+            let knob = number_knob(ui, &mut degrees, range, "°", label);
             if degrees.to_radians() != *number {
                 *number = degrees.to_radians();
                 if let Some([low, high]) = param.range {
                     *number = number.clamp(low, high);
                 }
             }
+            knob
         }
         ParamKind::Int => {
             let before = *number;
             let range = param.range.map(|[low, high]| [low.ceil(), high.floor()]);
-            number_knob(ui, number, range, "", label);
+            let knob = number_knob(ui, number, range, "", label);
             if *number != before {
                 *number = number.round();
             }
+            knob
         }
         ParamKind::Bool => {
             let mut on = *number != 0.0;
-            ui.checkbox(&mut on, "").labelled_by(label);
+            let knob = ui.checkbox(&mut on, "").labelled_by(label);
             *number = f64::from(u8::from(on));
+            knob
         }
         ParamKind::Color => {
             let mut color = [value[0], value[1], value[2]].map(|lane| lane as f32);
             let button = egui::color_picker::color_edit_button_rgb(ui, &mut color);
-            if button.labelled_by(label).changed() {
+            if button.changed() {
                 for (lane, new) in value.iter_mut().zip(color) {
                     *lane = f64::from(new);
                 }
             }
+            button.labelled_by(label)
         }
         ParamKind::Choice => {
             let mut index = *number as usize;
@@ -241,8 +245,8 @@ fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) {
                     ui.selectable_value(&mut index, choice, name(choice));
                 }
             });
-            combo.response.labelled_by(label);
             *number = index as f64;
+            combo.response.labelled_by(label)
         }
     }
 }
@@ -265,14 +269,17 @@ fn number_knob(
     range: Option<[f64; 2]>,
     unit: &str,
     label: egui::Id,
-) {
+) -> Response {
     let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let mut speed = (number.abs() * 0.005).max(0.002);
+    let mut slider = None;
     if low.is_finite() && high.is_finite() {
-        ui.add(egui::Slider::new(number, low..=high).show_value(false)).labelled_by(label);
+        let knob = ui.add(egui::Slider::new(number, low..=high).show_value(false));
+        slider = Some(knob.labelled_by(label));
         speed = (high - low) / 400.0;
     }
-    ui.add(drag(number).range(low..=high).speed(speed).suffix(unit)).labelled_by(label);
+    let drag = ui.add(drag(number).range(low..=high).speed(speed).suffix(unit)).labelled_by(label);
+    slider.map_or(drag.clone(), |slider| slider | drag)
 }
 
 fn time(ui: &mut Ui, session: &mut Session) {

@@ -149,14 +149,16 @@ impl Save {
                 .on_hover_text("Height in pixels.");
             for (name, size) in [("HD", [1920, 1080]), ("4K", [3840, 2160]), ("square", [2048; 2])]
             {
-                if ui.small_button(name).clicked() {
+                let text = format!("{} × {} pixels.", size[0], size[1]);
+                if ui.small_button(name).on_hover_text(text).clicked() {
                     self.size = size;
                 }
             }
         });
         labelled(ui, "rays a pixel", |ui| {
             for count in [1, 4, 16, 64] {
-                ui.selectable_value(&mut self.samples, count, count.to_string());
+                ui.selectable_value(&mut self.samples, count, count.to_string())
+                    .on_hover_text("Rays averaged in each pixel: more are smoother, and take as many times longer.");
             }
         });
     }
@@ -164,13 +166,14 @@ impl Save {
     fn shader(&mut self, ui: &mut Ui) {
         labelled(ui, "language", |ui| {
             let combo = egui::ComboBox::from_id_salt("target").selected_text(self.target.name());
-            combo.show_ui(ui, |ui| {
+            let combo = combo.show_ui(ui, |ui| {
                 for target in Target::ALL {
                     if ui.selectable_value(&mut self.target, target, target.name()).clicked() {
                         self.path = self.proposed();
                     }
                 }
             });
+            combo.response.on_hover_text("What your program reads.");
         });
         if self.target == Target::Shadertoy {
             self.emit = Emit::Render;
@@ -194,7 +197,11 @@ impl Save {
                 for stage in [Stage::Compute, Stage::Fragment] {
                     let there = self.target.has_stage(stage);
                     let button = egui::Button::selectable(self.stage == stage, stage.name());
-                    if ui.add_enabled(there, button).clicked() {
+                    let button = ui
+                        .add_enabled(there, button)
+                        .on_hover_text("Of the pipeline that runs it.");
+                    let why = "The language has no such stage.";
+                    if button.on_disabled_hover_text(why).clicked() {
                         self.stage = stage;
                     }
                 }
