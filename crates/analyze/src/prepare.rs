@@ -12,7 +12,7 @@ use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::lipschitz::Reason;
 use crate::quality::{Qualities, Sides, shapes_below};
-use crate::roll::{Rolled, alike, roll};
+use crate::roll::{Rolled, alike, roll, visits};
 use crate::sound::{Uncertified, sound_field};
 use crate::spans::first;
 use crate::uneven::{Uneven, inexact_outside, uneven};
@@ -40,6 +40,9 @@ pub enum Writing {
 
 /// More operations of a field take drivers longer to compile than they save, if loops can take their place.
 pub const MOST_INLINE: usize = 1200;
+
+/// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
+const MOST_CLIPPED: usize = 256;
 
 /// What was modelled and why.
 #[derive(Clone, Debug, Default)]
@@ -191,6 +194,11 @@ fn flatten(
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, own_point));
+    let steepest = qualities.get(root).and_then(|quality| {
+        let constant = quality.lipschitz.as_ref().ok()?;
+        Some(graph.as_number(*constant).unwrap_or(f64::INFINITY))
+    });
+    program.visits = visits(graph, &fields, steepest.filter(|_| field.uncertified.is_empty()));
     let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
     program.rays = rays(&apart, &fields, asked);
     let Rays { hits, marched, clip, .. } = program.rays;
@@ -235,7 +243,7 @@ fn asked_of_rays(
         roots.push(first(graph, &spans));
     }
     let hits = roots.len();
-    if let Some(rest) = rest(graph, &apart.open) {
+    if let Some(rest) = rest(graph, &apart.open).filter(|_| apart.open.len() <= MOST_CLIPPED) {
         let corners = Bounds::new(params).of(graph, rest);
         let ray = [0, 1].map(|level| graph.point(level, Dim::Three));
         let lo = expander.node(graph, corners[0], &ray)?;

@@ -10,6 +10,7 @@ use naga::{
 use rustc_hash::FxHashMap;
 use sdfc_graph::{FrameInput, Node, NodeId, Program, Type, reachable};
 
+use crate::culling::Visits;
 use crate::lower::Body;
 use crate::reflect::Member;
 use crate::tables::Tables;
@@ -26,6 +27,8 @@ pub(crate) struct Inputs {
     slots: FxHashMap<NodeId, Handle<GlobalVariable>>,
     /// Lists of constants.
     pub(crate) tables: Tables,
+    /// Which rounds of loops to visit; none: all.
+    pub(crate) visits: Option<Visits>,
 }
 
 /// Where a raw input is.

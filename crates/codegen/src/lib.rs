@@ -39,6 +39,7 @@
 //! on constants alone are refused, for the graph folds those. A field is inlined whole at each
 //! call, so drivers take long over thousands of leaves.
 
+mod culling;
 mod error;
 mod field;
 mod inputs;
@@ -54,6 +55,7 @@ mod tables;
 mod target;
 mod types;
 
+pub use culling::Culling;
 pub use error::Error;
 pub use field::{FieldOptions, field_module, march_module};
 pub use instructions::FunctionCost;

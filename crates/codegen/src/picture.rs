@@ -5,6 +5,7 @@ use rustc_hash::FxHashSet;
 use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
+use crate::culling::{Visits, culling};
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
 use crate::lower::{function_of, store_function, struct_function};
 use crate::names::{check_prefix, make_public};
@@ -13,9 +14,9 @@ use crate::tables::Tables;
 use crate::{Error, Lists, Shader, link};
 
 /// Where the per-frame slots are bound.
-const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
+pub(crate) const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
 /// Where long lists are bound.
-const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
+pub(crate) const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
 
 /// The compute shader of a program's picture, entry point `main`, workgroups of 8x8 pixels.
 ///
@@ -70,12 +71,14 @@ pub fn measured_module(
         FieldSource::Units | FieldSource::Tape => None,
     };
     // All of the field is marched.
-    let features = Features { materials: false, ..features(program, false) };
+    let culled = field == FieldSource::Distance && is_culled(program, method);
+    let features = Features { materials: false, culled, ..features(program, false) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let source = source_over(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     inputs.tables = Tables::in_buffer(LISTS);
+    inputs.visits = Visits::of(&module, program);
     inputs.tables.declare(&mut module, program, distance.as_slice())?;
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
@@ -87,7 +90,14 @@ pub fn measured_module(
         link::fill(&mut module, stubs::FIELD, function)?;
     }
     let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
-    Shader::new(module, parts, features)
+    Ok(Shader::new(module, parts, features)?.culled_by(culling(program, features)?))
+}
+
+/// Whether rays from the eye visit the rounds of loops that can matter to them alone. Those of methods that look at stretches do
+/// not: what they know of a stretch holds all rounds.
+fn is_culled(program: &Program, method: &Method) -> bool {
+    let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
+    !program.visits.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
 }
 
 /// The stages of a picture's shader.
@@ -151,7 +161,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
         Stage::Fragment if options.rows_up => Form::FragmentUp,
         Stage::Fragment => Form::Fragment,
     };
-    let mut picture = Picture::skeleton(program, form, method, &[])?;
+    let mut picture = Picture::skeleton(program, form, method, &[], false)?;
     let place = |offset| ResourceBinding {
         group: options.group,
         binding: options.binding.saturating_add(offset),
@@ -174,15 +184,17 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
 }
 
 fn link_picture(program: &Program, form: Form, method: &Method) -> Result<Shader, Error> {
-    let mut picture = Picture::skeleton(program, form, method, &[])?;
+    let mut picture = Picture::skeleton(program, form, method, &[], true)?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
     }
     picture.inputs = inputs;
     picture.inputs.tables = Tables::in_buffer(LISTS);
+    picture.inputs.visits = Visits::of(&picture.module, program);
     picture.fill()?;
-    picture.finish()
+    let features = picture.features;
+    Ok(picture.finish()?.culled_by(culling(program, features)?))
 }
 
 /// A picture's shader while the scene's parts are put into it.
@@ -198,16 +210,19 @@ pub(crate) struct Picture<'p> {
 }
 
 impl<'p> Picture<'p> {
-    /// The files of `march`, without calls to these functions and what else the scene has no need of.
+    /// The files of `march`, without calls to these functions and what else the scene has no need of. It may be `culled` if
+    /// what calls it runs the other shader first.
     pub(crate) fn skeleton(
         program: &'p Program,
         form: Form,
         method: &Method,
         unused: &[&str],
+        culled: bool,
     ) -> Result<Self, Error> {
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        let features = features(program, method.looks_ahead);
+        let mut features = features(program, method.looks_ahead);
+        features.culled = culled && is_culled(program, method);
         let mut fillings = ahead(program, features);
         if !features.closed || features.occlusion {
             fillings.push(Filling::of_point(Some(Role::Distance), stubs::FIELD, distance));
@@ -354,7 +369,7 @@ pub(crate) fn known_method(name: &str) -> Result<&'static Method, Error> {
 }
 
 /// Files of `march` without what these features and slots do not need, nor calls to `unused` functions.
-fn skeleton(
+pub(crate) fn skeleton(
     source: &str,
     features: Features,
     used_slots: &[usize],
@@ -406,7 +421,7 @@ fn features(program: &Program, looks_ahead: bool) -> Features {
 }
 
 /// Positions in `Program::uniforms` of those that the roots read.
-fn used_slots(program: &Program, roots: Vec<NodeId>) -> Vec<usize> {
+pub(crate) fn used_slots(program: &Program, roots: Vec<NodeId>) -> Vec<usize> {
     let slots: FxHashSet<_> = program.uniforms.iter().copied().collect();
     let needed = reachable_where(&program.graph, &roots, |node| !slots.contains(&node));
     // In ascending order, so that a search finds them.

@@ -7,6 +7,7 @@ use naga::valid::ModuleInfo;
 use sdfc_march::Features;
 
 use crate::Error;
+use crate::culling::Culling;
 use crate::instructions::{FunctionCost, count};
 use crate::reflect::{Parts, Reflection, reflect, reflect_written};
 use crate::target::{self, Code, Target};
@@ -28,18 +29,30 @@ pub struct Shader {
     parts: Parts,
     features: Features,
     validation: Duration,
+    culling: Option<Box<Culling>>,
 }
 
 impl Shader {
     pub(crate) fn new(module: Module, parts: Parts, features: Features) -> Result<Self, Error> {
         let start = Instant::now();
         let info = target::validate(&module)?;
-        Ok(Self { module, info, parts, features, validation: start.elapsed() })
+        Ok(Self { module, info, parts, features, validation: start.elapsed(), culling: None })
+    }
+
+    /// The same, to be run after another.
+    pub(crate) fn culled_by(self, culling: Option<Culling>) -> Self {
+        Self { culling: culling.map(Box::new), ..self }
+    }
+
+    /// What must run before it on each tile, with [`Features::culled`].
+    pub fn take_culling(&mut self) -> Option<Culling> {
+        self.culling.take().map(|culling| *culling)
     }
 
     /// How long validation took.
     pub fn validation_time(&self) -> Duration {
-        self.validation
+        let before = self.culling.as_ref().map(|culling| culling.shader.validation);
+        self.validation + before.unwrap_or_default()
     }
 
     /// The module, for `wgpu::ShaderSource::Naga`.

@@ -29,7 +29,8 @@ pub fn shadertoy_module(
     view: &[u8],
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
-    let mut picture = Picture::skeleton(program, Form::Shadertoy, method, &unused_loads(program))?;
+    let mut picture =
+        Picture::skeleton(program, Form::Shadertoy, method, &unused_loads(program), false)?;
     picture.module.entry_points.clear();
 
     let camera = program.settings.camera.as_ref().map(camera_nodes);

@@ -77,7 +77,7 @@ pub use node::{
     TableId, Ternary, Type, Unary,
 };
 pub use polynomial::{Polynomial, common_square};
-pub use program::{Program, Rays};
+pub use program::{Program, Rays, Visit};
 pub use range::Range;
 pub use repeat::{Inert, Loop, LoopBody, MAX_LOOP_DEPTH, Table};
 pub use scene::{

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::{Dim, Graph, NodeId, Param, Settings, enclosure, slope_enclosure, uniforms};
+use crate::{Dim, Graph, Inert, NodeId, Param, Settings, enclosure, slope_enclosure, uniforms};
 
 /// What of a scene rays meet without marching, and what is left to march. Functions of a ray have its origin as
 /// `Point(0, Dim::Three)` and its direction, of unit length, as `Point(1, Dim::Three)`.
@@ -17,6 +17,18 @@ pub struct Rays {
     /// Of a ray: a vector of where it enters and leaves a box around what is left to march, the first above
     /// the second where it misses the box. `None`: there is no box.
     pub clip: Option<NodeId>,
+}
+
+/// A loop of which rays visit only the rounds that can matter to them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Visit {
+    /// What the loop, and those that carry derivatives of it, say of their rounds.
+    pub inert: Inert,
+    /// Over the round's variable of depth 0: how far a point is from where the round can matter to a ray, or less. Where this is
+    /// above 0 all along a ray, the ray meets the same without the round.
+    pub reach: NodeId,
+    /// How many rounds there are.
+    pub rounds: u32,
 }
 
 /// Flat math of one scene. No `Sample`, no `MaterialAt` is reachable from any of the roots;
@@ -41,6 +53,8 @@ pub struct Program {
     pub slope_range: Option<NodeId>,
     /// Material fields in the order of `MaterialField::ALL`; `None` without materials.
     pub material: Option<[NodeId; 6]>,
+    /// Loops of which not all rounds need be visited.
+    pub visits: Vec<Visit>,
     /// Per-frame nodes that per-point nodes or settings use: evaluated on the CPU, one uniform slot each,
     /// in this order. As [`crate::uniforms`] lists them: a per-frame `Splat` has none, its argument has.
     pub uniforms: Vec<NodeId>,
@@ -78,6 +92,7 @@ impl Program {
         let fields = [self.distance, self.gradient, self.range, self.slope_range];
         let rays = [hits, closed, marched, clip];
         let material = self.material.into_iter().flatten();
-        fields.into_iter().chain(rays).flatten().chain(material).collect()
+        let visits = self.visits.iter().map(|visit| visit.reach);
+        fields.into_iter().chain(rays).flatten().chain(material).chain(visits).collect()
     }
 }

@@ -211,11 +211,13 @@ pub struct Features {
     pub fog_color: bool,
     /// Rays from the eye are parallel.
     pub parallel: bool,
+    /// Rays from the eye visit only those rounds of loops that can matter to them.
+    pub culled: bool,
 }
 
 impl Features {
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 15] {
+    pub fn overrides(self) -> [(&'static str, bool); 16] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -233,6 +235,7 @@ impl Features {
             fog,
             fog_color,
             parallel,
+            culled,
         } = self;
         [
             ("CLOSED", closed),
@@ -250,6 +253,7 @@ impl Features {
             ("FOG", fog),
             ("FOG_COLOR", fog_color),
             ("PARALLEL", parallel),
+            ("CULLED", culled),
         ]
     }
 
@@ -339,6 +343,8 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
     let mut files = vec![
         include_str!("wgsl/features.wgsl"),
         include_str!("wgsl/view.wgsl"),
+        VISIT_LAYOUT,
+        include_str!("wgsl/visits.wgsl"),
         field,
         method.gradient.unwrap_or(gradient),
         include_str!("wgsl/frame.wgsl"),
@@ -372,6 +378,21 @@ pub fn ray_source(method: &Method) -> String {
     files.join("\n")
 }
 
+/// Text of the shader that runs before a picture with [`Features::culled`]: entry points `mark` and `list`.
+pub fn prune_source() -> String {
+    let files = [
+        include_str!("wgsl/features.wgsl"),
+        include_str!("wgsl/view.wgsl"),
+        VISIT_LAYOUT,
+        include_str!("wgsl/frame.wgsl"),
+        RAY,
+        include_str!("wgsl/view_buffer.wgsl"),
+        include_str!("wgsl/prune.wgsl"),
+    ];
+    files.join("\n")
+}
+
+const VISIT_LAYOUT: &str = include_str!("wgsl/visit_layout.wgsl");
 const RANGES: &str = include_str!("wgsl/ranges.wgsl");
 const RAY: &str = include_str!("wgsl/ray.wgsl");
 const BRACKET: &str = include_str!("wgsl/bracket.wgsl");
@@ -428,6 +449,14 @@ pub mod stubs {
     /// `fn passed(t: f32, distance: f32)`, told each sample of a ray; not supplied by a scene, but dropped where
     /// no shadow is soft.
     pub const PASSED: &str = "passed";
+    /// `fn reach_0(round: f32, p: vec3f) -> f32` and so on, of [`super::prune_source`]: how far a point is from where a round of
+    /// a loop can matter, or less.
+    pub const REACHES: [&str; 8] =
+        ["reach_0", "reach_1", "reach_2", "reach_3", "reach_4", "reach_5", "reach_6", "reach_7"];
+    /// `var<storage, read> visits`, the lists of rounds.
+    pub const VISITS: &str = "visits";
+    /// `var<private> visit_record: u32`, where in `visits` it stands how many rounds of each loop to visit, and which.
+    pub const VISIT_RECORD: &str = "visit_record";
     /// `fn sloped(square: f32)`, told the square of each gradient; dropped where nothing is occluded.
     pub const SLOPED: &str = "sloped";
 }

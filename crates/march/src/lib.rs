@@ -28,7 +28,7 @@ mod files;
 
 pub use files::{
     Features, FieldSource, Form, Knob, METHODS, Method, SHADERTOY_HEAD, SHADERTOY_TAIL,
-    UNCERTIFIED, method, ray_source, source, source_over, stubs,
+    UNCERTIFIED, method, prune_source, ray_source, source, source_over, stubs,
 };
 
 /// Linear colour of surfaces that nothing paints, `UNPAINTED` of `shade.wgsl`.

@@ -10,6 +10,7 @@ use std::{
 use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
+    culling::{self, Culling, Visits},
     image::check_size,
     stats::milliseconds_since,
     testing,
@@ -17,7 +18,7 @@ use crate::{
 };
 
 /// Columns and rows of a workgroup of the entry point `main`.
-const WORKGROUP: u32 = 8;
+pub(crate) const WORKGROUP: u32 = 8;
 /// Most pixels of a tile: 32 MiB to read back.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 /// A tile that takes longer is given up.
@@ -35,6 +36,7 @@ pub struct Pipeline {
     layout: wgpu::BindGroupLayout,
     uniform_count: usize,
     tables: Vec<wgpu::Buffer>,
+    culling: Option<Culling>,
     milliseconds: f64,
 }
 
@@ -60,14 +62,15 @@ impl Pipeline {
     /// As [`Pipeline::new`]; a table that is empty is refused by the device.
     pub fn with_tables(
         gpu: &Gpu,
-        shader: sdfc_codegen::Shader,
+        mut shader: sdfc_codegen::Shader,
         uniform_count: usize,
         tables: &[Vec<u8>],
     ) -> Result<Self, RenderError> {
+        let culling = shader.take_culling();
         let lists = Some(shader.lists()).filter(|lists| !lists.is_empty()).map(uniform_bytes);
         let tables: Vec<_> = lists.into_iter().chain(tables.iter().cloned()).collect();
         let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.into_module()));
-        Self::of_source(gpu, source, uniform_count, &tables)
+        Self::of_source(gpu, source, uniform_count, &tables, culling)
     }
 
     /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform
@@ -78,7 +81,13 @@ impl Pipeline {
     ///
     /// [`RenderError::Validation`] if the device refuses it, [`RenderError::Uniforms`].
     pub fn from_wgsl(gpu: &Gpu, text: &str, uniform_count: usize) -> Result<Self, RenderError> {
-        Self::of_source(gpu, wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)), uniform_count, &[])
+        Self::of_source(
+            gpu,
+            wgpu::ShaderSource::Wgsl(Cow::Borrowed(text)),
+            uniform_count,
+            &[],
+            None,
+        )
     }
 
     fn of_source(
@@ -86,6 +95,7 @@ impl Pipeline {
         source: wgpu::ShaderSource<'_>,
         uniform_count: usize,
         tables: &[Vec<u8>],
+        culling: Option<sdfc_codegen::Culling>,
     ) -> Result<Self, RenderError> {
         let limit = gpu.device.limits().max_uniform_buffer_binding_size as usize / UNIFORM_BYTES;
         if uniform_count > limit {
@@ -95,12 +105,17 @@ impl Pipeline {
         let tables = gpu.scoped("the shader's tables", || {
             tables.iter().map(|bytes| table(gpu, bytes)).collect::<Vec<_>>()
         })?;
-        let (pipeline, layout) = gpu.scoped("the shader", || {
-            let layout = bind_group_layout(&gpu.device, uniform_count, tables.len());
-            (compute_pipeline(&gpu.device, source, &layout), layout)
+        let (pipeline, layout, culling) = gpu.scoped("the shader", || {
+            let descriptor = wgpu::ShaderModuleDescriptor { label: Some("scene"), source };
+            let module = gpu.device.create_shader_module(descriptor);
+            let is_culled = culling.is_some();
+            let layout = bind_group_layout(&gpu.device, uniform_count, tables.len(), is_culled);
+            let pipeline = compute_pipeline(&gpu.device, &module, &layout, "main");
+            (pipeline, layout, culling.map(|made| Culling::new(gpu, made, uniform_count)))
         })?;
+        let gpu = gpu.clone();
         let mut ready =
-            Self { gpu: gpu.clone(), pipeline, layout, uniform_count, tables, milliseconds: 0.0 };
+            Self { gpu, pipeline, layout, uniform_count, tables, culling, milliseconds: 0.0 };
         ready.dispatch_once()?;
         ready.milliseconds = milliseconds_since(start);
         Ok(ready)
@@ -160,14 +175,15 @@ impl Pipeline {
         let limits = self.gpu.device.limits();
         let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let fitting = bytes.saturating_sub(TIMESTAMP_BYTES) / PIXEL_BYTES as u64;
-        fitting.min(u64::from(MAX_TILE_PIXELS)) as u32
+        let culled = self.culling.as_ref().map(|culling| culling.max_pixels(&limits));
+        (fitting.min(u64::from(MAX_TILE_PIXELS)) as u32).min(culled.unwrap_or(u32::MAX))
     }
 
     /// Runs one workgroup over an empty tile, because software drivers compile when they run.
     fn dispatch_once(&self) -> Result<(), RenderError> {
         let uniforms = vec![[0.0; 4]; self.uniform_count];
         let mut run = Run::new(self, &uniforms)?;
-        run.make_room(WORKGROUP * WORKGROUP)?;
+        run.make_room(WORKGROUP * WORKGROUP, 1)?;
         let empty = vec![0; VIEW_BYTES];
         run.submit(&empty, [1, 1], 0)?;
         // Compiling thousands of leaves can take a software driver many minutes.
@@ -181,8 +197,9 @@ struct Run<'a> {
     view: wgpu::Buffer,
     uniforms: Option<wgpu::Buffer>,
     timestamps: Option<Timestamps>,
-    /// Grows with the tiles.
+    /// Both grow with the tiles.
     pixels: Option<PixelBuffers>,
+    visits: Option<Visits>,
 }
 
 struct PixelBuffers {
@@ -213,18 +230,25 @@ impl<'a> Run<'a> {
                 uniforms
             });
             let timestamps = gpu.has_timestamps().then(|| Timestamps::new(gpu));
-            Self { pipeline, view, uniforms, timestamps, pixels: None }
+            Self { pipeline, view, uniforms, timestamps, pixels: None, visits: None }
         })
     }
 
-    /// Makes the pixel buffers large enough.
-    fn make_room(&mut self, pixels: u32) -> Result<(), RenderError> {
+    /// Makes the buffers large enough for so many pixels in so many workgroups.
+    fn make_room(&mut self, pixels: u32, groups: u32) -> Result<(), RenderError> {
         use wgpu::BufferUsages as Usage;
+        let gpu = &self.pipeline.gpu;
+        if let Some(culling) = &self.pipeline.culling
+            && self.visits.as_ref().is_none_or(|visits| visits.tiles < groups)
+        {
+            (self.visits, self.pixels) = (None, None);
+            let room = || culling.room(gpu, groups, &self.view, self.uniforms.as_ref());
+            self.visits = Some(gpu.scoped("lists of what can matter to a tile", room)?);
+        }
         if self.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
             return Ok(());
         }
         self.pixels = None;
-        let gpu = &self.pipeline.gpu;
         let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
         let buffers = gpu.scoped("a tile's pixels", || {
             let storage = buffer(gpu, "pixels", bytes, Usage::STORAGE | Usage::COPY_SRC);
@@ -240,9 +264,11 @@ impl<'a> Run<'a> {
     fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
         let buffers = [(0, Some(&self.view)), (1, self.uniforms.as_ref()), (2, Some(storage))];
         let tables = (FIRST_TABLE..).zip(self.pipeline.tables.iter().map(Some));
+        let visits = (culling::VISITS, self.visits.as_ref().map(|visits| &visits.lists));
         let entries: Vec<_> = buffers
             .into_iter()
             .chain(tables)
+            .chain([visits])
             .filter_map(|(binding, buffer)| {
                 Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
             })
@@ -262,8 +288,8 @@ impl<'a> Run<'a> {
         image: &mut Image,
     ) -> Result<Option<f64>, RenderError> {
         let count = tile.pixels() as u32;
-        self.make_room(count.max(WORKGROUP * WORKGROUP))?;
         let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
+        self.make_room(count.max(WORKGROUP * WORKGROUP), groups[0] * groups[1])?;
         self.submit(&view_bytes(&view.block(tile)), groups, count)?;
         self.read(tile, image)
     }
@@ -280,6 +306,9 @@ impl<'a> Run<'a> {
                     label: Some("tile"),
                     timestamp_writes: self.timestamps.as_ref().map(Timestamps::about_a_pass),
                 });
+                if let (Some(culling), Some(visits)) = (&self.pipeline.culling, &self.visits) {
+                    culling.run(&mut pass, visits, groups[0] * groups[1]);
+                }
                 pass.set_pipeline(&self.pipeline.pipeline);
                 pass.set_bind_group(0, &buffers.bind_group, &[]);
                 pass.dispatch_workgroups(groups[0], groups[1], 1);
@@ -359,17 +388,8 @@ fn bind_group_layout(
     device: &wgpu::Device,
     uniform_count: usize,
     table_count: usize,
+    is_culled: bool,
 ) -> wgpu::BindGroupLayout {
-    let entry = |binding, kind, bytes: usize| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: kind,
-            has_dynamic_offset: false,
-            min_binding_size: NonZero::new(bytes as u64),
-        },
-        count: None,
-    };
     let uniform = wgpu::BufferBindingType::Uniform;
     let mut entries = vec![entry(0, uniform, VIEW_BYTES)];
     if uniform_count > 0 {
@@ -379,42 +399,61 @@ fn bind_group_layout(
     let table = wgpu::BufferBindingType::Storage { read_only: true };
     // The device compares what the shader reads with what is bound.
     entries.extend((FIRST_TABLE..).take(table_count).map(|binding| entry(binding, table, 0)));
+    entries.extend(is_culled.then(|| entry(culling::VISITS, table, 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("tile"),
         entries: &entries,
     })
 }
 
-fn compute_pipeline(
+/// A buffer of at least so many bytes in a layout.
+pub(crate) fn entry(
+    binding: u32,
+    kind: wgpu::BufferBindingType,
+    bytes: usize,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: kind,
+            has_dynamic_offset: false,
+            min_binding_size: NonZero::new(bytes as u64),
+        },
+        count: None,
+    }
+}
+
+/// The stage of a module that an entry point is.
+pub(crate) fn compute_pipeline(
     device: &wgpu::Device,
-    source: wgpu::ShaderSource<'_>,
+    module: &wgpu::ShaderModule,
     layout: &wgpu::BindGroupLayout,
+    entry_point: &str,
 ) -> wgpu::ComputePipeline {
-    let module =
-        device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("scene"), source });
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("scene"),
+        label: Some(entry_point),
         bind_group_layouts: &[Some(layout)],
         immediate_size: 0,
     });
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("scene"),
+        label: Some(entry_point),
         layout: Some(&layout),
-        module: &module,
-        entry_point: Some("main"),
+        module,
+        entry_point: Some(entry_point),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     })
 }
 
-fn table(gpu: &Gpu, bytes: &[u8]) -> wgpu::Buffer {
+pub(crate) fn table(gpu: &Gpu, bytes: &[u8]) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let table = buffer(gpu, "table", bytes.len() as u64, usage);
     gpu.queue.write_buffer(&table, 0, bytes);
     table
 }
 
-fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(crate) fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size,

@@ -41,6 +41,7 @@
 mod blocks;
 mod compare;
 mod cpu;
+mod culling;
 #[cfg(feature = "gpu")]
 mod device;
 mod error;

@@ -63,6 +63,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         fog,
         fog_color: _,
         parallel,
+        culled,
     } = features;
     let names = [
         ("material", materials),
@@ -77,6 +78,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         ("sky", sky),
         ("fog", fog),
         ("parallel camera", parallel),
+        ("tile lists", culled),
     ];
     names.iter().filter(|name| name.1).map(|name| name.0.to_owned()).collect()
 }

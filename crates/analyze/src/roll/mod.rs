@@ -9,12 +9,15 @@
 
 mod chain;
 mod template;
+mod visits;
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type};
 
 use chain::{Blends, Chain};
 use template::{Skeletons, template};
+
+pub(crate) use visits::visits;
 
 /// Fewer operands of a kind stay written out.
 const FEWEST: usize = 16;

@@ -42,6 +42,25 @@ pub(crate) fn function_of(
     Ok(lowering.finish(name, value, result))
 }
 
+/// A function of the number of a loop's round and the point, of a node over the variables of a round.
+pub(crate) fn function_of_round(
+    program: &Program,
+    inputs: &Inputs,
+    types: &mut UniqueArena<naga::Type>,
+    name: &str,
+    root: NodeId,
+) -> Result<Function, Error> {
+    let mut lowering = Lowering::new(program, inputs, types, &[root]);
+    lowering.first_point = 1;
+    let number = lowering.body.declare(Expression::FunctionArgument(0));
+    lowering.rounds = vec![Some(Round::of_number(number))];
+    let order = lowering.uses.take_order();
+    lowering.visit(order.into_iter())?;
+    let value = lowering.value(root)?;
+    let result = types::value(lowering.types, program.graph.ty(root));
+    Ok(lowering.finish(name, value, result))
+}
+
 /// A function of the point that yields several nodes' values in a structure.
 pub(crate) fn struct_function(
     program: &Program,
@@ -86,6 +105,8 @@ struct Lowering<'a> {
     body: Body,
     /// The points that the function is of, by level.
     arguments: &'static [&'static str],
+    /// How many other arguments it has before them.
+    first_point: u32,
     /// Values of the nodes visited so far, but for constants.
     values: IdMap<Value>,
     matrices: FxHashMap<[NodeId; 3], Value>,
@@ -114,6 +135,7 @@ impl<'a> Lowering<'a> {
             uses,
             body,
             arguments,
+            first_point: 0,
             values,
             matrices,
             words,
@@ -173,7 +195,8 @@ impl<'a> Lowering<'a> {
         match node {
             Node::Const(constant) => self.constant(id, constant),
             Node::Point(level, Dim::Three) if usize::from(level) < self.arguments.len() => {
-                Ok(self.body.declare(Expression::FunctionArgument(u32::from(level))))
+                let argument = self.first_point + u32::from(level);
+                Ok(self.body.declare(Expression::FunctionArgument(argument)))
             }
             Node::Point(..) | Node::Sample(..) | Node::MaterialAt(..) => Err(Error::NotFlat(id)),
             Node::Frame(input, _) => {

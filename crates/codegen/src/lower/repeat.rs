@@ -4,7 +4,7 @@ use naga::{
     BinaryOperator, Expression, MathFunction, ScalarKind, SwizzleComponent, UnaryOperator,
     VectorSize,
 };
-use sdfc_graph::{LoopId, Node, NodeId, Place, TableId, Type};
+use sdfc_graph::{Inert, LoopId, Node, NodeId, Place, TableId, Type};
 
 use super::{Lowering, Value, hint};
 use crate::{Error, types};
@@ -13,6 +13,19 @@ use crate::{Error, types};
 pub(super) struct Round {
     number: Value,
     state: Vec<Value>,
+}
+
+impl Round {
+    /// A round by its number alone.
+    pub(super) fn of_number(number: Value) -> Self {
+        Self { number, state: Vec::new() }
+    }
+}
+
+/// The rounds of a loop that are visited: how many, and where the first one's number stands.
+struct Listed {
+    count: Value,
+    first: Value,
 }
 
 impl Lowering<'_> {
@@ -41,7 +54,11 @@ impl Lowering<'_> {
     fn repeat(&mut self, id: LoopId) -> Result<Vec<Value>, Error> {
         let graph = &self.program.graph;
         let (repeated, body) = (graph.repeated(id).clone(), graph.body(id));
-        let limit = self.limit(repeated.cap, repeated.count)?;
+        let listed = self.listed(repeated.inert);
+        let limit = match &listed {
+            Some(listed) => listed.count,
+            None => self.limit(repeated.cap, repeated.count)?,
+        };
         let ty = types::value(self.types, Type::Scalar);
         let counter = self.body.variable("round", ty);
         let nought = self.body.literal(0.0);
@@ -53,6 +70,11 @@ impl Lowering<'_> {
         let number = self.body.load(counter, "i");
         let past = self.body.binary(BinaryOperator::GreaterEqual, number, limit);
         self.body.break_if(past);
+        let counted = number;
+        let number = match listed {
+            Some(Listed { first, .. }) => self.listed_round(first, counted),
+            None => counted,
+        };
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
         let depth = usize::from(repeated.depth);
         self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
@@ -71,7 +93,7 @@ impl Lowering<'_> {
             self.body.store(variable, next);
         }
         let one = self.body.literal(1.0);
-        let following = self.body.binary(BinaryOperator::Add, number, one);
+        let following = self.body.binary(BinaryOperator::Add, counted, one);
         self.body.store(counter, following);
         self.body.close_loop();
 
@@ -79,6 +101,39 @@ impl Lowering<'_> {
         self.matrices = matrices;
         self.forget(body.condition.iter().chain(&body.round));
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
+    }
+
+    /// Where the rounds to visit are listed, if they are.
+    fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
+        let visits = self.inputs.visits.as_ref()?;
+        let (lists, record, number) = (visits.lists, visits.record, visits.number(inert)?);
+        let pointer = self.body.declare(Expression::GlobalVariable(record));
+        let record = self.body.load(pointer, "record");
+        let read = |body: &mut super::Body, offset: u32, name: &str| {
+            let offset = body.word(offset);
+            let index = body.binary(BinaryOperator::Add, record, offset);
+            let base = body.declare(Expression::GlobalVariable(lists));
+            let pointer = body.compute(Expression::Access { base, index }, &[base, index]);
+            body.load(pointer, name)
+        };
+        let count = read(&mut self.body, 2 * number, "count");
+        let first = read(&mut self.body, 2 * number + 1, "first");
+        let count = self.body.cast(count, ScalarKind::Float, Some(4));
+        self.body.name(count, "rounds");
+        Some(Listed { count, first })
+    }
+
+    /// The number of the round that stands at a place of the list.
+    fn listed_round(&mut self, first: Value, place: Value) -> Value {
+        let Some(visits) = self.inputs.visits.as_ref() else { return place };
+        let place = self.body.cast(place, ScalarKind::Uint, Some(4));
+        let index = self.body.binary(BinaryOperator::Add, first, place);
+        let base = self.body.declare(Expression::GlobalVariable(visits.lists));
+        let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
+        let round = self.body.load(pointer, "visited");
+        let round = self.body.cast(round, ScalarKind::Float, Some(4));
+        self.body.name(round, "round");
+        round
     }
 
     /// Variables that hold the start, and names for what is read from them.

@@ -8,5 +8,8 @@ fn main(@builtin(global_invocation_id) place: vec3u) {
         return;
     }
     load_frame();
+    if CULLED {
+        open_visits(place.xy);
+    }
     pixels[place.y * view.tile_size.x + place.x] = picture(view.tile_origin + place.xy);
 }

@@ -25,3 +25,5 @@ override FOG: bool;
 override FOG_COLOR: bool;
 // Rays from the eye are parallel.
 override PARALLEL: bool;
+// Rays from the eye visit only those rounds of loops that can matter to them.
+override CULLED: bool;

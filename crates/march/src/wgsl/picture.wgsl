@@ -66,6 +66,10 @@ fn picture(pixel: vec2u) -> Pixel {
         if SOFT_SHADOWS {
             watched = asked > 0u && view.lights[max(asked, 1u) - 1u].shadow == SHADOW_SOFT;
         }
+        if CULLED {
+            // The tile's lists are for rays from the eye.
+            visit_record = select(WHOLE, own_record, asked == 0u && mirrors == 0u);
+        }
         let found = trace(ray);
         if REFLECTIONS {
             if evaluations == 0u {

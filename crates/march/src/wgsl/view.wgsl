@@ -53,7 +53,12 @@ struct View {
 
 // The ray through the centre of a pixel.
 fn camera_ray(pixel: vec2u) -> Ray {
-    let place = 2.0 * (vec2f(pixel) + 0.5) / vec2f(view.size) - 1.0;
+    return ray_through(vec2f(pixel) + 0.5);
+}
+
+// The ray through a place in the picture, in pixels.
+fn ray_through(pixels: vec2f) -> Ray {
+    let place = 2.0 * pixels / vec2f(view.size) - 1.0;
     let aside = place.x * view.right - place.y * view.up;
     var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.tolerance, view.steps);
     if PARALLEL {

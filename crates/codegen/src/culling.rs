@@ -1,0 +1,77 @@
+//! The shader that finds out, before a picture, which rounds of loops can matter to rays from the eye.
+
+use naga::{GlobalVariable, Handle, Module};
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Inert, Program, Visit};
+use sdfc_march::{Features, prune_source, stubs};
+
+use crate::inputs::declare_slots;
+use crate::lower::function_of_round;
+use crate::picture::{LISTS, SLOTS, skeleton, used_slots};
+use crate::reflect::Parts;
+use crate::tables::Tables;
+use crate::{Error, Shader, link};
+
+/// A shader to run before a picture's, on the tiles that it is to draw.
+///
+/// Its entry points are `mark`, one invocation for each 32 rounds (x), tile (y) and loop (z), and `list`, one for each tile (x) and
+/// loop (z), both in workgroups of 64 by 1. Its bindings are those of the picture, and in place of the pixels storage arrays of words: at 4
+/// `visits`, which the picture reads, at 5 `marks`.
+#[derive(Debug)]
+pub struct Culling {
+    /// The shader.
+    pub shader: Shader,
+    /// How many rounds each loop has.
+    pub rounds: Vec<u32>,
+}
+
+/// What finds the rounds that matter, if the program has loops that can do without some.
+pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Culling>, Error> {
+    if !features.culled {
+        return Ok(None);
+    }
+    let visits: Vec<&Visit> = program.visits.iter().take(stubs::REACHES.len()).collect();
+    let roots: Vec<_> = visits.iter().map(|visit| visit.reach).collect();
+    let used = used_slots(program, roots.clone());
+    let mut module = skeleton(&prune_source(), features, &used, &[])?;
+    let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    if let Some(load_frame) = load_frame {
+        link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
+    }
+    inputs.tables = Tables::in_buffer(LISTS);
+    inputs.tables.declare(&mut module, program, &roots)?;
+    for (stub, root) in stubs::REACHES.into_iter().zip(roots) {
+        let function = function_of_round(program, &inputs, &mut module.types, stub, root)?;
+        link::fill(&mut module, stub, function)?;
+    }
+    let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
+    let shader = Shader::new(module, parts, features)?;
+    Ok(Some(Culling { shader, rounds: visits.iter().map(|visit| visit.rounds).collect() }))
+}
+
+/// Where functions find which rounds to visit.
+#[derive(Debug)]
+pub(crate) struct Visits {
+    /// The lists.
+    pub(crate) lists: Handle<GlobalVariable>,
+    /// The record to go by.
+    pub(crate) record: Handle<GlobalVariable>,
+    /// The number of each loop in a record.
+    loops: FxHashMap<Inert, u32>,
+}
+
+impl Visits {
+    /// Those of a picture's module; `None` where all rounds are visited.
+    pub(crate) fn of(module: &Module, program: &Program) -> Option<Self> {
+        let lists = link::find_variable(module, stubs::VISITS)?;
+        let record = link::find_variable(module, stubs::VISIT_RECORD)?;
+        let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
+        let loops = loops.take(stubs::REACHES.len()).collect();
+        Some(Self { lists, record, loops })
+    }
+
+    /// The number of a loop in a record, by what it says of its rounds.
+    pub(crate) fn number(&self, inert: Option<Inert>) -> Option<u32> {
+        self.loops.get(&inert?).copied()
+    }
+}

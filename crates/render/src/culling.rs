@@ -1,0 +1,151 @@
+//! What runs before a picture's shader on each tile: which rounds of the scene's loops can matter to its rays.
+
+use crate::{
+    Gpu,
+    blocks::{UNIFORM_BYTES, VIEW_BYTES, uniform_bytes},
+    gpu::{WORKGROUP, buffer, compute_pipeline, entry, table},
+};
+
+/// Most rounds of a loop that the list of one tile of eight by eight pixels holds; where more can matter, all are visited.
+const CAPACITY: u32 = 256;
+/// Most bytes of lists, and of marks, for the tiles that are drawn at once.
+const MOST_BYTES: u64 = 64 << 20;
+/// Binding of the lists of constants, of the lists of rounds, and of the marks that these are made from.
+const TABLE: u32 = 3;
+pub(crate) const VISITS: u32 = 4;
+const MARKS: u32 = 5;
+/// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
+const HEAD: u32 = 4;
+/// Invocations of a workgroup.
+const LANES: u32 = 64;
+/// Rounds to a word.
+const WORD: u32 = 32;
+
+/// Both stages, made ready for a device.
+#[derive(Debug)]
+pub(crate) struct Culling {
+    mark: wgpu::ComputePipeline,
+    list: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    table: wgpu::Buffer,
+    /// Rounds of each loop.
+    rounds: Vec<u32>,
+}
+
+/// The buffers for so many tiles.
+#[derive(Debug)]
+pub(crate) struct Visits {
+    pub(crate) lists: wgpu::Buffer,
+    pub(crate) tiles: u32,
+    bind_group: wgpu::BindGroup,
+}
+
+impl Culling {
+    pub(crate) fn new(gpu: &Gpu, made: sdfc_codegen::Culling, uniform_count: usize) -> Self {
+        let sdfc_codegen::Culling { shader, rounds } = made;
+        let table = table(gpu, &uniform_bytes(shader.lists()));
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("culling"),
+            source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(shader.into_module())),
+        });
+        let layout = layout(&gpu.device, uniform_count);
+        let pipeline = |name| compute_pipeline(&gpu.device, &module, &layout, name);
+        Self { mark: pipeline("mark"), list: pipeline("list"), layout, table, rounds }
+    }
+
+    /// Room for so many tiles of a workgroup each.
+    pub(crate) fn room(
+        &self,
+        gpu: &Gpu,
+        tiles: u32,
+        view: &wgpu::Buffer,
+        uniforms: Option<&wgpu::Buffer>,
+    ) -> Visits {
+        use wgpu::BufferUsages as Usage;
+        let head = self.head();
+        let bytes = 4 * (head.len() as u64 + u64::from(tiles) * u64::from(self.stride()));
+        let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
+        let head: Vec<u8> = head.iter().flat_map(|word| word.to_le_bytes()).collect();
+        gpu.queue.write_buffer(&lists, 0, &head);
+        let marks = buffer(gpu, "marks", u64::from(tiles) * self.mark_bytes(), Usage::STORAGE);
+        let buffers = [
+            (0, Some(view)),
+            (1, uniforms),
+            (TABLE, Some(&self.table)),
+            (VISITS, Some(&lists)),
+            (MARKS, Some(&marks)),
+        ];
+        let bound = buffers.into_iter().filter_map(|(binding, buffer)| {
+            Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
+        });
+        let entries: Vec<_> = bound.collect();
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("culling"),
+            layout: &self.layout,
+            entries: &entries,
+        });
+        Visits { lists, tiles, bind_group }
+    }
+
+    /// Finds what can matter to so many tiles.
+    pub(crate) fn run(&self, pass: &mut wgpu::ComputePass<'_>, visits: &Visits, tiles: u32) {
+        let loops = self.rounds.len() as u32;
+        pass.set_bind_group(0, &visits.bind_group, &[]);
+        pass.set_pipeline(&self.mark);
+        pass.dispatch_workgroups(self.most_words().div_ceil(LANES), tiles, loops);
+        pass.set_pipeline(&self.list);
+        pass.dispatch_workgroups(tiles.div_ceil(LANES), 1, loops);
+    }
+
+    /// Most pixels of a tile of the picture for which there is room.
+    pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
+        let bytes = MOST_BYTES.min(limits.max_storage_buffer_binding_size);
+        let left = bytes.saturating_sub(4 * self.head().len() as u64);
+        let tile = self.mark_bytes().max(4 * u64::from(self.stride()));
+        let tiles = (left / tile).min(u64::from(limits.max_compute_workgroups_per_dimension));
+        tiles as u32 * WORKGROUP * WORKGROUP
+    }
+
+    /// What the lists begin with: the layout, and the record by which all rounds are visited.
+    fn head(&self) -> Vec<u32> {
+        let loops = self.rounds.len() as u32;
+        let all: u32 = self.rounds.iter().sum();
+        let mut head = vec![HEAD + 2 * loops + all, self.stride(), CAPACITY, self.most_words()];
+        let mut first = HEAD + 2 * loops;
+        for &rounds in &self.rounds {
+            head.extend([rounds, first]);
+            first += rounds;
+        }
+        head.extend(self.rounds.iter().flat_map(|&rounds| 0..rounds));
+        head
+    }
+
+    /// Words of a tile's record and its lists.
+    fn stride(&self) -> u32 {
+        self.rounds.len() as u32 * (2 + CAPACITY)
+    }
+
+    fn most_words(&self) -> u32 {
+        self.rounds.iter().max().map_or(1, |rounds| rounds.div_ceil(WORD).max(1))
+    }
+
+    /// Bytes of a tile's marks.
+    fn mark_bytes(&self) -> u64 {
+        4 * self.rounds.len() as u64 * u64::from(self.most_words())
+    }
+}
+
+fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout {
+    let uniform = wgpu::BufferBindingType::Uniform;
+    let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
+    let mut entries = vec![entry(0, uniform, VIEW_BYTES)];
+    if uniform_count > 0 {
+        entries.push(entry(1, uniform, uniform_count * UNIFORM_BYTES));
+    }
+    entries.push(entry(TABLE, storage(true), 0));
+    entries.extend([VISITS, MARKS].map(|binding| entry(binding, storage(false), 0)));
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("culling"),
+        entries: &entries,
+    })
+}

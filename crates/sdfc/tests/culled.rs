@@ -1,0 +1,162 @@
+//! Pictures whose rays visit only what can matter to them are those of rays that visit all.
+
+#![allow(clippy::expect_used, reason = "a test stops where it fails")]
+
+use std::fmt::Write;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::codegen::render_module;
+use sdfc::graph::Program;
+use sdfc::render::{
+    Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
+};
+use sdfc::{FrameValues, Scene, Writing, compile, unwatched};
+
+const SIZE: [u32; 2] = [160, 96];
+/// How many parts, few enough for a driver that ends all loops after 65,535 turns.
+const PARTS: usize = 150;
+/// Most of a pixel's width that a hit may be off.
+const DEPTH: f32 = 0.1;
+
+const OUTSIDE: &str = "camera(eye: [4, 3.5, 6], target: 0, fov: 40deg)\n";
+const SUNNY: &str = "sun(direction: [1, 2, 1], shadow: hard)\nambient(strength: 0.2)\n";
+
+fn main() {
+    let without_gpu = testing::without_gpu();
+    let scenes = [
+        ("hard", hard() + OUTSIDE),
+        ("hard, with shadows", format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard())),
+        (
+            "hard, from within",
+            hard() + "camera(eye: [0.1, 0.2, 0.3], target: [1, 0.4, 2], fov: 80deg)\n",
+        ),
+        ("hard, parallel rays", hard() + "camera(eye: [4, 3.5, 6], target: 0, height: 6)\n"),
+        ("blended", chain("smooth(0.15)") + OUTSIDE),
+        ("blended, with shadows", chain("smooth(0.15)") + OUTSIDE + SUNNY),
+        ("blended widely", chain("smooth_cubic(0.6)") + OUTSIDE),
+        (
+            "blended, from within",
+            chain("smooth(0.1)")
+                + "camera(eye: [0.1, 0.2, 0.3], target: [1, 0.4, 2], fov: 80deg)\n",
+        ),
+        (
+            "moved by a param",
+            format!(
+                "param s: length = 0.2 in 0..1\n{}{OUTSIDE}",
+                hard().replace("sphere(0.2)", "sphere(s)")
+            ),
+        ),
+        (
+            "mirrors and open light",
+            hard() + OUTSIDE + "reflections(1)\nambient_occlusion(radius: 0.5)\n",
+        ),
+    ];
+    let mut trials = Vec::new();
+    for (name, text) in scenes {
+        let draw = move || same_picture(&text);
+        trials.push(Trial::test(name, draw).with_ignored_flag(without_gpu));
+    }
+    let too_few = Trial::test("lists that lack something show", missing_rounds_show);
+    trials.push(too_few.with_ignored_flag(without_gpu));
+    libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// Numbers that look irregular.
+fn number(seed: usize) -> f64 {
+    ((seed as f64 * 12.9898).sin() * 43_758.545).fract()
+}
+
+fn place(i: usize) -> String {
+    let [x, y, z] = [0, 1, 2].map(|axis| 2.0 * number(3 * i + axis));
+    format!(".translate([{x:.4}, {y:.4}, {z:.4}])")
+}
+
+fn hard() -> String {
+    let mut text = String::new();
+    for i in 0..PARTS {
+        let at = place(i);
+        // Writing to a String cannot fail.
+        let _ = match i % 3 {
+            0 => writeln!(text, "sphere(0.2){at}"),
+            1 => writeln!(text, "box([0.3, 0.2, 0.4]).rotate(y: {i}deg){at}"),
+            _ => writeln!(text, "difference(box(0.3), sphere(0.19)){at}"),
+        };
+    }
+    text
+}
+
+fn chain(blend: &str) -> String {
+    let mut text = "union(\n".to_owned();
+    for i in 0..PARTS {
+        let _ = writeln!(text, "  sphere({:.3}){},", 0.25 + 0.1 * number(i), place(i));
+    }
+    text + "  blend: " + blend + ")\n"
+}
+
+fn scene(text: &str) -> Scene {
+    let compiled = compile("culled.sdf", text);
+    let findings = compiled.diagnostics_text(false);
+    compiled.scene.expect(&findings).written(Writing::Rolled).expect("few nodes")
+}
+
+/// A picture by a program, in tiles that begin anywhere.
+fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {
+    let (gpu, frame) = (Gpu::new()?, FrameValues::defaults(scene.params()));
+    let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE)?;
+    let uniforms = uniform_values(program, &frame);
+    let pipeline = Pipeline::new(&gpu, render_module(program, "auto")?, uniforms.len())?;
+    let options = RenderOptions { tile_size: TileSize::Fixed([60, 44]) };
+    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?.image)
+}
+
+/// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
+fn differing(scene: &Scene, culled: &Program) -> Result<(usize, String), Failed> {
+    let whole = Program { visits: Vec::new(), ..culled.clone() };
+    let (culled, whole) = (picture(scene, culled)?, picture(scene, &whole)?);
+    let hits = whole.pixels().iter().filter(|pixel| pixel.status == HIT).count();
+    if hits < 1000 {
+        return Err(format!("only {hits} pixels show something").into());
+    }
+    let edges = edges(&culled).into_iter().zip(edges(&whole)).map(|(a, b)| a || b);
+    // Less than a pixel is wide in any scene here, at depth 1 and beyond.
+    let width = 2.0 * 0.0037;
+    let pairs = culled.pixels().iter().zip(whole.pixels()).zip(edges);
+    let differ = pairs.enumerate().filter(|(_, ((a, b), is_edge))| {
+        let color = a.color.iter().zip(b.color).any(|(a, b)| (a - b).abs() > 1.0 / 255.0);
+        let deep = (a.depth - b.depth).abs() > DEPTH * width * b.depth.min(1.0);
+        !is_edge && (a.status != b.status || color || (a.status == HIT && deep))
+    });
+    let differ: Vec<_> = differ.collect();
+    let first = differ
+        .first()
+        .map_or_else(String::new, |(place, ((a, b), _))| format!("at {place}, {a:?} and {b:?}"));
+    Ok((differ.len(), first))
+}
+
+fn same_picture(text: &str) -> Result<(), Failed> {
+    let scene = scene(text);
+    if scene.program().visits.is_empty() {
+        return Err("nothing is left out".into());
+    }
+    match differing(&scene, scene.program())? {
+        (0, _) => Ok(()),
+        (count, which) => Err(format!("{count} pixels differ: {which}").into()),
+    }
+}
+
+/// The test itself: where rounds are left out that matter, pixels differ.
+fn missing_rounds_show() -> Result<(), Failed> {
+    for text in [hard() + OUTSIDE, chain("smooth(0.15)") + OUTSIDE] {
+        let scene = scene(&text);
+        let mut program = scene.program().clone();
+        for visit in &mut program.visits {
+            let part = program.graph.number(1.0);
+            visit.reach = program.graph.add(visit.reach, part);
+        }
+        let (differing, _) = differing(&scene, &program)?;
+        if differing == 0 {
+            return Err("nothing shows".into());
+        }
+    }
+    Ok(())
+}
