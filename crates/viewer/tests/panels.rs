@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use eframe::egui::{Context, DroppedFile};
+use eframe::egui::{Context, DroppedFile, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use sdfc_viewer::app::App;
@@ -53,6 +53,25 @@ impl Fixture {
     fn click(&mut self, label: &str) {
         self.harness.get_by_label(label).click();
         self.harness.run_steps(3);
+    }
+
+    fn move_a_number(&mut self) {
+        let session = self.harness.state_mut().session();
+        let model = session.model.clone().unwrap();
+        let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
+        let (slot, _) = model.literals().find(|(slot, _)| slot.span.start == at).unwrap();
+        session.knobs.set_literal(slot, 1.25);
+        self.harness.run_steps(2);
+    }
+
+    /// As a window manager does.
+    fn request_close(&mut self) {
+        let viewports = &mut self.harness.input_mut().viewports;
+        viewports.entry(ViewportId::ROOT).or_default().events.push(ViewportEvent::Close);
+        self.harness.run_steps(1);
+        let viewports = &mut self.harness.input_mut().viewports;
+        viewports.entry(ViewportId::ROOT).or_default().events.clear();
+        self.harness.run_steps(2);
     }
 
     fn has(&self, text: &str) -> bool {
@@ -102,16 +121,25 @@ fn the_text_opens_and_params_can_be_reset() {
 fn moved_numbers_are_written_into_the_file() {
     let mut fixture = Fixture::new();
     fixture.click("Text");
-    let session = fixture.harness.state_mut().session();
-    let model = session.model.clone().unwrap();
-    let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
-    let (slot, _) = model.literals().find(|(slot, _)| slot.span.start == at).unwrap();
-    session.knobs.set_literal(slot, 1.25);
-    fixture.harness.run_steps(2);
+    fixture.move_a_number();
     fixture.click("Write");
     let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
+}
+
+#[test]
+fn a_window_with_moved_numbers_asks_before_it_goes() {
+    let mut fixture = Fixture::new();
+    fixture.move_a_number();
+    fixture.request_close();
+    assert!(fixture.has("A moved number is not in the file"));
+    fixture.click("Stay");
+    assert!(!fixture.has("A moved number is not in the file"));
+    fixture.request_close();
+    fixture.click("Write and close");
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap().contains("sphere(1.25) "));
 }
 
 #[test]

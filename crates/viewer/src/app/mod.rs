@@ -4,6 +4,7 @@ mod accuracy;
 mod canvas;
 mod editor;
 mod help;
+mod leave;
 mod menu;
 mod overlay;
 mod panels;
@@ -21,6 +22,7 @@ use eframe::egui::{self, Context, Key, Ui};
 use crate::memory::{self, Memory};
 use crate::session::Session;
 use canvas::Canvas;
+use leave::Leaving;
 use save::Save;
 
 /// So long a remark stays in the status line.
@@ -88,6 +90,7 @@ pub struct App {
     remark: Option<(String, Instant)>,
     shows: Shows,
     save: Save,
+    leaving: Leaving,
     memory: Memory,
     /// Where that is kept.
     place: Option<PathBuf>,
@@ -133,6 +136,7 @@ impl App {
             remark: None,
             shows: Shows { knobs: true, source: false, save: false, help: false, warnings: false },
             save: Save::default(),
+            leaving: Leaving::default(),
             memory,
             place,
             last_frame: Instant::now(),
@@ -188,6 +192,7 @@ impl App {
         self.save.open = self.shows.save;
         self.save.show(&ctx, &self.session);
         self.shows.save = self.save.open;
+        self.leaving.show(&ctx, &self.session);
         wishes.into_iter().for_each(|wish| self.grant(wish));
         if let Some((_, since)) = &self.remark {
             if since.elapsed() < REMARK {
