@@ -383,12 +383,11 @@ fn target_of(name: &str) -> Result<Target, Failure> {
 }
 
 fn emit_of(name: &str) -> Result<Emit, Failure> {
-    match name {
-        "field" => Ok(Emit::Field),
-        "march" => Ok(Emit::March),
-        "render" => Ok(Emit::Render),
-        _ => Err(Failure::argument(format!("there is no part `{name}`: field, march, render"))),
-    }
+    let found =
+        [Emit::Field, Emit::March, Emit::Render].into_iter().find(|emit| emit.name() == name);
+    found.ok_or_else(|| {
+        Failure::argument(format!("there is no part `{name}`: field, march, render"))
+    })
 }
 
 /// JSON has no null byte, which it would escape.

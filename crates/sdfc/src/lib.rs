@@ -28,6 +28,7 @@
 //!
 //! All are on by default. Without any this is the compiler: a scene on the CPU and as a shader, without wgpu.
 //!
+//! - `fonts`: letters in scenes; without it a scene that uses `text` is refused.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and written as files.
 //! - `wgpu`: the buffers and the bind group that a written shader wants of its host: [`bind`].
 //! - `measure`: the oracle, charts and benchmarks; needs `render`.

@@ -50,6 +50,40 @@ impl Default for ShaderOptions {
     }
 }
 
+impl Emit {
+    /// Its name, as the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Field => "field",
+            Self::March => "march",
+            Self::Render => "render",
+        }
+    }
+}
+
+impl ShaderOptions {
+    /// What `sdfc compile` is to be told for the same shader, but for what changes nothing.
+    pub fn as_arguments(&self) -> String {
+        let defaults = Self::default();
+        let Self { target, emit, stage, method, prefix, group, binding } = self;
+        let mut words = format!("--target {} --emit {}", target.name(), emit.name());
+        let mut add = |name: &str, value: &dyn std::fmt::Display, counts: bool| {
+            if counts {
+                words += &format!(" --{name} {value}");
+            }
+        };
+        add("stage", &stage.name(), *emit == Emit::Render);
+        if let Some(method) = method {
+            add("march", method, *emit != Emit::Field);
+        }
+        let has_prefix = *target != Target::Shadertoy && *prefix != defaults.prefix;
+        add("prefix", if prefix.is_empty() { &"''" } else { prefix }, has_prefix);
+        add("group", group, target.has_groups() && *group != defaults.group);
+        add("binding", binding, target.has_bindings() && *binding != defaults.binding);
+        words
+    }
+}
+
 /// What a scene was compiled from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Origin {
@@ -104,7 +138,8 @@ impl Scene {
         let shader = self.shader(options)?;
         let (version, name) = (env!("CARGO_PKG_VERSION"), &self.origin.name);
         let doubt = if self.is_certified() { "" } else { ", field uncertified" };
-        let comment = format!("sdfc {version}, {name}, source {}{doubt}", self.source_hash());
+        let (hash, how) = (self.source_hash(), options.as_arguments());
+        let comment = format!("sdfc {version}, {name}, source {hash}{doubt}, {how}");
         Ok(shader.write(options.target, &comment)?)
     }
 
@@ -164,6 +199,27 @@ mod tests {
         };
         assert!(!says("sphere(1)")?);
         assert!(says("solid s() = p.x * p.x + p.y * p.y - 1\ns()")?);
+        Ok(())
+    }
+
+    #[test]
+    fn a_text_says_how_it_was_made() -> Result<(), crate::Error> {
+        let scene = crate::compile("a.sdf", "sphere(1)").scene.ok_or(crate::Error::NothingDrawn)?;
+        let says = |options: &ShaderOptions| -> Result<String, crate::Error> {
+            let head = scene.write_shader(options)?.code.into_bytes();
+            let head = String::from_utf8_lossy(&head).lines().next().unwrap_or("").to_owned();
+            Ok(head.rsplit(", ").next().unwrap_or("").to_owned())
+        };
+        let options = ShaderOptions::default();
+        assert_eq!(says(&options)?, "--target wgsl --emit field");
+        let (emit, prefix) = (Emit::March, "a_".to_owned());
+        let options = ShaderOptions { emit, prefix, group: 2, ..options };
+        assert_eq!(says(&options)?, "--target wgsl --emit march --prefix a_ --group 2");
+        let (target, stage) = (Target::Msl, Stage::Fragment);
+        let method = Some("sphere".to_owned());
+        let options = ShaderOptions { target, stage, method, emit: Emit::Render, ..options };
+        let expected = "--target msl --emit render --stage fragment --march sphere --prefix a_";
+        assert_eq!(says(&options)?, expected);
         Ok(())
     }
 

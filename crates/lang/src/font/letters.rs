@@ -1,4 +1,4 @@
-//! Letters as curves: text laid out in an outline font.
+//! Letters as curves.
 //!
 //! The font's own tables are read and its kerning, ligatures and scripts applied by `harfrust`; what is left
 //! here are the curves of the glyphs, all of them quadratic, which are given out as arcs of circles.
@@ -11,13 +11,12 @@ use harfrust::font::{Font, glyph::outline};
 use harfrust::{Buffer, GlyphId, ShapeOptions, ShaperFont, shape};
 use rustc_hash::FxHashMap;
 
+use super::{SANS, Setting};
 use crate::arcs::arcs;
 use crate::import::{self, Resolver};
 use crate::outline::{Curve, Piece, Point, boundary, mix, sub};
 use outline::{DrawMemory, DrawOptions, PathElement};
 
-/// The font that comes with the library: Roboto, an OpenType file.
-pub const SANS: &[u8] = include_bytes!("../fonts/Roboto-Regular.ttf");
 /// Its name in scenes.
 const SANS_NAME: &str = "sans";
 /// Most curves of one text.
@@ -33,17 +32,6 @@ const MAX_PARTS: f64 = 16.0;
 pub struct Fonts<'r> {
     resolver: &'r dyn Resolver,
     known: RefCell<FxHashMap<String, Result<Font, String>>>,
-}
-
-/// How lines are set.
-#[derive(Clone, Copy, Debug)]
-pub struct Setting {
-    /// Which part of a line lies at x = 0: 0 its start, 1 its end.
-    pub align: f64,
-    /// Added between letters.
-    pub spacing: f64,
-    /// From one baseline to the next.
-    pub leading: f64,
 }
 
 impl<'r> Fonts<'r> {
