@@ -5,12 +5,13 @@
 //! or a new example, `TARGETS_UPDATE=1 cargo test -p sdfc --test targets` writes the table anew.
 
 mod draw;
+#[path = "../shared/examples.rs"]
+mod examples;
 mod paste;
 mod table;
 mod tools;
 
-use std::path::{Path, PathBuf};
-
+use examples::examples;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::render::testing;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
@@ -116,43 +117,6 @@ fn the_same_source_gives_the_same_bytes() -> Result<(), Failed> {
                     return Err(format!("{name} as {}: two texts", target.name()).into());
                 }
             }
-        }
-    }
-    Ok(())
-}
-
-/// Name and scene of each example, in order of name.
-pub fn examples() -> Result<Vec<(String, Scene)>, Failed> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut paths = Vec::new();
-    scene_files(&folder, &mut paths)?;
-    paths.sort();
-    let mut found = Vec::new();
-    for path in paths {
-        let name = path.strip_prefix(&folder)?.display().to_string().replace('\\', "/");
-        let text = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
-        let scene = sdfc::compile_with_imports(&name, &text, &Beside(&path)).scene;
-        found.push((name.clone(), scene.ok_or(format!("{name} does not compile"))?));
-    }
-    if found.is_empty() { Err("no examples were found".into()) } else { Ok(found) }
-}
-
-/// Files below the folder of a scene.
-struct Beside<'a>(&'a Path);
-
-impl sdfc::Resolver for Beside<'_> {
-    fn read(&self, path: &str) -> Result<String, String> {
-        std::fs::read_to_string(self.0.with_file_name(path)).map_err(|e| e.to_string())
-    }
-}
-
-fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            scene_files(&path, found)?;
-        } else if path.extension().is_some_and(|e| e == "sdf") {
-            found.push(path);
         }
     }
     Ok(())

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 use libtest_mimic::Failed;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
 
+use crate::Part;
+use crate::examples::examples;
 use crate::tools::Tool;
-use crate::{Part, examples};
 
 const TEXTS: [Target; 5] = [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
 

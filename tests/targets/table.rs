@@ -6,16 +6,30 @@ use std::path::Path;
 use libtest_mimic::Failed;
 use sdfc::Target;
 
-use crate::{PARTS, examples, write};
+use crate::examples::examples;
+use crate::tools::TOOLS;
+use crate::{PARTS, write};
 
 const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
 const END: &str = "<!-- End of the table. -->\n";
 
-/// One row for each example: the parts that can be written.
+/// What compiles a target's texts, beside the writer's own validator.
+fn judges(target: Target) -> String {
+    let tools = TOOLS.iter().filter(|tool| tool.target == target);
+    let mut names: Vec<_> = tools.map(|tool| tool.program).collect();
+    match target {
+        Target::Wgsl | Target::GlslEs | Target::Shadertoy => names.push("Chromium"),
+        Target::Glsl | Target::Hlsl | Target::Msl | Target::Spirv => {}
+    }
+    if names.is_empty() { "nothing else".to_owned() } else { names.join(", ") }
+}
+
+/// Who judges, and one row for each example: the parts that can be written.
 fn table() -> Result<String, Failed> {
     let names = Target::ALL.map(Target::name);
     let mut text =
         format!("| example | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
+    writeln!(text, "| *judged by* | {} |", Target::ALL.map(judges).join(" | "))?;
     for (name, scene) in examples()? {
         write!(text, "| {name} |")?;
         for target in Target::ALL {

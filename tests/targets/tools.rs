@@ -50,6 +50,21 @@ pub const TOOLS: &[Tool] = &[
         arguments: |_| &["-l", "-S", "frag"],
     },
     Tool {
+        program: "glslangValidator",
+        target: Target::Hlsl,
+        version: "--version",
+        // Its reader of HLSL, up to the tree: a field has no entry point to be linked from.
+        arguments: |part| match (part.emit, part.stage) {
+            (Emit::Render, Stage::Compute) => {
+                &["-D", "-V", "-o", "/dev/null", "-S", "comp", "-e", "sdf_main"]
+            }
+            (Emit::Render, Stage::Fragment) => {
+                &["-D", "-V", "-o", "/dev/null", "-S", "frag", "-e", "sdf_fragment"]
+            }
+            (Emit::Field | Emit::March, _) => &["-D", "-V", "-o", "/dev/null", "-S", "frag"],
+        },
+    },
+    Tool {
         program: "spirv-val",
         target: Target::Spirv,
         version: "--version",

@@ -95,7 +95,7 @@ pub use reflection::{
 pub use rows::DiagnosticRow;
 #[cfg(feature = "measure")]
 pub use sampler::Sampler;
-pub use shader::{Emit, ShaderOptions};
+pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
 
 #[cfg(feature = "measure")]
 pub use sdfc_accuracy as accuracy_data;

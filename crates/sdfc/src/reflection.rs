@@ -29,6 +29,9 @@ pub struct ShaderReflection {
     pub buffers: Vec<BufferRow>,
     /// What the buffer of the role `lists` holds: numbers of 32 bits, four to an element. Empty without one.
     pub lists: Vec<f32>,
+    /// What the buffer of the role `view` holds for a picture of [`VIEW_SIZE`](crate::VIEW_SIZE) at the params' defaults and time 0: words
+    /// of 32 bits, floats by their bits. Empty without one.
+    pub view: Vec<u32>,
     /// The structures that functions take or give and buffers hold, members before what holds them.
     pub structs: Vec<StructRow>,
     /// The entry points.
@@ -198,10 +201,21 @@ impl Scene {
             uniform,
             buffers: found.buffers.iter().map(buffer_row).collect(),
             lists: found.lists.as_flattened().to_vec(),
+            view: self.reflected_view(found),
             structs: found.structures.iter().map(struct_row).collect(),
             entry_points: entries.collect(),
             certificate: self.certificate(),
         }
+    }
+
+    /// Empty too where the settings make no picture: a host may have others.
+    fn reflected_view(&self, found: &sdfc_codegen::Reflection) -> Vec<u32> {
+        if !found.buffers.iter().any(|buffer| buffer.role == BufferRole::View) {
+            return Vec::new();
+        }
+        let bytes = self.default_view().unwrap_or_default();
+        let words = bytes.as_chunks::<4>().0;
+        words.iter().map(|word| u32::from_ne_bytes(*word)).collect()
     }
 
     fn param_row(&self, member: &Member) -> ParamRow {
@@ -341,6 +355,26 @@ mod tests {
         let uniform = &found["uniform"];
         assert_eq!((&uniform["struct"], &uniform["size"]), (&"sdf_Params".into(), &48.into()));
         assert_eq!((&uniform["group"], &uniform["binding"]), (&1.into(), &2.into()));
+    }
+
+    #[test]
+    fn the_view_has_a_word_for_every_lane_of_its_structure() {
+        let compiled = compile("a.sdf", "sphere(1)\ncamera(eye: [0, 0, 5], fov: 90deg)");
+        let scene = compiled.scene.unwrap();
+        let options = ShaderOptions { emit: crate::Emit::Render, ..Default::default() };
+        let written = scene.write_shader(&options).unwrap();
+        let found = scene.reflect(&compiled.sources, &options, &written);
+        let buffer = found.buffers.iter().find(|buffer| buffer.role == "view").unwrap();
+        assert_eq!(found.view.len() * 4, buffer.size as usize);
+        let structure = found.structs.iter().find(|row| row.name == buffer.ty).unwrap();
+        let words = |name: &str| {
+            let member = structure.members.iter().find(|member| member.name == name).unwrap();
+            &found.view[member.offset as usize / 4..]
+        };
+        assert_eq!(words("eye")[..3], [0.0, 0.0, 5.0_f32].map(f32::to_bits));
+        assert_eq!(words("up")[..3], [0.0, 1.0, 0.0_f32].map(f32::to_bits));
+        assert_eq!(words("size")[..2], crate::VIEW_SIZE);
+        assert!(reflection("sphere(1)", Target::Wgsl)["view"].as_array().unwrap().is_empty());
     }
 
     #[test]

@@ -175,15 +175,15 @@ impl Scene {
     }
 
     /// The view at the defaults, as a buffer would hold it. Its size says how wide it is, no more.
-    fn default_view(&self) -> Result<Vec<u8>, Error> {
+    pub(crate) fn default_view(&self) -> Result<Vec<u8>, Error> {
         let frame = self.defaults();
-        let view = View::new(&self.program, &frame, self.bounds_at(&frame), SHADERTOY_SIZE)?;
-        Ok(view_bytes(&view.block(Tile { origin: [0, 0], size: SHADERTOY_SIZE })))
+        let view = View::new(&self.program, &frame, self.bounds_at(&frame), VIEW_SIZE)?;
+        Ok(view_bytes(&view.block(Tile { origin: [0, 0], size: VIEW_SIZE })))
     }
 }
 
-/// What shadertoy.com shows beside a text.
-const SHADERTOY_SIZE: [u32; 2] = [640, 360];
+/// The size of picture that a view is written for, that of shadertoy.com beside a text.
+pub const VIEW_SIZE: [u32; 2] = [640, 360];
 
 #[cfg(test)]
 mod tests {
