@@ -13,7 +13,7 @@ use serde_json::Value;
 const MAX_LINES: usize = 800;
 
 /// What each crate may depend on of this workspace. A new crate needs a row.
-const MAY_KNOW: [(&str, &[&str]); 15] = [
+const MAY_KNOW: [(&str, &[&str]); 16] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
@@ -41,6 +41,7 @@ const MAY_KNOW: [(&str, &[&str]); 15] = [
     ("cli", &["files", "sdfc"]),
     ("capi", &["sdfc"]),
     ("build", &["files", "sdfc"]),
+    ("web", &["sdfc"]),
     ("viewer", &["files", "sdfc"]),
 ];
 

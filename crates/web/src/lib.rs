@@ -1,0 +1,1 @@
+//! The compiler for web pages.

@@ -1,0 +1,221 @@
+//! A Chromium without a window, driven by the DevTools protocol.
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use libtest_mimic::Failed;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+/// The environment variable that makes tests fail, not be ignored, where there is no Chromium.
+const REQUIRE: &str = "SDFC_REQUIRE_CHROMIUM";
+/// The environment variable that names the program, where it is none of [`PROGRAMS`].
+const PROGRAM: &str = "SDFC_CHROMIUM";
+const PROGRAMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+
+/// What gives WebGPU and WebGL 2 on the processor. With fewer of these, or with `--disable-gpu`, adapters are
+/// there and compute, but every canvas stays blank.
+const SOFTWARE_GPU: [&str; 5] = [
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader",
+    "--use-angle=swiftshader",
+];
+
+const QUIET: [&str; 10] = [
+    "--headless",
+    // Tests often run as root, where there is no sandbox; only pages of this repository are opened.
+    "--no-sandbox",
+    "--disable-dev-shm-usage",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    // Machine code for a long shader takes the software adapter longer than the watchdog allows.
+    "--disable-gpu-watchdog",
+    "--remote-debugging-port=0",
+];
+
+/// What Chromium writes on stderr before the address to be driven at.
+const LISTENING: &str = "DevTools listening on ";
+/// An answer that takes longer will not come. Shaders are compiled for the processor, one after the other.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+fn program() -> Option<String> {
+    let named = std::env::var(PROGRAM).ok();
+    let mut names = named.into_iter().chain(PROGRAMS.map(str::to_owned));
+    names.find(|name| {
+        let mut command = Command::new(name);
+        command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    })
+}
+
+/// Whether tests fail where what they need is missing.
+pub fn is_required() -> bool {
+    std::env::var_os(REQUIRE).is_some_and(|value| value == "1")
+}
+
+/// Whether tests that need a Chromium are to be ignored: there is none, and none is required.
+pub fn is_missing() -> bool {
+    !is_required() && program().is_none()
+}
+
+/// A browser with one page.
+pub struct Chromium {
+    process: Child,
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    /// Of the page.
+    session: Option<String>,
+    calls: u64,
+    /// Errors of the page since it was opened.
+    complaints: Vec<String>,
+    _profile: TempDir,
+}
+
+impl Chromium {
+    pub fn start() -> Result<Self, Failed> {
+        let program = program().ok_or("no Chromium is installed")?;
+        let profile = TempDir::new()?;
+        let mut command = Command::new(program);
+        command.args(QUIET).args(SOFTWARE_GPU);
+        command.arg(format!("--user-data-dir={}", profile.path().display())).arg("about:blank");
+        let mut process = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+        let mut said = BufReader::new(process.stderr.take().ok_or("no stderr")?).lines();
+        let address = said.find_map(|line| Some(line.ok()?.strip_prefix(LISTENING)?.to_owned()));
+        // It must not wait for someone to read what it says.
+        std::thread::spawn(move || said.for_each(drop));
+        let address = address.ok_or("Chromium ended before it could be driven")?;
+        let (socket, _) = tungstenite::connect(address)?;
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(PATIENCE))?;
+        }
+        let (session, complaints, calls) = (None, Vec::new(), 0);
+        let mut found = Self { process, socket, session, calls, complaints, _profile: profile };
+        let target = found.call("Target.createTarget", json!({ "url": "about:blank" }))?;
+        let attached = json!({ "targetId": target["targetId"], "flatten": true });
+        let attached = found.call("Target.attachToTarget", attached)?;
+        found.session = attached["sessionId"].as_str().map(str::to_owned);
+        for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
+            found.call(domain, json!({}))?;
+        }
+        Ok(found)
+    }
+
+    fn call(&mut self, method: &str, params: Value) -> Result<Value, Failed> {
+        self.calls += 1;
+        let mut call = json!({ "id": self.calls, "method": method, "params": params });
+        if let Some(session) = &self.session {
+            call["sessionId"] = session.as_str().into();
+        }
+        self.socket.send(Message::text(call.to_string()))?;
+        loop {
+            let mut answer = self.receive()?;
+            if answer["id"] != self.calls {
+                self.complaints.extend(complaint(&answer));
+            } else if answer["error"].is_object() {
+                return Err(format!("{method}: {}", answer["error"]).into());
+            } else {
+                return Ok(answer["result"].take());
+            }
+        }
+    }
+
+    fn receive(&mut self) -> Result<Value, Failed> {
+        let message = self.socket.read().map_err(|e| format!("{e}; {:?}", self.complaints))?;
+        Ok(serde_json::from_str(message.to_text()?)?)
+    }
+
+    /// Opens a page; what was in the one before is gone. `size` is that of the window.
+    pub fn open(&mut self, url: &str, [width, height]: [u32; 2]) -> Result<(), Failed> {
+        let metrics =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", metrics)?;
+        self.complaints.clear();
+        let opened = self.call("Page.navigate", json!({ "url": url }))?;
+        match opened["errorText"].as_str() {
+            Some(why) => Err(format!("{url}: {why}").into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The value of a JavaScript expression, or what the promise that it is comes to.
+    pub fn evaluate(&mut self, expression: &str) -> Result<Value, Failed> {
+        let params =
+            json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
+        let mut found = self.call("Runtime.evaluate", params)?;
+        if found["exceptionDetails"].is_object() {
+            return Err(format!("{}", found["exceptionDetails"]).into());
+        }
+        Ok(found["result"]["value"].take())
+    }
+
+    /// What a JavaScript function gives for an argument.
+    pub fn apply(&mut self, function: &str, argument: &Value) -> Result<Value, Failed> {
+        self.evaluate(&format!("({function})({argument})"))
+    }
+
+    /// A PNG of the part of the page that an element takes.
+    pub fn screenshot(&mut self, selector: &str) -> Result<Vec<u8>, Failed> {
+        let place = self.apply(PLACE, &selector.into())?;
+        let params = json!({ "format": "png", "clip": place });
+        let found = self.call("Page.captureScreenshot", params)?;
+        let text = found["data"].as_str().ok_or("no picture")?;
+        Ok(data_encoding::BASE64.decode(text.as_bytes())?)
+    }
+
+    /// Errors of the page since it was opened.
+    pub fn complaints(&self) -> &[String] {
+        &self.complaints
+    }
+
+    /// A drag of the mouse with its button down.
+    pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), Failed> {
+        let steps = [("mousePressed", from), ("mouseMoved", to), ("mouseReleased", to)];
+        for (kind, [x, y]) in steps {
+            let params = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": 1 });
+            self.call("Input.dispatchMouseEvent", params)?;
+        }
+        Ok(())
+    }
+}
+
+/// Two frames later, so that what was drawn is on the screen.
+const PLACE: &str = "async selector => {
+    const frame = () => new Promise(requestAnimationFrame);
+    await frame();
+    await frame();
+    const { x, y, width, height } = document.querySelector(selector).getBoundingClientRect();
+    return { x, y, width, height, scale: 1 };
+}";
+
+/// What an event says of an error in the page.
+fn complaint(event: &Value) -> Option<String> {
+    let params = &event["params"];
+    match event["method"].as_str()? {
+        "Runtime.exceptionThrown" => Some(params["exceptionDetails"].to_string()),
+        "Runtime.consoleAPICalled" if params["type"] == "error" => Some(params["args"].to_string()),
+        // Browsers ask for an icon that no page here has.
+        "Log.entryAdded" if params["entry"]["level"] == "error" => {
+            Some(params["entry"].to_string()).filter(|entry| !entry.contains("favicon.ico"))
+        }
+        _ => None,
+    }
+}
+
+impl Drop for Chromium {
+    fn drop(&mut self) {
+        self.session = None;
+        // What cannot be closed is killed.
+        if self.call("Browser.close", json!({})).is_err() {
+            let _ = self.process.kill();
+        }
+        let _ = self.process.wait();
+    }
+}
