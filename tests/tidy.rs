@@ -111,7 +111,8 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
         for entry in std::fs::read_dir(&folder).into_iter().flatten() {
             let path = entry.unwrap().path();
             let hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes()[0] == b'.');
-            if path.is_dir() && !hidden && !path.ends_with("target") {
+            let foreign = path.ends_with("target") || path.ends_with("node_modules");
+            if path.is_dir() && !hidden && !foreign {
                 folders.push(path);
             } else if path.extension().is_some_and(|e| e == extension) {
                 found.push(path);

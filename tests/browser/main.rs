@@ -65,5 +65,10 @@ fn in_place(check: &Check) -> Result<(), Failed> {
         server.lay("shadertoy/head.glsl", include_bytes!("../targets/shadertoy.glsl").to_vec());
         *place = Some(Place { chromium: Chromium::start()?, server });
     }
-    check(place.as_mut().ok_or("no browser")?)
+    let found = check(place.as_mut().ok_or("no browser")?);
+    if found.is_err() {
+        // It may be busy, or gone.
+        *place = None;
+    }
+    found
 }

@@ -1,7 +1,6 @@
 //! The pages of `examples/embed`, and what shadertoy.com does: screenshots against the picture of `sdfc render`.
 
 use libtest_mimic::Failed;
-use sdfc::diagnostics::Sources;
 use sdfc::render::Pose;
 use sdfc::{
     Code, Emit, FrameValues, PictureOptions, Scene, ShaderOptions, Stage, Target, VIEW_SIZE,
@@ -43,10 +42,10 @@ pub const EMBEDDINGS: [Embedding; 3] = [
 pub const THREE: Embedding =
     Embedding { name: "three", target: Target::GlslEs, emit: Emit::March, file: "scene.glsl" };
 
-/// Scenes with knobs, long lists, loops, mirrors, soft shadows, lamps.
+/// Scenes with knobs, loops, mirrors, soft shadows, lamps.
 pub const SCENES: [&str; 6] = [
     "params.sdf",
-    "balloon.sdf",
+    "gyroid_lattice.sdf",
     "mandelbulb.sdf",
     "settings/reflections.sdf",
     "settings/soft_shadow.sdf",
@@ -63,7 +62,7 @@ impl Embedding {
         let options =
             ShaderOptions { target, emit, stage: Stage::Fragment, ..ShaderOptions::default() };
         let written = scene.write_shader(&options)?;
-        let reflection = scene.reflect(&Sources::new(), &options, &written);
+        let reflection = scene.reflect(&options, &written);
         let Code::Text(text) = written.code else { return Err("no text".into()) };
         place.server.lay(&format!("{name}/{file}"), text.into_bytes());
         let json = serde_json::to_vec(&reflection)?;
@@ -125,8 +124,8 @@ pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Resul
     check(&shown(place)?, &expected, "the knobs")?;
 
     place.chromium.drag([200.0, 100.0], [250.0, 100.0])?;
-    // A hundred pixels turn the camera by one radian.
-    let pose = turned(pose(&scene)?, -0.5);
+    // A hundred pixels turn the camera by one radian about the origin.
+    let pose = turned(pose(&scene)?, [0.0; 3], -0.5);
     check(&shown(place)?, &drawn(&scene, Some(frame), Some(pose))?, "the mouse")?;
     Ok(())
 }
@@ -142,7 +141,8 @@ pub fn shadertoy_follows_clock_and_mouse(place: &mut Place) -> Result<(), Failed
     let scene = example("params.sdf")?;
     // From the middle of the picture a quarter of its width to the right.
     shadertoy.open(place, &scene, "?x=480&y=180")?;
-    let pose = turned(pose(&scene)?, -std::f64::consts::FRAC_PI_2);
+    let pose = pose(&scene)?;
+    let pose = turned(pose, pose.target.to_array(), -std::f64::consts::FRAC_PI_2);
     check(&shown(place)?, &drawn(&scene, None, Some(pose))?, "the mouse")?;
     Ok(())
 }
@@ -154,13 +154,17 @@ fn pose(scene: &Scene) -> Result<Pose, Failed> {
     Ok(Pose::new(scene.program(), &frame, scene.bounds_at(&frame), width / height)?)
 }
 
-/// A camera turned about what is in the middle of its picture.
-fn turned(pose: Pose, angle: f64) -> Pose {
+/// A camera turned about the vertical axis through a place. `up` stays upright.
+fn turned(pose: Pose, middle: [f64; 3], angle: f64) -> Pose {
     let (sine, cosine) = angle.sin_cos();
-    let mut offset = pose.eye - pose.target;
-    (offset.x, offset.z) =
-        (cosine * offset.x + sine * offset.z, cosine * offset.z - sine * offset.x);
-    Pose { eye: pose.target + offset, ..pose }
+    let turn = |mut place: [f64; 3]| {
+        let [x, z] = [0, 2].map(|axis| place[axis] - middle[axis]);
+        place[0] = middle[0] + cosine * x + sine * z;
+        place[2] = middle[2] + cosine * z - sine * x;
+        place
+    };
+    let [eye, target] = [pose.eye, pose.target].map(|place| turn(place.to_array()).into());
+    Pose { eye, target, ..pose }
 }
 
 /// What the canvas shows.

@@ -44,7 +44,9 @@ impl sdfc::Resolver for Beside<'_> {
 fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
-        if path.is_dir() {
+        if path.ends_with("node_modules") {
+            continue;
+        } else if path.is_dir() {
             scene_files(&path, found)?;
         } else if path.extension().is_some_and(|e| e == "sdf") {
             found.push(path);

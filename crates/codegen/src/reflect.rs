@@ -83,7 +83,7 @@ pub struct Uniform {
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Size in bytes.
+    /// Size in bytes, a multiple of 16.
     pub size: u32,
     /// In GLSL, the name of its block.
     pub block: Option<String>,
@@ -117,7 +117,7 @@ pub struct Buffer {
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Size in bytes, of one element where there may be many.
+    /// Size in bytes, of one element where there may be many; that of a uniform is a multiple of 16.
     pub size: u32,
     /// In GLSL, the name of its block.
     pub block: Option<String>,
@@ -250,7 +250,7 @@ fn describe(module: &Module, parts: &Parts, names: &Names) -> Reflection {
             variable: name(NameKey::GlobalVariable(handle)),
             group: binding.group,
             binding: binding.binding,
-            size: module.types[variable.ty].inner.size(module.to_ctx()),
+            size: buffer_size(module, variable.space, variable.ty),
             block: None,
         });
     }
@@ -316,9 +316,16 @@ fn buffer(
         is_array,
         group: binding.group,
         binding: binding.binding,
-        size: module.types[ty].inner.size(module.to_ctx()),
+        size: buffer_size(module, variable.space, ty),
         block: None,
     }
+}
+
+/// Bytes of a buffer that holds a value. A uniform block of GLSL, or a constant buffer of HLSL, ends at a multiple of 16,
+/// and what is bound may not be shorter.
+fn buffer_size(module: &Module, space: AddressSpace, ty: Handle<naga::Type>) -> u32 {
+    let size = module.types[ty].inner.size(module.to_ctx());
+    if space == AddressSpace::Uniform { size.next_multiple_of(16) } else { size }
 }
 
 /// The structures in a type, members first, each once. Types nest as deep as `march` writes them.

@@ -86,7 +86,7 @@ pub struct UniformRow {
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Bytes.
+    /// Bytes, a multiple of 16.
     pub size: u32,
     /// In GLSL, the name of its block; else null.
     pub block: Option<String>,
@@ -109,7 +109,7 @@ pub struct BufferRow {
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Bytes, of one element where there may be many.
+    /// Bytes, of one element where there may be many; of a uniform a multiple of 16.
     pub size: u32,
     /// In GLSL, the name of its block; else null.
     pub block: Option<String>,
@@ -358,12 +358,22 @@ mod tests {
     }
 
     #[test]
+    fn a_uniform_of_one_number_takes_sixteen_bytes() {
+        let found = reflection("param r = 0.5 in 0.1..1\nsphere(r)", Target::GlslEs);
+        assert_eq!(
+            (&found["uniform"]["size"], &found["params"][0]["size"]),
+            (&16.into(), &4.into())
+        );
+        assert_eq!(found["buffers"][0]["size"], 16);
+    }
+
+    #[test]
     fn the_view_has_a_word_for_every_lane_of_its_structure() {
         let compiled = compile("a.sdf", "sphere(1)\ncamera(eye: [0, 0, 5], fov: 90deg)");
         let scene = compiled.scene.unwrap();
         let options = ShaderOptions { emit: crate::Emit::Render, ..Default::default() };
         let written = scene.write_shader(&options).unwrap();
-        let found = scene.reflect(&compiled.sources, &options, &written);
+        let found = scene.reflect(&options, &written);
         let buffer = found.buffers.iter().find(|buffer| buffer.role == "view").unwrap();
         assert_eq!(found.view.len() * 4, buffer.size as usize);
         let structure = found.structs.iter().find(|row| row.name == buffer.ty).unwrap();

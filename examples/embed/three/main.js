@@ -16,18 +16,15 @@ void main() {
 
 const FRAGMENT = `
 uniform mat4 projectionMatrix;
-uniform float pixelRadius;
 uniform vec3 sun;
 in vec3 ray;
 out vec4 color;
 void main() {
   vec3 direction = normalize(ray);
-  // Origin, footprint there, direction, what the footprint gains, and limits: docs/targets.md.
-  sdf_Trace found = sdf_trace(
-      sdf_Ray(cameraPosition, 0.0, direction, pixelRadius, 100.0, 1e-4, 0.25, 256u));
+  sdf_Trace found = sdf_intersect(cameraPosition, direction, 0.0, 100.0);
   if (found.status != sdf_HIT) discard;
   vec3 p = cameraPosition + found.t * direction;
-  vec3 normal = normalize(sdf_gradient(p));
+  vec3 normal = normalize(sdf_gradient(p).xyz);
   float light = 0.2 + 0.8 * max(dot(normal, sun), 0.0);
   color = linearToOutputTexel(vec4(light * sdf_material(p).color, 1.0));
 
@@ -65,16 +62,14 @@ async function main() {
   renderer.setSize(width, height);
   const camera = new THREE.PerspectiveCamera(42, width / height, 0.1, 100);
   camera.position.set(4.4, 2.4, 2.6);
-  camera.lookAt(0, 0, 0.2);
   const sun = new THREE.Vector3(1.5, 2, 0.2).normalize();
 
   const { group, uniforms } = paramGroup(reflection);
-  const pixelRadius = Math.tan(((camera.fov / 2) * Math.PI) / 180) / height;
   const material = new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: VERTEX,
     fragmentShader: functions(text) + FRAGMENT,
-    uniforms: { sun: { value: sun }, pixelRadius: { value: pixelRadius } },
+    uniforms: { sun: { value: sun } },
     uniformsGroups: [group],
   });
   const triangle = new THREE.BufferGeometry();
@@ -102,6 +97,7 @@ async function main() {
   });
   const controls = new OrbitControls(camera, canvas);
   controls.target.set(0, 0, 0.2);
+  controls.update();
   controls.addEventListener("change", () => requestAnimationFrame(draw));
   draw();
   // To play with in the browser's console.

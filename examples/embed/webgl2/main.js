@@ -80,7 +80,8 @@ async function main() {
     requestAnimationFrame(draw);
   };
   draw();
-  gl.finish();
+  const error = gl.getError();
+  if (error !== gl.NO_ERROR) throw new Error(`WebGL error ${error}`);
 }
 
 main().then(

@@ -1,0 +1,94 @@
+//! What a page asks for.
+
+use std::collections::BTreeMap;
+
+use sdfc::{Emit, Resolver, ShaderOptions, Stage, Target};
+use serde::{Deserialize, Deserializer, de::Error};
+
+/// All of it, with the defaults of `sdfc compile`.
+#[derive(Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Options {
+    /// What messages call the scene.
+    pub name: String,
+    #[serde(deserialize_with = "target")]
+    target: Target,
+    emit: Option<Part>,
+    stage: Option<Form>,
+    march: Option<String>,
+    prefix: Option<String>,
+    group: Option<u32>,
+    binding: Option<u32>,
+    pub slots: bool,
+    /// Texts that the scene may import, by path.
+    pub files: BTreeMap<String, String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let (emit, stage, march, prefix, group, binding, files) = Default::default();
+        let (name, target, slots) = ("scene.sdf".to_owned(), Target::Wgsl, false);
+        Self { name, target, emit, stage, march, prefix, group, binding, slots, files }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Part {
+    Field,
+    March,
+    Render,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Form {
+    Compute,
+    Fragment,
+}
+
+impl Options {
+    pub fn shader(&self) -> ShaderOptions {
+        let target = self.target;
+        let emit = match self.emit {
+            Some(Part::Field) => Emit::Field,
+            Some(Part::March) => Emit::March,
+            Some(Part::Render) => Emit::Render,
+            None if target == Target::Shadertoy => Emit::Render,
+            None => Emit::Field,
+        };
+        let stage = match self.stage {
+            Some(Form::Compute) => Stage::Compute,
+            Some(Form::Fragment) => Stage::Fragment,
+            None if target.has_stage(Stage::Compute) => Stage::Compute,
+            None => Stage::Fragment,
+        };
+        let standard = ShaderOptions::default();
+        ShaderOptions {
+            target,
+            emit,
+            stage,
+            method: self.march.clone(),
+            prefix: self.prefix.clone().unwrap_or(standard.prefix),
+            group: self.group.unwrap_or(standard.group),
+            binding: self.binding.unwrap_or(standard.binding),
+        }
+    }
+}
+
+fn target<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Target, D::Error> {
+    let name = String::deserialize(deserializer)?;
+    let names = Target::ALL.map(Target::name);
+    let found = Target::ALL.into_iter().find(|target| target.name() == name);
+    found
+        .ok_or_else(|| D::Error::custom(format!("target `{name}` is none of {}", names.join(", "))))
+}
+
+/// Files that the page has brought.
+pub(crate) struct Files(pub BTreeMap<String, String>);
+
+impl Resolver for Files {
+    fn read(&self, path: &str) -> Result<String, String> {
+        self.0.get(path).cloned().ok_or_else(|| "the page has brought no such file".to_owned())
+    }
+}
