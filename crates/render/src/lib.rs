@@ -41,6 +41,7 @@
 mod blocks;
 mod compare;
 mod cpu;
+#[cfg(feature = "gpu")]
 mod culling;
 #[cfg(feature = "gpu")]
 mod device;

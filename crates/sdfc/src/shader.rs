@@ -72,7 +72,11 @@ impl ShaderOptions {
                 words += &format!(" --{name} {value}");
             }
         };
-        add("stage", &stage.name(), *emit == Emit::Render);
+        let stage = match stage {
+            Stage::Compute => "compute",
+            Stage::Fragment => "fragment",
+        };
+        add("stage", &stage, *emit == Emit::Render);
         if let Some(method) = method {
             add("march", method, *emit != Emit::Field);
         }
