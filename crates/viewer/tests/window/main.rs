@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 10] = [
+    let trials: [(&str, Test); 11] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         ("without_a_scene_an_example_is_shown_and_saved_as_a_picture", example),
         ("any_size_is_survived_and_a_hidden_window_shows_the_newest_text", sizes),
         ("closed_by_the_window_manager_it_remembers", closing),
+        ("a_still_window_takes_no_processor_time", idle),
         ("without_an_adapter_the_processor_draws_in_a_window", no_adapter),
         ("without_any_driver_it_says_what_to_do", no_driver),
     ];
@@ -201,6 +202,19 @@ fn closing(display: Display) -> Result<(), Failed> {
         expect(memory.contains("scene.sdf") && memory.contains("\"eye\""), &memory)?;
     }
     Ok(())
+}
+
+/// A tenth of a second of the processor in three is more than wake-ups take, and far less than drawing.
+fn idle(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(BALL)?;
+    let window = Window::open(&display, &scene)?;
+    window.settled(|picture| is_red(picture, PLACE))?;
+    // Past what a remark or a cursor may still have to do.
+    std::thread::sleep(Duration::from_secs(5));
+    let before = window.processor_ticks();
+    std::thread::sleep(Duration::from_secs(3));
+    let spent = window.processor_ticks() - before;
+    expect(spent <= 10, &format!("{spent} hundredths of a second"))
 }
 
 /// No driver for Vulkan: OpenGL shows the window.

@@ -195,6 +195,15 @@ impl<'a> Window<'a> {
         Ok(())
     }
 
+    /// Hundredths of a second that the processor has spent on it; 0 where the system does not say.
+    pub fn processor_ticks(&self) -> u64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.viewer.id()));
+        let stat = stat.unwrap_or_default();
+        // After the name, which may hold anything: user and system time are the 12th and 13th.
+        let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
+        fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<u64>().ok()).sum()
+    }
+
     /// How it ended.
     pub fn ended(&mut self) -> Result<ExitStatus, Failed> {
         let start = Instant::now();
