@@ -49,6 +49,11 @@ impl Shader {
         self.culling.take().map(|culling| *culling)
     }
 
+    /// The same, left where it is.
+    pub fn culling(&self) -> Option<&Culling> {
+        self.culling.as_deref()
+    }
+
     /// How long validation took.
     pub fn validation_time(&self) -> Duration {
         let before = self.culling.as_ref().map(|culling| culling.shader.validation);

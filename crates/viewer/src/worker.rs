@@ -15,7 +15,7 @@ use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use sdfc::codegen::render_module;
+use sdfc::codegen::{Shader, render_module};
 use sdfc::graph::Program;
 use sdfc::lang::Options;
 use sdfc::render::{CpuScene, Gpu, Pipeline, milliseconds_since};
@@ -126,9 +126,36 @@ impl Drop for Worker {
 
 /// A pipeline, and what it was made from.
 struct Running {
-    text: String,
-    lists: Vec<[f32; 4]>,
+    text: Text,
+    lists: Lists,
     pipeline: Arc<Pipeline>,
+}
+
+/// What a driver compiles for a scene.
+#[derive(Debug, PartialEq, Eq)]
+struct Text {
+    picture: String,
+    /// What runs before it, and how many rounds each of its loops has.
+    culling: Option<(String, Vec<u32>)>,
+}
+
+impl Text {
+    fn of(shader: &Shader) -> Result<Self, Error> {
+        let culling = shader.culling().map(|it| Ok((it.shader.wgsl()?, it.rounds.clone())));
+        let culling = culling.transpose().map_err(Error::Codegen)?;
+        Ok(Self { picture: shader.wgsl().map_err(Error::Codegen)?, culling })
+    }
+}
+
+/// What both read from buffers.
+#[derive(Debug, PartialEq)]
+struct Lists([Vec<[f32; 4]>; 2]);
+
+impl Lists {
+    fn of(shader: &Shader) -> Self {
+        let culling = shader.culling().map(|culling| culling.shader.lists());
+        Self([shader.lists(), culling.unwrap_or_default()].map(<[_]>::to_vec))
+    }
 }
 
 /// An order, and the texts that it met.
@@ -284,9 +311,8 @@ impl<T: FnMut(News)> Shop<T> {
         let start = Instant::now();
         let marched = scene.marched(wanted);
         let shader = render_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
-        let text = shader.wgsl().map_err(Error::Codegen)?;
+        let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
         stages.lower = milliseconds_since(start);
-        let lists = shader.lists().to_vec();
         let serves = |running: &&Running| running.text == text && running.lists == lists;
         if let Some(running) = self.running.as_ref().filter(serves) {
             let engine = Engine::Gpu(Arc::clone(&running.pipeline));
