@@ -40,7 +40,7 @@ pub use cost::{Cost, cost};
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
 pub use prepare::{
-    Lipschitz, MOST_INLINE, Prepared, Report, ShapeReport, Writing, prepare, prepare_about,
+    Lipschitz, Prepared, Report, ShapeReport, Writing, most_inline, prepare, prepare_about,
 };
 pub use quality::{Promise, Qualities, Quality, Sides};
 pub use refute::{Clause, ParamEnd, RayFault, Refuted, refute, refute_hits};

@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
-    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, ShapeId,
-    fold_transforms, gradient, uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, Settings,
+    Shadow, ShapeId, fold_transforms, gradient, uniforms,
 };
 
 use crate::clip::clip;
@@ -29,7 +29,7 @@ pub struct Prepared {
 /// How a field of many parts is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Writing {
-    /// As costs less: [`Writing::Rolled`] where more than [`MOST_INLINE`] operations can become loops.
+    /// As costs less: [`Writing::Rolled`] where the field takes more operations than [`most_inline`] says.
     #[default]
     Auto,
     /// All that there is, one operation after the other.
@@ -38,8 +38,16 @@ pub enum Writing {
     Rolled,
 }
 
-/// More operations of a field take drivers longer to compile than they save, if loops can take their place.
-pub const MOST_INLINE: usize = 1200;
+/// More operations of a field take longer to compile than they save, if loops can take their place: of a scene all of whose rays
+/// come from the eye, and of another, whose rays to lamps and mirrored rays visit all rounds of a loop.
+const MOST_INLINE: [usize; 2] = [2000, 4500];
+
+/// How many operations a field may take that is written out by [`Writing::Auto`].
+pub fn most_inline(settings: &Settings) -> usize {
+    let shaded = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
+    let mirrored = settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
+    MOST_INLINE[usize::from(shaded || mirrored || settings.occlusion.is_some())]
+}
 
 /// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
 const MOST_CLIPPED: usize = 256;
@@ -166,7 +174,7 @@ fn flatten(
     let leaves = count_leaves(graph, &mut expander, root, point)?;
     let mut apart = parts(graph, &mut expander, &qualities, root, point)?;
     let rolls = match writing {
-        Writing::Auto => cost(graph, &[field.distance]).operations > MOST_INLINE,
+        Writing::Auto => cost(graph, &[field.distance]).operations > most_inline(&program.settings),
         Writing::Inline => false,
         Writing::Rolled => true,
     };

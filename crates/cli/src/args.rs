@@ -331,13 +331,16 @@ pub struct Explain {
 #[derive(clap::Args, Debug)]
 pub struct Bench {
     /// The scene; `-` is stdin
-    #[arg(required_unless_present_any = ["suite", "faults"])]
+    #[arg(required_unless_present_any = ["suite", "large", "faults"])]
     pub file: Option<PathBuf>,
     /// Also measure the suite: scenes of the course, a chain of 30 leaves, and generated ones of 3 to 300
     #[arg(long)]
     pub suite: bool,
+    /// Also measure generated scenes of 300 to 20,000 leaves, without the interpreters
+    #[arg(long)]
+    pub large: bool,
     /// Count wrong pixels instead: scenes at which a classroom practical's march fails
-    #[arg(long, conflicts_with_all = ["file", "suite"])]
+    #[arg(long, conflicts_with_all = ["file", "suite", "large"])]
     pub faults: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = size)]

@@ -16,6 +16,12 @@ pub struct Explanation {
     pub ops_per_gradient: usize,
     /// Arithmetic operations done once a frame on the CPU.
     pub ops_per_frame: usize,
+    /// How the field is written: `inline`, or `rolled` into loops over alike parts.
+    pub writing: &'static str,
+    /// Why.
+    pub writing_why: String,
+    /// How many parts each loop stands for.
+    pub loops: Vec<usize>,
     /// Shapes that rays meet in closed form, by the methods that ask for it.
     pub closed: Vec<String>,
     /// Shapes that are left to march by these methods.
@@ -147,6 +153,7 @@ impl std::fmt::Display for Explanation {
         writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
         writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
         writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
+        writeln!(f, "written             {} ({})", self.writing, self.writing_why)?;
         if !self.closed.is_empty() {
             writeln!(f, "closed form         {}", listed(&self.closed))?;
             writeln!(f, "marched             {}", listed(&self.marched))?;

@@ -72,7 +72,7 @@ mod uniforms;
 #[cfg(feature = "measure")]
 pub use accuracy::{ChartOptions, OracleOptions};
 #[cfg(feature = "measure")]
-pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, suite};
+pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, large_suite, suite};
 #[cfg(feature = "measure")]
 pub use comparison::Comparison;
 pub use compile::{

@@ -1,5 +1,6 @@
 //! A compiled scene's field on the CPU, as a shader, and explained.
 
+use sdfc_analyze::most_inline;
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
@@ -85,6 +86,9 @@ impl Scene {
             ops_per_eval: report.distance.operations,
             ops_per_gradient: report.gradient.operations,
             ops_per_frame: report.distance.per_frame,
+            writing: if report.rolled.is_empty() { "inline" } else { "rolled" },
+            writing_why: self.why_written(),
+            loops: report.rolled.iter().map(|rolled| rolled.operands).collect(),
             closed: self.names(&report.closed),
             marched: self.names(&report.open),
             ops_per_ray: report.ray.operations,
@@ -100,6 +104,28 @@ impl Scene {
             knobs: self.knobs(),
             quality: self.quality_rows(),
         })
+    }
+
+    /// Why the field is written as it is, in one line.
+    fn why_written(&self) -> String {
+        let rolled = &self.report.rolled;
+        let most = most_inline(&self.program.settings);
+        if rolled.is_empty() {
+            return match self.report.distance.operations > most {
+                true => "few of its parts are alike".to_owned(),
+                false => format!("at most {most} operations"),
+            };
+        }
+        let parts: usize = rolled.iter().map(|rolled| rolled.operands).sum();
+        let loops = match rolled.len() {
+            1 => "one loop".to_owned(),
+            count => format!("{count} loops"),
+        };
+        let visited = match self.program.visits.is_empty() {
+            true => "rays visit all",
+            false => "rays from the eye visit what their tile can meet",
+        };
+        format!("{parts} parts in {loops}, over {most} operations; {visited}")
     }
 
     fn names(&self, shapes: &[ShapeId]) -> Vec<String> {

@@ -211,8 +211,10 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     let gpu = Gpu::new()?;
     let row = torus.bench(&moving, "torus", &gpu, &options, &mut unwatched)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
-    assert_eq!(names, ["units", "tape", "specialized", "specialized-slots"]);
-    let [units, tape, specialized, slots] = &row.variants[..] else { unreachable!() };
+    assert_eq!(names, ["units", "tape", "specialized", "specialized-slots", "rolled", "pruned"]);
+    let [units, tape, specialized, slots, rolled, pruned] = &row.variants[..] else {
+        unreachable!()
+    };
     assert!(units.frame_ms.is_none() && units.why.contains_key("frame_ms"));
     for drawn in [tape, specialized, slots] {
         assert_eq!(drawn.frame_ms.map(|times| times.n), Some(2), "{drawn:?}");
@@ -220,7 +222,8 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
         assert_eq!(drawn.cpu_ms.is_some(), gpu.info().software);
         assert!(drawn.evals_per_pixel.unwrap().mean > 1.0);
     }
-    assert_eq!(specialized.times_specialized, Some(1.0));
+    assert!([rolled, pruned].iter().all(|none| none.why["frame_ms"].contains("alike")));
+    assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
     // A scene none of whose numbers can move.
     let row = torus.bench(&torus, "torus", &gpu, &options, &mut unwatched)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use sdfc::lang::{NoFiles, Options};
 use sdfc::render::Gpu;
-use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, suite};
+use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, large_suite, suite};
 
 use crate::args::Bench;
 use crate::console::Console;
@@ -31,10 +31,10 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     }
 
     let mut scenes: Vec<_> = scene.into_iter().collect();
-    if args.suite {
-        for (name, text) in suite() {
-            scenes.push(Entry::of_suite(name, &text)?);
-        }
+    let small = args.suite.then(suite).into_iter().flatten();
+    let large = args.large.then(large_suite).into_iter().flatten();
+    for (name, text) in small.chain(large) {
+        scenes.push(Entry::of_suite(name, &text)?);
     }
     let failed = |error: sdfc::Error| super::lowering(&error, console);
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
@@ -96,8 +96,10 @@ impl Entry {
 fn table(report: &BenchReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {
-        let BenchRow { scene, leaves, size: [width, height], method, variants } = row;
-        text += &format!("\n{scene}: {leaves} leaves, {width}x{height}, method {method}\n");
+        let BenchRow { scene, leaves, size: [width, height], method, auto, variants } = row;
+        text += &format!(
+            "\n{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}\n"
+        );
         text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }

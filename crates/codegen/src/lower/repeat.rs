@@ -12,13 +12,15 @@ use crate::{Error, types};
 /// What a round reads: its number, and the state.
 pub(super) struct Round {
     number: Value,
+    /// The same as a word, and what it is less than, where it comes from a list.
+    listed: Option<(Value, u32)>,
     state: Vec<Value>,
 }
 
 impl Round {
     /// A round by its number alone.
     pub(super) fn of_number(number: Value) -> Self {
-        Self { number, state: Vec::new() }
+        Self { number, listed: None, state: Vec::new() }
     }
 }
 
@@ -71,14 +73,13 @@ impl Lowering<'_> {
         let past = self.body.binary(BinaryOperator::GreaterEqual, number, limit);
         self.body.break_if(past);
         let counted = number;
-        let number = match listed {
-            Some(Listed { first, .. }) => self.listed_round(first, counted),
-            None => counted,
-        };
+        let visited = listed.map(|listed| self.listed_round(listed.first, counted));
+        let number = visited.map_or(counted, |(number, _)| number);
+        let listed = visited.map(|(_, word)| (word, repeated.cap));
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
         let depth = usize::from(repeated.depth);
         self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
-        self.rounds[depth] = Some(Round { number, state: read });
+        self.rounds[depth] = Some(Round { number, listed, state: read });
         self.visit_needed(&body.condition)?;
         if let Some(go_on) = repeated.go_on {
             let go_on = self.value(go_on)?;
@@ -123,17 +124,17 @@ impl Lowering<'_> {
         Some(Listed { count, first })
     }
 
-    /// The number of the round that stands at a place of the list.
-    fn listed_round(&mut self, first: Value, place: Value) -> Value {
-        let Some(visits) = self.inputs.visits.as_ref() else { return place };
+    /// The number of the round that stands at a place of the list, and the same as a word.
+    fn listed_round(&mut self, first: Value, place: Value) -> (Value, Value) {
+        let Some(visits) = self.inputs.visits.as_ref() else { return (place, first) };
         let place = self.body.cast(place, ScalarKind::Uint, Some(4));
         let index = self.body.binary(BinaryOperator::Add, first, place);
         let base = self.body.declare(Expression::GlobalVariable(visits.lists));
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
-        let round = self.body.load(pointer, "visited");
-        let round = self.body.cast(round, ScalarKind::Float, Some(4));
+        let word = self.body.load(pointer, "visited");
+        let round = self.body.cast(word, ScalarKind::Float, Some(4));
         self.body.name(round, "round");
-        round
+        (round, word)
     }
 
     /// Variables that hold the start, and names for what is read from them.
@@ -180,11 +181,16 @@ impl Lowering<'_> {
     /// An element of a list.
     pub(super) fn element(&mut self, id: TableId, at: NodeId, ty: Type) -> Result<Value, Error> {
         let list = self.inputs.tables.get(id).ok_or(Error::NotFlat(at))?;
-        let at = self.value(at)?;
-        let (nought, last) = (self.body.literal(0.0), self.body.literal(list.last as f32));
-        let raised = self.body.call2(MathFunction::Max, at, nought);
-        let place = self.body.call2(MathFunction::Min, raised, last);
-        let mut index = self.body.cast(place, ScalarKind::Uint, Some(4));
+        let mut index = match self.word_of_round(at, list.last) {
+            Some(word) => word,
+            None => {
+                let at = self.value(at)?;
+                let (nought, last) = (self.body.literal(0.0), self.body.literal(list.last as f32));
+                let raised = self.body.call2(MathFunction::Max, at, nought);
+                let place = self.body.call2(MathFunction::Min, raised, last);
+                self.body.cast(place, ScalarKind::Uint, Some(4))
+            }
+        };
         if let Some(first @ 1..) = list.first {
             let first = self.body.word(first);
             index = self.body.binary(BinaryOperator::Add, first, index);
@@ -193,6 +199,15 @@ impl Lowering<'_> {
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
         let value = self.body.load(pointer, hint(ty));
         Ok(if list.first.is_some() { self.narrowed(value, ty) } else { value })
+    }
+
+    /// The number of the round at hand as a word, if that is what a node is and it is at most `last`.
+    fn word_of_round(&self, at: NodeId, last: u32) -> Option<Value> {
+        let Node::Variable(depth, Place::Round, _) = self.program.graph.node(at) else {
+            return None;
+        };
+        let round = self.rounds.get(usize::from(depth))?.as_ref()?;
+        round.listed.filter(|&(_, cap)| cap <= last + 1).map(|(word, _)| word)
     }
 
     /// The first lanes of four, as a value of a type.

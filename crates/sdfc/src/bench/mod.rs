@@ -5,7 +5,9 @@ mod suite;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
+use sdfc_analyze::{Writing, cost, prepare_about};
 use sdfc_codegen::{FieldSource, measured_module};
+use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     CompileTimes, EvaluationCounts, Frame, FrameTimes, Gpu, HIT, Image, LeafEvaluations,
@@ -17,7 +19,7 @@ use serde::Serialize;
 use crate::baseline::{self, Encoded, Inexpressible};
 use crate::{Error, Scene};
 
-pub use suite::suite;
+pub use suite::{large_suite, suite};
 
 /// The variant that the others are compared with.
 const REFERENCE: &str = "specialized";
@@ -28,6 +30,10 @@ const TOLERANCES: f64 = 4.0;
 const MAX_DIFFERING: f64 = 1e-3;
 /// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver takes it for hung.
 const ONE_TILE: f64 = 1000.0;
+/// Variants that are slow or take long to compile by then are not measured on scenes of more leaves.
+const MOST_INTERPRETED: usize = 300;
+/// A field of more operations is not measured written out.
+const MOST_INLINED: usize = 14_000;
 /// A frame that takes longer, in milliseconds, is timed once.
 const LONG: f64 = 10_000.0;
 
@@ -72,6 +78,8 @@ pub struct BenchRow {
     pub size: [u32; 2],
     /// Ray method.
     pub method: String,
+    /// The variant that `sdfc render` takes of its own accord.
+    pub auto: &'static str,
     /// One for each way to evaluate the field.
     pub variants: Vec<BenchVariant>,
 }
@@ -79,7 +87,7 @@ pub struct BenchRow {
 /// One way to evaluate the field. A figure that cannot be had is null, with the reason in `why`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchVariant {
-    /// `units`, `tape`, `specialized` or `specialized-slots`.
+    /// `units`, `tape`, `specialized`, `specialized-slots`, `rolled` or `pruned`.
     pub name: &'static str,
     /// Time of one frame without compilation.
     pub frame_ms: Option<FrameTimes>,
@@ -119,11 +127,16 @@ enum Kind {
     Tape,
     Specialized,
     Slots,
+    /// Loops over alike parts; all rounds of them.
+    Rolled,
+    /// The same, rays from the eye by the lists of their tiles.
+    Pruned,
 }
 
 impl Kind {
     /// In the order of a row.
-    const ALL: [Self; 4] = [Self::Units, Self::Tape, Self::Specialized, Self::Slots];
+    const ALL: [Self; 6] =
+        [Self::Units, Self::Tape, Self::Specialized, Self::Slots, Self::Rolled, Self::Pruned];
 
     fn name(self) -> &'static str {
         match self {
@@ -131,6 +144,8 @@ impl Kind {
             Self::Tape => "tape",
             Self::Specialized => REFERENCE,
             Self::Slots => "specialized-slots",
+            Self::Rolled => "rolled",
+            Self::Pruned => "pruned",
         }
     }
 
@@ -138,7 +153,7 @@ impl Kind {
         match self {
             Self::Units => FieldSource::Units,
             Self::Tape => FieldSource::Tape,
-            Self::Specialized | Self::Slots => FieldSource::Distance,
+            Self::Specialized | Self::Slots | Self::Rolled | Self::Pruned => FieldSource::Distance,
         }
     }
 }
@@ -174,6 +189,13 @@ struct Heat<'a> {
     gpu: &'a Gpu,
     options: &'a BenchOptions,
     view: View,
+    /// The field written out.
+    inline: Program,
+    /// Its alike parts as loops, all rounds of which are visited, or those that matter; none: no parts are alike.
+    rolled: Option<Program>,
+    pruned: Option<Program>,
+    /// The variant that [`Writing::Auto`] is.
+    auto: Kind,
 }
 
 impl Scene {
@@ -198,16 +220,18 @@ impl Scene {
         }
         let frame = FrameValues::defaults(self.params());
         let view = View::new(self.program(), &frame, self.bounds_at(&frame), options.size)?;
-        let heat = Heat { scene: self, slots, gpu, options, view };
+        let heat = Heat::new(self, slots, gpu, options, view)?;
         let rounds = options.repetitions.max(1);
         let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
         let mut counted = Counted { frames, drawn: 0, progress };
-        let reference = match heat.enter(Kind::Specialized, &mut counted)? {
+        // What takes minutes to compile is compared with nothing.
+        let first = if heat.is_inlined() { Kind::Specialized } else { Kind::Pruned };
+        let reference = match heat.enter(first, &mut counted)? {
             Ok(contestant) => contestant,
-            Err(Inexpressible(_)) => return Err(Error::NothingDrawn),
+            Err(Inexpressible(why)) => return Err(Error::Inexpressible(why)),
         };
         let (mut contestants, mut variants) = (Vec::new(), Vec::new());
-        for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Specialized) {
+        for kind in Kind::ALL.into_iter().filter(|kind| *kind != first) {
             match heat.enter(kind, &mut counted)? {
                 Ok(contestant) if heat.refusal(&contestant, &reference).is_none() => {
                     contestants.push(contestant);
@@ -238,12 +262,63 @@ impl Scene {
             leaves: self.report().leaves,
             size: options.size,
             method: options.method.clone(),
+            auto: heat.auto.name(),
             variants,
         })
     }
 }
 
-impl Heat<'_> {
+impl<'a> Heat<'a> {
+    fn new(
+        scene: &'a Scene,
+        slots: &'a Scene,
+        gpu: &'a Gpu,
+        options: &'a BenchOptions,
+        view: View,
+    ) -> Result<Self, Error> {
+        let prepared = |writing| prepare_about(scene.graph(), [0.0; 3], writing);
+        let inline = prepared(Writing::Inline)?.program;
+        let found = prepared(Writing::Rolled)?;
+        let pruned = Some(found.program).filter(|_| !found.report.rolled.is_empty());
+        let rolled = pruned.clone().map(|program| Program { visits: Vec::new(), ..program });
+        let pruned = pruned.filter(|program| !program.visits.is_empty());
+        let auto = match (scene.report().rolled.is_empty(), pruned.is_some()) {
+            (true, _) => Kind::Specialized,
+            (false, true) => Kind::Pruned,
+            (false, false) => Kind::Rolled,
+        };
+        Ok(Self { scene, slots, gpu, options, view, inline, rolled, pruned, auto })
+    }
+
+    /// Whether the field written out can be waited for.
+    fn is_inlined(&self) -> bool {
+        self.pruned.is_none()
+            || cost(&self.inline.graph, self.inline.distance.as_slice()).operations <= MOST_INLINED
+    }
+
+    /// What a variant's field is compiled from.
+    fn program(&self, kind: Kind) -> Result<&Program, Inexpressible> {
+        fn alike(program: &Option<Program>) -> Result<&Program, Inexpressible> {
+            let why = "few of its parts are alike, or have no Lipschitz constant";
+            program.as_ref().ok_or_else(|| Inexpressible(why.to_owned()))
+        }
+        let leaves = self.scene.report().leaves;
+        match kind {
+            Kind::Units | Kind::Tape | Kind::Slots if leaves > MOST_INTERPRETED => {
+                let why = format!("over {MOST_INTERPRETED} leaves, which take it minutes");
+                Err(Inexpressible(why))
+            }
+            Kind::Specialized if !self.is_inlined() => {
+                let why = format!("over {MOST_INLINED} operations, which take minutes to compile");
+                Err(Inexpressible(why))
+            }
+            Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.inline),
+            Kind::Slots => Ok(self.slots.program()),
+            Kind::Rolled => alike(&self.rolled),
+            Kind::Pruned => alike(&self.pruned),
+        }
+    }
+
     /// Compiles a variant and draws its first frame, unless it cannot express the scene.
     fn enter(
         &self,
@@ -252,11 +327,15 @@ impl Heat<'_> {
     ) -> Result<Result<Contestant, Inexpressible>, Error> {
         let scene = if kind == Kind::Slots { self.slots } else { self.scene };
         let start = Instant::now();
-        let data = match data(kind, scene) {
+        let program = match self.program(kind) {
+            Ok(program) => program,
+            Err(inexpressible) => return Ok(Err(inexpressible)),
+        };
+        let data = match data(kind, scene, program) {
             Ok(data) => data,
             Err(inexpressible) => return Ok(Err(inexpressible)),
         };
-        let shader = measured_module(scene.program(), &self.options.method, kind.field())?;
+        let shader = measured_module(program, &self.options.method, kind.field())?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, turns) = match &data {
@@ -334,6 +413,11 @@ impl Heat<'_> {
             differing_pixels: Some(self.differing(contestant, reference)),
             why: Why::new(),
         };
+        if contestant.kind == Kind::Pruned {
+            variant.leaf_evals_per_pixel = None;
+            let why = "which leaves a ray visits is not counted".to_owned();
+            variant.why.insert("leaf_evals_per_pixel", why);
+        }
         if contestant.turns.is_none() {
             variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
         }
@@ -373,15 +457,13 @@ impl Heat<'_> {
 }
 
 /// What a variant reads of a scene at its params' defaults.
-fn data(kind: Kind, scene: &Scene) -> Result<Data, Inexpressible> {
+fn data(kind: Kind, scene: &Scene, program: &Program) -> Result<Data, Inexpressible> {
     let frame = FrameValues::defaults(scene.params());
-    let uniforms = || Data::Uniforms(uniform_values(scene.program(), &frame));
+    let uniforms = || Data::Uniforms(uniform_values(program, &frame));
     match kind {
         Kind::Units => baseline::units(scene.graph(), &frame).map(Data::Encoded),
-        Kind::Tape => {
-            baseline::tape(scene.program(), scene.report().leaves, &frame).map(Data::Encoded)
-        }
-        Kind::Specialized => Ok(uniforms()),
+        Kind::Tape => baseline::tape(program, scene.report().leaves, &frame).map(Data::Encoded),
+        Kind::Specialized | Kind::Rolled | Kind::Pruned => Ok(uniforms()),
         Kind::Slots if scene.slots().is_empty() => {
             Err(Inexpressible("no number of the scene can move".to_owned()))
         }

@@ -22,6 +22,59 @@ pub fn suite() -> Vec<(String, String)> {
     files.into_iter().chain(generated).collect()
 }
 
+/// Leaves of the large scenes.
+const SCATTERED: [usize; 4] = [300, 1000, 6000, 20_000];
+const CHAINED: [usize; 2] = [301, 1001];
+
+/// Names and texts of scenes that are too large for interpreters.
+pub fn large_suite() -> Vec<(String, String)> {
+    let chained = CHAINED.map(|leaves| (format!("chain {leaves}"), chained(leaves)));
+    let scattered = SCATTERED.map(|leaves| (format!("scattered {leaves}"), scattered(leaves)));
+    chained.into_iter().chain(scattered).collect()
+}
+
+/// Balls and blocks strewn evenly in a cube, as many as there are units of volume.
+fn scattered(leaves: usize) -> String {
+    let reach = 0.5 * (leaves as f64).cbrt();
+    let mut numbers = Numbers(SEED);
+    let mut text = String::new();
+    for index in 0..leaves {
+        let [x, y, z] = [0.0; 3].map(|_| numbers.between(-reach, reach));
+        let [a, b, c] = [0.0; 3].map(|_| numbers.between(0.2, 0.5));
+        // Writing to a String cannot fail.
+        let _ = match index % 2 {
+            0 => {
+                writeln!(text, "box([{a:.3}, {b:.3}, {c:.3}]).translate([{x:.3}, {y:.3}, {z:.3}])")
+            }
+            _ => writeln!(text, "sphere({:.3}).translate([{x:.3}, {y:.3}, {z:.3}])", 0.6 * a),
+        };
+    }
+    text + &seen_from(reach)
+}
+
+/// Balls on a winding path, each blended with all before it.
+fn chained(leaves: usize) -> String {
+    let mut numbers = Numbers(SEED);
+    let mut text = "union(\n".to_owned();
+    for index in 0..leaves {
+        let turn = index as f64 * 0.1;
+        let height = 6.0 * (index as f64 / leaves as f64 - 0.5);
+        let wide = 1.6 + (0.37 * turn).sin();
+        let [x, y, z] = [wide * turn.cos(), height, wide * turn.sin()];
+        let [dx, dy, dz] = [0.0; 3].map(|_| numbers.between(-0.1, 0.1));
+        let radius = numbers.between(0.08, 0.14);
+        let (x, y, z) = (x + dx, y + dy, z + dz);
+        let _ = writeln!(text, "  sphere({radius:.3}).translate([{x:.3}, {y:.3}, {z:.3}]),");
+    }
+    text + "  blend: smooth(0.03))\n" + &seen_from(3.0)
+}
+
+fn seen_from(reach: f64) -> String {
+    let [x, y, z] = [1.5, 1.2, 2.4].map(|part| part * reach);
+    format!("camera(eye: [{x:.2}, {y:.2}, {z:.2}], target: 0, fov: 40deg)\n")
+        + "march(steps: 255, epsilon: 0.001)\n"
+}
+
 /// A floor with a square of pairs on it, each a ball and a block under one of four operations.
 fn generated(leaves: usize) -> String {
     let pairs = leaves.saturating_sub(1) / 2;
