@@ -339,6 +339,9 @@ pub struct Bench {
     /// Also measure generated scenes of 300 to 20,000 leaves, without the interpreters
     #[arg(long)]
     pub large: bool,
+    /// Of these only scenes in whose names this occurs
+    #[arg(long, value_name = "PART")]
+    pub only: Option<String>,
     /// Count wrong pixels instead: scenes at which a classroom practical's march fails
     #[arg(long, conflicts_with_all = ["file", "suite", "large"])]
     pub faults: bool,

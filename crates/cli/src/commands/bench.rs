@@ -33,7 +33,8 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     let mut scenes: Vec<_> = scene.into_iter().collect();
     let small = args.suite.then(suite).into_iter().flatten();
     let large = args.large.then(large_suite).into_iter().flatten();
-    for (name, text) in small.chain(large) {
+    let wanted = |name: &str| args.only.as_ref().is_none_or(|part| name.contains(part));
+    for (name, text) in small.chain(large).filter(|(name, _)| wanted(name)) {
         scenes.push(Entry::of_suite(name, &text)?);
     }
     let failed = |error: sdfc::Error| super::lowering(&error, console);

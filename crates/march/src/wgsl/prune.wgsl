@@ -79,7 +79,7 @@ struct Cone {
 }
 
 // Part of its width that a cone is made wider by, so that marches along it end.
-const SLACK: f32 = 0.25;
+const SLACK: f32 = 0.1;
 // An operand that is not told by so many steps can matter.
 const MOST_STEPS: u32 = 32;
 

@@ -32,6 +32,8 @@ const MAX_DIFFERING: f64 = 1e-3;
 const ONE_TILE: f64 = 1000.0;
 /// Variants that are slow or take long to compile by then are not measured on scenes of more leaves.
 const MOST_INTERPRETED: usize = 300;
+/// Nor are loops that leave out nothing on scenes of more.
+const MOST_FLAT: usize = 2000;
 /// A field of more operations is not measured written out.
 const MOST_INLINED: usize = 14_000;
 /// A frame that takes longer, in milliseconds, is timed once.
@@ -314,6 +316,10 @@ impl<'a> Heat<'a> {
             }
             Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.inline),
             Kind::Slots => Ok(self.slots.program()),
+            Kind::Rolled if leaves > MOST_FLAT => {
+                let why = format!("over {MOST_FLAT} leaves, all of which it visits each time");
+                Err(Inexpressible(why))
+            }
             Kind::Rolled => alike(&self.rolled),
             Kind::Pruned => alike(&self.pruned),
         }
