@@ -3,6 +3,7 @@
 //! Where there is no Chromium the trials are reported as ignored; with `SDFC_REQUIRE_CHROMIUM=1` they fail.
 
 mod chromium;
+mod compiler;
 mod compiles;
 #[path = "../shared/examples.rs"]
 mod examples;
@@ -33,7 +34,9 @@ fn main() {
     let missing = chromium::is_missing();
     let mut trials = Vec::new();
     let mut add = |name: String, check: Check| {
-        let is_missing = missing || (name.starts_with("three") && three::is_missing());
+        let is_missing = missing
+            || (name.starts_with("three") && three::is_missing())
+            || (name.starts_with("the_package") && compiler::is_missing());
         trials.push(Trial::test(name, move || in_place(&check)).with_ignored_flag(is_missing));
     };
     for target in [Target::Wgsl, Target::GlslEs, Target::Shadertoy] {
@@ -51,6 +54,9 @@ fn main() {
     let clock = "shadertoy_follows_clock_and_mouse".to_owned();
     add(clock, Box::new(pages::shadertoy_follows_clock_and_mouse));
     add("three_shows_the_field".to_owned(), Box::new(three::shows_the_field));
+    let package = "the_package_gives_the_same_in_a_browser".to_owned();
+    add(package, Box::new(compiler::gives_the_same_in_a_browser));
+    add("the_package_draws_what_is_typed".to_owned(), Box::new(compiler::draws_what_is_typed));
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
     // A static is not dropped, and the browser would stay.
     drop(PLACE.lock().unwrap_or_else(PoisonError::into_inner).take());

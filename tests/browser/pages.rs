@@ -85,7 +85,7 @@ impl Embedding {
 }
 
 /// What the page says of itself, once it does.
-const STATE: &str = "new Promise(done => {
+pub const STATE: &str = "new Promise(done => {
     const look = () => {
         const state = document.body?.dataset.state;
         if (!state) return setTimeout(look, 20);
@@ -178,7 +178,11 @@ pub fn shown(place: &mut Place) -> Result<Pixels, Failed> {
 }
 
 /// What `sdfc render` draws.
-fn drawn(scene: &Scene, frame: Option<FrameValues>, pose: Option<Pose>) -> Result<Pixels, Failed> {
+pub fn drawn(
+    scene: &Scene,
+    frame: Option<FrameValues>,
+    pose: Option<Pose>,
+) -> Result<Pixels, Failed> {
     let options =
         PictureOptions { size: VIEW_SIZE, samples: Some(1), frame, pose, ..Default::default() };
     let image = scene.render(&options, &mut unwatched)?.image;

@@ -51,6 +51,7 @@ mod picture;
 mod reflect;
 mod shader;
 mod shadertoy;
+mod stopwatch;
 mod tables;
 mod target;
 mod types;
@@ -69,5 +70,6 @@ pub use reflect::{
 pub use sdfc_march::{Features, FieldSource};
 pub use shader::{Shader, Written};
 pub use shadertoy::shadertoy_module;
+pub use stopwatch::Stopwatch;
 pub use tables::{Lists, MAX_CONSTANT_LIST};
 pub use target::{Code, Target};

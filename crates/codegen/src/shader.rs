@@ -1,6 +1,6 @@
 //! A validated module and what can be written of it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use naga::Module;
 use naga::valid::ModuleInfo;
@@ -10,6 +10,7 @@ use crate::Error;
 use crate::culling::Culling;
 use crate::instructions::{FunctionCost, count};
 use crate::reflect::{Parts, Reflection, reflect, reflect_written};
+use crate::stopwatch::Stopwatch;
 use crate::target::{self, Code, Target};
 
 /// A shader in a target's language, and what it offers by the names that it has there.
@@ -34,7 +35,7 @@ pub struct Shader {
 
 impl Shader {
     pub(crate) fn new(module: Module, parts: Parts, features: Features) -> Result<Self, Error> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let info = target::validate(&module)?;
         Ok(Self { module, info, parts, features, validation: start.elapsed(), culling: None })
     }

@@ -1,9 +1,9 @@
 //! From text to a scene ready for code generation.
 
 use std::sync::{Arc, OnceLock};
-use std::time::Instant;
 
 use sdfc_analyze::{Report, Writing, prepare, prepare_about};
+use sdfc_codegen::Stopwatch;
 use sdfc_diagnostics::{
     Code, Diagnostic, FileId, Located, Sources, Span, has_errors, locate, render,
 };
@@ -11,7 +11,6 @@ use sdfc_graph::eval::TapeError;
 use sdfc_graph::{Param, Program};
 use sdfc_lang::slots::Slot;
 use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
-use sdfc_render::milliseconds_since;
 
 use crate::field::Tapes;
 use crate::scene::DerivedBounds;
@@ -163,11 +162,11 @@ impl Scene {
     ///
     /// [`Error::Expand`].
     pub fn written(self, writing: Writing) -> Result<Self, Error> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let prepared = prepare_about(&self.elaborated.scene, [0.0; 3], writing)?;
         let (program, report) = (prepared.program, prepared.report);
         let (rebased, tapes) = Default::default();
-        let times = FrontTimes { analyze: milliseconds_since(start), ..self.times };
+        let times = FrontTimes { analyze: start.milliseconds(), ..self.times };
         Ok(Self { program, report, rebased, tapes, writing, times, ..self })
     }
 
@@ -213,12 +212,12 @@ pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> 
 /// scene.set_param(&mut frame, &scene.params()[slot.param].name, "0.25").expect("in range");
 /// ```
 pub fn compile_with(name: &str, text: &str, resolver: &dyn Resolver, options: Options) -> Compiled {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     let mut sources = Sources::new();
     let file = sources.add(name, text);
     let (elaborated, mut diagnostics) =
         sdfc_lang::front_with(&mut sources, file, resolver, options);
-    let front = milliseconds_since(start);
+    let front = start.milliseconds();
     let origin = Origin::new(&sources, file);
     let sources = Arc::new(sources);
     let scene = elaborated
@@ -274,10 +273,10 @@ fn finish(
     file: FileId,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Scene> {
-    let start = Instant::now();
+    let start = Stopwatch::start();
     match prepare(&elaborated.scene) {
         Ok(prepared) => {
-            let times = FrontTimes { front, analyze: milliseconds_since(start) };
+            let times = FrontTimes { front, analyze: start.milliseconds() };
             let (program, report) = (prepared.program, prepared.report);
             let (rebased, bounds, intervals_end, tapes) = Default::default();
             Some(Scene {

@@ -1,0 +1,71 @@
+// A compiled scene on a canvas, by WebGPU.
+
+import { paramBytes, turn, viewBytes } from "../reflection.js";
+
+/// A device of this browser.
+export async function openDevice() {
+  const adapter = await navigator.gpu?.requestAdapter();
+  if (!adapter) throw new Error("this browser has no WebGPU here");
+  return adapter.requestDevice();
+}
+
+/// Makes ready to draw what `sdfc compile --emit render --stage fragment` wrote, and draws it.
+export async function picture(device, canvas, text, reflection) {
+  // The shader gives linear light. Through a view of an sRGB format the canvas is written encoded.
+  const context = canvas.getContext("webgpu");
+  const stored = navigator.gpu.getPreferredCanvasFormat();
+  const format = `${stored}-srgb`;
+  context.configure({ device, format: stored, viewFormats: [format] });
+
+  const module = device.createShaderModule({ code: text });
+  const entry = (stage) => reflection.entry_points.find((found) => found.stage === stage).name;
+  const pipeline = await device.createRenderPipelineAsync({
+    layout: "auto",
+    vertex: { module, entryPoint: entry("vertex") },
+    fragment: { module, entryPoint: entry("fragment"), targets: [{ format }] },
+  });
+
+  // The reflection lists every buffer that the shader reads, and where it is bound.
+  const contents = {
+    view: viewBytes(reflection, canvas.width, canvas.height),
+    params: paramBytes(reflection),
+    lists: new Float32Array(reflection.lists).buffer,
+  };
+  const buffers = {};
+  const entries = reflection.buffers.map(({ role, binding }) => {
+    const kind = role === "lists" ? GPUBufferUsage.STORAGE : GPUBufferUsage.UNIFORM;
+    const size = contents[role].byteLength;
+    buffers[role] = device.createBuffer({ size, usage: kind | GPUBufferUsage.COPY_DST });
+    device.queue.writeBuffer(buffers[role], 0, contents[role]);
+    return { binding, resource: { buffer: buffers[role] } };
+  });
+  const group = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
+
+  function draw() {
+    const encoder = device.createCommandEncoder();
+    const view = context.getCurrentTexture().createView({ format });
+    const target = { view, loadOp: "clear", storeOp: "store" };
+    const pass = encoder.beginRenderPass({ colorAttachments: [target] });
+    pass.setPipeline(pipeline);
+    pass.setBindGroup(0, group);
+    pass.draw(3);
+    pass.end();
+    device.queue.submit([encoder.finish()]);
+  }
+
+  // A param is a few bytes of a uniform: nothing is compiled again.
+  function setParams(values) {
+    device.queue.writeBuffer(buffers.params, 0, paramBytes(reflection, values));
+    requestAnimationFrame(draw);
+  }
+
+  canvas.onpointermove = ({ buttons: pressed, movementX }) => {
+    if (pressed === 0) return;
+    turn(reflection, contents.view, -movementX / 100);
+    device.queue.writeBuffer(buffers.view, 0, contents.view);
+    requestAnimationFrame(draw);
+  };
+  draw();
+  await device.queue.onSubmittedWorkDone();
+  return { setParams };
+}
