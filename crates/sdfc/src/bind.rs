@@ -12,7 +12,8 @@
 //!
 //! // Behind your own text, which calls `sdf_distance`; `ball.layout()` is the second of the pipeline's layouts.
 //! let Code::Text(field) = &written.code else { unreachable!("WGSL is text") };
-//! let text = format!("{field}\n{}", include_str!("bind.rs"));
+//! # let own = "";
+//! let text = format!("{field}\n{own}");
 //!
 //! // Before a frame:
 //! ball.set("r", 0.5)?;
