@@ -77,16 +77,32 @@ fn unless_endless(bound: f32) -> f64 {
     if bound.abs() >= LARGE { f64::INFINITY.copysign(f64::from(bound)) } else { f64::from(bound) }
 }
 
+/// A root's value at a place, and what f64 may have rounded off on the way to it.
+#[derive(Clone, Copy)]
+struct Sample {
+    value: f64,
+    rounding: f64,
+}
+
 /// A root's values at the places in f64; `None` where one of them rests on a number that f32 has other ideas of.
-fn values(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Option<Vec<f64>> {
+fn values(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Option<Vec<Sample>> {
     let used = reachable(graph, &[root]);
     let tame = |lane: &f64| *lane == 0.0 || SIZES.contains(&lane.abs());
     let value = |point| {
         let all = each_node(graph, point, param);
-        let all_tame = used
-            .iter()
-            .all(|id| all[id.index()].is_some_and(|value| value.lanes().iter().all(tame)));
-        all_tame.then(|| all[root.index()].map(|value| value.lanes()[0])).flatten()
+        // What large terms leave when they cancel is as rough as they are.
+        let mut largest = 1.0_f64;
+        for id in &used {
+            for &lane in all[id.index()]?.lanes() {
+                if !tame(&lane) {
+                    return None;
+                }
+                largest = largest.max(lane.abs());
+            }
+        }
+        let value = all[root.index()]?.lanes()[0];
+        let rounding = 1e-12 * value.abs().max(1.0) + 16.0 * f64::EPSILON * largest;
+        Some(Sample { value, rounding })
     };
     places(stretch).map(value).collect()
 }
@@ -130,8 +146,8 @@ proptest! {
             }
             let step = 1.0 / (PLACES - 1) as f64;
             for pair in values.windows(2) {
-                let rounding = 1e-12 * pair[0].abs().max(1.0);
-                let rise = pair[1] - pair[0];
+                let rounding = pair[0].rounding.max(pair[1].rounding);
+                let rise = pair[1].value - pair[0].value;
                 let [least, most] = slope.map(|end| end * step);
                 prop_assert!(
                     least - rounding <= rise && rise <= most + rounding,

@@ -38,7 +38,8 @@ impl Enclosing<'_> {
         }
         let (x, y) = (self.span(x), self.span(y));
         let sum = self.monotone2(Binary::Add, x, y);
-        self.widened(sum, ROUNDING).into()
+        let sum = self.widened(sum, ROUNDING);
+        self.endless_as(sum, &[x, y]).into()
     }
 
     pub(super) fn difference(&mut self, x: Extent, y: Extent) -> Extent {
@@ -95,11 +96,14 @@ impl Enclosing<'_> {
             Span { wild: x.wild, ..self.around(&ends) }
         };
         let result = self.widened(result, ROUNDING);
-        if result.wild { self.cut(result) } else { result }
+        if !x.wild {
+            return result;
+        }
+        let result = self.endless_product(result, x, Span::new(by, by));
+        self.cut(result)
     }
 
     fn span_product(&mut self, x: Span, y: Span) -> Span {
-        let wild = x.wild || y.wild;
         let [x_is_positive, y_is_positive] = [x, y].map(|span| self.graph.range(span.lo).lo >= 0.0);
         let (x, y) = if x_is_positive { (y, x) } else { (x, y) };
         let mut corner = |a, b| self.graph.mul(a, b);
@@ -115,7 +119,11 @@ impl Enclosing<'_> {
             self.around(&corners)
         };
         let result = self.widened(result, ROUNDING);
-        if wild { self.cut(result) } else { result }
+        if !x.wild && !y.wild {
+            return result;
+        }
+        let result = self.endless_product(result, x, y);
+        self.cut(result)
     }
 
     pub(super) fn square(&mut self, x: Extent) -> Extent {
@@ -159,6 +167,8 @@ impl Enclosing<'_> {
         let lo = self.graph.min(ends[0][0], ends[0][1]);
         let result = Span::new(lo, self.graph.max(ends[1][0], ends[1][1]));
         let result = self.widened(result, COARSE);
+        let result = self.endless_as(result, &[x]);
+        let result = self.endless_below(result, y);
         self.cut(result)
     }
 
@@ -175,7 +185,8 @@ impl Enclosing<'_> {
         let (low, high) = (self.graph.neg(x.hi), self.graph.neg(x.lo));
         let x_lo = self.graph.select(negative, low, x.lo);
         let x_hi = self.graph.select(negative, high, x.hi);
-        let result = self.quotient_by_positive(Span::new(x_lo, x_hi), Span::new(y_lo, y_hi));
+        let (x, y) = (Span { lo: x_lo, hi: x_hi, ..x }, Span { lo: y_lo, hi: y_hi, ..y });
+        let result = self.quotient_by_positive(x, y);
         let entire = self.entire(Type::Scalar);
         self.chosen(Span::new(meets_zero, meets_zero), entire, result)
     }
@@ -228,7 +239,8 @@ impl Enclosing<'_> {
     }
 
     fn sum_of_lanes(&mut self, x: Extent) -> Extent {
-        let Span { lo, hi, wild } = self.span(x);
+        let x = self.span(x);
+        let (lo, hi) = (x.lo, x.hi);
         let ones = self.number_like(lo, 1.0);
         let sums = [lo, hi].map(|end| self.graph.dot(end, ones));
         // The terms may cancel.
@@ -236,7 +248,8 @@ impl Enclosing<'_> {
         let size = self.graph.max(sizes[0], sizes[1]);
         let size = self.graph.dot(size, ones);
         let margin = self.scaled(size, 2.0 * ROUNDING);
-        self.grown(Span { lo: sums[0], hi: sums[1], wild }, margin).into()
+        let sum = self.grown(Span { lo: sums[0], hi: sums[1], wild: x.wild }, margin);
+        self.endless_sum(sum, x).into()
     }
 
     pub(super) fn square_of_length(&mut self, x: Extent) -> Extent {
@@ -352,6 +365,7 @@ impl Enclosing<'_> {
         let size = self.graph.max(sizes[0], sizes[1]);
         let margin = self.scaled(size, 2.0 * ROUNDING);
         let result = self.grown(Span { lo, hi, wild: x.wild || y.wild }, margin);
+        let result = self.endless_as(result, &[x, y]);
         if result.wild { self.cut(result).into() } else { result.into() }
     }
 

@@ -34,14 +34,17 @@ impl Enclosing<'_> {
             Unary::Sqrt => {
                 let x = self.span(x);
                 let (lo, hi) = (self.above_zero(x.lo), self.above_zero(x.hi));
-                let root = self.monotone(op, Span { lo, hi, ..x });
-                self.widened(root, COARSE).into()
+                let x = Span { lo, hi, ..x };
+                let root = self.monotone(op, x);
+                let root = self.widened(root, COARSE);
+                self.endless_as(root, &[x]).into()
             }
             Unary::InverseSqrt => {
                 let x = self.span(x);
                 let (lo, hi) = (self.at_least(x.hi, TINY), self.at_least(x.lo, TINY));
                 let result = self.monotone(op, Span::new(lo, hi));
                 let result = self.widened(result, COARSE);
+                let result = self.endless_below(result, x);
                 self.cut(result).into()
             }
             Unary::Exp => self.power_of(op, x, LARGEST_POWER),
@@ -174,7 +177,8 @@ impl Enclosing<'_> {
         let result = self.grown_by(result, 4.0 * ROUNDING);
         let (tiny, least) = (self.graph.number(TINY), self.graph.number(-LARGE));
         let meets_zero = self.graph.le(x.lo, tiny);
-        Span::wild(self.graph.select(meets_zero, least, result.lo), result.hi)
+        let result = Span::wild(self.graph.select(meets_zero, least, result.lo), result.hi);
+        self.endless_as(result, &[Span { lo: ends.lo, ..x }])
     }
 
     /// A function of period 2π that falls from 1 at `crest` to -1 at `trough`.
@@ -249,8 +253,10 @@ impl Enclosing<'_> {
         }
         let result = self.around(&corners);
         let result = self.clipped(result, 0.0, LARGE);
-        let mut result = Span { wild: true, ..self.widened(result, ANGLE) };
+        let result = Span { wild: true, ..self.widened(result, ANGLE) };
+        let mut result = self.endless_as(result, &[Span { lo: bases[0], hi: bases[1], ..x }]);
         if !rises {
+            result = self.endless_below(result, x);
             // 0 to a positive power is 0, which what stands for 0 is not.
             let (tiny, nought) = (self.graph.number(TINY), self.graph.number(0.0));
             let meets_zero = self.graph.le(x.lo, tiny);

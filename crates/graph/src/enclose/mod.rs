@@ -11,9 +11,10 @@
 //! *Rounding.* What is computed in f32 holds what the field yields in f32 and in real arithmetic: each operation that rounds
 //! widens its result, by 2^-22 of it after sums and products, by twice that after roots and quotients, by 2^-20 of the
 //! terms' magnitudes after affine maps, and by 2^-16 after sines, arcs and powers, for which devices promise less.
-//! Numbers of 1e15 and more count as infinite.
+//! Numbers of 1e15 and more count as infinite, and so does what follows from them.
 
 mod arithmetic;
+mod endless;
 mod extent;
 mod functions;
 mod repeat;

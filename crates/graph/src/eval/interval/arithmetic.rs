@@ -14,8 +14,9 @@ impl Interval {
     pub(super) fn product(self, y: Self) -> Self {
         if self.lo == self.hi && y.lo == y.hi {
             // Places in lists are products of whole numbers: one that is rounded down is the place before.
-            let exact = self.lo * y.lo;
-            if exact.abs() > LEAST_CHECKED && self.lo.mul_add(y.lo, -exact) == 0.0 {
+            let exact = product(self.lo, y.lo);
+            let is_zero = self.lo == 0.0 || y.lo == 0.0;
+            if is_zero || exact.abs() > LEAST_CHECKED && self.lo.mul_add(y.lo, -exact) == 0.0 {
                 return Self { lo: exact, hi: exact };
             }
         }
@@ -161,5 +162,19 @@ fn signed(x: Interval, y: Interval, result: Interval) -> Interval {
         result.clipped(f64::NEG_INFINITY, 0.0)
     } else {
         result
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_stay_whole() {
+        let one = |x: i32| Interval::constant(f64::from(x));
+        for (x, y) in [(0, 16), (16, 0), (-3, 0), (0, 0), (7, -5), (16, 12)] {
+            assert_eq!(one(x).mul(one(y)), one(x * y), "{x} * {y}");
+            assert_eq!(one(x).mul(one(16)).add(one(y)), one(16 * x + y), "16 * {x} + {y}");
+        }
     }
 }
