@@ -17,7 +17,7 @@ mod opaque;
 mod search;
 mod zone;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use self::level_set::Question;
 use self::zone::Zone;
@@ -25,6 +25,10 @@ use crate::eval::{FrameValues, Interval, Number, Tape, direct};
 use crate::{
     Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
 };
+
+/// A closed box of a shape of more parts is not tightened: a search of 32 evaluations, all that it would be granted, hardly
+/// moves a face of it.
+const MOST_TIGHTENED: usize = 512;
 
 /// Derives the bounds of shapes of one arena, each once. It must not be used with another arena.
 #[derive(Debug)]
@@ -119,9 +123,13 @@ impl Deriver<'_> {
         let mut zone = self.shape_zone(shape, zero);
         if !zone.tight {
             let start = zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()]);
-            let region = self.tightened(shape, start);
-            let found = Zone::of_numbers(self.graph, region);
-            zone = zone.overlap(self.graph, found);
+            let width = self.graph.shape(shape).dim.point_type().width();
+            let is_closed = start[..width].iter().flatten().all(|end| end.is_finite());
+            if !(is_closed && self.is_large(shape)) {
+                let region = self.tightened(shape, start);
+                let found = Zone::of_numbers(self.graph, region);
+                zone = zone.overlap(self.graph, found);
+            }
         }
         let axes = zone.axes.map(|[lo, hi]| {
             let (lowest, highest) = (self.range(lo).lo(), self.range(hi).hi());
@@ -129,6 +137,21 @@ impl Deriver<'_> {
         });
         let dim = self.graph.shape(shape).dim;
         [0, 1].map(|side| self.vector(dim, axes.map(|ends| ends[side])))
+    }
+
+    /// Whether the shape has so many parts that a search could not afford the evaluations to tighten its box.
+    fn is_large(&self, shape: ShapeId) -> bool {
+        let mut seen = FxHashSet::default();
+        let mut left = vec![shape];
+        while let Some(shape) = left.pop() {
+            if seen.insert(shape) {
+                left.extend(&self.graph.shape(shape).children);
+            }
+            if seen.len() > MOST_TIGHTENED {
+                return true;
+            }
+        }
+        false
     }
 
     /// The end itself, or what bounds it if it is not known per frame.

@@ -1,6 +1,6 @@
 //! Flat programs of scalar instructions over a small register file.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::op::Op;
 use super::record::Recorder;
@@ -148,7 +148,8 @@ impl Tape {
     ) -> Result<Self, TapeError> {
         let params = samples.iter().zip(first..).map(|(&id, param)| (graph.node(id), param));
         let recorder = Recorder::of_operator(params.collect());
-        let order = reachable_where(graph, &[root], |id| !samples.contains(&id));
+        let inputs: FxHashSet<NodeId> = samples.iter().copied().collect();
+        let order = reachable_where(graph, &[root], |id| !inputs.contains(&id));
         Self::record(graph, recorder, &order, &[root])
     }
 
