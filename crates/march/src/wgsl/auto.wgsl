@@ -3,7 +3,7 @@
 // through the surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
 
 // A ray may take so many times the steps that it has by other methods: the few that do graze a floor on their way to the horizon.
-const PATIENCE: u32 = 2;
+const PATIENCE: u32 = 4;
 // Weight of the last step's slope in the mean.
 const NEWEST: f32 = 0.5;
 // Steps are at most so many distances: straight away from a surface there is no end to them.

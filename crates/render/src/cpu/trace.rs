@@ -58,7 +58,7 @@ impl Method {
     fn patience(self) -> u32 {
         match self {
             Self::Sphere | Self::Interval => 1,
-            Self::Auto => 2,
+            Self::Auto => 4,
         }
     }
 
