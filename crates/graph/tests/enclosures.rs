@@ -93,7 +93,7 @@ fn values(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Op
         // What large terms leave when they cancel is as rough as they are.
         let mut largest = 1.0_f64;
         for id in &used {
-            for &lane in all[id.index()]?.lanes() {
+            for lane in all[id.index()]?.lanes() {
                 if !tame(&lane) {
                     return None;
                 }
