@@ -113,16 +113,16 @@ fn a_shader_says_what_its_buffer_holds() {
         assert!(code.contains("fn ball_distance(") && code.contains("@group(1) @binding(2)"));
         let reflection = CStr::from_ptr(sdfc_shader_reflection(shader)).to_str().unwrap();
         let reflection: serde_json::Value = serde_json::from_str(reflection).unwrap();
-        assert_eq!(reflection["uniform"]["size"], 4);
-        let mut bytes = [0; 4];
+        assert_eq!(reflection["uniform"]["size"], 16);
+        let mut bytes = [0; 16];
         let uniform = |bytes: *mut u8, room, length: &mut usize| {
             sdfc_shader_uniform(shader, scene, bytes, room, length)
         };
         assert_eq!(uniform(null_mut(), 0, &mut length), Status::Ok);
-        assert_eq!(length, 4);
-        assert_eq!(uniform(bytes.as_mut_ptr(), 3, &mut length), Status::Argument);
-        assert_eq!(uniform(bytes.as_mut_ptr(), 4, &mut length), Status::Ok);
-        assert_eq!(f32::from_le_bytes(bytes), 0.5);
+        assert_eq!(length, 16);
+        assert_eq!(uniform(bytes.as_mut_ptr(), 15, &mut length), Status::Argument);
+        assert_eq!(uniform(bytes.as_mut_ptr(), 16, &mut length), Status::Ok);
+        assert_eq!(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]), 0.5);
         sdfc_shader_free(shader);
         sdfc_scene_free(scene);
     }

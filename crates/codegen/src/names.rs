@@ -1,6 +1,6 @@
 //! What the parts of a module are called.
 
-use naga::Module;
+use naga::{Module, TypeInner};
 
 use crate::Error;
 use crate::reflect::Parts;
@@ -30,11 +30,16 @@ pub(crate) fn make_public(module: &mut Module, parts: &Parts, prefix: &str) {
             name.insert_str(0, prefix);
         }
     };
-    let named: Vec<_> = module.types.iter().filter(|(_, ty)| ty.name.is_some()).collect();
-    let renamed: Vec<_> = named.into_iter().map(|(handle, ty)| (handle, ty.clone())).collect();
-    for (handle, mut ty) in renamed {
-        add(&mut ty.name);
-        module.types.replace(handle, ty);
+    let types: Vec<_> = module.types.iter().map(|(handle, ty)| (handle, ty.clone())).collect();
+    for (handle, mut ty) in types {
+        // MSL declares arrays by name.
+        if ty.name.is_none() && matches!(ty.inner, TypeInner::Array { .. }) {
+            ty.name = Some("array".to_owned());
+        }
+        if ty.name.is_some() {
+            add(&mut ty.name);
+            module.types.replace(handle, ty);
+        }
     }
     module.constants.iter_mut().for_each(|(_, constant)| add(&mut constant.name));
     module.global_variables.iter_mut().for_each(|(_, variable)| add(&mut variable.name));

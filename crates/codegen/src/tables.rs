@@ -20,7 +20,7 @@ pub const MAX_CONSTANT_LIST: usize = 64;
 /// Where the lists of a shader for an engine of someone else's are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lists {
-    /// Those of more than [`MAX_CONSTANT_LIST`] elements are in a storage buffer, all one after the other:
+    /// If one has more than [`MAX_CONSTANT_LIST`] elements all are in a storage buffer, one after the other:
     /// [`crate::Shader::lists`] is what it holds.
     #[default]
     Buffer,
@@ -72,14 +72,22 @@ impl Tables {
         program: &Program,
         roots: &[NodeId],
     ) -> Result<(), Error> {
-        for node in reachable(&program.graph, roots) {
-            let Node::Element(id, ..) = program.graph.node(node) else { continue };
-            if self.of.contains_key(&id) {
-                continue;
+        let graph = &program.graph;
+        let mut looked_up = Vec::new();
+        for node in reachable(graph, roots) {
+            let Node::Element(id, ..) = graph.node(node) else { continue };
+            if !self.of.contains_key(&id) && !looked_up.iter().any(|&(known, _)| known == id) {
+                looked_up.push((id, node));
             }
-            let table = program.graph.table(id);
+        }
+        // Where there is a buffer anyway, short lists are in it too.
+        let length = |id| graph.table(id).elements.len();
+        let is_long = |least| looked_up.iter().any(|&(id, _)| length(id) >= least);
+        let binding = self.binding.filter(|&(_, least)| self.buffer.is_some() || is_long(least));
+        for (id, node) in looked_up {
+            let table = graph.table(id);
             let last = table.elements.len().saturating_sub(1) as u32;
-            let list = match self.binding.filter(|(_, least)| table.elements.len() >= *least) {
+            let list = match binding {
                 Some((binding, _)) => {
                     let variable =
                         *self.buffer.get_or_insert_with(|| declare_buffer(module, binding));

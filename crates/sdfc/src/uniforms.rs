@@ -5,7 +5,7 @@ use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{FrameInput, Type};
 
 /// The bytes of the structure of params that a written field or ray method reads, little-endian; empty where it
-/// reads none. Params that the frame lacks are 0.
+/// reads none. There are as many as a uniform buffer wants: a multiple of 16. Params that the frame lacks are 0.
 ///
 /// ```
 /// use sdfc::{Scene, ShaderOptions, uniform_bytes};
@@ -14,7 +14,7 @@ use sdfc_graph::{FrameInput, Type};
 /// let written = scene.write_shader(&ShaderOptions::default())?;
 /// let mut frame = scene.defaults();
 /// frame.time = 0.25;
-/// let words = [1f32, 0.25].map(f32::to_le_bytes).concat();
+/// let words = [1f32, 0.25, 0.0, 0.0].map(f32::to_le_bytes).concat();
 /// assert_eq!(uniform_bytes(&written.reflection, &frame), words);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
