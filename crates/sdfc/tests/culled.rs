@@ -46,6 +46,20 @@ fn main() {
                 hard().replace("sphere(0.2)", "sphere(s)")
             ),
         ),
+        ("rounded", format!("union({}).round(0.15)\n{OUTSIDE}", balls())),
+        ("a shell", format!("union({}).shell(0.1)\n{OUTSIDE}", balls())),
+        (
+            "scaled",
+            format!("union({}).scale(0.25)\ncamera(eye: [1, 0.9, 1.5], target: 0)\n", balls()),
+        ),
+        (
+            "blended with a block",
+            format!("union(union({}), box([3, 0.5, 3]), blend: smooth(0.6))\n{OUTSIDE}", balls()),
+        ),
+        (
+            "cut from a block",
+            format!("difference(box([3, 2, 3]), union({}).round(0.1))\n{OUTSIDE}", balls()),
+        ),
         (
             "mirrors and open light",
             hard() + OUTSIDE + "reflections(1)\nambient_occlusion(radius: 0.5)\n",
@@ -83,6 +97,13 @@ fn hard() -> String {
         };
     }
     text
+}
+
+/// Balls as arguments.
+fn balls() -> String {
+    (0..PARTS)
+        .map(|i| format!("sphere({:.3}){},\n", 0.15 + 0.1 * number(i).abs(), place(i)))
+        .collect()
 }
 
 fn chain(blend: &str) -> String {

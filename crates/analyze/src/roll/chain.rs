@@ -47,8 +47,8 @@ pub(super) type Blends = FxHashMap<NodeId, Option<Blend>>;
 /// The lesser of two values, and less than that where they differ by less than a width.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Blend {
-    values: [NodeId; 2],
-    width: NodeId,
+    pub(super) values: [NodeId; 2],
+    pub(super) width: NodeId,
 }
 
 /// The chain that ends in a node; `None` if that is no end of one.
@@ -91,7 +91,8 @@ fn least(graph: &Graph, end: NodeId) -> Chain {
     Chain::Least { operands, inner }
 }
 
-fn blend_at(graph: &Graph, blends: &mut Blends, id: NodeId) -> Option<Blend> {
+/// The blend that a node is, if it is one.
+pub(super) fn blend_at(graph: &Graph, blends: &mut Blends, id: NodeId) -> Option<Blend> {
     *blends.entry(id).or_insert_with(|| blend(graph, id))
 }
 

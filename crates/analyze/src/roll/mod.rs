@@ -8,6 +8,7 @@
 //! What is recognised are forms of math, not shapes: `chain` tells what a chain is, `template` what is equal up to constants.
 
 mod chain;
+mod near;
 mod template;
 mod visits;
 

@@ -22,15 +22,68 @@ pub fn suite() -> Vec<(String, String)> {
     files.into_iter().chain(generated).collect()
 }
 
+/// Blocks of the scene of trees: so many as in scenes that pruning is measured by elsewhere.
+const TREES: usize = 6;
+const BOXES_OF_A_TREE: usize = 31;
+/// Leaves of the scene of many kinds.
+const MIXED: usize = 300;
 /// Leaves of the large scenes.
 const SCATTERED: [usize; 4] = [300, 1000, 6000, 20_000];
 const CHAINED: [usize; 2] = [301, 1001];
 
 /// Names and texts of scenes that are too large for interpreters.
 pub fn large_suite() -> Vec<(String, String)> {
+    let trees = (format!("trees {}", TREES * BOXES_OF_A_TREE), trees());
+    let mixed = (format!("mixed {MIXED}"), mixed(MIXED));
     let chained = CHAINED.map(|leaves| (format!("chain {leaves}"), chained(leaves)));
     let scattered = SCATTERED.map(|leaves| (format!("scattered {leaves}"), scattered(leaves)));
-    chained.into_iter().chain(scattered).collect()
+    [trees, mixed].into_iter().chain(chained).chain(scattered).collect()
+}
+
+/// Trees of turned blocks on a lawn: each a stem, and boughs that wind up around it.
+fn trees() -> String {
+    let mut numbers = Numbers(SEED);
+    let mut text = String::new();
+    for tree in 0..TREES {
+        let [x, z] = [tree % 3, tree / 3]
+            .map(|place| 2.6 * (place as f64 - 0.5) + numbers.between(-0.4, 0.4));
+        let _ = writeln!(text, "box([0.2, 2.4, 0.2]).translate([{x:.3}, 0, {z:.3}])");
+        for bough in 1..BOXES_OF_A_TREE {
+            let part = bough as f64 / BOXES_OF_A_TREE as f64;
+            let turn = 137.5 * bough as f64 + numbers.between(-15.0, 15.0);
+            let tilt = 55.0 - 50.0 * part + numbers.between(-8.0, 8.0);
+            let (length, wide) = (1.3 * (1.1 - part), 0.1 * (1.2 - part));
+            let high = 1.8 * part - 0.5;
+            let _ = writeln!(
+                text,
+                "box([{length:.3}, {wide:.3}, {wide:.3}]).translate(x: {:.3}).rotate(z: {tilt:.1}deg)\
+                 .rotate(y: {turn:.1}deg).translate([{x:.3}, {high:.3}, {z:.3}])",
+                0.5 * length
+            );
+        }
+    }
+    text + &seen_from(3.0)
+}
+
+/// Shapes of six kinds, strewn evenly in a cube, as many as there are units of volume.
+fn mixed(leaves: usize) -> String {
+    let reach = 0.5 * (leaves as f64).cbrt();
+    let mut numbers = Numbers(SEED);
+    let mut text = String::new();
+    for index in 0..leaves {
+        let [x, y, z] = [0.0; 3].map(|_| numbers.between(-reach, reach));
+        let [a, b, c] = [0.0; 3].map(|_| numbers.between(0.2, 0.5));
+        let shape = match index % 6 {
+            0 => format!("sphere({:.3})", 0.6 * a),
+            1 => format!("box([{a:.3}, {b:.3}, {c:.3}])"),
+            2 => format!("capsule([{a:.3}, {b:.3}, {c:.3}], [0, 0, 0], r: {:.3})", 0.3 * b),
+            3 => format!("cylinder({:.3}, {b:.3})", 0.5 * a),
+            4 => format!("torus({a:.3}, {:.3})", 0.3 * b),
+            _ => format!("octahedron({a:.3})"),
+        };
+        let _ = writeln!(text, "{shape}.translate([{x:.3}, {y:.3}, {z:.3}])");
+    }
+    text + &seen_from(reach)
 }
 
 /// Balls and blocks strewn evenly in a cube, as many as there are units of volume.
