@@ -319,7 +319,9 @@ impl Qualities {
             }
             Node::Unary(Unary::Neg, a) => of(a).swapped(),
             // A parallel surface: beyond it the distance is that to the first one, less what lies between.
-            Node::Binary(Binary::Sub | Binary::Add, a, r) if graph.stage(r) < Stage::Point => {
+            Node::Binary(Binary::Sub | Binary::Add, a, r)
+                if graph.ty(node).width() == 1 && graph.stage(r) < Stage::Point =>
+            {
                 let outwards = matches!(graph.node(node), Node::Binary(Binary::Sub, ..));
                 offset(of(a), self.range(graph, r), outwards)
             }

@@ -9,6 +9,8 @@ const MAP_PAGE: usize = 64;
 #[derive(Clone, Debug, Default)]
 pub struct IdSet {
     pages: Vec<Option<Box<[u64; SET_PAGE / 64]>>>,
+    /// The pages that there are: few, also of a large arena, where a set is small.
+    used: Vec<usize>,
 }
 
 impl IdSet {
@@ -18,7 +20,11 @@ impl IdSet {
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);
         }
-        let words = self.pages[page].get_or_insert_default();
+        let used = &mut self.used;
+        let words = self.pages[page].get_or_insert_with(|| {
+            used.push(page);
+            Box::default()
+        });
         let (word, bit) = (&mut words[place / 64], 1 << (place % 64));
         let new = *word & bit == 0;
         *word |= bit;
@@ -35,8 +41,11 @@ impl IdSet {
     /// All, ascending.
     pub fn to_vec(&self) -> Vec<NodeId> {
         let mut ids = Vec::new();
-        for (page, words) in self.pages.iter().enumerate() {
-            for (i, word) in words.iter().flat_map(|words| words.iter().enumerate()) {
+        let mut used = self.used.clone();
+        used.sort_unstable();
+        for page in used {
+            let words = self.pages[page].iter().flat_map(|words| words.iter());
+            for (i, word) in words.enumerate() {
                 let mut rest = *word;
                 while rest != 0 {
                     let place = page * SET_PAGE + i * 64 + rest.trailing_zeros() as usize;

@@ -14,6 +14,12 @@ const MOST_BYTES: u64 = 64 << 20;
 const TABLE: u32 = 3;
 pub(crate) const VISITS: u32 = 4;
 const MARKS: u32 = 5;
+const LEVEL: u32 = 6;
+/// Levels of tiles, each four by four of the one below, and the lowest a workgroup's pixels.
+const LEVELS: u32 = 3;
+/// A uniform is as large as a vector at least, for all backends.
+const LEVEL_BYTES: u64 = 16;
+const WIDER: u32 = 4;
 /// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
 const HEAD: u32 = 4;
 /// Invocations of a workgroup.
@@ -28,6 +34,8 @@ pub(crate) struct Culling {
     list: wgpu::ComputePipeline,
     layout: wgpu::BindGroupLayout,
     table: wgpu::Buffer,
+    /// What tells the shader the level, lowest first.
+    levels: Vec<wgpu::Buffer>,
     /// Rounds of each loop.
     rounds: Vec<u32>,
 }
@@ -36,8 +44,29 @@ pub(crate) struct Culling {
 #[derive(Debug)]
 pub(crate) struct Visits {
     pub(crate) lists: wgpu::Buffer,
-    pub(crate) tiles: u32,
-    bind_group: wgpu::BindGroup,
+    tiles: [u32; 2],
+    /// For each level.
+    bind_groups: Vec<wgpu::BindGroup>,
+}
+
+impl Visits {
+    /// Whether they do for so many columns and rows of tiles.
+    pub(crate) fn fit(&self, tiles: [u32; 2]) -> bool {
+        lowest(self.tiles) >= lowest(tiles) && on_all_levels(self.tiles) >= on_all_levels(tiles)
+    }
+}
+
+fn lowest([columns, rows]: [u32; 2]) -> u64 {
+    u64::from(columns) * u64::from(rows)
+}
+
+/// Tiles of each level above so many columns and rows of the lowest.
+fn each_level(tiles: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (0..LEVELS).map(move |level| tiles.map(|count| count.div_ceil(WIDER.pow(level))))
+}
+
+fn on_all_levels(tiles: [u32; 2]) -> u64 {
+    each_level(tiles).map(lowest).sum()
 }
 
 impl Culling {
@@ -50,58 +79,75 @@ impl Culling {
         });
         let layout = layout(&gpu.device, uniform_count);
         let pipeline = |name| compute_pipeline(&gpu.device, &module, &layout, name);
-        Self { mark: pipeline("mark"), list: pipeline("list"), layout, table, rounds }
+        let (mark, list) = (pipeline("mark"), pipeline("list"));
+        let levels = (0..LEVELS).map(|level| {
+            let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+            let uniform = buffer(gpu, "level", LEVEL_BYTES, usage);
+            gpu.queue.write_buffer(&uniform, 0, &level.to_le_bytes());
+            uniform
+        });
+        Self { mark, list, layout, table, levels: levels.collect(), rounds }
     }
 
-    /// Room for so many tiles of a workgroup each.
+    /// Room for so many columns and rows of tiles of a workgroup each.
     pub(crate) fn room(
         &self,
         gpu: &Gpu,
-        tiles: u32,
+        tiles: [u32; 2],
         view: &wgpu::Buffer,
         uniforms: Option<&wgpu::Buffer>,
     ) -> Visits {
         use wgpu::BufferUsages as Usage;
         let head = self.head();
-        let bytes = 4 * (head.len() as u64 + u64::from(tiles) * u64::from(self.stride()));
+        let bytes = 4 * (head.len() as u64 + lowest(tiles) * u64::from(self.stride()));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
         let head: Vec<u8> = head.iter().flat_map(|word| word.to_le_bytes()).collect();
         gpu.queue.write_buffer(&lists, 0, &head);
-        let marks = buffer(gpu, "marks", u64::from(tiles) * self.mark_bytes(), Usage::STORAGE);
-        let buffers = [
-            (0, Some(view)),
-            (1, uniforms),
-            (TABLE, Some(&self.table)),
-            (VISITS, Some(&lists)),
-            (MARKS, Some(&marks)),
-        ];
-        let bound = buffers.into_iter().filter_map(|(binding, buffer)| {
-            Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
-        });
-        let entries: Vec<_> = bound.collect();
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("culling"),
-            layout: &self.layout,
-            entries: &entries,
-        });
-        Visits { lists, tiles, bind_group }
+        let marks = on_all_levels(tiles) * self.mark_bytes();
+        let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
+        let bind_group = |level| {
+            let buffers = [
+                (0, Some(view)),
+                (1, uniforms),
+                (TABLE, Some(&self.table)),
+                (VISITS, Some(&lists)),
+                (MARKS, Some(&marks)),
+                (LEVEL, Some(level)),
+            ];
+            let bound = buffers.into_iter().filter_map(|(binding, buffer)| {
+                Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
+            });
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("culling"),
+                layout: &self.layout,
+                entries: &bound.collect::<Vec<_>>(),
+            })
+        };
+        let bind_groups = self.levels.iter().map(bind_group).collect();
+        Visits { lists, tiles, bind_groups }
     }
 
-    /// Finds what can matter to so many tiles.
-    pub(crate) fn run(&self, pass: &mut wgpu::ComputePass<'_>, visits: &Visits, tiles: u32) {
+    /// Finds what can matter to so many columns and rows of tiles.
+    pub(crate) fn run(&self, pass: &mut wgpu::ComputePass<'_>, visits: &Visits, tiles: [u32; 2]) {
         let loops = self.rounds.len() as u32;
-        pass.set_bind_group(0, &visits.bind_group, &[]);
+        let levels: Vec<_> = each_level(tiles).zip(&visits.bind_groups).collect();
         pass.set_pipeline(&self.mark);
-        pass.dispatch_workgroups(self.most_words().div_ceil(LANES), tiles, loops);
+        for (tiles, bind_group) in levels.into_iter().rev() {
+            pass.set_bind_group(0, bind_group, &[]);
+            let groups = self.most_words().div_ceil(LANES);
+            pass.dispatch_workgroups(groups, lowest(tiles) as u32, loops);
+        }
         pass.set_pipeline(&self.list);
-        pass.dispatch_workgroups(tiles.div_ceil(LANES), 1, loops);
+        pass.dispatch_workgroups((lowest(tiles) as u32).div_ceil(LANES), 1, loops);
     }
 
     /// Most pixels of a tile of the picture for which there is room.
     pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
         let bytes = MOST_BYTES.min(limits.max_storage_buffer_binding_size);
         let left = bytes.saturating_sub(4 * self.head().len() as u64);
-        let tile = self.mark_bytes().max(4 * u64::from(self.stride()));
+        // A level has no more tiles than the one below.
+        let marks = u64::from(LEVELS) * self.mark_bytes();
+        let tile = marks.max(4 * u64::from(self.stride()));
         let tiles = (left / tile).min(u64::from(limits.max_compute_workgroups_per_dimension));
         tiles as u32 * WORKGROUP * WORKGROUP
     }
@@ -143,6 +189,7 @@ fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout 
         entries.push(entry(1, uniform, uniform_count * UNIFORM_BYTES));
     }
     entries.push(entry(TABLE, storage(true), 0));
+    entries.push(entry(LEVEL, uniform, LEVEL_BYTES as usize));
     entries.extend([VISITS, MARKS].map(|binding| entry(binding, storage(false), 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("culling"),

@@ -183,7 +183,7 @@ impl Pipeline {
     fn dispatch_once(&self) -> Result<(), RenderError> {
         let uniforms = vec![[0.0; 4]; self.uniform_count];
         let mut run = Run::new(self, &uniforms)?;
-        run.make_room(WORKGROUP * WORKGROUP, 1)?;
+        run.make_room(WORKGROUP * WORKGROUP, [1, 1])?;
         let empty = vec![0; VIEW_BYTES];
         run.submit(&empty, [1, 1], 0)?;
         // Compiling thousands of leaves can take a software driver many minutes.
@@ -234,12 +234,12 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Makes the buffers large enough for so many pixels in so many workgroups.
-    fn make_room(&mut self, pixels: u32, groups: u32) -> Result<(), RenderError> {
+    /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
+    fn make_room(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
         use wgpu::BufferUsages as Usage;
         let gpu = &self.pipeline.gpu;
         if let Some(culling) = &self.pipeline.culling
-            && self.visits.as_ref().is_none_or(|visits| visits.tiles < groups)
+            && !self.visits.as_ref().is_some_and(|visits| visits.fit(groups))
         {
             (self.visits, self.pixels) = (None, None);
             let room = || culling.room(gpu, groups, &self.view, self.uniforms.as_ref());
@@ -289,7 +289,7 @@ impl<'a> Run<'a> {
     ) -> Result<Option<f64>, RenderError> {
         let count = tile.pixels() as u32;
         let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
-        self.make_room(count.max(WORKGROUP * WORKGROUP), groups[0] * groups[1])?;
+        self.make_room(count.max(WORKGROUP * WORKGROUP), groups)?;
         self.submit(&view_bytes(&view.block(tile)), groups, count)?;
         self.read(tile, image)
     }
@@ -307,7 +307,7 @@ impl<'a> Run<'a> {
                     timestamp_writes: self.timestamps.as_ref().map(Timestamps::about_a_pass),
                 });
                 if let (Some(culling), Some(visits)) = (&self.pipeline.culling, &self.visits) {
-                    culling.run(&mut pass, visits, groups[0] * groups[1]);
+                    culling.run(&mut pass, visits, groups);
                 }
                 pass.set_pipeline(&self.pipeline.pipeline);
                 pass.set_bind_group(0, &buffers.bind_group, &[]);

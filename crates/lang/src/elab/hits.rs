@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
-use sdfc_graph::{Dim, FAR, Graph, NodeId, reachable};
+use sdfc_graph::{Dim, FAR, Graph, MOST_HITS, NodeId, reachable};
 
 use super::value::Value;
 use super::{Elaborator, Env, Outcome};
@@ -10,16 +10,18 @@ use crate::hir::ShapeDef;
 
 impl<'p> Elaborator<'p> {
     /// The intervals of a ray whose origin is the point of the level and whose direction is that of the next. Of a
-    /// shape that is built anew at each point nothing is asked.
+    /// shape that is built anew at each point nothing is asked, nor of more than [`MOST_HITS`].
     pub(super) fn hits(
         &mut self,
         env: &mut Env<'p>,
         definition: &'p ShapeDef,
         level: u16,
     ) -> Outcome<Vec<[NodeId; 2]>> {
-        let Some(stated) = definition.hits.as_ref().filter(|_| level == 0) else {
+        let is_asked = level == 0 && self.hits_asked < MOST_HITS;
+        let Some(stated) = definition.hits.as_ref().filter(|_| is_asked) else {
             return Ok(Vec::new());
         };
+        self.hits_asked += 1;
         let [origin, direction] = [level, level + 1].map(|l| self.graph.point(l, Dim::Three));
         env.set(stated.origin.0 as usize, Value::Node(origin));
         env.set(stated.direction.0 as usize, Value::Node(direction));

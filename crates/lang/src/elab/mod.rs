@@ -203,6 +203,8 @@ struct Elaborator<'p> {
     asked_bounds: bool,
     /// Params that stand for literals.
     offer: Offer,
+    /// How many shapes were asked where rays are inside them.
+    hits_asked: usize,
     /// How many loops the body at hand lies in.
     loop_depth: u8,
     /// How often their rounds run it.
@@ -233,6 +235,7 @@ impl<'p> Elaborator<'p> {
             in_clause: false,
             asked_bounds: false,
             offer: Offer::new(first_literal),
+            hits_asked: 0,
             loop_depth: 0,
             loop_rounds: 1,
         }

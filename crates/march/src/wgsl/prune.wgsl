@@ -1,10 +1,16 @@
 // Before a picture: which rounds of the scene's loops can matter to the rays through each tile's pixels. A round can where its operand,
 // less what it reaches beyond its surface, is not above 0 somewhere in a cone around the rays. The operand is itself
 // marched along the middle of the cone, which is as sound as a field's march.
+//
+// Wide tiles come first, and a tile asks only for the rounds that can matter to the wider one that it is part of.
 
 @group(0) @binding(4) var<storage, read_write> visits: array<u32>;
-// For each loop and tile, a bit for each round that can matter.
+// For each loop and tile of each level, a bit for each round that can matter.
 @group(0) @binding(5) var<storage, read_write> marks: array<u32>;
+// The level at hand. The tiles of level 0 have lists, those of each other are four by four of the one below.
+@group(0) @binding(6) var<uniform> level: u32;
+
+const HIGHEST: u32 = 2;
 
 // Supplied by the scene, as many as it has loops: how far a point is from where a round can matter, or less.
 
@@ -83,10 +89,18 @@ const SLACK: f32 = 0.1;
 // An operand that is not told by so many steps can matter.
 const MOST_STEPS: u32 = 32;
 
-fn cone_around(tile: u32) -> Cone {
-    let columns = tile_counts().x;
-    let corner = view.tile_origin + TILE * vec2u(tile % columns, tile / columns);
-    let side = f32(TILE);
+fn side_of(at: u32) -> u32 {
+    return TILE << (2u * at);
+}
+
+fn counts_of(at: u32) -> vec2u {
+    let side = side_of(at);
+    return (view.tile_size + (side - 1u)) / side;
+}
+
+fn cone_around(place: vec2u) -> Cone {
+    let corner = view.tile_origin + side_of(level) * place;
+    let side = f32(side_of(level));
     let middle = ray_through(vec2f(corner) + 0.5 * side);
     var cone = Cone(middle.origin, 0.0, middle.direction, 0.0);
     for (var i = 0u; i < 4u; i++) {
@@ -118,30 +132,42 @@ fn reaches(cone: Cone, which: u32, round: f32) -> bool {
     return true;
 }
 
-fn words_of(which: u32, tile: u32) -> u32 {
-    let tiles = tile_counts();
-    return (which * tiles.x * tiles.y + tile) * visits[MOST_WORDS];
+// Where the marks of a tile are: those of level 0 come first.
+fn words_of(at: u32, place: vec2u, which: u32, loops: u32) -> u32 {
+    var before = 0u;
+    for (var below = 0u; below < at; below++) {
+        let counts = counts_of(below);
+        before += loops * counts.x * counts.y;
+    }
+    let counts = counts_of(at);
+    return (before + (which * counts.y + place.y) * counts.x + place.x) * visits[MOST_WORDS];
 }
 
 @compute @workgroup_size(64)
-fn mark(@builtin(global_invocation_id) place: vec3u) {
-    let word = place.x;
-    let tile = place.y;
-    let which = place.z;
+fn mark(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let word = id.x;
+    let which = id.z;
     let all = visits[WHOLE + 2u * which];
-    let tiles = tile_counts();
-    if tile >= tiles.x * tiles.y || 32u * word >= all {
+    let counts = counts_of(level);
+    if id.y >= counts.x * counts.y || 32u * word >= all {
         return;
     }
     load_frame();
-    let cone = cone_around(tile);
+    let place = vec2u(id.y % counts.x, id.y / counts.x);
+    let cone = cone_around(place);
+    var asked = 0xffffffffu >> (32u - min(32u, all - 32u * word));
+    if level < HIGHEST {
+        asked = marks[words_of(level + 1u, place / 4u, which, groups.z) + word];
+    }
     var bits = 0u;
-    for (var i = 0u; i < min(32u, all - 32u * word); i++) {
+    while asked != 0u {
+        let i = firstTrailingBit(asked);
+        asked &= asked - 1u;
         if reaches(cone, which, f32(32u * word + i)) {
             bits |= 1u << i;
         }
     }
-    marks[words_of(which, tile) + word] = bits;
+    marks[words_of(level, place, which, groups.z) + word] = bits;
 }
 
 @compute @workgroup_size(64)
@@ -156,9 +182,10 @@ fn list(@builtin(global_invocation_id) place: vec3u, @builtin(num_workgroups) co
     let capacity = visits[CAPACITY];
     let record = visits[FIRST_RECORD] + tile * visits[RECORD_STRIDE];
     let first = record + 2u * counts.z + which * capacity;
+    let words = words_of(0u, vec2u(tile % tiles.x, tile / tiles.x), which, counts.z);
     var count = 0u;
     for (var word = 0u; 32u * word < all; word++) {
-        var bits = marks[words_of(which, tile) + word];
+        var bits = marks[words + word];
         while bits != 0u {
             if count < capacity {
                 visits[first + count] = 32u * word + firstTrailingBit(bits);
