@@ -6,6 +6,10 @@
 //!
 //! A *literal* is another number of the same text. A *structure* differs from all before it: of six more leaves, each is
 //! a ball or a block as the digits of the edit's number say, so that no driver has met the shader.
+//!
+//! The session is looked at 60 times a second, as a window looks at it. `frames` counts those looks from the edit to the
+//! one that has its picture. `watch` goes from the edit to where its text is read; `rest` is what lies between the
+//! stages, waiting for the next look most of all.
 
 #![allow(
     clippy::print_stdout,
@@ -14,6 +18,7 @@
 )]
 
 use std::fmt::Write;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -25,12 +30,16 @@ const SIZE: [u32; 2] = [640, 360];
 const SCENES: [(&str, u32, u32); 2] = [("bench/thirty.sdf", 30, 63), ("generated 300", 300, 15)];
 /// They spell the numbers of the edits.
 const MORE_LEAVES: u32 = 6;
+/// From one frame of a window to the next.
+const FRAME: Duration = Duration::from_nanos(16_666_667);
 /// Longer than any edit takes.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Milliseconds of one edit.
 struct Spent {
     total: f64,
+    frames: f64,
+    watch: f64,
     front: f64,
     analyze: f64,
     lower: f64,
@@ -42,9 +51,9 @@ fn main() {
     // Cargo's own flag is no part of a name.
     let wanted = std::env::args().skip(1).find(|it| !it.starts_with('-')).unwrap_or_default();
     println!(
-        "| edit | edits | p50 | p99 | watch | front end | analysis | lowering | pipeline | frame |"
+        "| edit | edits | p50 | p99 | frames, p50 | p99 | watch | front end | analysis | lowering | pipeline | frame | rest |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let suite = sdfc::suite();
     for (scene, leaves, edits) in SCENES {
         let (_, text) = suite.iter().find(|(name, _)| name == scene).unwrap();
@@ -76,17 +85,18 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.sdf");
     std::fs::write(&path, text(0)).unwrap();
-    let mut session = Session::open(&path, Arc::new(|| ())).unwrap();
-    session.samples = Some(1);
-    shown(&mut session, &text(0), Instant::now());
+    let mut window = Window::new(&path);
+    window.shown(&text(0), Instant::now());
     let mut all = Vec::new();
     for edit in 1..=edits {
         // What refines the last picture is over, as it is for someone who looks before he types.
-        finished(&mut session);
+        window.wait(|it| it.picture.as_ref().is_some_and(|picture| picture.finished));
         let text = text(edit);
+        // Edits fall anywhere between two frames.
+        std::thread::sleep(FRAME.mul_f64(f64::from(edit) * 0.618 % 1.0));
         let start = Instant::now();
         std::fs::write(&path, &text).unwrap();
-        all.push(shown(&mut session, &text, start));
+        all.push(window.shown(&text, start));
     }
     let figure = |of: &dyn Fn(&Spent) -> f64, share: f64| {
         let mut sorted: Vec<f64> = all.iter().map(of).collect();
@@ -94,48 +104,72 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
         sorted[((sorted.len() - 1) as f64 * share).round() as usize]
     };
     let median = |of: &dyn Fn(&Spent) -> f64| format!("{:.1}", figure(of, 0.5));
-    let watch = |it: &Spent| it.total - it.front - it.analyze - it.lower - it.pipeline - it.frame;
+    let rest = |it: &Spent| {
+        it.total - it.watch - it.front - it.analyze - it.lower - it.pipeline - it.frame
+    };
     println!(
-        "| {name} | {edits} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} |",
+        "| {name} | {edits} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
         figure(&|it| it.total, 0.5),
         figure(&|it| it.total, 0.99),
-        median(&watch),
+        figure(&|it| it.frames, 0.5),
+        figure(&|it| it.frames, 0.99),
+        median(&|it| it.watch),
         median(&|it| it.front),
         median(&|it| it.analyze),
         median(&|it| it.lower),
         median(&|it| it.pipeline),
-        median(&|it| it.frame)
+        median(&|it| it.frame),
+        median(&rest)
     );
 }
 
-/// Waits for the first picture of a text, as the window does.
-fn shown(session: &mut Session, text: &str, start: Instant) -> Spent {
-    wait(session, |session| {
-        session.picture.as_ref().is_some_and(|it| it.request.model.text == text)
-    });
-    let total = milliseconds_since(start);
-    let picture = session.picture.as_ref().unwrap();
-    let stages = picture.request.model.stages;
-    Spent {
-        total,
-        front: stages.front,
-        analyze: stages.analyze,
-        lower: stages.lower,
-        pipeline: stages.pipeline.unwrap_or(0.0),
-        frame: picture.latency,
+/// A window without one.
+struct Window {
+    session: Session,
+    opened: Instant,
+}
+
+impl Window {
+    fn new(path: &Path) -> Self {
+        let mut session = Session::open(path, Arc::new(|| ())).unwrap();
+        session.samples = Some(1);
+        Self { session, opened: Instant::now() }
     }
-}
 
-fn finished(session: &mut Session) {
-    wait(session, |session| session.picture.as_ref().is_some_and(|picture| picture.finished));
-}
+    /// Waits for the first picture of a text.
+    fn shown(&mut self, text: &str, start: Instant) -> Spent {
+        let frames = self.wait(|session| {
+            session.picture.as_ref().is_some_and(|it| it.request.model.text == text)
+        });
+        let total = milliseconds_since(start);
+        let picture = self.session.picture.as_ref().unwrap();
+        let model = &picture.request.model;
+        let stages = model.stages;
+        Spent {
+            total,
+            frames: f64::from(frames),
+            watch: 1000.0 * model.begun.saturating_duration_since(start).as_secs_f64(),
+            front: stages.front,
+            analyze: stages.analyze,
+            lower: stages.lower,
+            pipeline: stages.pipeline.unwrap_or(0.0),
+            frame: picture.latency,
+        }
+    }
 
-fn wait(session: &mut Session, holds: impl Fn(&Session) -> bool) {
-    let start = Instant::now();
-    while !holds(session) {
-        assert!(start.elapsed() < PATIENCE, "{:?} {:?}", session.findings, session.trouble);
-        std::thread::sleep(Duration::from_micros(200));
-        session.poll();
-        session.ask(SIZE, false);
+    /// Frame by frame, until it is so; gives how many that took.
+    fn wait(&mut self, holds: impl Fn(&Session) -> bool) -> u32 {
+        let start = Instant::now();
+        let mut frames = 0;
+        while !holds(&self.session) {
+            let session = &mut self.session;
+            assert!(start.elapsed() < PATIENCE, "{:?} {:?}", session.findings, session.trouble);
+            let passed = self.opened.elapsed().as_nanos() % FRAME.as_nanos();
+            std::thread::sleep(FRAME - Duration::from_nanos(passed as u64));
+            session.poll();
+            session.ask(SIZE, false);
+            frames += 1;
+        }
+        frames
     }
 }

@@ -28,11 +28,35 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Of the shapes that sample no other.
+    /// Of the shapes that the scene writes and within which it writes no other; where it writes none, of those that
+    /// sample no other. What a shape of the library is made of is not the scene's.
     pub fn of_leaves(scene: &Scene) -> Self {
         let graph = &scene.graph().graph;
-        let below = scene.report().shapes.iter().map(|report| report.shape);
-        Self::of(scene, below.filter(|shape| graph.shape(*shape).children.is_empty()).collect())
+        let children = |shape: ShapeId| &graph.shape(shape).children;
+        let written: HashSet<ShapeId> = scene.sites().iter().map(|site| site.shape).collect();
+        let mut below: Vec<ShapeId> = scene.report().shapes.iter().map(|it| it.shape).collect();
+        // What a shape samples was made before it.
+        below.sort_unstable();
+        let mut holding = HashSet::new();
+        for shape in below {
+            if children(shape).iter().any(|it| written.contains(it) || holding.contains(it)) {
+                holding.insert(shape);
+            }
+        }
+        let (mut leaves, mut seen) = (Vec::new(), HashSet::new());
+        let mut next: Vec<ShapeId> = scene.graph().root.into_iter().collect();
+        while let Some(shape) = next.pop() {
+            if !seen.insert(shape) {
+                continue;
+            }
+            let is_leaf = written.contains(&shape) && !holding.contains(&shape);
+            if is_leaf || children(shape).is_empty() {
+                leaves.push(shape);
+            } else {
+                next.extend(children(shape));
+            }
+        }
+        Self::of(scene, leaves)
     }
 
     /// Of the operands of the unions that the scene is, as far as those are nothing but the nearest of several.
@@ -219,6 +243,9 @@ mod tests {
         let blend = "union(sphere(0.5).color(#f00), box(0.8).translate(x: 1), blend: smooth(0.3)).twist(5deg)";
         assert_eq!(named(blend, [-0.5, 0.0, 0.0]).as_deref(), Some("sphere"));
         assert_eq!(named(blend, [1.4, 0.0, 0.0]).as_deref(), Some("box"));
+        // As the scene calls it, not what it is made of.
+        let tower = "cylinder(0.5, 1) | sphere(0.4).translate(y: 2)";
+        assert_eq!(named(tower, [0.5, 0.0, 0.0]).as_deref(), Some("cylinder"));
         // What cuts shows in the cut.
         assert_eq!(named("box(2) - sphere(0.6)", [0.0, 0.0, 0.6]).as_deref(), Some("sphere"));
     }

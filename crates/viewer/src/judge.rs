@@ -51,7 +51,7 @@ pub struct Case {
 impl Case {
     /// Whether the same is seen, whatever draws it.
     pub fn sees(&self, other: &Self) -> bool {
-        self.model.serial == other.model.serial
+        self.model.content == other.model.content
             && self.size == other.size
             && self.pose == other.pose
             && self.frame == other.frame
@@ -59,7 +59,9 @@ impl Case {
 
     /// Whether the same rays are marched in the same way.
     pub fn draws_as(&self, other: &Self) -> bool {
-        self.sees(other) && self.tolerance == other.tolerance
+        self.sees(other)
+            && self.model.serial == other.model.serial
+            && self.tolerance == other.tolerance
     }
 
     /// The size at which it is compared: the same shape, of so many pixels that the oracle need not be waited for long.
@@ -217,6 +219,14 @@ impl Drop for Judge {
     }
 }
 
+/// A view that the oracle was asked about, and what all methods make of it as far as that was asked.
+struct Compared {
+    case: Arc<Case>,
+    comparison: Comparison,
+    all: Vec<Figures>,
+    refused: Vec<String>,
+}
+
 /// What the thread keeps between cases.
 struct Court {
     cases: Arc<Mailbox<Option<Case>>>,
@@ -224,7 +234,7 @@ struct Court {
     wake: Box<dyn Fn() + Send + Sync>,
     to: Sender<Judged>,
     /// The last view that the oracle was asked about.
-    compared: Option<(Arc<Case>, Comparison)>,
+    compared: Option<Compared>,
     /// A device of its own, since one that compiles holds up what else is drawn on it.
     gpu: Option<Gpu>,
     started: Instant,
@@ -251,13 +261,16 @@ impl Court {
     }
 
     fn judge(&mut self, case: Arc<Case>) -> Result<(), Error> {
-        let kept = self.compared.take().filter(|(before, _)| before.sees(&case));
-        let comparison = match kept {
-            Some((_, comparison)) => comparison,
-            None => self.truth(&case)?,
+        let kept = self.compared.take().filter(|before| before.case.sees(&case));
+        let mut compared = match kept {
+            Some(before) => Compared { case, ..before },
+            None => {
+                let comparison = self.truth(&case)?;
+                Compared { case, comparison, all: Vec::new(), refused: Vec::new() }
+            }
         };
-        let result = self.compare(&case, &comparison);
-        self.compared = Some((case, comparison));
+        let result = self.compare(&mut compared);
+        self.compared = Some(compared);
         result
     }
 
@@ -269,8 +282,9 @@ impl Court {
         scene.comparison(view, case.frame.clone(), &|progress| self.reached(progress))
     }
 
-    fn compare(&mut self, case: &Arc<Case>, comparison: &Comparison) -> Result<(), Error> {
+    fn compare(&mut self, compared: &mut Compared) -> Result<(), Error> {
         self.begin("drawing");
+        let Compared { case, comparison, .. } = &*compared;
         let model = &case.model;
         let view = comparison.view().with_part(model.knob(), case.tolerance);
         let drawn = match &model.engine {
@@ -285,43 +299,46 @@ impl Court {
             }
         };
         let of = (model.method.as_str(), case.tolerance);
-        let mut judgement = Judgement {
-            case: Arc::clone(case),
-            size: comparison.view().size,
-            counts: comparison.counts(),
-            shown: figures(case, comparison, of, &drawn),
-            all: Vec::new(),
-            refused: Vec::new(),
-            milliseconds: milliseconds_since(self.started),
-            finished: !case.all,
-        };
-        self.tell(Judged::Judgement(Box::new(judgement.clone())));
+        let shown = figures(case, comparison, of, &drawn);
         if case.all {
-            self.compare_all(comparison, &mut judgement)?;
+            self.compare_all(compared, shown)
+        } else {
+            self.tell(Judged::Judgement(Box::new(self.judgement(compared, shown, true))));
+            Ok(())
         }
-        Ok(())
+    }
+
+    fn judgement(&self, compared: &Compared, shown: Figures, finished: bool) -> Judgement {
+        Judgement {
+            case: Arc::clone(&compared.case),
+            size: compared.comparison.view().size,
+            counts: compared.comparison.counts(),
+            shown,
+            all: compared.all.clone(),
+            refused: compared.refused.clone(),
+            milliseconds: milliseconds_since(self.started),
+            finished,
+        }
     }
 
     /// Every method that there is, at every setting that a chart shows.
-    fn compare_all(
-        &mut self,
-        comparison: &Comparison,
-        judgement: &mut Judgement,
-    ) -> Result<(), Error> {
+    fn compare_all(&mut self, compared: &mut Compared, shown: Figures) -> Result<(), Error> {
+        (compared.all, compared.refused) = Default::default();
+        self.tell(Judged::Judgement(Box::new(self.judgement(compared, shown.clone(), false))));
         self.begin("drawing with all methods");
         let gpu = self.gpu()?;
         for (done, method) in METHODS.iter().enumerate() {
-            if let Err(error) = self.compare_method(&gpu, method, comparison, judgement) {
+            if let Err(error) = self.compare_method(&gpu, method, compared) {
                 if matches!(error, Error::Render(RenderError::Cancelled)) {
                     return Err(error);
                 }
-                judgement.refused.push(format!("{}: {error}", method.name));
+                compared.refused.push(format!("{}: {error}", method.name));
             }
             let progress = Progress { done: done as u64 + 1, total: METHODS.len() as u64 };
-            judgement.milliseconds = milliseconds_since(self.started);
-            judgement.finished = progress.done == progress.total;
-            self.tell(Judged::Judgement(Box::new(judgement.clone())));
-            if !judgement.finished && self.reached(progress).is_break() {
+            let finished = progress.done == progress.total;
+            let judgement = self.judgement(compared, shown.clone(), finished);
+            self.tell(Judged::Judgement(Box::new(judgement)));
+            if !finished && self.reached(progress).is_break() {
                 return Err(Error::Render(RenderError::Cancelled));
             }
         }
@@ -332,10 +349,9 @@ impl Court {
         &self,
         gpu: &Gpu,
         method: &'static Method,
-        comparison: &Comparison,
-        judgement: &mut Judgement,
+        compared: &mut Compared,
     ) -> Result<(), Error> {
-        let case = Arc::clone(&judgement.case);
+        let Compared { case, comparison, all, .. } = compared;
         let scene = &case.model.scene;
         // `auto` is shown under its own name also where it is another method.
         let marched = scene.marched(method.name);
@@ -345,7 +361,7 @@ impl Court {
         for part in method.charted {
             let view = comparison.view().with_part(method.knob, *part);
             let drawn = self.draw(&pipeline, &view, &uniforms)?;
-            judgement.all.push(figures(&case, comparison, (method.name, *part), &drawn));
+            all.push(figures(case, comparison, (method.name, *part), &drawn));
         }
         Ok(())
     }

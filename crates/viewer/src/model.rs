@@ -1,6 +1,7 @@
 //! A scene that has compiled, with what draws it.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc::lang::slots::Slot;
@@ -52,12 +53,16 @@ pub struct Model {
     pub shapes: Shapes,
     /// Whether the picture depends on time or frame.
     pub moves: bool,
+    /// When its text was read.
+    pub begun: Instant,
     /// Where the time went.
     pub stages: Stages,
     /// How many pipelines the worker has made so far.
     pub pipelines: u64,
     /// A number of its own.
     pub serial: u64,
+    /// A number of what was read: models that only draw it otherwise share it.
+    pub content: u64,
     /// How often devices had been opened anew when it was made.
     pub renewed: u32,
     /// What is drawn otherwise than asked, and why.

@@ -165,6 +165,15 @@ struct Met {
     imports: Imports,
 }
 
+impl Met {
+    /// Whether this order meets the same texts, and makes the same scene of them.
+    fn reads(&self, build: &Build, document: &Document) -> bool {
+        (&self.build.path, self.build.live) == (&build.path, build.live)
+            && self.text == document.text
+            && self.imports.are_as_read()
+    }
+}
+
 /// What the thread keeps between orders.
 struct Shop<T> {
     orders: Arc<Mailbox<Build>>,
@@ -176,15 +185,25 @@ struct Shop<T> {
     devices: [Option<Gpu>; 2],
     turn: usize,
     serial: u64,
+    content: u64,
     pipelines: u64,
     skipped: u32,
 }
 
 impl<T: FnMut(News)> Shop<T> {
     fn new(orders: Arc<Mailbox<Build>>, tell: T) -> Self {
-        let devices = [None, None];
-        let (last, running) = (None, None);
-        Self { orders, tell, last, running, devices, turn: 0, serial: 0, pipelines: 0, skipped: 0 }
+        Self {
+            orders,
+            tell,
+            last: None,
+            running: None,
+            devices: [None, None],
+            turn: 0,
+            serial: 0,
+            content: 0,
+            pipelines: 0,
+            skipped: 0,
+        }
     }
 
     /// A fault of the compiler must not take the window's thread with it.
@@ -198,6 +217,7 @@ impl<T: FnMut(News)> Shop<T> {
     }
 
     fn build(&mut self, build: &Build) {
+        let begun = Instant::now();
         let document = match Document::read(&build.path) {
             Ok(document) => document,
             Err(error) => {
@@ -205,12 +225,11 @@ impl<T: FnMut(News)> Shop<T> {
                 return (self.tell)(News::Unreadable(error.to_string()));
             }
         };
-        let same = |last: &Met| {
-            last.build == *build && last.text == document.text && last.imports.are_as_read()
-        };
-        if self.last.as_ref().is_some_and(same) {
+        let reads_same = self.last.as_ref().is_some_and(|last| last.reads(build, &document));
+        if reads_same && self.last.as_ref().is_some_and(|last| last.build == *build) {
             return;
         }
+        self.content += u64::from(!reads_same);
         if self.last.as_ref().is_some_and(|last| last.build.renewed != build.renewed) {
             self.forget_devices();
         }
@@ -230,7 +249,7 @@ impl<T: FnMut(News)> Shop<T> {
             }
             Some(scene) => {
                 (self.tell)(News::Compiled { findings, folders, builds: true });
-                self.ready(build, document, scene, shapes.unwrap_or_default());
+                self.ready(build, begun, document, scene, shapes.unwrap_or_default());
             }
         }
     }
@@ -249,7 +268,14 @@ impl<T: FnMut(News)> Shop<T> {
         Findings::of(&sdfc::compile_with_imports(&document.name, &document.text, imports))
     }
 
-    fn ready(&mut self, build: &Build, document: Document, scene: Scene, shapes: Shapes) {
+    fn ready(
+        &mut self,
+        build: &Build,
+        begun: Instant,
+        document: Document,
+        scene: Scene,
+        shapes: Shapes,
+    ) {
         let times = scene.times();
         let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
         // Derived when first asked for, which is not to be where input is heard.
@@ -266,7 +292,8 @@ impl<T: FnMut(News)> Shop<T> {
                 self.skipped = 0;
                 self.serial += 1;
                 let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
-                let (text, pipelines, serial) = (document.text, self.pipelines, self.serial);
+                let (text, pipelines) = (document.text, self.pipelines);
+                let (serial, content) = (self.serial, self.content);
                 let model = Model {
                     scene,
                     text,
@@ -276,9 +303,11 @@ impl<T: FnMut(News)> Shop<T> {
                     probe,
                     shapes,
                     moves,
+                    begun,
                     stages,
                     pipelines,
                     serial,
+                    content,
                     renewed: build.renewed,
                     note,
                 };
@@ -479,6 +508,27 @@ pub(crate) mod tests {
             assert!(folders.iter().any(|folder| folder.ends_with("parts")), "{folders:?}");
             assert_eq!(told::ready(&news).scene.distance(at).unwrap(), 2.0 - radius);
         }
+    }
+
+    #[test]
+    fn another_method_draws_the_same_content() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        std::fs::write(&path, "sphere(1)\n").unwrap();
+        let (worker, news) = worker();
+        let mut models = Vec::new();
+        for method in [None, Some("interval"), Some("sphere")] {
+            let method = method.map(str::to_owned);
+            worker.order(Build { method, ..on_cpu(&path) });
+            models.push(ready(&news));
+        }
+        std::fs::write(&path, "sphere(2)\n").unwrap();
+        worker.order(on_cpu(&path));
+        models.push(ready(&news));
+        let contents: Vec<u64> = models.iter().map(|model| model.content).collect();
+        assert_eq!(contents, [1, 1, 1, 2]);
+        let serials: Vec<u64> = models.iter().map(|model| model.serial).collect();
+        assert_eq!(serials, [1, 2, 3, 4]);
     }
 
     #[test]

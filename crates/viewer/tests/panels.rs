@@ -177,6 +177,19 @@ fn the_picture_is_compared_with_the_oracle() {
     fixture.until(|harness| harness.query_by_label_contains("of another picture").is_none());
 }
 
+#[test]
+fn another_monitor_is_told() {
+    let mut fixture = Fixture::new();
+    for (width, scale) in [(1920.0, 1.0), (3840.0, 2.0)] {
+        let viewports = &mut fixture.harness.input_mut().viewports;
+        let viewport = viewports.entry(ViewportId::ROOT).or_default();
+        viewport.monitor_size = Some([width / scale, 1080.0].into());
+        viewport.native_pixels_per_point = Some(scale);
+        fixture.harness.run_steps(2);
+    }
+    assert!(fixture.has("the window is on a monitor of 3840 × 2160 pixels, 2 to a point"));
+}
+
 /// A file that is let go over the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);

@@ -9,82 +9,34 @@ mod menu;
 mod overlay;
 mod panels;
 mod save;
+mod shell;
 mod source;
 mod status;
 mod style;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Context, Key, Ui};
 
-use crate::memory::{self, Memory};
+use crate::memory::Memory;
 use crate::session::Session;
 use canvas::Canvas;
 use leave::Leaving;
 use save::Save;
+use shell::Monitor;
+pub use shell::{LOSE_WINDOW, run};
 
 /// So long a remark stays in the status line.
 const REMARK: Duration = Duration::from_secs(4);
 
-/// What shows the window, in the order in which it is tried: OpenGL is also where Vulkan, Metal and DirectX 12 are not.
-const RENDERERS: [eframe::Renderer; 2] = [eframe::Renderer::Wgpu, eframe::Renderer::Glow];
-
-/// Opens a window on a scene, and stays until it is closed.
-///
-/// # Errors
-///
-/// Why there is no window, in one line.
-pub fn run(path: &Path) -> Result<(), String> {
-    let mut refusals = Vec::new();
-    for renderer in RENDERERS {
-        match window(path, renderer) {
-            Err(error) if is_refusal(&error) => refusals.push(error.to_string()),
-            ended => return ended.map_err(|error| error.to_string()),
-        }
-    }
-    Err(refusals.join("; "))
-}
-
-/// Whether another renderer may serve.
-fn is_refusal(error: &eframe::Error) -> bool {
-    match error {
-        eframe::Error::Wgpu(_)
-        | eframe::Error::Glutin(_)
-        | eframe::Error::NoGlutinConfigs(..)
-        | eframe::Error::OpenGL(_) => true,
-        eframe::Error::AppCreation(_)
-        | eframe::Error::Winit(_)
-        | eframe::Error::WinitEventLoop(_) => false,
-    }
-}
-
-fn window(path: &Path, renderer: eframe::Renderer) -> eframe::Result {
-    let place = memory::usual_place();
-    let remembered = place.as_deref().map(Memory::read).unwrap_or_default();
-    let viewport = egui::ViewportBuilder::default()
-        .with_title(title(path))
-        .with_app_id("sdfc-view")
-        .with_inner_size(remembered.window.unwrap_or([1200.0, 760.0]))
-        .with_min_inner_size([480.0, 320.0]);
-    let options = eframe::NativeOptions { viewport, renderer, ..eframe::NativeOptions::default() };
-    let path = path.to_owned();
-    let create: eframe::AppCreator<'_> = Box::new(move |creation| {
-        let app = App::new(&creation.egui_ctx, &path, place)?;
-        Ok(Box::new(app))
-    });
-    eframe::run_native("sdfc-view", options, create)
-}
-
-fn title(path: &Path) -> String {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    format!("{name} · sdfc")
-}
-
-/// The window's state that is not the scene's.
+/// What is shown and chosen, whichever window it is in.
 pub struct App {
     session: Session,
+    /// The window that is woken when there is something to show.
+    context: Arc<Mutex<Context>>,
+    monitor: Option<Monitor>,
     canvas: Canvas,
     clipboard: Option<arboard::Clipboard>,
     remark: Option<(String, Instant)>,
@@ -95,7 +47,6 @@ pub struct App {
     /// Where that is kept.
     place: Option<PathBuf>,
     last_frame: Instant,
-    context: Option<Context>,
 }
 
 /// What is open.
@@ -123,14 +74,17 @@ impl App {
     ///
     /// As [`Session::open`].
     pub fn new(ctx: &Context, path: &Path, place: Option<PathBuf>) -> std::io::Result<Self> {
-        style::apply(ctx);
         let memory = place.as_deref().map(Memory::read).unwrap_or_default();
-        style::set_light(ctx, memory.light);
-        let woken = ctx.clone();
-        let mut session = Session::open(path, Arc::new(move || woken.request_repaint()))?;
+        dress(ctx, &memory);
+        let context = Arc::new(Mutex::new(ctx.clone()));
+        let woken = Arc::clone(&context);
+        let wake = move || context_of(&woken).request_repaint();
+        let mut session = Session::open(path, Arc::new(wake))?;
         recall(&memory, &mut session);
         Ok(Self {
             session,
+            context,
+            monitor: None,
             canvas: Canvas::default(),
             clipboard: None,
             remark: None,
@@ -140,8 +94,24 @@ impl App {
             memory,
             place,
             last_frame: Instant::now(),
-            context: None,
         })
+    }
+
+    /// Goes on in another window, since the device of the one before was lost.
+    fn enter(&mut self, ctx: &Context) {
+        dress(ctx, &self.memory);
+        // What had been handed to the device is gone with it.
+        self.canvas = Canvas::default();
+        *self.context.lock().unwrap_or_else(PoisonError::into_inner) = ctx.clone();
+        self.session
+            .remarks
+            .push("the window's device was lost: this is another window".to_owned());
+    }
+
+    /// Remembers what there is to remember.
+    fn leave(&mut self) {
+        let ctx = context_of(&self.context);
+        self.remember(&ctx);
     }
 
     /// The scene.
@@ -159,6 +129,7 @@ impl App {
         let ctx = ui.ctx().clone();
         self.session.poll();
         self.take_dropped(&ctx);
+        self.note_monitor(&ctx);
         let mut wishes: Vec<Wish> = self.session.remarks.drain(..).map(Wish::Remark).collect();
         self.pass_time(&ctx);
         self.keys(&ctx, &mut wishes);
@@ -203,6 +174,17 @@ impl App {
         }
     }
 
+    /// Says so where the window has come to another monitor: its picture has another number of pixels there.
+    fn note_monitor(&mut self, ctx: &Context) {
+        let now = Monitor::of(ctx);
+        if let (Some(before), Some(now)) = (self.monitor, now)
+            && before != now
+        {
+            self.session.remarks.push(format!("the window is on {now}"));
+        }
+        self.monitor = now.or(self.monitor);
+    }
+
     fn pass_time(&mut self, ctx: &Context) {
         let seconds = self.last_frame.elapsed().as_secs_f64();
         self.last_frame = Instant::now();
@@ -223,7 +205,7 @@ impl App {
     /// Shows another scene, and remembers this one.
     fn open(&mut self, ctx: &Context, path: PathBuf) {
         self.remember(ctx);
-        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(shell::title(&path)));
         self.session.open_other(path);
         recall(&self.memory, &mut self.session);
     }
@@ -317,17 +299,15 @@ impl App {
     }
 }
 
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
-        self.show(ui);
-        self.context = Some(ui.ctx().clone());
-    }
+/// The look, in the theme that was chosen.
+fn dress(ctx: &Context, memory: &Memory) {
+    style::apply(ctx);
+    style::set_light(ctx, memory.light);
+}
 
-    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
-        if let Some(ctx) = self.context.take() {
-            self.remember(&ctx);
-        }
-    }
+fn context_of(shared: &Mutex<Context>) -> Context {
+    // Replaced whole or not at all.
+    shared.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
 /// Puts a scene as it was left.

@@ -10,6 +10,7 @@ use std::process::{ExitCode, Stdio};
 use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc_viewer::app::LOSE_WINDOW;
 
 use screen::{
     Display, PICTURE, SIZE, Scene, Window, differ, expect, is_green, is_red, reds, viewer,
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 11] = [
+    let trials: [(&str, Test); 12] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         ("without_a_scene_an_example_is_shown_and_saved_as_a_picture", example),
         ("any_size_is_survived_and_a_hidden_window_shows_the_newest_text", sizes),
         ("closed_by_the_window_manager_it_remembers", closing),
+        ("a_window_whose_device_is_lost_is_replaced_by_another", lost),
         ("a_still_window_takes_no_processor_time", idle),
         ("without_an_adapter_the_processor_draws_in_a_window", no_adapter),
         ("without_any_driver_it_says_what_to_do", no_driver),
@@ -201,6 +203,27 @@ fn closing(display: Display) -> Result<(), Failed> {
         let memory = std::fs::read_to_string(scene.own().join("sdfc/view.json"))?;
         expect(memory.contains("scene.sdf") && memory.contains("\"eye\""), &memory)?;
     }
+    Ok(())
+}
+
+/// As when a driver is renewed. What was moved in the one window is so in the next.
+fn lost(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(&BALL.replace("sphere(1)", "box([1, 1, 1])"))?;
+    // More frames than it takes to be there, fewer than it takes to drag.
+    let window = Window::open_with(&display, &scene, &[(LOSE_WINDOW, "60")])?;
+    let before = window.settled(|picture| is_red(picture, PLACE))?;
+    window.drag(PLACE, [120, 60])?;
+    let turned = window.settled(|picture| differ(picture, &before, PICTURE) > 2000)?;
+    let place = |step: i32| (PLACE[0] as i32 + step % 30).to_string();
+    for step in 0..120 {
+        window.input(&["mousemove", &place(step), "370"])?;
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    window.arrange("scene.sdf")?;
+    let other = window.settled(|picture| differ(picture, &turned, PICTURE) < 200)?;
+    window.keep(&other, "replaced")?;
+    window.input(&["key", "h"])?;
+    window.settled(|picture| differ(picture, &before, PICTURE) < 200)?;
     Ok(())
 }
 

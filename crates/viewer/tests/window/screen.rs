@@ -153,11 +153,15 @@ impl<'a> Window<'a> {
     ) -> Result<Self, Failed> {
         let viewer = program.stderr(Stdio::null()).spawn()?;
         let window = Self { viewer, display };
-        // Without a window manager nobody gives it the whole screen, or the keyboard.
-        let [width, height] = SIZE.map(|side| side.to_string());
-        window.retry(&["search", "--sync", "--name", title, "windowsize", &width, &height])?;
-        window.retry(&["search", "--name", title, "windowmove", "0", "0", "windowfocus"])?;
+        window.arrange(title)?;
         Ok(window)
+    }
+
+    /// Without a window manager nobody gives it the whole screen, or the keyboard.
+    pub fn arrange(&self, title: &str) -> Result<(), Failed> {
+        let [width, height] = SIZE.map(|side| side.to_string());
+        self.retry(&["search", "--name", title, "windowsize", &width, &height])?;
+        self.retry(&["search", "--name", title, "windowmove", "0", "0", "windowfocus"])
     }
 
     /// As `xdotool` does it to the window.
