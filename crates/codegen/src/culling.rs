@@ -15,7 +15,7 @@ use crate::{Error, Shader, link};
 /// A shader to run before a picture's, on the tiles that it is to draw.
 ///
 /// Its entry points are `mark`, one invocation for each 32 rounds (x), tile of the level (y) and loop (z), to be run for each level from the
-/// highest down, and `list`, one for each tile (x) and loop (z), both in workgroups of 64 by 1. Its bindings are those of the picture, in
+/// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Its bindings are those of the picture, in
 /// place of the pixels storage arrays of words, at 4 `visits`, which the picture reads, and at 5 `marks`, and at 6 the uniform `level`.
 #[derive(Debug)]
 pub struct Culling {

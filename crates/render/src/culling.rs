@@ -1,13 +1,16 @@
 //! What runs before a picture's shader on each tile: which rounds of the scene's loops can matter to its rays.
 
 use crate::{
-    Gpu,
+    Gpu, RenderError,
     blocks::{UNIFORM_BYTES, VIEW_BYTES, uniform_bytes},
     gpu::{WORKGROUP, buffer, compute_pipeline, entry, table},
 };
 
-/// Most rounds of a loop that the list of one tile of eight by eight pixels holds; where more can matter, all are visited.
-const CAPACITY: u32 = 256;
+/// Most rounds of a loop that the lists of one tile of eight by eight pixels hold together; where more can matter, all are visited.
+const CAPACITY: u32 = 512;
+/// What a tile's record begins with, and for how many slices of its rays it has room, see `visit_layout.wgsl`.
+const RECORD_HEAD: u32 = 3;
+const MOST_SLICES: u32 = 8;
 /// Most bytes of lists, and of marks, for the tiles that are drawn at once.
 const MOST_BYTES: u64 = 64 << 20;
 /// Binding of the lists of constants, of the lists of rounds, and of the marks that these are made from.
@@ -21,7 +24,7 @@ const LEVELS: u32 = 3;
 const LEVEL_BYTES: u64 = 16;
 const WIDER: u32 = 4;
 /// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
-const HEAD: u32 = 4;
+const HEAD: u32 = 5;
 /// Invocations of a workgroup.
 const LANES: u32 = 64;
 /// Rounds to a word.
@@ -98,12 +101,12 @@ impl Culling {
         uniforms: Option<&wgpu::Buffer>,
     ) -> Visits {
         use wgpu::BufferUsages as Usage;
-        let head = self.head();
-        let bytes = 4 * (head.len() as u64 + lowest(tiles) * u64::from(self.stride()));
+        let head = head(&self.rounds);
+        let bytes = 4 * (head.len() as u64 + lowest(tiles) * u64::from(stride(&self.rounds)));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
         let head: Vec<u8> = head.iter().flat_map(|word| word.to_le_bytes()).collect();
         gpu.queue.write_buffer(&lists, 0, &head);
-        let marks = on_all_levels(tiles) * self.mark_bytes();
+        let marks = on_all_levels(tiles) * mark_bytes(&self.rounds);
         let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
         let bind_group = |level| {
             let buffers = [
@@ -134,51 +137,61 @@ impl Culling {
         pass.set_pipeline(&self.mark);
         for (tiles, bind_group) in levels.into_iter().rev() {
             pass.set_bind_group(0, bind_group, &[]);
-            let groups = self.most_words().div_ceil(LANES);
+            let groups = most_words(&self.rounds).div_ceil(LANES);
             pass.dispatch_workgroups(groups, lowest(tiles) as u32, loops);
         }
         pass.set_pipeline(&self.list);
-        pass.dispatch_workgroups((lowest(tiles) as u32).div_ceil(LANES), 1, loops);
+        pass.dispatch_workgroups((lowest(tiles) as u32).div_ceil(LANES), 1, 1);
     }
 
     /// Most pixels of a tile of the picture for which there is room.
     pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
         let bytes = MOST_BYTES.min(limits.max_storage_buffer_binding_size);
-        let left = bytes.saturating_sub(4 * self.head().len() as u64);
+        let left = bytes.saturating_sub(4 * head(&self.rounds).len() as u64);
         // A level has no more tiles than the one below.
-        let marks = u64::from(LEVELS) * self.mark_bytes();
-        let tile = marks.max(4 * u64::from(self.stride()));
+        let marks = u64::from(LEVELS) * mark_bytes(&self.rounds);
+        let tile = marks.max(4 * u64::from(stride(&self.rounds)));
         let tiles = (left / tile).min(u64::from(limits.max_compute_workgroups_per_dimension));
         tiles as u32 * WORKGROUP * WORKGROUP
     }
+}
 
-    /// What the lists begin with: the layout, and the record by which all rounds are visited.
-    fn head(&self) -> Vec<u32> {
-        let loops = self.rounds.len() as u32;
-        let all: u32 = self.rounds.iter().sum();
-        let mut head = vec![HEAD + 2 * loops + all, self.stride(), CAPACITY, self.most_words()];
-        let mut first = HEAD + 2 * loops;
-        for &rounds in &self.rounds {
-            head.extend([rounds, first]);
-            first += rounds;
-        }
-        head.extend(self.rounds.iter().flat_map(|&rounds| 0..rounds));
-        head
-    }
+/// Refuses loops of so many rounds that the adapter has no room for what is listed of a single tile.
+pub(crate) fn fits(gpu: &Gpu, rounds: &[u32]) -> Result<(), RenderError> {
+    let what = "lists of what can matter to a tile of the picture";
+    gpu.has_storage(what, 4 * (head(rounds).len() as u64 + u64::from(stride(rounds))))?;
+    gpu.has_storage(what, u64::from(LEVELS) * mark_bytes(rounds))?;
+    gpu.has_workgroups(what, u64::from(most_words(rounds).div_ceil(LANES)))
+}
 
-    /// Words of a tile's record and its lists.
-    fn stride(&self) -> u32 {
-        self.rounds.len() as u32 * (2 + CAPACITY)
+/// What the lists begin with: the layout, and what stands for a slice by which all rounds are visited.
+fn head(rounds: &[u32]) -> Vec<u32> {
+    let loops = rounds.len() as u32;
+    let all: u32 = rounds.iter().sum();
+    let first_record = HEAD + 2 * loops + all;
+    let mut head = vec![first_record, stride(rounds), CAPACITY, most_words(rounds), loops];
+    let mut first = HEAD + 2 * loops;
+    for &rounds in rounds {
+        head.extend([rounds, first]);
+        first += rounds;
     }
+    head.extend(rounds.iter().flat_map(|&rounds| 0..rounds));
+    head
+}
 
-    fn most_words(&self) -> u32 {
-        self.rounds.iter().max().map_or(1, |rounds| rounds.div_ceil(WORD).max(1))
-    }
+/// Words of a tile's record and its lists.
+fn stride(rounds: &[u32]) -> u32 {
+    RECORD_HEAD + rounds.len() as u32 * (2 * MOST_SLICES + CAPACITY)
+}
 
-    /// Bytes of a tile's marks.
-    fn mark_bytes(&self) -> u64 {
-        4 * self.rounds.len() as u64 * u64::from(self.most_words())
-    }
+/// Words of the marks of the longest loop.
+fn most_words(rounds: &[u32]) -> u32 {
+    rounds.iter().max().map_or(1, |rounds| rounds.div_ceil(WORD).max(1))
+}
+
+/// Bytes of a tile's marks.
+fn mark_bytes(rounds: &[u32]) -> u64 {
+    4 * rounds.len() as u64 * u64::from(most_words(rounds))
 }
 
 fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout {

@@ -36,6 +36,13 @@ impl Gpu {
     ///
     /// [`RenderError::NoAdapter`] or [`RenderError::NoDevice`].
     pub fn new() -> Result<Self, RenderError> {
+        Self::with_limits(|limits| limits)
+    }
+
+    /// As [`Gpu::new`], with limits that may be lower than the adapter's.
+    pub(crate) fn with_limits(
+        lowered: impl FnOnce(wgpu::Limits) -> wgpu::Limits,
+    ) -> Result<Self, RenderError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
         let instance = wgpu::Instance::new(descriptor);
@@ -45,17 +52,18 @@ impl Gpu {
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|error| RenderError::NoAdapter(error.to_string()))?;
-        Self::open(&adapter)
+        let limits = lowered(adapter.limits());
+        Self::open(&adapter, limits)
     }
 
-    fn open(adapter: &wgpu::Adapter) -> Result<Self, RenderError> {
+    fn open(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self, RenderError> {
         // Timestamps at the borders of a pass need no further feature.
         let wanted = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("sdfc"),
             required_features: wanted,
             // Whole, because the defaults stop at smaller buffers than adapters have.
-            required_limits: adapter.limits(),
+            required_limits: limits,
             ..wgpu::DeviceDescriptor::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
@@ -79,6 +87,24 @@ impl Gpu {
     /// Whether the adapter can tell times of its own.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps
+    }
+
+    /// Refuses a storage buffer that is larger than the adapter can bind.
+    pub(crate) fn has_storage(&self, what: &'static str, bytes: u64) -> Result<(), RenderError> {
+        let limits = self.device.limits();
+        let binding = limits.max_storage_buffer_binding_size;
+        at_most(what, bytes, "maxStorageBufferBindingSize", binding)?;
+        at_most(what, bytes, "maxBufferSize", limits.max_buffer_size)
+    }
+
+    /// Refuses more workgroups in a row than the adapter can run.
+    pub(crate) fn has_workgroups(
+        &self,
+        what: &'static str,
+        groups: u64,
+    ) -> Result<(), RenderError> {
+        let limit = self.device.limits().max_compute_workgroups_per_dimension;
+        at_most(what, groups, "maxComputeWorkgroupsPerDimension", limit.into())
     }
 
     /// Runs calls to the device; the first error of any of them becomes the result.
@@ -152,6 +178,15 @@ impl Faults {
 /// The value behind a lock, also after a panic elsewhere: it is replaced whole or not at all.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn at_most(
+    what: &'static str,
+    needed: u64,
+    name: &'static str,
+    limit: u64,
+) -> Result<(), RenderError> {
+    if needed > limit { Err(RenderError::Limit { what, needed, name, limit }) } else { Ok(()) }
 }
 
 fn render_error(error: &wgpu::Error, what: &str) -> RenderError {

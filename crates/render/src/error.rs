@@ -30,6 +30,17 @@ pub enum RenderError {
         /// How many fit.
         limit: usize,
     },
+    /// The scene needs more of something than this adapter has.
+    Limit {
+        /// What it is needed for.
+        what: &'static str,
+        /// How much is needed: bytes of a buffer, or workgroups.
+        needed: u64,
+        /// The limit's name in WebGPU.
+        name: &'static str,
+        /// The limit.
+        limit: u64,
+    },
     /// Another number of per-frame values than the shader was compiled for.
     UniformCount {
         /// How many came.
@@ -57,7 +68,8 @@ impl RenderError {
             | Self::Stalled(_)
             | Self::OutOfMemory(_)
             | Self::Validation(_)
-            | Self::Uniforms { .. } => true,
+            | Self::Uniforms { .. }
+            | Self::Limit { .. } => true,
             Self::Size(_)
             | Self::Samples(_)
             | Self::UniformCount { .. }
@@ -93,6 +105,11 @@ impl fmt::Display for RenderError {
             Self::Uniforms { count, limit } => write!(
                 f,
                 "the scene has {count} per-frame values, this adapter's uniform buffers hold {limit}"
+            ),
+            Self::Limit { what, needed, name, limit } => write!(
+                f,
+                "{what} would take {needed}, and this adapter's `{name}` is {limit}; draw fewer parts in one scene, \
+                 or draw on the processor (`--backend cpu`)"
             ),
             Self::UniformCount { given, expected } => {
                 write!(f, "{given} per-frame values for a shader that reads {expected}")

@@ -101,6 +101,9 @@ impl Pipeline {
         if uniform_count > limit {
             return Err(RenderError::Uniforms { count: uniform_count, limit });
         }
+        let tables_fit = |bytes: &Vec<u8>| gpu.has_storage("the scene's lists", bytes.len() as u64);
+        tables.iter().try_for_each(tables_fit)?;
+        culling.as_ref().map_or(Ok(()), |made| culling::fits(gpu, &made.rounds))?;
         let start = Instant::now();
         let tables = gpu.scoped("the shader's tables", || {
             tables.iter().map(|bytes| table(gpu, bytes)).collect::<Vec<_>>()

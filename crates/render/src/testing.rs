@@ -26,7 +26,7 @@ use std::sync::{
     atomic::{AtomicU32, Ordering},
 };
 
-use crate::Gpu;
+use crate::{Gpu, RenderError};
 
 /// The environment variable that makes tests fail, not be ignored, where there is no adapter.
 pub const REQUIRE_GPU: &str = "SDFC_REQUIRE_GPU";
@@ -37,6 +37,15 @@ pub fn without_gpu() -> bool {
     *WITHOUT.get_or_init(|| {
         ignored(std::env::var_os(REQUIRE_GPU).is_some_and(|v| v == "1"), || Gpu::new().is_ok())
     })
+}
+
+/// Opens the adapter as if it could bind no larger storage buffers.
+///
+/// # Errors
+///
+/// As [`Gpu::new`].
+pub fn with_storage(bytes: u64) -> Result<Gpu, RenderError> {
+    Gpu::with_limits(|limits| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..limits })
 }
 
 /// The environment variable that makes a build with debug assertions lose its device, as if the adapter had been

@@ -72,6 +72,8 @@ fn main() {
     }
     let too_few = Trial::test("lists that lack something show", missing_rounds_show);
     trials.push(too_few.with_ignored_flag(without_gpu));
+    let small = Trial::test("an adapter that is too small is told by its limit", limits_are_named);
+    trials.push(small.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -179,5 +181,24 @@ fn missing_rounds_show() -> Result<(), Failed> {
             return Err("nothing shows".into());
         }
     }
+    Ok(())
+}
+
+/// 150 parts take 4 or 5 KiB as constants, and their lists more than that.
+fn limits_are_named() -> Result<(), Failed> {
+    let scene = scene(&(hard() + OUTSIDE));
+    let program = scene.program();
+    for (bytes, part) in [(1 << 10, "the scene's lists"), (6 << 10, "a tile of the picture")] {
+        let gpu = testing::with_storage(bytes)?;
+        let shader = render_module(program, "auto")?;
+        let made = Pipeline::new(&gpu, shader, program.uniforms.len());
+        let Err(error) = made else { return Err(format!("{bytes} bytes are enough").into()) };
+        let told = error.to_string();
+        if !told.contains(part) || !told.contains("maxStorageBufferBindingSize") {
+            return Err(told.into());
+        }
+    }
+    let gpu = testing::with_storage(1 << 20)?;
+    Pipeline::new(&gpu, render_module(program, "auto")?, program.uniforms.len())?;
     Ok(())
 }

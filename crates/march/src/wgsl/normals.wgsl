@@ -3,7 +3,12 @@
 
 fn picture(pixel: vec2u) -> Pixel {
     let ray = camera_ray(pixel);
-    let found = trace(ray);
+    var found: Trace;
+    if CULLED {
+        found = trace_listed(ray, true);
+    } else {
+        found = trace(ray);
+    }
     var normal = vec3f();
     if found.status == HIT {
         normal = normal_at(ray_point(ray, found.t), -ray.direction);

@@ -66,11 +66,12 @@ fn picture(pixel: vec2u) -> Pixel {
         if SOFT_SHADOWS {
             watched = asked > 0u && view.lights[max(asked, 1u) - 1u].shadow == SHADOW_SOFT;
         }
+        var found: Trace;
         if CULLED {
-            // The tile's lists are for rays from the eye.
-            visit_record = select(WHOLE, own_record, asked == 0u && mirrors == 0u);
+            found = trace_listed(ray, asked == 0u && mirrors == 0u);
+        } else {
+            found = trace(ray);
         }
-        let found = trace(ray);
         if REFLECTIONS {
             if evaluations == 0u {
                 first = found;

@@ -86,7 +86,7 @@ struct Cone {
 
 // Part of its width that a cone is made wider by, so that marches along it end.
 const SLACK: f32 = 0.1;
-// An operand that is not told by so many steps can matter.
+// An operand that is not told by so many steps can matter from there on.
 const MOST_STEPS: u32 = 32;
 
 fn side_of(at: u32) -> u32 {
@@ -114,37 +114,35 @@ fn cone_around(place: vec2u) -> Cone {
     return cone;
 }
 
-fn reaches(cone: Cone, which: u32, round: f32) -> bool {
-    var t = 0.0;
-    for (var step = 0u; step < MOST_STEPS; step++) {
+// Where a round begins to matter to the cone after a place, or one beyond the last where it does not before that.
+fn entry(cone: Cone, which: u32, round: f32, start: f32, last: f32) -> f32 {
+    var t = start;
+    for (var step = 0u; step < MOST_STEPS && t <= last; step++) {
         let point = cone.origin + t * cone.direction;
         let wide = cone.radius + cone.spread * t;
         let free = reach(which, round, point) - wide;
         // Also where it is no number.
         if !(free > SLACK * wide + ROUNDING * (length(cone.origin) + t)) {
-            return true;
+            break;
         }
         t += free / (1.0 + cone.spread);
-        if t > view.t_max {
-            return false;
-        }
     }
-    return true;
+    return t;
 }
 
 // Where the marks of a tile are: those of level 0 come first.
-fn words_of(at: u32, place: vec2u, which: u32, loops: u32) -> u32 {
+fn words_of(at: u32, place: vec2u, which: u32) -> u32 {
     var before = 0u;
     for (var below = 0u; below < at; below++) {
         let counts = counts_of(below);
-        before += loops * counts.x * counts.y;
+        before += visits[LOOPS] * counts.x * counts.y;
     }
     let counts = counts_of(at);
     return (before + (which * counts.y + place.y) * counts.x + place.x) * visits[MOST_WORDS];
 }
 
 @compute @workgroup_size(64)
-fn mark(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+fn mark(@builtin(global_invocation_id) id: vec3u) {
     let word = id.x;
     let which = id.z;
     let all = visits[WHOLE + 2u * which];
@@ -157,48 +155,94 @@ fn mark(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     let cone = cone_around(place);
     var asked = 0xffffffffu >> (32u - min(32u, all - 32u * word));
     if level < HIGHEST {
-        asked = marks[words_of(level + 1u, place / 4u, which, groups.z) + word];
+        asked = marks[words_of(level + 1u, place / 4u, which) + word];
     }
     var bits = 0u;
     while asked != 0u {
         let i = firstTrailingBit(asked);
         asked &= asked - 1u;
-        if reaches(cone, which, f32(32u * word + i)) {
+        if entry(cone, which, f32(32u * word + i), 0.0, view.t_max) <= view.t_max {
             bits |= 1u << i;
         }
     }
-    marks[words_of(level, place, which, groups.z) + word] = bits;
+    marks[words_of(level, place, which) + word] = bits;
 }
 
+// Rays are cut into a slice for each so many rounds that can matter to their tile.
+const WORTH: u32 = 16;
+const MOST_LOOPS: u32 = 8;
+
+// First it is found where the rounds begin to matter; then, slice by slice, which of them matter there.
 @compute @workgroup_size(64)
-fn list(@builtin(global_invocation_id) place: vec3u, @builtin(num_workgroups) counts: vec3u) {
-    let tile = place.x;
-    let which = place.z;
+fn list(@builtin(global_invocation_id) id: vec3u) {
     let tiles = tile_counts();
-    if tile >= tiles.x * tiles.y {
+    if id.x >= tiles.x * tiles.y {
         return;
     }
-    let all = visits[WHOLE + 2u * which];
+    load_frame();
+    let place = vec2u(id.x % tiles.x, id.x / tiles.x);
+    let cone = cone_around(place);
+    let record = visits[FIRST_RECORD] + id.x * visits[RECORD_STRIDE];
+    let loops = visits[LOOPS];
     let capacity = visits[CAPACITY];
-    let record = visits[FIRST_RECORD] + tile * visits[RECORD_STRIDE];
-    let first = record + 2u * counts.z + which * capacity;
-    let words = words_of(0u, vec2u(tile % tiles.x, tile / tiles.x), which, counts.z);
+    var near = view.t_max;
+    var far = 0.0;
     var count = 0u;
-    for (var word = 0u; 32u * word < all; word++) {
-        var bits = marks[words + word];
-        while bits != 0u {
-            if count < capacity {
-                visits[first + count] = 32u * word + firstTrailingBit(bits);
+    var slices = 0u;
+    var slice_length = 0.0;
+    var listed: array<u32, MOST_LOOPS>;
+    for (var turn = 0u; turn <= slices; turn++) {
+        let is_first = turn == 0u;
+        let slice = max(turn, 1u) - 1u;
+        var ends = vec2f(0.0, view.t_max);
+        if !is_first && slices > 1u {
+            // A gradient by differences is taken a little beyond a slice.
+            let exact = slice_ends(slice, slices, near, slice_length);
+            let wide = cone.radius + cone.spread * exact.y;
+            ends = vec2f(max(exact.x - wide, 0.0), min(exact.y + wide, view.t_max));
+        }
+        for (var which = 0u; which < loops; which++) {
+            let all = visits[WHOLE + 2u * which];
+            let words = words_of(0u, place, which);
+            let list = record + FIRST_SLICE + 2u * MOST_SLICES * loops + which * capacity;
+            let first = listed[which];
+            var next = first;
+            for (var word = 0u; 32u * word < all; word++) {
+                var bits = marks[words + word];
+                while bits != 0u {
+                    let round = 32u * word + firstTrailingBit(bits);
+                    bits &= bits - 1u;
+                    let t = entry(cone, which, f32(round), ends.x, ends.y);
+                    if is_first {
+                        near = min(near, t);
+                        far = max(far, min(t, view.t_max));
+                        count++;
+                    } else if t <= ends.y {
+                        if next < capacity {
+                            visits[list + next] = round;
+                        }
+                        next++;
+                    }
+                }
             }
-            count++;
-            bits &= bits - 1u;
+            if !is_first {
+                let at = record + FIRST_SLICE + 2u * (slice * loops + which);
+                if next <= capacity {
+                    visits[at] = next - first;
+                    visits[at + 1u] = list + first;
+                    listed[which] = next;
+                } else {
+                    visits[at] = all;
+                    visits[at + 1u] = visits[WHOLE + 2u * which + 1u];
+                }
+            }
+        }
+        if is_first {
+            slices = clamp(count / WORTH, 1u, MOST_SLICES);
+            slice_length = max(far - near, 0.0) / f32(slices);
         }
     }
-    if count <= capacity {
-        visits[record + 2u * which] = count;
-        visits[record + 2u * which + 1u] = first;
-    } else {
-        visits[record + 2u * which] = all;
-        visits[record + 2u * which + 1u] = visits[WHOLE + 2u * which + 1u];
-    }
+    visits[record + SLICE_COUNT] = slices;
+    visits[record + NEAR] = bitcast<u32>(near);
+    visits[record + SLICE_LENGTH] = bitcast<u32>(slice_length);
 }

@@ -28,7 +28,7 @@ const BOXES_OF_A_TREE: usize = 31;
 /// Leaves of the scene of many kinds.
 const MIXED: usize = 300;
 /// Leaves of the large scenes.
-const SCATTERED: [usize; 4] = [300, 1000, 6000, 20_000];
+const SCATTERED: [usize; 6] = [100, 300, 1000, 3000, 6000, 20_000];
 const CHAINED: [usize; 2] = [301, 1001];
 
 /// Names and texts of scenes that are too large for interpreters.
