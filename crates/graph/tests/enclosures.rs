@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{each_node, graph, steps};
+use common::{each_node_in_shader, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{
@@ -89,7 +89,7 @@ fn values(graph: &Graph, root: NodeId, stretch: [[f64; 3]; 2], param: f64) -> Op
     let used = reachable(graph, &[root]);
     let tame = |lane: &f64| *lane == 0.0 || SIZES.contains(&lane.abs());
     let value = |point| {
-        let all = each_node(graph, point, param);
+        let all = each_node_in_shader(graph, point, param);
         // What large terms leave when they cancel is as rough as they are.
         let mut largest = 1.0_f64;
         for id in &used {

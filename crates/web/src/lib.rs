@@ -23,8 +23,7 @@ mod options;
 #[cfg(target_family = "wasm")]
 mod wasm;
 
-use sdfc::diagnostics::Located;
-use sdfc::{Code, ShaderReflection};
+use sdfc::{Code, DiagnosticRow, ShaderReflection};
 use serde::Serialize;
 
 use options::{Files, Options};
@@ -39,22 +38,32 @@ struct Answer {
     /// As `sdfc compile --reflect` writes it; null with errors.
     reflection: Option<ShaderReflection>,
     /// Findings in order of place.
-    diagnostics: Vec<Row>,
+    diagnostics: Vec<Finding>,
 }
 
-/// A diagnostic, as `sdfc check --json` writes it. Lines and columns count from 1; what has no place has line 0.
+/// A diagnostic.
 #[derive(Debug, Serialize)]
-struct Row {
-    /// Null where the call is wrong, not the scene.
+#[serde(untagged)]
+enum Finding {
+    /// Of the scene.
+    Scene(DiagnosticRow),
+    /// Of the call.
+    Call(Refusal),
+}
+
+/// The keys of a [`DiagnosticRow`]; what has no place has line 0.
+#[derive(Debug, Default, Serialize)]
+struct Refusal {
+    /// Null.
     code: Option<&'static str>,
     severity: &'static str,
     message: String,
-    file: String,
+    file: &'static str,
     line: u32,
     column: u32,
     end_line: u32,
     end_column: u32,
-    help: String,
+    help: &'static str,
 }
 
 /// Compiles a scene. The options are a JSON object, all of whose keys may be left out: `name`, `target`, `emit`,
@@ -75,7 +84,7 @@ fn answer(source: &str, options: Options) -> Answer {
     let front = sdfc::lang::Options { slots: options.slots };
     let shader = options.shader();
     let compiled = sdfc::compile_with(&options.name, source, &Files(options.files), front);
-    let diagnostics = compiled.located().into_iter().map(row).collect();
+    let diagnostics = compiled.rows().into_iter().map(Finding::Scene).collect();
     let Some(scene) = compiled.scene else { return Answer { diagnostics, ..Answer::default() } };
     let written = match scene.write_shader(&shader) {
         Ok(written) => written,
@@ -95,32 +104,8 @@ fn answer(source: &str, options: Options) -> Answer {
 
 /// An error without a place in the scene.
 fn refused(message: String) -> Answer {
-    let row = Row {
-        code: None,
-        severity: "error",
-        message,
-        file: String::new(),
-        line: 0,
-        column: 0,
-        end_line: 0,
-        end_column: 0,
-        help: String::new(),
-    };
-    Answer { diagnostics: vec![row], ..Answer::default() }
-}
-
-fn row(found: Located) -> Row {
-    Row {
-        code: Some(found.code),
-        severity: found.severity,
-        message: found.message,
-        file: found.file,
-        line: found.start.line,
-        column: found.start.column,
-        end_line: found.end.line,
-        end_column: found.end.column,
-        help: found.help,
-    }
+    let found = Refusal { severity: "error", message, ..Refusal::default() };
+    Answer { diagnostics: vec![Finding::Call(found)], ..Answer::default() }
 }
 
 #[cfg(test)]

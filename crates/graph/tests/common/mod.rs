@@ -2,7 +2,9 @@
 
 use proptest::prelude::*;
 use sdfc_graph::eval::fold;
-use sdfc_graph::{Binary, Const, Dim, FrameInput, Graph, Node, NodeId, Ternary, Type, Unary};
+use sdfc_graph::{
+    Binary, Const, Dim, FrameInput, Graph, Node, NodeId, Stage, Ternary, Type, Unary,
+};
 
 pub const UNARY: [Unary; 25] = [
     Unary::Neg,
@@ -164,6 +166,28 @@ impl Build {
 
 /// Each node's value, one node at a time; `None` where it, or what it is made of, is not finite.
 pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const>> {
+    each_node_reading(graph, point, param, |_, value| value)
+}
+
+/// The same of a shader in real arithmetic: what is known before the point is comes to it in f32.
+#[allow(dead_code, reason = "not all tests that share this compare with shaders")]
+pub fn each_node_in_shader(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const>> {
+    each_node_reading(graph, point, param, |[reader, read], value| {
+        if graph.stage(reader) < Stage::Point || graph.stage(read) == Stage::Point {
+            return value;
+        }
+        let lanes: Vec<f64> = value.lanes().iter().map(|&lane| f64::from(lane as f32)).collect();
+        Const::new(value.ty(), &lanes)
+    })
+}
+
+/// Where `as_read` says what a node gets of the value of another.
+fn each_node_reading(
+    graph: &Graph,
+    point: [f64; 3],
+    param: f64,
+    as_read: impl Fn([NodeId; 2], Const) -> Const,
+) -> Vec<Option<Const>> {
     let mut values: Vec<Option<Const>> = Vec::new();
     for id in graph.ids() {
         let node = graph.node(id);
@@ -174,8 +198,9 @@ pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const
         } else {
             None
         };
-        let arguments: Option<Vec<Const>> =
-            graph.arguments(id).map(|argument| values[argument.index()]).collect();
+        let read =
+            |argument: NodeId| values[argument.index()].map(|value| as_read([id, argument], value));
+        let arguments: Option<Vec<Const>> = graph.arguments(id).map(read).collect();
         let value = input.or_else(|| fold(&node, &arguments?));
         values.push(value);
     }
