@@ -28,6 +28,7 @@
 //! Files are at most 4 GiB (offsets are `u32`); the parser refuses far smaller ones.
 
 mod codes;
+mod excerpt;
 mod render;
 mod source;
 

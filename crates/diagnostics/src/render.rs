@@ -1,43 +1,73 @@
 //! From diagnostics to text for people, and to lines and columns for programs.
 
+use std::borrow::Cow;
+
 use codespan_reporting::diagnostic::{Diagnostic as Report, Label, LabelStyle};
-use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term::{self, termcolor};
 
+use crate::excerpt::Excerpts;
 use crate::{Diagnostic, FileId, LineColumn, Severity, Sources, Span};
 
-/// All of them as text with source lines and carets, in the order given.
+/// Characters of a message that are shown at most: names in it may be of any length.
+const MESSAGE: usize = 400;
+
+/// All of them as text with source lines and carets, in the order given. Of lines and messages that are too long for people to read a part
+/// is shown.
 pub fn render(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> String {
     let mut out = if color { termcolor::Buffer::ansi() } else { termcolor::Buffer::no_color() };
     let config = term::Config::default();
     for diagnostic in diagnostics {
+        let excerpts = Excerpts::around(sources, &places(diagnostic));
+        let report = report(diagnostic, &excerpts);
         // Writing to memory fails only for a span outside its file; the message still counts.
-        if term::emit_to_write_style(&mut out, &config, sources, &report(diagnostic)).is_err() {
-            let line = format!("{}: {}\n", diagnostic.code, diagnostic.message);
+        if term::emit_to_write_style(&mut out, &config, &excerpts, &report).is_err() {
+            let line = format!("{}: {}\n", diagnostic.code, shortened(&diagnostic.message));
             let _ = std::io::Write::write_all(&mut out, line.as_bytes());
         }
     }
     String::from_utf8_lossy(out.as_slice()).into_owned()
 }
 
-fn report(diagnostic: &Diagnostic) -> Report<FileId> {
-    let label = |style, span: Span, message: &str| {
-        Label::new(style, span.file, span.start as usize..span.end as usize).with_message(message)
-    };
+/// Ends of all spans, those of the finding itself first.
+fn places(diagnostic: &Diagnostic) -> Vec<(FileId, usize)> {
+    let noted = diagnostic.notes.iter().filter_map(|note| note.span);
+    let spans = std::iter::once(diagnostic.span).chain(noted);
+    spans.flat_map(|s| [(s.file, s.start as usize), (s.file, s.end as usize)]).collect()
+}
+
+fn report(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> Report<FileId> {
     let mut report = match diagnostic.severity {
         Severity::Error => Report::error(),
         Severity::Warning => Report::warning(),
     };
-    report.labels.push(label(LabelStyle::Primary, diagnostic.span, &diagnostic.label));
-    for note in &diagnostic.notes {
-        match note.span {
-            Some(span) => report.labels.push(label(LabelStyle::Secondary, span, &note.message)),
-            None => report.notes.push(format!("note: {}", note.message)),
+    let mut add = |style, span: Span, message: &str| {
+        let bytes = span.start as usize..span.end as usize;
+        match excerpts.shown(span.file, bytes) {
+            Some(shown) => {
+                let label = Label::new(style, span.file, shown);
+                report.labels.push(label.with_message(shortened(message)));
+            }
+            None => report.notes.push(format!("note: {}", shortened(message))),
+        }
+    };
+    add(LabelStyle::Primary, diagnostic.span, &diagnostic.label);
+    for note in diagnostic.notes.iter() {
+        if let Some(span) = note.span {
+            add(LabelStyle::Secondary, span, &note.message);
         }
     }
+    let placeless = diagnostic.notes.iter().filter(|note| note.span.is_none());
+    report.notes.extend(placeless.map(|note| format!("note: {}", shortened(&note.message))));
     let ways = diagnostic.ways_to_mend();
-    report.notes.extend(ways.iter().map(|help| format!("help: {help}")));
-    report.with_code(diagnostic.code.0).with_message(&diagnostic.message)
+    report.notes.extend(ways.iter().map(|help| format!("help: {}", shortened(help))));
+    report.with_code(diagnostic.code.0).with_message(shortened(&diagnostic.message))
+}
+
+/// A message, without its middle if it is too long to read.
+fn shortened(message: &str) -> Cow<'_, str> {
+    let Some((cut, _)) = message.char_indices().nth(MESSAGE) else { return message.into() };
+    let end = message.char_indices().rev().nth(MESSAGE / 4).map_or(cut, |(at, _)| at).max(cut);
+    format!("{}…{}", &message[..cut], &message[end..]).into()
 }
 
 /// A diagnostic as `check --json` writes it.
@@ -76,24 +106,38 @@ pub fn locate(sources: &Sources, diagnostic: &Diagnostic) -> Located {
     }
 }
 
-impl<'a> Files<'a> for Sources {
-    type FileId = FileId;
-    type Name = &'a str;
-    type Source = &'a str;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Code;
 
-    fn name(&'a self, file: FileId) -> Result<&'a str, Error> {
-        Ok(self.name(file))
+    fn rendered(text: String, span: std::ops::Range<usize>) -> String {
+        let mut sources = Sources::new();
+        let file = sources.add("long.sdf", text);
+        let span = Span::new(file, span.start as u32, span.end as u32);
+        let found = Diagnostic::error(Code::UNKNOWN_NAME, span, "unknown");
+        render(&sources, &[found], false)
     }
 
-    fn source(&'a self, file: FileId) -> Result<&'a str, Error> {
-        Ok(self.text(file))
+    #[test]
+    fn of_a_long_line_the_part_around_the_place_is_shown() {
+        let text = format!("{}wrong{}", "é".repeat(5_000), "ü".repeat(5_000));
+        let shown = rendered(text, 10_000..10_005);
+        assert!(shown.contains("long.sdf:1:5001"), "{shown}");
+        let line = shown.lines().find(|line| line.contains("wrong")).unwrap_or_default();
+        assert!(line.contains("│ …") && line.trim_end().ends_with('…'), "{shown}");
+        let caret = shown.lines().find(|line| line.contains("^^^^^")).unwrap_or_default();
+        let column = |line: &str, what| line.find(what).map(|at| line[..at].chars().count());
+        assert_eq!(column(line, "wrong"), column(caret, "^^^^^"), "{shown}");
+        assert!(shown.len() < 1_000, "{} bytes", shown.len());
     }
 
-    fn line_index(&'a self, file: FileId, offset: usize) -> Result<usize, Error> {
-        Ok(self.line_column(file, offset as u32).line as usize - 1)
-    }
-
-    fn line_range(&'a self, file: FileId, line: usize) -> Result<std::ops::Range<usize>, Error> {
-        self.line_bytes(file, line).ok_or(Error::LineTooLarge { given: line, max: 0 })
+    #[test]
+    fn long_spans_and_messages_end_somewhere() {
+        let shown = rendered("x".repeat(100_000), 5..100_000);
+        assert!(shown.len() < 1_000, "{} bytes", shown.len());
+        let message = "x".repeat(100_000) + " is wrong";
+        assert!(shortened(&message).chars().count() < 600);
+        assert!(shortened(&message).ends_with(" is wrong"));
     }
 }
