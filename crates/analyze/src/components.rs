@@ -41,7 +41,9 @@ impl Components {
             false => self.0.get(&id).copied().unwrap_or(ANY),
         };
         let joined = |ids: &[NodeId]| {
-            ids.iter().fold([0; 4], |all, &id| std::array::from_fn(|i| all[i] | of(id)[i]))
+            ids.iter()
+                .map(|&id| of(id))
+                .fold([0; 4], |all: Seen, seen| std::array::from_fn(|i| all[i] | seen[i]))
         };
         let mixed = |ids: &[NodeId]| [joined(ids).iter().fold(0, |x, y| x | y); 4];
         match graph.node(node) {

@@ -1,12 +1,13 @@
 //! Flat programs of scalar instructions over a small register file.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::op::Op;
 use super::record::Recorder;
 use super::scalarise::{Lanes, scalarise};
 use super::watch::{Unwatched, Watch};
 use super::{FrameValues, Interval, Number, Path};
+use crate::ids::IdSet;
 use crate::{FrameInput, Graph, LoopId, Node, NodeId, Place, reachable, reachable_where};
 
 /// Why nodes cannot be evaluated.
@@ -148,8 +149,8 @@ impl Tape {
     ) -> Result<Self, TapeError> {
         let params = samples.iter().zip(first..).map(|(&id, param)| (graph.node(id), param));
         let recorder = Recorder::of_operator(params.collect());
-        let inputs: FxHashSet<NodeId> = samples.iter().copied().collect();
-        let order = reachable_where(graph, &[root], |id| !inputs.contains(&id));
+        let inputs: IdSet = samples.iter().copied().collect();
+        let order = reachable_where(graph, &[root], |id| !inputs.contains(id));
         Self::record(graph, recorder, &order, &[root])
     }
 

@@ -60,8 +60,15 @@ impl<'p> Elaborator<'p> {
 
 /// A node in which no constant is infinite.
 fn without_infinity(graph: &mut Graph, root: NodeId) -> NodeId {
+    let order = reachable(graph, &[root]);
+    let is_finite = |id: &NodeId| {
+        graph.as_const(*id).is_none_or(|value| value.lanes().iter().all(|lane| lane.abs() <= FAR))
+    };
+    if order.iter().all(is_finite) {
+        return root;
+    }
     let mut finite: FxHashMap<NodeId, NodeId> = FxHashMap::default();
-    for id in reachable(graph, &[root]) {
+    for id in order {
         let new = match graph.as_const(id) {
             Some(value) => {
                 let lanes = value.lanes().map(|lane| lane.clamp(-FAR, FAR));
