@@ -2,8 +2,8 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
-    Bounds, Dim, ExpandError, Expander, Graph, MOST_HITS, NodeId, Param, Program, Rays, Scene,
-    Settings, Shadow, ShapeId, fold_transforms, gradient, uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, Settings,
+    Shadow, ShapeId, fold_transforms, gradient, uniforms,
 };
 
 use crate::clip::clip;
@@ -172,12 +172,7 @@ fn flatten(
     let qualities = Qualities::of_scene(graph, root, &params);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
-    let stating = graph.shape_ids().filter(|&shape| !graph.shape(shape).hits.is_empty()).count();
-    let is_apart = stating < MOST_HITS;
-    let mut apart = match is_apart {
-        true => parts(graph, &mut expander, &qualities, root, point)?,
-        false => Parts::default(),
-    };
+    let mut apart = parts(graph, &mut expander, &qualities, root, point)?;
     let rolls = match writing {
         Writing::Auto => cost(graph, &[field.distance]).operations > most_inline(&program.settings),
         Writing::Inline => false,
@@ -224,10 +219,7 @@ fn flatten(
         ray: cost(graph, &asked),
         marched: cost(graph, marched.as_slice()),
         closed: apart.closed.iter().map(|part| part.shape).collect(),
-        open: match is_apart {
-            true => apart.open.iter().map(|part| part.shape).collect(),
-            false => vec![root],
-        },
+        open: apart.open.iter().map(|part| part.shape).collect(),
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         uneven: uneven(graph, &qualities, root),

@@ -366,6 +366,11 @@ impl Graph {
         self.shapes[id.index()].material = material;
     }
 
+    /// States where a ray is inside an instance: intervals along it, as [`Shape::hits`] says.
+    pub fn set_hits(&mut self, id: ShapeId, hits: Vec<[NodeId; 2]>) {
+        self.shapes[id.index()].hits = hits;
+    }
+
     /// Names a shape after the scene's `let`; the first name stays.
     pub fn name_shape(&mut self, id: ShapeId, name: &str) {
         let shape = &mut self.shapes[id.index()];

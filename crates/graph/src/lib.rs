@@ -84,6 +84,6 @@ pub use scene::{
     Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
     Settings, Shadow, Sky,
 };
-pub use shape::{Arg, Contract, FAR, MOST_HITS, MaterialRule, Shape, SidePromise};
+pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};
 pub use walk::{reachable, reachable_where};

@@ -58,9 +58,6 @@ pub enum MaterialRule {
     Stated([NodeId; 6]),
 }
 
-/// So many instances of a scene are given `hits`, and no more: asking a ray for each of so many takes longer than marching it.
-pub const MOST_HITS: usize = 1000;
-
 /// One shape instance.
 #[derive(Clone, Debug)]
 pub struct Shape {

@@ -2,27 +2,70 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
-use sdfc_graph::{Dim, FAR, Graph, MOST_HITS, NodeId, reachable};
+use sdfc_graph::{Dim, FAR, Graph, NodeId, ShapeId, reachable};
 
+use super::report::Frame;
 use super::value::Value;
 use super::{Elaborator, Env, Outcome};
-use crate::hir::ShapeDef;
+use crate::hir::{Hits, ShapeDefId};
+
+/// Instances of one definition that are asked for their `hits` at most: among more, marching costs a ray less than
+/// meeting each.
+const MOST_INSTANCES: usize = 512;
+
+/// Instances of one definition that may be asked where rays meet them.
+#[derive(Default)]
+pub(super) struct Waiting<'p> {
+    instances: Vec<Unasked<'p>>,
+    too_many: bool,
+}
+
+/// An instance, with what its clause may name and the calls that built it.
+struct Unasked<'p> {
+    shape: ShapeId,
+    env: Env<'p>,
+    frames: Vec<Frame<'p>>,
+}
 
 impl<'p> Elaborator<'p> {
-    /// The intervals of a ray whose origin is the point of the level and whose direction is that of the next. Of a
-    /// shape that is built anew at each point nothing is asked, nor of more than [`MOST_HITS`].
-    pub(super) fn hits(
-        &mut self,
-        env: &mut Env<'p>,
-        definition: &'p ShapeDef,
-        level: u16,
-    ) -> Outcome<Vec<[NodeId; 2]>> {
-        let is_asked = level == 0 && self.hits_asked < MOST_HITS;
-        let Some(stated) = definition.hits.as_ref().filter(|_| is_asked) else {
-            return Ok(Vec::new());
-        };
-        self.hits_asked += 1;
-        let [origin, direction] = [level, level + 1].map(|l| self.graph.point(l, Dim::Three));
+    /// Lets an instance wait until it is known how many there are. Of a shape that is built anew at each point, or in
+    /// each round of a loop, nothing is asked.
+    pub(super) fn may_be_hit(&mut self, id: ShapeDefId, shape: ShapeId, env: Env<'p>) {
+        let definition = self.program.shapes.get(id.0 as usize);
+        let is_asked = definition.is_some_and(|definition| definition.hits.is_some());
+        if !is_asked || self.graph.shape(shape).level > 0 || self.loop_depth > 0 {
+            return;
+        }
+        let waiting = self.waiting.entry(id).or_default();
+        waiting.too_many |= waiting.instances.len() == MOST_INSTANCES;
+        if waiting.too_many {
+            waiting.instances = Vec::new();
+        } else {
+            waiting.instances.push(Unasked { shape, env, frames: self.frames.clone() });
+        }
+    }
+
+    /// Asks all that wait.
+    pub(super) fn ask_hits(&mut self) {
+        for (id, waiting) in std::mem::take(&mut self.waiting) {
+            let definition = self.program.shapes.get(id.0 as usize);
+            let Some(stated) = definition.and_then(|definition| definition.hits.as_ref()) else {
+                continue;
+            };
+            for Unasked { shape, mut env, frames } in waiting.instances {
+                let outer = std::mem::replace(&mut self.frames, frames);
+                // What is wrong has been said.
+                if let Ok(hits) = self.hits(&mut env, stated) {
+                    self.graph.set_hits(shape, hits);
+                }
+                self.frames = outer;
+            }
+        }
+    }
+
+    /// The intervals of a ray whose origin is the point of level 0 and whose direction is that of level 1.
+    fn hits(&mut self, env: &mut Env<'p>, stated: &'p Hits) -> Outcome<Vec<[NodeId; 2]>> {
+        let [origin, direction] = [0, 1].map(|level| self.graph.point(level, Dim::Three));
         env.set(stated.origin.0 as usize, Value::Node(origin));
         env.set(stated.direction.0 as usize, Value::Node(direction));
         let span = stated.value.span;

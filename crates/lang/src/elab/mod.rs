@@ -31,6 +31,8 @@ mod special;
 mod text;
 mod value;
 
+use std::collections::BTreeMap;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
 use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
@@ -201,10 +203,10 @@ struct Elaborator<'p> {
     in_clause: bool,
     /// `bounds(a)` was asked for since this was last set to false.
     asked_bounds: bool,
+    /// Shapes that rays may meet in closed form, by definition.
+    waiting: BTreeMap<hir::ShapeDefId, hits::Waiting<'p>>,
     /// Params that stand for literals.
     offer: Offer,
-    /// How many shapes were asked where rays are inside them.
-    hits_asked: usize,
     /// How many loops the body at hand lies in.
     loop_depth: u8,
     /// How often their rounds run it.
@@ -234,8 +236,8 @@ impl<'p> Elaborator<'p> {
             missing: None,
             in_clause: false,
             asked_bounds: false,
+            waiting: BTreeMap::new(),
             offer: Offer::new(first_literal),
-            hits_asked: 0,
             loop_depth: 0,
             loop_rounds: 1,
         }

@@ -112,7 +112,6 @@ impl<'p> Elaborator<'p> {
         if let Some((_, constant)) = continuation {
             formula = self.graph.continued(point, nearest, formula, constant);
         }
-        let hits = self.hits(&mut env, definition, level)?;
         let shape = Shape {
             definition: name,
             dim: definition.dim,
@@ -120,13 +119,17 @@ impl<'p> Elaborator<'p> {
             args,
             formula,
             contract,
-            hits,
+            hits: Vec::new(),
             material,
             children: Vec::new(),
             depth: 1,
             name: None,
         };
-        self.add_shape(shape, span)
+        let built = self.add_shape(shape, span)?;
+        if let Value::Shape(shape) = built {
+            self.may_be_hit(id, shape, env);
+        }
+        Ok(built)
     }
 
     /// The bounds beyond which a formula is to be continued, and how fast.

@@ -3,7 +3,8 @@
 use sdfc::bind::Bindings;
 use sdfc::{Code, Scene, ShaderOptions, wgpu};
 
-const SCENE: &str =
+/// A ball and a block, blended.
+pub const SCENE: &str =
     "param r = 0.6 in 0.1..1\nunion(sphere(r), box(0.8).translate(x: 0.9), blend: smooth(0.3))";
 const SHADER: &str = "
 @group(0) @binding(0) var<storage, read_write> distances: array<f32>;
@@ -14,6 +15,15 @@ fn slice(@builtin(global_invocation_id) id: vec3u) {
 }";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    for row in slice(0.8)?.chunks(64) {
+        let inside = |distance: &f32| if *distance < 0.0 { '#' } else { '.' };
+        println!("{}", row.iter().map(inside).collect::<String>());
+    }
+    Ok(())
+}
+
+/// Distances in 24 rows of 64, with a ball of this radius.
+pub fn slice(r: f64) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
@@ -69,7 +79,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
 
     // A frame: params move without a recompile.
-    field.set("r", 0.8)?;
+    field.set("r", r)?;
     field.upload(&queue);
     let mut encoder = device.create_command_encoder(&Default::default());
     {
@@ -86,9 +96,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let bytes = readable.slice(..).get_mapped_range()?;
     let (words, _) = bytes.as_chunks::<4>();
-    for row in words.chunks(64) {
-        let inside = |word: &[u8; 4]| if f32::from_le_bytes(*word) < 0.0 { '#' } else { '.' };
-        println!("{}", row.iter().map(inside).collect::<String>());
-    }
-    Ok(())
+    Ok(words.iter().map(|word| f32::from_le_bytes(*word)).collect())
 }

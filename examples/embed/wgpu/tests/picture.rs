@@ -1,10 +1,14 @@
-//! The program's picture against that of `sdfc render`.
+//! The program's picture against that of `sdfc render`, and the small program's distances against the processor's.
 #![allow(missing_docs)]
 
 use embed_wgpu::{Camera, Renderer, SCENES, open};
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::render::testing;
 use sdfc::{Backend, PictureOptions, Scene, unwatched};
+
+#[path = "../examples/slice.rs"]
+#[allow(dead_code, reason = "its main is not called")]
+mod slice;
 
 const SIZE: [u32; 2] = [160, 120];
 /// Steps of 1/255.
@@ -13,8 +17,12 @@ const MOST: u8 = 2;
 const EDGES: usize = 5;
 
 fn main() {
-    let test = Trial::test("two_scenes_in_one_shader_are_drawn_as_sdfc_draws_them", same_picture);
-    let tests = vec![test.with_ignored_flag(testing::without_gpu())];
+    let tests = [
+        Trial::test("two_scenes_in_one_shader_are_drawn_as_sdfc_draws_them", same_picture),
+        Trial::test("a_slice_is_that_of_the_processor", same_slice),
+    ];
+    let ignored = testing::without_gpu();
+    let tests = tests.into_iter().map(|test| test.with_ignored_flag(ignored)).collect();
     libtest_mimic::run(&Arguments::from_args(), tests).exit();
 }
 
@@ -56,4 +64,20 @@ fn same_picture() -> Result<(), Failed> {
         return Err(format!("{count} of {all} pixels differ by more than {MOST}/255").into());
     }
     Ok(())
+}
+
+fn same_slice() -> Result<(), Failed> {
+    let sliced = slice::slice(0.5)?;
+    let scene = Scene::from_source("scene.sdf", slice::SCENE)?;
+    let mut frame = scene.defaults();
+    scene.set(&mut frame, "r", 0.5)?;
+    let mut field = scene.field(&frame)?;
+    for (i, &distance) in sliced.iter().enumerate() {
+        let [x, y] = [i % 64, i / 64].map(|i| i as f64);
+        let expected = field.distance([(x - 32.0) / 16.0, (12.0 - y) / 8.0, 0.0]);
+        if (f64::from(distance) - expected).abs() > 1e-5 {
+            return Err(format!("at {i}: {distance}, not {expected}").into());
+        }
+    }
+    if sliced.len() == 64 * 24 { Ok(()) } else { Err(format!("{} distances", sliced.len()).into()) }
 }
