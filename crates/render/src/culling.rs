@@ -92,6 +92,18 @@ impl Culling {
         Self { mark, list, layout, table, levels: levels.collect(), rounds }
     }
 
+    /// The same with other lists of constants.
+    pub(crate) fn with_lists_of(&self, gpu: &Gpu, shader: &sdfc_codegen::Shader) -> Self {
+        Self {
+            mark: self.mark.clone(),
+            list: self.list.clone(),
+            layout: self.layout.clone(),
+            table: table(gpu, &uniform_bytes(shader.lists())),
+            levels: self.levels.clone(),
+            rounds: self.rounds.clone(),
+        }
+    }
+
     /// Room for so many columns and rows of tiles of a workgroup each.
     pub(crate) fn room(
         &self,

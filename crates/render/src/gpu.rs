@@ -124,6 +124,34 @@ impl Pipeline {
         Ok(ready)
     }
 
+    /// The same pipeline with the lists of another shader, whose text is the same: nothing is compiled. Tables that were
+    /// handed in stay.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError`] if the device has no room for them.
+    pub fn with_lists_of(&self, shader: &sdfc_codegen::Shader) -> Result<Self, RenderError> {
+        let gpu = &self.gpu;
+        let lists = Some(shader.lists()).filter(|lists| !lists.is_empty()).map(uniform_bytes);
+        let (lists, culling) = gpu.scoped("the shader's lists", || {
+            let culling = self.culling.as_ref().zip(shader.culling());
+            (
+                lists.map(|bytes| table(gpu, &bytes)),
+                culling.map(|(culling, made)| culling.with_lists_of(gpu, &made.shader)),
+            )
+        })?;
+        let kept = self.tables.iter().skip(usize::from(lists.is_some())).cloned();
+        Ok(Self {
+            gpu: gpu.clone(),
+            pipeline: self.pipeline.clone(),
+            layout: self.layout.clone(),
+            uniform_count: self.uniform_count,
+            tables: lists.into_iter().chain(kept).collect(),
+            culling,
+            milliseconds: self.milliseconds,
+        })
+    }
+
     /// Time to create the pipeline and to run a first workgroup of it, in milliseconds.
     pub fn milliseconds(&self) -> f64 {
         self.milliseconds

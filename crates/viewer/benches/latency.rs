@@ -7,9 +7,9 @@
 //! A *literal* is another number of the same text. A *structure* differs from all before it: of six more leaves, each is
 //! a ball or a block as the digits of the edit's number say, so that no driver has met the shader.
 //!
-//! The session is looked at 60 times a second, as a window looks at it. `frames` counts those looks from the edit to the
-//! one that has its picture. `watch` goes from the edit to where its text is read; `rest` is what lies between the
-//! stages, waiting for the next look most of all.
+//! The session is looked at when it asks to be, and at most 60 times a second, as a window looks at it. `frames` counts
+//! those looks from the edit to the one that has its picture. `watch` goes from the edit to where its text is read; `rest` is what lies between the
+//! stages, waiting for the next look among it.
 
 #![allow(
     clippy::print_stdout,
@@ -20,6 +20,7 @@
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 use sdfc::render::milliseconds_since;
@@ -92,8 +93,8 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
         // What refines the last picture is over, as it is for someone who looks before he types.
         window.wait(|it| it.picture.as_ref().is_some_and(|picture| picture.finished));
         let text = text(edit);
-        // Edits fall anywhere between two frames.
-        std::thread::sleep(FRAME.mul_f64(f64::from(edit) * 0.618 % 1.0));
+        // Whoever types has not looked for a while.
+        std::thread::sleep(FRAME);
         let start = Instant::now();
         std::fs::write(&path, &text).unwrap();
         all.push(window.shown(&text, start));
@@ -126,14 +127,17 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
 /// A window without one.
 struct Window {
     session: Session,
-    opened: Instant,
+    woken: Receiver<()>,
+    last: Instant,
 }
 
 impl Window {
     fn new(path: &Path) -> Self {
-        let mut session = Session::open(path, Arc::new(|| ())).unwrap();
+        let (sender, woken) = channel();
+        let mut session =
+            Session::open(path, Arc::new(move || sender.send(()).unwrap_or_default())).unwrap();
         session.samples = Some(1);
-        Self { session, opened: Instant::now() }
+        Self { session, woken, last: Instant::now() }
     }
 
     /// Waits for the first picture of a text.
@@ -159,15 +163,15 @@ impl Window {
 
     /// Frame by frame, until it is so; gives how many that took.
     fn wait(&mut self, holds: impl Fn(&Session) -> bool) -> u32 {
-        let start = Instant::now();
         let mut frames = 0;
         while !holds(&self.session) {
-            let session = &mut self.session;
-            assert!(start.elapsed() < PATIENCE, "{:?} {:?}", session.findings, session.trouble);
-            let passed = self.opened.elapsed().as_nanos() % FRAME.as_nanos();
-            std::thread::sleep(FRAME - Duration::from_nanos(passed as u64));
-            session.poll();
-            session.ask(SIZE, false);
+            let woken = self.woken.recv_timeout(PATIENCE);
+            assert!(woken.is_ok(), "{:?} {:?}", self.session.findings, self.session.trouble);
+            std::thread::sleep(FRAME.saturating_sub(self.last.elapsed()));
+            self.last = Instant::now();
+            while self.woken.try_recv().is_ok() {}
+            self.session.poll();
+            self.session.ask(SIZE, false);
             frames += 1;
         }
         frames

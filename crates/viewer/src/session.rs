@@ -91,7 +91,7 @@ pub struct Session {
     pub trouble: Option<String>,
     /// Why the last request gave no picture.
     pub no_picture: Option<String>,
-    /// Whether the text is compiled, and its pipeline is being made.
+    /// Whether a pipeline is being made for the text.
     pub building: bool,
     /// The last good picture.
     pub picture: Option<Box<Picture>>,
@@ -466,8 +466,9 @@ impl Session {
                 self.trouble = Some(format!("{why}{shown}"));
                 self.watch_own_folder();
             }
-            News::Compiled { findings, folders, builds } => {
-                (self.findings, self.building, self.trouble) = (findings, builds, None);
+            News::Builds => self.building = true,
+            News::Compiled { findings, folders, draws: _ } => {
+                (self.findings, self.building, self.trouble) = (findings, false, None);
                 let refused = self.watch.set_folders(&folders);
                 if let Some(folder) = refused.first() {
                     self.trouble = Some(format!("changes in {} are not seen", folder.display()));

@@ -8,12 +8,12 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use notify::event::{AccessKind, AccessMode};
+use notify::event::{AccessKind, AccessMode, ModifyKind, RenameMode};
 use notify::{Config, Event, EventKind, PollWatcher, RecommendedWatcher, RecursiveMode, Watcher};
 
 use crate::mailbox::Mailbox;
 
-/// So long nothing more happens before a change is told: a save is several events.
+/// So long nothing more happens before a change is told that may be the first of several.
 const QUIET: Duration = Duration::from_millis(4);
 /// A change is told after so many quiet times at the latest, however busy the folder is.
 const MOST_WAITS: u32 = 10;
@@ -24,7 +24,8 @@ const POLL: Duration = Duration::from_millis(500);
 pub struct Watch {
     system: Box<dyn Watcher + Send>,
     folders: BTreeSet<PathBuf>,
-    events: Arc<Mailbox<()>>,
+    /// Whether the last one left a whole file behind.
+    events: Arc<Mailbox<bool>>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -35,12 +36,13 @@ impl Watch {
         let system = system(&events);
         let mailbox = Arc::clone(&events);
         let thread = std::thread::spawn(move || {
-            while mailbox.take().is_some() {
+            while let Some(mut is_whole) = mailbox.take() {
                 let mut waits = 0;
-                while waits < MOST_WAITS && mailbox.wait(QUIET) {
+                while !is_whole && waits < MOST_WAITS && mailbox.wait(QUIET) {
                     waits += 1;
-                    if mailbox.take().is_none() {
-                        return;
+                    match mailbox.take() {
+                        Some(next) => is_whole = next,
+                        None => return,
                     }
                 }
                 changed();
@@ -79,12 +81,12 @@ impl std::fmt::Debug for Watch {
 }
 
 /// The system's watcher, or one that looks now and then where there is none.
-fn system(events: &Arc<Mailbox<()>>) -> Box<dyn Watcher + Send> {
-    let handler = |events: &Arc<Mailbox<()>>| {
+fn system(events: &Arc<Mailbox<bool>>) -> Box<dyn Watcher + Send> {
+    let handler = |events: &Arc<Mailbox<bool>>| {
         let events = Arc::clone(events);
         move |event: notify::Result<Event>| {
-            if event.as_ref().is_ok_and(is_change) {
-                events.put(());
+            if let Some(event) = event.ok().filter(is_change) {
+                events.put(is_whole(&event));
             }
         }
     };
@@ -97,6 +99,14 @@ fn system(events: &Arc<Mailbox<()>>) -> Box<dyn Watcher + Send> {
         Ok(watcher) => Box::new(watcher),
         Err(_) => Box::new(notify::NullWatcher),
     }
+}
+
+/// Whether a file is complete with it, so that nothing more need be waited for: closed by its writer, or renamed.
+fn is_whole(event: &Event) -> bool {
+    let closed = EventKind::Access(AccessKind::Close(AccessMode::Write));
+    let renamed =
+        [RenameMode::To, RenameMode::Both].map(|it| EventKind::Modify(ModifyKind::Name(it)));
+    event.kind == closed || renamed.contains(&event.kind)
 }
 
 /// Reading is no change, but what the system tells of it looks the same: this would go on for ever.

@@ -3,7 +3,8 @@
 //! Only the newest order counts: what comes in while one is being worked on replaces what is waiting.
 //! A text that does not compile gives findings and leaves the last model standing. Numbers of the scene are
 //! elaborated as params, so that a changed number gives the same shader with other values: then the running
-//! pipeline is taken over. Two devices take turns, because a device that compiles for one pipeline may hold
+//! pipeline is taken over. Where many parts of a scene are loops, numbers stay what they are: they lie in lists, and the
+//! running pipeline is given others. Two devices take turns, because a device that compiles for one pipeline may hold
 //! up what another draws.
 
 use std::borrow::Cow;
@@ -30,6 +31,8 @@ use crate::probe::Probe;
 
 /// Most of what input controls in depth is bounded by the compiler; this is room for that.
 const STACK: usize = 16 << 20;
+/// Fields of at most so many operations are written out, see `docs/scale.md`.
+const MOST_INLINE: usize = 2000;
 /// A text whose pipeline is not made because a newer one waits: so often in a row at most.
 const MOST_SKIPPED: u32 = 3;
 
@@ -67,9 +70,11 @@ pub enum News {
         findings: Findings,
         /// Where a change can change the scene.
         folders: BTreeSet<PathBuf>,
-        /// Whether a pipeline is made for it.
-        builds: bool,
+        /// Whether it can be drawn, so that more news follows.
+        draws: bool,
     },
+    /// A pipeline is made for it, which may take a while.
+    Builds,
     /// The scene draws nothing.
     Empty,
     /// It can be drawn.
@@ -86,14 +91,18 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Starts it. `wake` is called after each piece of news.
+    /// Starts it. `wake` is called when there is news.
     pub fn new(news: Sender<News>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let orders = Arc::new(Mailbox::default());
         let mailbox = Arc::clone(&orders);
         let mut shop = Shop::new(Arc::clone(&orders), move |letter| {
+            // What follows at once is shown with it.
+            let is_last = !matches!(letter, News::Compiled { draws: true, .. });
             // The receiver is gone only where the window is.
             let _ = news.send(letter);
-            wake();
+            if is_last {
+                wake();
+            }
         });
         let run = move || {
             while let Some(build) = mailbox.take() {
@@ -188,6 +197,8 @@ struct Shop<T> {
     content: u64,
     pipelines: u64,
     skipped: u32,
+    /// Whether parts of the last scene became loops.
+    rolls: bool,
 }
 
 impl<T: FnMut(News)> Shop<T> {
@@ -203,6 +214,7 @@ impl<T: FnMut(News)> Shop<T> {
             content: 0,
             pipelines: 0,
             skipped: 0,
+            rolls: false,
         }
     }
 
@@ -234,24 +246,44 @@ impl<T: FnMut(News)> Shop<T> {
             self.forget_devices();
         }
         let imports = Imports::of(&build.path);
-        let options = Options { slots: build.live };
-        let mut compiled = sdfc::compile_with(&document.name, &document.text, &imports, options);
+        let mut compiled = self.compiled(build, &document, &imports);
         let scene = compiled.scene.take();
         let shapes = scene.as_ref().map(|scene| Shapes::new(scene, &compiled.sources));
         let findings = self.findings(&document, &imports, compiled, scene.is_some());
         let folders = imports.folders();
         self.last = Some(Met { build: build.clone(), text: document.text.clone(), imports });
         match scene {
-            None => (self.tell)(News::Compiled { findings, folders, builds: false }),
+            None => (self.tell)(News::Compiled { findings, folders, draws: false }),
             Some(scene) if !scene.draws() => {
-                (self.tell)(News::Compiled { findings, folders, builds: false });
+                (self.tell)(News::Compiled { findings, folders, draws: false });
                 (self.tell)(News::Empty);
             }
             Some(scene) => {
-                (self.tell)(News::Compiled { findings, folders, builds: true });
+                (self.tell)(News::Compiled { findings, folders, draws: true });
                 self.ready(build, begun, document, scene, shapes.unwrap_or_default());
             }
         }
+    }
+
+    /// With numbers as params, unless the scene's parts become loops without: parts that differ in params are none that
+    /// are alike.
+    fn compiled(&mut self, build: &Build, document: &Document, imports: &Imports) -> Compiled {
+        let compile =
+            |slots| sdfc::compile_with(&document.name, &document.text, imports, Options { slots });
+        if build.live && !self.rolls {
+            let moving = compile(true);
+            let may_roll = |scene: &Scene| scene.program().graph.len() > MOST_INLINE;
+            if !moving.scene.as_ref().is_some_and(may_roll) {
+                return moving;
+            }
+            let fixed = compile(false);
+            self.rolls = fixed.scene.as_ref().is_some_and(is_rolled);
+            return if self.rolls { fixed } else { moving };
+        }
+        let fixed = compile(false);
+        // A text with errors says nothing of it.
+        self.rolls &= fixed.scene.as_ref().is_none_or(is_rolled);
+        if build.live && !self.rolls { compile(true) } else { fixed }
     }
 
     /// What the terminal says: of the text as it stands, not of one whose numbers are params.
@@ -342,8 +374,11 @@ impl<T: FnMut(News)> Shop<T> {
         let shader = render_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
         let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
         stages.lower = milliseconds_since(start);
-        let serves = |running: &&Running| running.text == text && running.lists == lists;
-        if let Some(running) = self.running.as_ref().filter(serves) {
+        if let Some(running) = self.running.as_mut().filter(|running| running.text == text) {
+            if running.lists != lists {
+                running.pipeline = Arc::new(running.pipeline.with_lists_of(&shader)?);
+                running.lists = lists;
+            }
             let engine = Engine::Gpu(Arc::clone(&running.pipeline));
             return Ok(Some(Prepared::new(engine, marched, None)));
         }
@@ -357,6 +392,7 @@ impl<T: FnMut(News)> Shop<T> {
                 return on_cpu(scene, wanted, Some(note)).map(Some);
             }
         };
+        (self.tell)(News::Builds);
         let start = Instant::now();
         let pipeline = Pipeline::new(&gpu, shader, marched.program.uniforms.len())?;
         stages.pipeline = Some(milliseconds_since(start));
@@ -402,6 +438,10 @@ impl Prepared {
         };
         Self { engine, method: marched.method, enclosed, note }
     }
+}
+
+fn is_rolled(scene: &Scene) -> bool {
+    !scene.report().rolled.is_empty()
 }
 
 fn on_cpu(scene: &Scene, wanted: &str, why: Option<String>) -> Result<Prepared, Error> {
@@ -569,7 +609,11 @@ pub(crate) mod tests {
                     return;
                 }
                 News::Failed(why) => panic!("{why}"),
-                News::Ready(_) | News::Compiled { .. } | News::Unreadable(_) | News::Empty => {}
+                News::Ready(_)
+                | News::Compiled { .. }
+                | News::Builds
+                | News::Unreadable(_)
+                | News::Empty => {}
             }
         }
     }

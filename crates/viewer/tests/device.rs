@@ -26,8 +26,9 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 7] = [
+    let tests: [(&str, Test); 8] = [
         ("a_changed_number_makes_no_pipeline", numbers),
+        ("a_changed_number_of_a_scene_of_many_parts_makes_no_pipeline", many),
         ("broken_text_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_smoothed", refined),
         ("all_views_are_drawn_from_one_picture", views),
@@ -116,6 +117,35 @@ fn numbers() -> Result<(), Failed> {
     fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text.contains(" - ")))?;
     expect(fixture.model()?.pipelines == 2, "another structure made no pipeline")?;
     fixture.finish()
+}
+
+/// Its numbers lie in lists, whichever of them it is.
+fn many() -> Result<(), Failed> {
+    let leaf = |place: u32| {
+        let kind = if place.is_multiple_of(2) { "sphere" } else { "box" };
+        let [x, y] = [place % 20, place / 20].map(|it| 0.3 * f64::from(it) - 3.0);
+        format!("{kind}(0.1{place:03}).translate([{x}, {y}, 0.0{place}])\n")
+    };
+    let text: String = (0..400).map(leaf).collect();
+    let text = text + "camera(eye: [0, 0, 12], target: 0, fov: 40deg)\n";
+    let mut fixture = Fixture::new(&text)?;
+    fixture.finish()?;
+    let before = fixture.picture()?.counts.hit;
+    expect(!fixture.model()?.scene.report().rolled.is_empty(), "there are no loops")?;
+    for ball in ["sphere(0.1190)", "sphere(0.1390)"] {
+        let edited = text.replace(ball, "sphere(1.5)");
+        fixture.write(&edited)?;
+        fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text == edited))?;
+        fixture.finish()?;
+        let (model, after) = (fixture.model()?, fixture.picture()?.counts.hit);
+        expect(model.pipelines == 1, "a number made a pipeline")?;
+        expect(after > before + 100, "the ball has not grown")?;
+    }
+    // As it was, from the lists of the first.
+    fixture.write(&text)?;
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.text == text))?;
+    fixture.finish()?;
+    expect(fixture.picture()?.counts.hit == before, "another picture of the same text")
 }
 
 fn broken() -> Result<(), Failed> {

@@ -23,6 +23,9 @@ const FAST: f64 = 4.0;
 /// What one point of the wheel does to the distance: `exp` of it.
 const WHEEL: f64 = -0.0025;
 
+/// Legend and pointer's card stand side by side in this.
+const BOTH: f32 = 620.0;
+
 /// The picture on the screen.
 #[derive(Default)]
 pub struct Canvas {
@@ -225,7 +228,7 @@ pub fn card(ui: &Ui) -> egui::Frame {
         .inner_margin(egui::Margin::symmetric(10, 7))
 }
 
-/// What the colours mean, in the lower right corner.
+/// What the colours mean, in the lower right corner; above what is told of the pointer where both have no room.
 fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
     if *legend == Legend::None {
         return;
@@ -233,8 +236,9 @@ fn legend(ui: &mut Ui, rect: Rect, legend: &Legend) {
     let area = egui::Area::new(ui.scope_id().with("legend"))
         .order(egui::Order::Middle)
         .interactable(false);
+    let lift = if rect.width() < BOTH { 94.0 } else { 10.0 };
     let area =
-        area.pivot(egui::Align2::RIGHT_BOTTOM).fixed_pos(rect.right_bottom() + vec2(-10.0, -10.0));
+        area.pivot(egui::Align2::RIGHT_BOTTOM).fixed_pos(rect.right_bottom() - vec2(10.0, lift));
     area.show(ui.ctx(), |ui| {
         card(ui).show(ui, |ui| match legend {
             Legend::None => {}

@@ -149,7 +149,7 @@ impl App {
             panel.show(ui, |ui| panels::knobs(ui, &mut self.session, &mut wishes));
         }
         if self.shows.source {
-            let size = (ui.available_width() * 0.42).clamp(220.0, 400.0);
+            let size = (ui.available_width() * 0.42).clamp(270.0, 400.0);
             let panel = egui::Panel::left("source").default_size(size).min_size(220.0);
             panel.show(ui, |ui| source::show(ui, &mut self.session, &mut wishes));
         }

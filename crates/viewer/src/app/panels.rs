@@ -138,7 +138,8 @@ fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
 
 fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
     if model.declared().is_empty() {
-        let text = "none: `param r = 0.5 in 0..1` in the scene makes a slider here";
+        let text = "none: `param r = 0.5 in 0..1` in the scene makes a slider here. Under “Text” its numbers can be \
+                    dragged.";
         ui.label(RichText::new(text).small().color(style::of(ui).weak));
         return;
     }

@@ -41,12 +41,15 @@ fn buttons(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<W
     let moved = session.knobs.moved_literals();
     ui.horizontal(|ui| {
         let what = match moved {
+            0 if model.literals().next().is_none() => "no number to drag".to_owned(),
             0 => "drag a number".to_owned(),
             1 => "1 number moved".to_owned(),
             moved => format!("{moved} numbers moved"),
         };
         let color = if moved > 0 { style::of(ui).accent } else { style::of(ui).weak };
-        ui.label(RichText::new(what).small().color(color));
+        let help = "Numbers that decide what is built stay as they are, and so do those of a scene whose many parts are \
+                    loops: change them in the file.";
+        ui.label(RichText::new(what).small().color(color)).on_hover_text(help);
         ui.add_enabled_ui(moved > 0, |ui| {
             if ui.small_button("Write").on_hover_text("Write them into the file.").clicked() {
                 session.write_literals();

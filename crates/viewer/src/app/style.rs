@@ -103,6 +103,8 @@ pub fn apply(ctx: &Context) {
         style.spacing.item_spacing = vec2(8.0, 6.0);
         style.spacing.button_padding = vec2(8.0, 3.0);
         style.spacing.slider_width = 120.0;
+        // Beside what is scrolled, not over it.
+        style.spacing.scroll.floating_allocated_width = 8.0;
         style.spacing.menu_margin = Margin::same(8);
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.4;
