@@ -160,7 +160,7 @@ impl<'a> Window<'a> {
     /// Without a window manager nobody gives it the whole screen, or the keyboard.
     pub fn arrange(&self, title: &str) -> Result<(), Failed> {
         let [width, height] = SIZE.map(|side| side.to_string());
-        self.retry(&["search", "--name", title, "windowsize", &width, &height])?;
+        self.retry(&["search", "--sync", "--name", title, "windowsize", &width, &height])?;
         self.retry(&["search", "--name", title, "windowmove", "0", "0", "windowfocus"])
     }
 
