@@ -101,7 +101,7 @@ fn table(report: &BenchReport) -> String {
         text += &format!(
             "\n{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}\n"
         );
-        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  lower ms  pipeline ms  first picture ms\n";
+        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }
     text
@@ -131,6 +131,8 @@ fn line(variant: &BenchVariant) -> String {
         number(variant.cpu_times_specialized, 6, 2),
         number(variant.evals_per_pixel.map(|evals| evals.mean), 8, 1),
         number(variant.turns_per_eval.map(|turns| turns as f64), 10, 0),
+        number(compile.and_then(|times| times.front), 8, 1),
+        number(compile.and_then(|times| times.analyze), 10, 1),
         number(compile.and_then(|times| times.lower), 8, 1),
         number(compile.and_then(|times| times.pipeline), 11, 1),
         number(variant.first_picture_ms, 16, 1),
