@@ -10,7 +10,7 @@ type Mutant = (&'static str, &'static str, &'static str, &'static str);
 
 const TAKEN_BACK: &str = "if stride > radius + abs(distance) {";
 
-const MUTANTS: [Mutant; 9] = [
+const MUTANTS: [Mutant; 13] = [
     (
         "auto",
         "if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {",
@@ -30,6 +30,20 @@ const MUTANTS: [Mutant; 9] = [
     ),
     ("fixed", "stride *= 0.5;", "stride *= 1.0;", "stability/tips"),
     ("fixed", "if crossed {", "if false {", "stability/tips"),
+    ("segment", "max(-slopes.x, 1e-6)", "max(-slopes.y, 0.5)", "stability/plates"),
+    (
+        "segment",
+        "width(bracket) < hit_within(ray, t, near)",
+        "width(bracket) < 64.0 * near",
+        "stability/bumps",
+    ),
+    ("interval", "if least > 0.0 ||", "if least > -1.0 ||", "stability/plates"),
+    (
+        "interval",
+        "width(bracket) < hit_within(ray, t, near)",
+        "width(bracket) < 64.0 * near",
+        "stability/bumps",
+    ),
 ];
 
 pub fn trials() -> Vec<Trial> {
