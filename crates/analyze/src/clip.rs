@@ -61,7 +61,8 @@ fn inverse(graph: &mut Graph, component: NodeId, rises: NodeId) -> NodeId {
     graph.div(one, slope)
 }
 
-fn is_finite(graph: &Graph, wall: NodeId) -> bool {
+/// Whether a wall of a box is known to be somewhere.
+pub(crate) fn is_finite(graph: &Graph, wall: NodeId) -> bool {
     match graph.as_number(wall) {
         Some(value) => value.is_finite(),
         None => graph.stage(wall) == Stage::Frame && graph.is_finite(wall),

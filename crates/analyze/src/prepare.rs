@@ -12,7 +12,7 @@ use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::lipschitz::Reason;
 use crate::quality::{Qualities, Sides, shapes_below};
-use crate::roll::{Rolled, alike, roll, visits};
+use crate::roll::{Rolled, alike, roll, visits, within};
 use crate::sound::{Uncertified, sound_field};
 use crate::spans::first;
 use crate::uneven::{Uneven, inexact_outside, uneven};
@@ -44,9 +44,14 @@ const MOST_INLINE: [usize; 2] = [2000, 4500];
 
 /// How many operations a field may take that is written out by [`Writing::Auto`].
 pub fn most_inline(settings: &Settings) -> usize {
+    MOST_INLINE[usize::from(leave_the_eye(settings))]
+}
+
+/// Whether the field is asked for elsewhere than on rays from the eye.
+fn leave_the_eye(settings: &Settings) -> bool {
     let shaded = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
     let mirrored = settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
-    MOST_INLINE[usize::from(shaded || mirrored || settings.occlusion.is_some())]
+    shaded || mirrored || settings.occlusion.is_some()
 }
 
 /// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
@@ -207,6 +212,9 @@ fn flatten(
         Some(graph.as_number(*constant).unwrap_or(f64::INFINITY))
     });
     program.visits = visits(graph, &fields, steepest.filter(|_| field.uncertified.is_empty()));
+    if !program.visits.is_empty() && leave_the_eye(&program.settings) {
+        program.within = within(graph, root, &params);
+    }
     let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
     program.rays = rays(&apart, &fields, asked);
     let Rays { hits, marched, clip, .. } = program.rays;

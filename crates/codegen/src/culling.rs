@@ -1,6 +1,6 @@
 //! The shader that finds out, before a picture, which rounds of loops can matter to rays from the eye.
 
-use naga::{GlobalVariable, Handle, Module};
+use naga::{Function, GlobalVariable, Handle, Module};
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Inert, Program, Visit};
 use sdfc_march::{Features, prune_source, stubs};
@@ -15,14 +15,18 @@ use crate::{Error, Shader, link};
 /// A shader to run before a picture's, on the tiles that it is to draw.
 ///
 /// Its entry points are `mark`, one invocation for each 32 rounds (x), tile of the level (y) and loop (z), to be run for each level from the
-/// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Its bindings are those of the picture, in
-/// place of the pixels storage arrays of words, at 4 `visits`, which the picture reads, and at 5 `marks`, and at 6 the uniform `level`.
+/// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Those for cells are `least_of_groups` and
+/// `mark_groups`, one for each group of cells (x), 32 rounds (y) and loop (z), and `list_cells`, one for each cell (x). Its bindings are those
+/// of the picture, in place of the pixels storage arrays of words, at 4 `visits`, which the picture reads, at 5 `marks`, and at 7 `tally`, and
+/// at 6 the uniform `level`.
 #[derive(Debug)]
 pub struct Culling {
     /// The shader.
     pub shader: Shader,
     /// How many rounds each loop has.
     pub rounds: Vec<u32>,
+    /// Whether rays go by cells, and if so for each loop whether no round need be visited outside all cells.
+    pub cells: Option<Vec<bool>>,
 }
 
 /// What finds the rounds that matter, if the program has loops that can do without some.
@@ -31,7 +35,7 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
         return Ok(None);
     }
     let visits: Vec<&Visit> = program.visits.iter().take(stubs::REACHES.len()).collect();
-    let roots: Vec<_> = visits.iter().map(|visit| visit.reach).collect();
+    let roots: Vec<_> = visits.iter().map(|visit| visit.ends).collect();
     let used = used_slots(program, roots.clone());
     let mut module = skeleton(&prune_source(), features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
@@ -46,7 +50,9 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     }
     let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
     let shader = Shader::new(module, parts, features)?;
-    Ok(Some(Culling { shader, rounds: visits.iter().map(|visit| visit.rounds).collect() }))
+    let rounds = visits.iter().map(|visit| visit.rounds).collect();
+    let is_joined = || visits.iter().map(|visit| visit.is_joined).collect();
+    Ok(Some(Culling { shader, rounds, cells: features.roaming().then(is_joined) }))
 }
 
 /// Where functions find which rounds to visit.
@@ -56,6 +62,8 @@ pub(crate) struct Visits {
     pub(crate) lists: Handle<GlobalVariable>,
     /// The record to go by.
     pub(crate) record: Handle<GlobalVariable>,
+    /// What sets that for a place, and how near what is left out can be there; none: it is the same everywhere.
+    pub(crate) at: Option<(Handle<Function>, Handle<GlobalVariable>)>,
     /// The number of each loop in a record.
     loops: FxHashMap<Inert, u32>,
 }
@@ -65,9 +73,11 @@ impl Visits {
     pub(crate) fn of(module: &Module, program: &Program) -> Option<Self> {
         let lists = link::find_variable(module, stubs::VISITS)?;
         let record = link::find_variable(module, stubs::VISIT_RECORD)?;
+        let free = link::find_variable(module, stubs::VISIT_FREE);
+        let at = link::find_function(module, stubs::VISIT_AT).zip(free);
         let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
         let loops = loops.take(stubs::REACHES.len()).collect();
-        Some(Self { lists, record, loops })
+        Some(Self { lists, record, at, loops })
     }
 
     /// The number of a loop in a record, by what it says of its rounds.

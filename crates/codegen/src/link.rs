@@ -52,8 +52,8 @@ pub(crate) fn find_variable(module: &Module, name: &str) -> Option<Handle<Global
     variables.find(|(_, v)| v.name.as_deref() == Some(name)).map(|(handle, _)| handle)
 }
 
-/// Replaces a stub by a function of the same signature. A stub calls nothing and so does what
-/// replaces it, so the arena keeps callees before callers.
+/// Replaces a stub by a function of the same signature. A stub calls nothing, and what replaces it nothing but
+/// what stands before it in the files, so the arena keeps callees before callers.
 pub(crate) fn fill(module: &mut Module, name: &str, filling: Function) -> Result<(), Error> {
     let handle = find_function(module, name)
         .ok_or_else(|| Error::Naga(format!("the ray method has no `{name}`")))?;

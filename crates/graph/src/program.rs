@@ -24,11 +24,15 @@ pub struct Rays {
 pub struct Visit {
     /// What the loop, and those that carry derivatives of it, say of their rounds.
     pub inert: Inert,
-    /// Over the round's variable of depth 0: how far a point is from where the round can matter to a ray, or less. Where this is
-    /// above 0 all along a ray, the ray meets the same without the round.
-    pub reach: NodeId,
+    /// Three numbers over the round's variable of depth 0, none of which changes by more than the point moves. How far a point is
+    /// from where the round can matter to a ray, or less: where this is above 0 all along a ray, the ray meets the same without the
+    /// round. The round's operand, and before it the operand less what blends reach: where that is above the operand of another
+    /// round, the loop's result is the same without this one.
+    pub ends: NodeId,
     /// How many rounds there are.
     pub rounds: u32,
+    /// Whether all between the loop and the field are minima and blends.
+    pub is_joined: bool,
 }
 
 /// Flat math of one scene. No `Sample`, no `MaterialAt` is reachable from any of the roots;
@@ -55,6 +59,8 @@ pub struct Program {
     pub material: Option<[NodeId; 6]>,
     /// Loops of which not all rounds need be visited.
     pub visits: Vec<Visit>,
+    /// Corners of a box around the surfaces that loops are part of, known per frame, where the scene's own bounds are not that.
+    pub within: Option<[NodeId; 2]>,
     /// Per-frame nodes that per-point nodes or settings use: evaluated on the CPU, one uniform slot each,
     /// in this order. As [`crate::uniforms`] lists them: a per-frame `Splat` has none, its argument has.
     pub uniforms: Vec<NodeId>,
@@ -92,7 +98,7 @@ impl Program {
         let fields = [self.distance, self.gradient, self.range, self.slope_range];
         let rays = [hits, closed, marched, clip];
         let material = self.material.into_iter().flatten();
-        let visits = self.visits.iter().map(|visit| visit.reach);
+        let visits = self.visits.iter().map(|visit| visit.ends);
         fields.into_iter().chain(rays).flatten().chain(material).chain(visits).collect()
     }
 }

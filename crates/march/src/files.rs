@@ -216,8 +216,13 @@ pub struct Features {
 }
 
 impl Features {
+    /// Whether there are rays from elsewhere too that visit only rounds that can matter.
+    pub fn roaming(self) -> bool {
+        self.culled && (self.shadows || self.reflections || self.occlusion)
+    }
+
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 16] {
+    pub fn overrides(self) -> [(&'static str, bool); 17] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -254,6 +259,7 @@ impl Features {
             ("FOG_COLOR", fog_color),
             ("PARALLEL", parallel),
             ("CULLED", culled),
+            ("ROAMING", self.roaming()),
         ]
     }
 
@@ -344,6 +350,7 @@ pub fn source_over(field: FieldSource, form: Form, method: &Method, features: Fe
         include_str!("wgsl/features.wgsl"),
         include_str!("wgsl/view.wgsl"),
         VISIT_LAYOUT,
+        include_str!("wgsl/cells_at.wgsl"),
         include_str!("wgsl/visits.wgsl"),
         field,
         method.gradient.unwrap_or(gradient),
@@ -378,7 +385,8 @@ pub fn ray_source(method: &Method) -> String {
     files.join("\n")
 }
 
-/// Text of the shader that runs before a picture with [`Features::culled`]: entry points `mark` and `list`.
+/// Text of the shader that runs before a picture with [`Features::culled`]: entry points `mark` and `list`, for cells
+/// `least_of_groups`, `mark_groups` and `list_cells`.
 pub fn prune_source() -> String {
     let files = [
         include_str!("wgsl/features.wgsl"),
@@ -388,6 +396,8 @@ pub fn prune_source() -> String {
         RAY,
         include_str!("wgsl/view_buffer.wgsl"),
         include_str!("wgsl/prune.wgsl"),
+        include_str!("wgsl/cells_at.wgsl"),
+        include_str!("wgsl/cells.wgsl"),
     ];
     files.join("\n")
 }
@@ -449,14 +459,18 @@ pub mod stubs {
     /// `fn passed(t: f32, distance: f32)`, told each sample of a ray; not supplied by a scene, but dropped where
     /// no shadow is soft.
     pub const PASSED: &str = "passed";
-    /// `fn reach_0(round: f32, p: vec3f) -> f32` and so on, of [`super::prune_source`]: how far a point is from where a round of
-    /// a loop can matter, or less.
+    /// `fn reach_0(round: f32, p: vec3f) -> vec3f` and so on, of [`super::prune_source`]: how far a point is from where a round of
+    /// a loop can matter to a ray, or less; the round's operand less what blends reach; the operand.
     pub const REACHES: [&str; 8] =
         ["reach_0", "reach_1", "reach_2", "reach_3", "reach_4", "reach_5", "reach_6", "reach_7"];
     /// `var<storage, read> visits`, the lists of rounds.
     pub const VISITS: &str = "visits";
     /// `var<private> visit_record: u32`, where in `visits` it stands how many rounds of each loop to visit, and which.
     pub const VISIT_RECORD: &str = "visit_record";
+    /// `fn visit_at(p: vec3f)`, which sets the latter for a place.
+    pub const VISIT_AT: &str = "visit_at";
+    /// `var<private> visit_free: f32`: what is left out is no nearer than that.
+    pub const VISIT_FREE: &str = "visit_free";
     /// `fn sloped(square: f32)`, told the square of each gradient; dropped where nothing is occluded.
     pub const SLOPED: &str = "sloped";
 }

@@ -1,4 +1,7 @@
-//! What runs before a picture's shader on each tile: which rounds of the scene's loops can matter to its rays.
+//! What runs before a picture's shader on each tile: which rounds of the scene's loops can matter to its rays. And what runs once before
+//! a frame where rays leave the tiles: which can matter in each cell of a grid.
+
+use glam::DVec3;
 
 use crate::{
     Gpu, RenderError,
@@ -23,8 +26,27 @@ const LEVELS: u32 = 3;
 /// A uniform is as large as a vector at least, for all backends.
 const LEVEL_BYTES: u64 = 16;
 const WIDER: u32 = 4;
+const TALLY: u32 = 7;
 /// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
-const HEAD: u32 = 5;
+const HEAD: u32 = 6;
+/// Groups of cells, to an axis and in all.
+const GROUP_SIDE: u32 = 8;
+pub(crate) const GROUPS: u32 = GROUP_SIDE * GROUP_SIDE * GROUP_SIDE;
+/// Cells of a group to an axis, where loops have fewer rounds than so many in all, and where they have more.
+const GROUP: [u32; 2] = [2, 4];
+const MANY_ROUNDS: u32 = 4000;
+/// Words of what tells of the cells.
+const ABOUT_CELLS: u32 = 19;
+/// Words of a cell's lists, in the mean.
+const CELL_ROOM: u32 = 64;
+/// Part of the longest side of the box of surfaces by which the cells reach beyond it: a ray that has left them is as far away from it.
+const BEYOND: f64 = 0.06;
+/// Part of the least side of a cell that is a step by what is known of the cell alone.
+const SHORTEST: f64 = 0.5;
+/// A step that nothing is.
+const FAR: f64 = 1e30;
+/// Part of the box's places by which it is made larger: more than rounding in f32 takes from it.
+const BOX_MARGIN: f64 = 1e-5;
 /// Invocations of a workgroup.
 const LANES: u32 = 64;
 /// Rounds to a word.
@@ -35,12 +57,23 @@ const WORD: u32 = 32;
 pub(crate) struct Culling {
     mark: wgpu::ComputePipeline,
     list: wgpu::ComputePipeline,
+    cells: Option<CellStages>,
     layout: wgpu::BindGroupLayout,
     table: wgpu::Buffer,
     /// What tells the shader the level, lowest first.
     levels: Vec<wgpu::Buffer>,
     /// Rounds of each loop.
     rounds: Vec<u32>,
+}
+
+/// The stages for cells, in their order.
+#[derive(Clone, Debug)]
+struct CellStages {
+    least_of_groups: wgpu::ComputePipeline,
+    mark_groups: wgpu::ComputePipeline,
+    list_cells: wgpu::ComputePipeline,
+    /// For each loop, whether no round need be visited outside all cells.
+    is_joined: Vec<bool>,
 }
 
 /// The buffers for so many tiles.
@@ -74,7 +107,7 @@ fn on_all_levels(tiles: [u32; 2]) -> u64 {
 
 impl Culling {
     pub(crate) fn new(gpu: &Gpu, made: sdfc_codegen::Culling, uniform_count: usize) -> Self {
-        let sdfc_codegen::Culling { shader, rounds } = made;
+        let sdfc_codegen::Culling { shader, rounds, cells } = made;
         let table = table(gpu, &uniform_bytes(shader.lists()));
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("culling"),
@@ -89,7 +122,13 @@ impl Culling {
             gpu.queue.write_buffer(&uniform, 0, &level.to_le_bytes());
             uniform
         });
-        Self { mark, list, layout, table, levels: levels.collect(), rounds }
+        let cells = cells.map(|is_joined| CellStages {
+            least_of_groups: pipeline("least_of_groups"),
+            mark_groups: pipeline("mark_groups"),
+            list_cells: pipeline("list_cells"),
+            is_joined,
+        });
+        Self { mark, list, cells, layout, table, levels: levels.collect(), rounds }
     }
 
     /// The same with other lists of constants.
@@ -97,6 +136,7 @@ impl Culling {
         Self {
             mark: self.mark.clone(),
             list: self.list.clone(),
+            cells: self.cells.clone(),
             layout: self.layout.clone(),
             table: table(gpu, &uniform_bytes(shader.lists())),
             levels: self.levels.clone(),
@@ -104,22 +144,28 @@ impl Culling {
         }
     }
 
-    /// Room for so many columns and rows of tiles of a workgroup each.
+    /// Room for so many columns and rows of tiles of a workgroup each, and for cells about a box of surfaces if there is one.
     pub(crate) fn room(
         &self,
         gpu: &Gpu,
         tiles: [u32; 2],
         view: &wgpu::Buffer,
         uniforms: Option<&wgpu::Buffer>,
+        within: Option<[DVec3; 2]>,
     ) -> Visits {
         use wgpu::BufferUsages as Usage;
-        let head = head(&self.rounds);
-        let bytes = 4 * (head.len() as u64 + lowest(tiles) * u64::from(stride(&self.rounds)));
+        let has_cells = self.cells.is_some();
+        let first = first_record(&self.rounds, has_cells);
+        let bytes = 4 * (first + lowest(tiles) * u64::from(stride(&self.rounds)));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
-        let head: Vec<u8> = head.iter().flat_map(|word| word.to_le_bytes()).collect();
-        gpu.queue.write_buffer(&lists, 0, &head);
-        let marks = on_all_levels(tiles) * mark_bytes(&self.rounds);
+        let head = head(&self.rounds, self.cells.as_ref(), within);
+        gpu.queue.write_buffer(&lists, 0, &bytes_of(&head));
+        let groups = if has_cells { u64::from(GROUPS) } else { 0 };
+        let marks = on_all_levels(tiles).max(groups) * mark_bytes(&self.rounds);
         let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
+        let none = bytes_of(&tally(&self.rounds, has_cells));
+        let tally = buffer(gpu, "tally", none.len() as u64, Usage::STORAGE | Usage::COPY_DST);
+        gpu.queue.write_buffer(&tally, 0, &none);
         let bind_group = |level| {
             let buffers = [
                 (0, Some(view)),
@@ -127,6 +173,7 @@ impl Culling {
                 (TABLE, Some(&self.table)),
                 (VISITS, Some(&lists)),
                 (MARKS, Some(&marks)),
+                (TALLY, Some(&tally)),
                 (LEVEL, Some(level)),
             ];
             let bound = buffers.into_iter().filter_map(|(binding, buffer)| {
@@ -140,6 +187,21 @@ impl Culling {
         };
         let bind_groups = self.levels.iter().map(bind_group).collect();
         Visits { lists, tiles, bind_groups }
+    }
+
+    /// Finds what can matter in so many groups of cells; once, since it fills what was empty.
+    pub(crate) fn run_cells(&self, pass: &mut wgpu::ComputePass<'_>, visits: &Visits, groups: u32) {
+        let (Some(cells), Some(bind_group)) = (&self.cells, visits.bind_groups.first()) else {
+            return;
+        };
+        let loops = self.rounds.len() as u32;
+        pass.set_bind_group(0, bind_group, &[]);
+        for stage in [&cells.least_of_groups, &cells.mark_groups] {
+            pass.set_pipeline(stage);
+            pass.dispatch_workgroups(groups.div_ceil(LANES), most_words(&self.rounds), loops);
+        }
+        pass.set_pipeline(&cells.list_cells);
+        pass.dispatch_workgroups((groups * group(&self.rounds).pow(3)).div_ceil(LANES), 1, 1);
     }
 
     /// Finds what can matter to so many columns and rows of tiles.
@@ -159,7 +221,8 @@ impl Culling {
     /// Most pixels of a tile of the picture for which there is room.
     pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
         let bytes = MOST_BYTES.min(limits.max_storage_buffer_binding_size);
-        let left = bytes.saturating_sub(4 * head(&self.rounds).len() as u64);
+        let first = first_record(&self.rounds, self.cells.is_some());
+        let left = bytes.saturating_sub(4 * first);
         // A level has no more tiles than the one below.
         let marks = u64::from(LEVELS) * mark_bytes(&self.rounds);
         let tile = marks.max(4 * u64::from(stride(&self.rounds)));
@@ -169,26 +232,76 @@ impl Culling {
 }
 
 /// Refuses loops of so many rounds that the adapter has no room for what is listed of a single tile.
-pub(crate) fn fits(gpu: &Gpu, rounds: &[u32]) -> Result<(), RenderError> {
+pub(crate) fn fits(gpu: &Gpu, rounds: &[u32], has_cells: bool) -> Result<(), RenderError> {
     let what = "lists of what can matter to a tile of the picture";
-    gpu.has_storage(what, 4 * (head(rounds).len() as u64 + u64::from(stride(rounds))))?;
+    let words = first_record(rounds, has_cells) + u64::from(stride(rounds));
+    gpu.has_storage(what, 4 * words)?;
     gpu.has_storage(what, u64::from(LEVELS) * mark_bytes(rounds))?;
     gpu.has_workgroups(what, u64::from(most_words(rounds).div_ceil(LANES)))
 }
 
-/// What the lists begin with: the layout, and what stands for a slice by which all rounds are visited.
-fn head(rounds: &[u32]) -> Vec<u32> {
+/// What the lists begin with: the layout, what stands for a slice by which all rounds are visited and its lists; the same outside all
+/// cells, and what tells of the cells.
+fn head(rounds: &[u32], cells: Option<&CellStages>, within: Option<[DVec3; 2]>) -> Vec<u32> {
     let loops = rounds.len() as u32;
-    let all: u32 = rounds.iter().sum();
-    let first_record = HEAD + 2 * loops + all;
-    let mut head = vec![first_record, stride(rounds), CAPACITY, most_words(rounds), loops];
+    let (about, end) = (about_cells(rounds), first_record(rounds, cells.is_some()) as u32);
+    let mut head = vec![end, stride(rounds), CAPACITY, most_words(rounds), loops, about];
     let mut first = HEAD + 2 * loops;
     for &rounds in rounds {
         head.extend([rounds, first]);
         first += rounds;
     }
     head.extend(rounds.iter().flat_map(|&rounds| 0..rounds));
+    let Some(cells) = cells else { return head };
+    for (place, &is_joined) in cells.is_joined.iter().enumerate() {
+        let place = HEAD as usize + 2 * place;
+        head.extend([if is_joined { 0 } else { head[place] }, head[place + 1]]);
+    }
+    let Some(within) = within else {
+        head.resize(head.len() + ABOUT_CELLS as usize, 0);
+        return head;
+    };
+    let records = about + ABOUT_CELLS;
+    let lists = records + (2 * loops + 1) * cell_count(rounds);
+    head.extend([loops, group(rounds), records, about - 2 * loops, lists, end]);
+    let grid = grid(within, GROUP_SIDE * group(rounds));
+    let is_joined = cells.is_joined.iter().all(|&is_joined| is_joined);
+    let least_step = if is_joined { SHORTEST * grid[1].recip().min_element() } else { FAR };
+    head.push((least_step as f32).to_bits());
+    head.extend(grid.iter().flat_map(|v| v.as_vec3().to_array()).map(f32::to_bits));
     head
+}
+
+/// How many cells of a group there are to an axis.
+fn group(rounds: &[u32]) -> u32 {
+    GROUP[usize::from(rounds.iter().sum::<u32>() >= MANY_ROUNDS)]
+}
+
+fn cell_count(rounds: &[u32]) -> u32 {
+    GROUPS * group(rounds).pow(3)
+}
+
+/// Where what tells of the cells stands, behind the record of what is outside all of them.
+fn about_cells(rounds: &[u32]) -> u32 {
+    HEAD + 4 * rounds.len() as u32 + rounds.iter().sum::<u32>()
+}
+
+/// Where the first tile's record stands.
+fn first_record(rounds: &[u32], has_cells: bool) -> u64 {
+    let (loops, about) = (rounds.len() as u64, u64::from(about_cells(rounds)));
+    if !has_cells {
+        return about - 2 * loops;
+    }
+    let cell = (2 + u64::from(CELL_ROOM)) * loops + 1;
+    about + u64::from(ABOUT_CELLS) + cell * u64::from(cell_count(rounds))
+}
+
+/// What the stages for cells count from: nothing is filled, no operand known.
+fn tally(rounds: &[u32], has_cells: bool) -> Vec<u32> {
+    let known = if has_cells { GROUPS as usize * rounds.len() } else { 0 };
+    let mut tally = vec![u32::MAX; 1 + known];
+    tally[0] = 0;
+    tally
 }
 
 /// Words of a tile's record and its lists.
@@ -206,6 +319,20 @@ fn mark_bytes(rounds: &[u32]) -> u64 {
     4 * rounds.len() as u64 * u64::from(most_words(rounds))
 }
 
+/// The corner of the first cell and how many there are to a unit of length, then the corners of the box.
+fn grid([lo, hi]: [DVec3; 2], to_axis: u32) -> [DVec3; 4] {
+    let margin = DVec3::splat(BOX_MARGIN * lo.abs().max(hi.abs()).max_element().max(1e-20));
+    let [lo, hi] = [lo - margin, hi + margin];
+    let beyond = DVec3::splat(BEYOND * (hi - lo).max_element());
+    let low = lo - beyond;
+    let side = (hi + beyond - low) / f64::from(to_axis);
+    [low, side.recip(), lo, hi]
+}
+
+fn bytes_of(words: &[u32]) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_ne_bytes()).collect()
+}
+
 fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout {
     let uniform = wgpu::BufferBindingType::Uniform;
     let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
@@ -215,7 +342,7 @@ fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout 
     }
     entries.push(entry(TABLE, storage(true), 0));
     entries.push(entry(LEVEL, uniform, LEVEL_BYTES as usize));
-    entries.extend([VISITS, MARKS].map(|binding| entry(binding, storage(false), 0)));
+    entries.extend([VISITS, MARKS, TALLY].map(|binding| entry(binding, storage(false), 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("culling"),
         entries: &entries,

@@ -7,6 +7,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use glam::DVec3;
+
 use crate::{
     Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
@@ -103,7 +105,9 @@ impl Pipeline {
         }
         let tables_fit = |bytes: &Vec<u8>| gpu.has_storage("the scene's lists", bytes.len() as u64);
         tables.iter().try_for_each(tables_fit)?;
-        culling.as_ref().map_or(Ok(()), |made| culling::fits(gpu, &made.rounds))?;
+        culling
+            .as_ref()
+            .map_or(Ok(()), |made| culling::fits(gpu, &made.rounds, made.cells.is_some()))?;
         let start = Instant::now();
         let tables = gpu.scoped("the shader's tables", || {
             tables.iter().map(|bytes| table(gpu, bytes)).collect::<Vec<_>>()
@@ -182,7 +186,7 @@ impl Pipeline {
         let mut image = Image::new(view.size, view.footprint())?;
         let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
         let clock = if self.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
-        let mut run = Run::new(self, uniforms)?;
+        let mut run = Run::new(self, uniforms, view.within)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
@@ -213,8 +217,9 @@ impl Pipeline {
     /// Runs one workgroup over an empty tile, because software drivers compile when they run.
     fn dispatch_once(&self) -> Result<(), RenderError> {
         let uniforms = vec![[0.0; 4]; self.uniform_count];
-        let mut run = Run::new(self, &uniforms)?;
+        let mut run = Run::new(self, &uniforms, None)?;
         run.make_room(WORKGROUP * WORKGROUP, [1, 1])?;
+        run.cell_groups = 1;
         let empty = vec![0; VIEW_BYTES];
         run.submit(&empty, [1, 1], 0)?;
         // Compiling thousands of leaves can take a software driver many minutes.
@@ -231,6 +236,9 @@ struct Run<'a> {
     /// Both grow with the tiles.
     pixels: Option<PixelBuffers>,
     visits: Option<Visits>,
+    /// The box that cells are about, and how many groups of them are still to be looked at.
+    within: Option<[DVec3; 2]>,
+    cell_groups: u32,
 }
 
 struct PixelBuffers {
@@ -248,7 +256,11 @@ struct Timestamps {
 }
 
 impl<'a> Run<'a> {
-    fn new(pipeline: &'a Pipeline, uniforms: &[[f32; 4]]) -> Result<Self, RenderError> {
+    fn new(
+        pipeline: &'a Pipeline,
+        uniforms: &[[f32; 4]],
+        within: Option<[DVec3; 2]>,
+    ) -> Result<Self, RenderError> {
         use wgpu::BufferUsages as Usage;
         let gpu = &pipeline.gpu;
         gpu.scoped("the frame's buffers", || {
@@ -261,7 +273,8 @@ impl<'a> Run<'a> {
                 uniforms
             });
             let timestamps = gpu.has_timestamps().then(|| Timestamps::new(gpu));
-            Self { pipeline, view, uniforms, timestamps, pixels: None, visits: None }
+            let (pixels, visits, cell_groups) = (None, None, 0);
+            Self { pipeline, view, uniforms, timestamps, pixels, visits, within, cell_groups }
         })
     }
 
@@ -273,8 +286,10 @@ impl<'a> Run<'a> {
             && !self.visits.as_ref().is_some_and(|visits| visits.fit(groups))
         {
             (self.visits, self.pixels) = (None, None);
-            let room = || culling.room(gpu, groups, &self.view, self.uniforms.as_ref());
+            let (uniforms, within) = (self.uniforms.as_ref(), self.within);
+            let room = || culling.room(gpu, groups, &self.view, uniforms, within);
             self.visits = Some(gpu.scoped("lists of what can matter to a tile", room)?);
+            self.cell_groups = within.map_or(0, |_| culling::GROUPS);
         }
         if self.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
             return Ok(());
@@ -322,6 +337,7 @@ impl<'a> Run<'a> {
         let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
         self.make_room(count.max(WORKGROUP * WORKGROUP), groups)?;
         self.submit(&view_bytes(&view.block(tile)), groups, count)?;
+        self.cell_groups = 0;
         self.read(tile, image)
     }
 
@@ -338,6 +354,9 @@ impl<'a> Run<'a> {
                     timestamp_writes: self.timestamps.as_ref().map(Timestamps::about_a_pass),
                 });
                 if let (Some(culling), Some(visits)) = (&self.pipeline.culling, &self.visits) {
+                    if self.cell_groups > 0 {
+                        culling.run_cells(&mut pass, visits, self.cell_groups);
+                    }
                     culling.run(&mut pass, visits, groups);
                 }
                 pass.set_pipeline(&self.pipeline.pipeline);

@@ -123,7 +123,7 @@ impl Scene {
         };
         let visited = match self.program.visits.is_empty() {
             true => "rays visit all",
-            false => "rays from the eye visit what their tile can meet",
+            false => "rays visit what they can meet",
         };
         format!("{parts} parts in {loops}, over {most} operations; {visited}")
     }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::codegen::render_module;
-use sdfc::graph::Program;
+use sdfc::graph::{Program, Type};
 use sdfc::render::{
     Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
@@ -63,6 +63,34 @@ fn main() {
         (
             "mirrors and open light",
             hard() + OUTSIDE + "reflections(1)\nambient_occlusion(radius: 0.5)\n",
+        ),
+        (
+            "mirrors and open light over a floor",
+            format!("plane(y: -2.2)\n{}{OUTSIDE}{SUNNY}", chain("smooth(0.15)"))
+                + "reflections(2)\nambient_occlusion(radius: 1)\n",
+        ),
+        (
+            "soft shadows on a floor",
+            format!("plane(y: -2.5)\n{}{OUTSIDE}", hard())
+                + "sun(direction: [1, 2, 1], shadow: soft(6))\nambient(strength: 0.2)\n",
+        ),
+        (
+            "lamps on a floor",
+            format!("plane(y: -2.5)\n{}{OUTSIDE}", chain("smooth(0.15)"))
+                + "point_light(position: [0.3, 4, 1], strength: 20, shadow: hard)\n\
+                   point_light(position: [5, 3, 3], strength: 20, shadow: soft(10))\n",
+        ),
+        (
+            "shadows of what was cut out and rounded",
+            format!(
+                "plane(y: -2.5)\ndifference(box([3, 2, 3]), union({}).round(0.1))\n{OUTSIDE}{SUNNY}",
+                balls()
+            ),
+        ),
+        (
+            "shadows of what a param moves",
+            format!("param s: length = 0.2 in 0..1\nplane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard())
+                .replace("sphere(0.2)", "sphere(s)"),
         ),
     ];
     let mut trials = Vec::new();
@@ -174,7 +202,8 @@ fn missing_rounds_show() -> Result<(), Failed> {
         let mut program = scene.program().clone();
         for visit in &mut program.visits {
             let part = program.graph.number(1.0);
-            visit.reach = program.graph.add(visit.reach, part);
+            let part = program.graph.splat(Type::Vec3, part);
+            visit.ends = program.graph.add(visit.ends, part);
         }
         let (differing, _) = differing(&scene, &program)?;
         if differing == 0 {

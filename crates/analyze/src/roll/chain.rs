@@ -73,7 +73,8 @@ pub(super) fn chain(graph: &Graph, blends: &mut Blends, end: NodeId) -> Option<C
     Some(Chain::Blend { first, steps })
 }
 
-fn least(graph: &Graph, end: NodeId) -> Chain {
+/// The operands of which a node is the least; the node itself if it is no minimum.
+pub(super) fn least(graph: &Graph, end: NodeId) -> Chain {
     let (mut operands, mut inner) = (Vec::new(), Vec::new());
     let mut seen = sdfc_graph::IdSet::default();
     let mut pending = vec![end];

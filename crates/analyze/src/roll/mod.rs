@@ -11,6 +11,7 @@ mod chain;
 mod near;
 mod template;
 mod visits;
+mod within;
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type};
@@ -19,6 +20,7 @@ use chain::{Blends, Chain};
 use template::{Skeletons, template};
 
 pub(crate) use visits::visits;
+pub(crate) use within::within;
 
 /// Fewer operands of a kind stay written out.
 const FEWEST: usize = 16;

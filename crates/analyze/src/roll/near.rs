@@ -10,7 +10,9 @@ use super::visits::WIDTHS;
 pub(super) enum Path {
     /// Hard minima alone.
     Hard,
-    /// Something else, or a blend.
+    /// Minima and blends: where all that is joined is left out, nothing is seen that is not there.
+    Joined,
+    /// Something else.
     Other,
 }
 
@@ -33,13 +35,14 @@ impl Near {
         let factor = graph.number(WIDTHS * self.scale);
         let more = graph.mul(widest, factor);
         let (lo, hi) = (graph.sub(self.lo, more), graph.add(self.hi, more));
-        let path = if graph.as_number(more) == Some(0.0) { self.path } else { Path::Other };
+        let is_joined = graph.as_number(more) != Some(0.0);
+        let path = if is_joined { self.path.max(Path::Joined) } else { self.path };
         Self { lo, hi, width: graph.number(0.0), path, ..self }
     }
 
     /// Of what a chain was before a blend of this width.
     fn before(self, graph: &mut Graph, width: NodeId) -> Self {
-        Self { width: graph.max(self.width, width), path: Path::Other, ..self }
+        Self { width: graph.max(self.width, width), path: self.path.max(Path::Joined), ..self }
     }
 
     /// Of an argument that is taken as it is.

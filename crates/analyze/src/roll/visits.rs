@@ -47,10 +47,13 @@ pub(crate) fn visits(graph: &mut Graph, roots: &[NodeId], steepest: Option<f64>)
     found.sort_by_key(|&(_, _, rounds)| std::cmp::Reverse(rounds));
     found.truncate(MOST_LOOPS);
     let visit = |(inert, near, rounds): (Inert, Near, u32)| {
-        let limit = near.of_chain(graph, inert.margin);
+        let all = near.of_chain(graph, inert.margin);
+        let blended = graph.sub(all.hi, near.hi);
         let scale = graph.number(near.scale);
         let operand = graph.mul(inert.operand, scale);
-        Visit { inert, reach: graph.sub(operand, limit.hi), rounds }
+        let (reach, least) = (graph.sub(operand, all.hi), graph.sub(operand, blended));
+        let ends = graph.compose(&[reach, least, operand]);
+        Visit { inert, ends, rounds, is_joined: near.path <= Path::Joined }
     };
     found.into_iter().map(visit).collect()
 }

@@ -37,7 +37,10 @@ pub(crate) fn function_of(
     let lowering = Lowering::new(program, inputs, types, &[root]);
     let mut lowering = Lowering { arguments, ..lowering };
     lowering.visit_all()?;
-    let value = lowering.value(root)?;
+    let mut value = lowering.value(root)?;
+    if program.graph.ty(root) == Type::Scalar {
+        value = lowering.with_left_out(value);
+    }
     let result = types::value(lowering.types, program.graph.ty(root));
     Ok(lowering.finish(name, value, result))
 }
@@ -116,6 +119,8 @@ struct Lowering<'a> {
     loops: FxHashMap<LoopId, Vec<Value>>,
     /// What the rounds at hand read, by the depth of their loops.
     rounds: Vec<Option<Round>>,
+    /// Whether loops were written that do not visit all rounds, by a record for the place.
+    leaves_out: bool,
 }
 
 impl<'a> Lowering<'a> {
@@ -126,7 +131,7 @@ impl<'a> Lowering<'a> {
         roots: &[NodeId],
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
-        let (body, values, matrices, words, loops, rounds) = Default::default();
+        let (body, values, matrices, words, loops, rounds, leaves_out) = Default::default();
         let arguments = &["p"];
         Self {
             program,
@@ -141,6 +146,7 @@ impl<'a> Lowering<'a> {
             words,
             loops,
             rounds,
+            leaves_out,
         }
     }
 

@@ -1,8 +1,8 @@
 //! Loops and lists.
 
 use naga::{
-    BinaryOperator, Expression, MathFunction, ScalarKind, SwizzleComponent, UnaryOperator,
-    VectorSize,
+    BinaryOperator, Expression, MathFunction, ScalarKind, Statement, SwizzleComponent,
+    UnaryOperator, VectorSize,
 };
 use sdfc_graph::{Inert, LoopId, Node, NodeId, Place, TableId, Type};
 
@@ -104,10 +104,26 @@ impl Lowering<'_> {
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
     }
 
+    /// The distance, or less where what was left out could be nearer.
+    pub(super) fn with_left_out(&mut self, distance: Value) -> Value {
+        let at = self.inputs.visits.as_ref().and_then(|visits| visits.at);
+        let Some((_, free)) = at.filter(|_| self.leaves_out) else { return distance };
+        let pointer = self.body.declare(Expression::GlobalVariable(free));
+        let free = self.body.load(pointer, "free");
+        self.body.call2(MathFunction::Min, distance, free)
+    }
+
     /// Where the rounds to visit are listed, if they are.
     fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
-        let visits = self.inputs.visits.as_ref()?;
+        let visits = self.inputs.visits.as_ref().filter(|_| self.arguments.len() == 1)?;
         let (lists, record, number) = (visits.lists, visits.record, visits.number(inert)?);
+        if let Some((function, _)) = visits.at
+            && !std::mem::replace(&mut self.leaves_out, true)
+        {
+            let point = self.body.declare(Expression::FunctionArgument(self.first_point));
+            let (arguments, result) = (vec![point], None);
+            self.body.push(Statement::Call { function, arguments, result });
+        }
         let pointer = self.body.declare(Expression::GlobalVariable(record));
         let record = self.body.load(pointer, "record");
         let read = |body: &mut super::Body, offset: u32, name: &str| {

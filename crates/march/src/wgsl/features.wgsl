@@ -27,3 +27,5 @@ override FOG_COLOR: bool;
 override PARALLEL: bool;
 // Rays from the eye visit only those rounds of loops that can matter to them.
 override CULLED: bool;
+// There are others then.
+override ROAMING: bool;

@@ -15,7 +15,7 @@ fn sloped(square: f32) {
 fn open_part(point: vec3f, normal: vec3f) -> f32 {
     if CULLED {
         // What does not matter to a ray from the eye may be near.
-        visit_record = WHOLE;
+        visit_cells(view.occlusion_radius);
     }
     var closed = 0.0;
     var all = 0.0;

@@ -12,41 +12,42 @@
 
 const HIGHEST: u32 = 2;
 
-// Supplied by the scene, as many as it has loops: how far a point is from where a round can matter, or less.
+// Supplied by the scene, as many as it has loops: how far a point is from where a round can matter to a ray, or less; the round's operand
+// less what blends reach; the operand.
 
-fn reach_0(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_0(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_1(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_1(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_2(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_2(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_3(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_3(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_4(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_4(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_5(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_5(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_6(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_6(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach_7(round: f32, p: vec3f) -> f32 {
-    return 0.0;
+fn reach_7(round: f32, p: vec3f) -> vec3f {
+    return vec3f();
 }
 
-fn reach(which: u32, round: f32, p: vec3f) -> f32 {
+fn reach(which: u32, round: f32, p: vec3f) -> vec3f {
     switch which {
         case 0u: {
             return reach_0(round, p);
@@ -120,7 +121,7 @@ fn entry(cone: Cone, which: u32, round: f32, start: f32, last: f32) -> f32 {
     for (var step = 0u; step < MOST_STEPS && t <= last; step++) {
         let point = cone.origin + t * cone.direction;
         let wide = cone.radius + cone.spread * t;
-        let free = reach(which, round, point) - wide;
+        let free = reach(which, round, point).x - wide;
         // Also where it is no number.
         if !(free > SLACK * wide + ROUNDING * (length(cone.origin) + t)) {
             break;

@@ -66,6 +66,8 @@ pub struct View {
     pub reflections: u32,
     /// What is seen in a mirror counts by this factor, 0..1, once more for each mirror.
     pub reflection_strength: f64,
+    /// A box around all surfaces that loops with lists of rounds are part of, if that is known.
+    pub within: Option<[DVec3; 2]>,
 }
 
 /// What is seen where nothing is met, in linear colours.
@@ -151,12 +153,15 @@ impl View {
         let values = evaluate_frame(&program.graph, &nodes, frame);
         let value = |id| value_of(&nodes, &values, id);
         let view = Self::of_settings(settings, &value, bounds, size, pose)?;
-        Ok(view.about(DVec3::from(program.origin)))
+        let bounds = bounds.map(|corners| corners.map(DVec3::from));
+        let within = within(program, frame).or(bounds).filter(|[lo, hi]| (*hi - *lo).is_finite());
+        Ok(Self { within, ..view }.about(DVec3::from(program.origin)))
     }
 
     /// The view with places counted from another.
     fn about(mut self, origin: DVec3) -> Self {
         self.eye -= origin;
+        self.within = self.within.map(|corners| corners.map(|corner| corner - origin));
         for light in &mut self.lights {
             match &mut light.source {
                 ViewSource::Sun(_) => {}
@@ -202,6 +207,7 @@ impl View {
             occlusion: settings.occlusion.map(|found| view_occlusion(found, value)).transpose()?,
             reflections,
             reflection_strength,
+            within: None,
         })
     }
 
@@ -419,6 +425,16 @@ fn positive([value, ..]: [f64; 4], what: &'static str) -> Result<f64, ViewError>
 fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError> {
     let vector = DVec3::new(x, y, z);
     if vector.is_finite() { Ok(vector) } else { Err(ViewError::NotFinite(what)) }
+}
+
+/// What a program says of [`View::within`] at a frame.
+fn within(program: &Program, frame: &FrameValues) -> Option<[DVec3; 2]> {
+    let corners = evaluate_frame(&program.graph, &program.within?, frame);
+    let corner = |place: usize| {
+        let &[x, y, z, _] = corners.get(place)?;
+        Some(DVec3::new(x, y, z))
+    };
+    Some([corner(0)?, corner(1)?])
 }
 
 #[cfg(test)]

@@ -220,9 +220,7 @@ impl Scene {
         if !self.draws() {
             return Err(Error::NothingDrawn);
         }
-        let frame = FrameValues::defaults(self.params());
-        let view = View::new(self.program(), &frame, self.bounds_at(&frame), options.size)?;
-        let heat = Heat::new(self, slots, gpu, options, view)?;
+        let heat = Heat::new(self, slots, gpu, options)?;
         let rounds = options.repetitions.max(1);
         let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
         let mut counted = Counted { frames, drawn: 0, progress };
@@ -276,7 +274,6 @@ impl<'a> Heat<'a> {
         slots: &'a Scene,
         gpu: &'a Gpu,
         options: &'a BenchOptions,
-        view: View,
     ) -> Result<Self, Error> {
         let prepared = |writing| prepare_about(scene.graph(), [0.0; 3], writing);
         let inline = prepared(Writing::Inline)?.program;
@@ -284,6 +281,9 @@ impl<'a> Heat<'a> {
         let pruned = Some(found.program).filter(|_| !found.report.rolled.is_empty());
         let rolled = pruned.clone().map(|program| Program { visits: Vec::new(), ..program });
         let pruned = pruned.filter(|program| !program.visits.is_empty());
+        let frame = FrameValues::defaults(scene.params());
+        let seen = pruned.as_ref().unwrap_or(&inline);
+        let view = View::new(seen, &frame, scene.bounds_at(&frame), options.size)?;
         let auto = match (scene.report().rolled.is_empty(), pruned.is_some()) {
             (true, _) => Kind::Specialized,
             (false, true) => Kind::Pruned,
