@@ -1,4 +1,4 @@
-//! Where a ray enters and leaves a box.
+//! Where a ray enters and leaves boxes.
 
 use sdfc_graph::{FAR, Graph, NodeId, Stage};
 
@@ -49,6 +49,43 @@ pub(crate) fn clip(
         exit = graph.min(exit, far);
     }
     ([enter, exit] != [first, last]).then_some([enter, exit])
+}
+
+/// Those of some boxes that are not known to lie in another.
+pub(crate) fn outermost(graph: &Graph, boxes: &[[NodeId; 2]]) -> Vec<[NodeId; 2]> {
+    let lies_in = |[lo, hi]: [NodeId; 2], [low, high]: [NodeId; 2]| {
+        let at_most = |a: NodeId, b: NodeId| {
+            let (Some(a), Some(b)) = (graph.as_const(a), graph.as_const(b)) else { return a == b };
+            a.lanes().iter().zip(b.lanes()).all(|(a, b)| *a <= b)
+        };
+        at_most(low, lo) && at_most(hi, high)
+    };
+    let mut outermost: Vec<[NodeId; 2]> = Vec::with_capacity(boxes.len());
+    for &one in boxes {
+        if !outermost.iter().any(|&other| lies_in(one, other)) {
+            outermost.retain(|&other| !lies_in(other, one));
+            outermost.push(one);
+        }
+    }
+    outermost
+}
+
+/// From where a ray enters the first of some boxes to where it leaves the last, those left aside that it misses or has behind
+/// it; `None` for no box.
+pub(crate) fn through(graph: &mut Graph, ways: &[[NodeId; 2]]) -> Option<[NodeId; 2]> {
+    if let [] | [_] = ways {
+        return ways.first().copied();
+    }
+    let [zero, far, before] = [0.0, FAR, -FAR].map(|end| graph.number(end));
+    let (mut first, mut last) = (far, before);
+    for &[enter, exit] in ways {
+        let start = graph.max(enter, zero);
+        let passes = graph.le(start, exit);
+        let [start, end] = [graph.select(passes, start, far), graph.select(passes, exit, before)];
+        first = graph.min(first, start);
+        last = graph.max(last, end);
+    }
+    Some([first, last])
 }
 
 /// 1 over a component, whose least size keeps it finite.

@@ -4,11 +4,14 @@
 //! `hits` are asked where the ray is inside them; the ray is carried along by the same maps as the point. What a union
 //! is made of falls into two parts: operands whose intervals are known, and those that are left to march. Intersections
 //! and complements are known where all that they are made of is, and where they take few intervals.
+//!
+//! A floor in a smooth blend is nothing but a floor where all else is farther away than the blend reaches. So an operand without
+//! end is met in closed form there, and the blend as a whole is marched around the rest.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
-    Arg, Contract, Dim, ExpandError, Expander, Graph, MaterialRule, NodeId, Shape, ShapeId,
-    SidePromise,
+    Arg, Blends, Bounds, Contract, Dim, ExpandError, Expander, Graph, MaterialRule, NodeId, Shape,
+    ShapeId, SidePromise, blend_at,
 };
 
 use crate::form::{self, Form};
@@ -47,7 +50,7 @@ impl Parts {
         for part in std::mem::take(&mut self.closed) {
             if positions.binary_search(&position).is_ok() {
                 let Closed { shape, value, point, scale, .. } = part;
-                self.open.push(Open { shape, value, point, scale });
+                self.open.push(Open { shape, value, around: shape, point, scale });
             } else {
                 closed.push(part);
             }
@@ -64,6 +67,8 @@ pub(crate) struct Open {
     pub shape: ShapeId,
     /// Its sound field.
     pub value: NodeId,
+    /// Outside of this it is nothing that is not closed.
+    around: ShapeId,
     /// Where in the scene it is sampled, and by what its distance is multiplied.
     point: NodeId,
     scale: NodeId,
@@ -75,28 +80,39 @@ pub(crate) fn parts(
     graph: &mut Graph,
     expander: &mut Expander,
     qualities: &Qualities,
+    bounds: &mut Bounds,
     root: ShapeId,
     point: NodeId,
 ) -> Result<Parts, ExpandError> {
     let direction = graph.point(1, Dim::Three);
     let scale = graph.number(1.0);
-    let mut pass = Pass { graph, expander, qualities };
+    let mut pass = Pass { graph, expander, qualities, bounds, blends: Blends::default() };
     pass.shape(root, Place { point, direction, scale })
 }
 
-/// The operands that are left to march as one shape, to be asked for its bounds.
-pub(crate) fn rest(graph: &mut Graph, open: &[Open]) -> Option<ShapeId> {
+/// A shape outside of which nothing of some operands is left to march.
+pub(crate) fn around(graph: &mut Graph, open: &[Open]) -> Option<ShapeId> {
     let mut values = Vec::with_capacity(open.len());
     for part in open {
-        let sample = graph.sample(part.shape, part.point);
+        let sample = graph.sample(part.around, part.point);
         values.push(graph.mul(part.scale, sample));
     }
-    let formula = values.into_iter().reduce(|a, b| graph.min(a, b))?;
-    let mut children: Vec<ShapeId> = open.iter().map(|part| part.shape).collect();
+    let formula = least(graph, values)?;
+    let children = open.iter().map(|part| part.around).collect();
+    Some(unnamed(graph, formula, children))
+}
+
+/// The least of some values.
+pub(crate) fn least(graph: &mut Graph, values: impl IntoIterator<Item = NodeId>) -> Option<NodeId> {
+    values.into_iter().reduce(|a, b| graph.min(a, b))
+}
+
+/// A shape of the scene's own point that no one will see.
+fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<ShapeId>) -> ShapeId {
     children.sort_unstable();
     children.dedup();
     let depth = children.iter().map(|&child| graph.shape(child).depth).max().unwrap_or(0);
-    Some(graph.add_shape(Shape {
+    graph.add_shape(Shape {
         definition: "what is marched".to_owned(),
         dim: Dim::Three,
         level: 0,
@@ -108,7 +124,7 @@ pub(crate) fn rest(graph: &mut Graph, open: &[Open]) -> Option<ShapeId> {
         children,
         depth: depth + 1,
         name: None,
-    }))
+    })
 }
 
 /// Where a shape is sampled, and the ray there. Lengths are multiplied by `scale` on the way back.
@@ -139,6 +155,8 @@ struct Pass<'a> {
     graph: &'a mut Graph,
     expander: &'a mut Expander,
     qualities: &'a Qualities,
+    bounds: &'a mut Bounds,
+    blends: Blends,
 }
 
 impl Pass<'_> {
@@ -158,10 +176,61 @@ impl Pass<'_> {
             Some(Found::Parts(_)) | None => {
                 let value = self.value(shape, place)?;
                 let Place { point, scale, .. } = place;
-                let open = vec![Open { shape, value, point, scale }];
-                Ok(Parts { closed: Vec::new(), open })
+                let (closed, around) = self.blended(shape, place)?.unwrap_or((Vec::new(), shape));
+                Ok(Parts { closed, open: vec![Open { shape, value, around, point, scale }] })
             }
         }
+    }
+
+    /// Of a chain of blends with an operand without end whose intervals are known: that operand, and a shape outside of which
+    /// the blend is nothing else.
+    fn blended(
+        &mut self,
+        shape: ShapeId,
+        place: Place,
+    ) -> Result<Option<(Vec<Closed>, ShapeId)>, ExpandError> {
+        let Shape { formula: root, dim, level, .. } = *self.graph.shape(shape);
+        if dim != Dim::Three || level > 0 {
+            return Ok(None);
+        }
+        let slopes = self.qualities.slopes(self.graph, shape);
+        let formula = Formula { slopes, place, known: FxHashMap::default() };
+        let (mut node, mut beside) = (root, None);
+        while let Some(blend) = blend_at(self.graph, &mut self.blends, node) {
+            let Some(depth) = blend.depth(self.graph, node) else { break };
+            let [a, b] = blend.values;
+            let endless = match self.endless(&formula, a)? {
+                Some(closed) => Some((closed, b)),
+                None => self.endless(&formula, b)?.map(|closed| (closed, a)),
+            };
+            let [before, operand] = blend.in_order(self.graph, &mut self.blends);
+            let other = endless.as_ref().map_or(operand, |(_, other)| *other);
+            // Nearer than the blend is wide and deep it may be something else.
+            let reach = self.graph.add(blend.width, depth);
+            let past = self.graph.sub(other, reach);
+            let least = beside.map_or(past, |beside| self.graph.min(beside, past));
+            if let Some((closed, _)) = endless {
+                let children = self.graph.shape(shape).children.clone();
+                return Ok(Some((closed, unnamed(self.graph, least, children))));
+            }
+            (node, beside) = (before, Some(least));
+        }
+        Ok(None)
+    }
+
+    /// A sample of what has no end, and is met without marching.
+    fn endless(
+        &mut self,
+        formula: &Formula,
+        node: NodeId,
+    ) -> Result<Option<Vec<Closed>>, ExpandError> {
+        let Some(Parts { closed, open }) = self.sampled(formula, node)? else { return Ok(None) };
+        let has_end = |part: &Closed| {
+            let corners = self.bounds.of(self.graph, part.shape);
+            corners.into_iter().all(|corner| self.graph.is_finite(corner))
+        };
+        let is_endless = open.is_empty() && !closed.iter().all(has_end);
+        Ok(is_endless.then_some(closed))
     }
 
     fn closed(

@@ -2,12 +2,12 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
-    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Param, Program, Rays, Scene, Settings,
-    Shadow, ShapeId, fold_transforms, gradient, uniforms,
+    Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, Settings, Shadow,
+    ShapeId, fold_transforms, gradient, uniforms,
 };
 
-use crate::clip::clip;
-use crate::closed::{Parts, parts, rest};
+use crate::clip::{clip, outermost, through};
+use crate::closed::{Open, Parts, around, least, parts};
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
 use crate::lipschitz::Reason;
@@ -56,6 +56,8 @@ fn leave_the_eye(settings: &Settings) -> bool {
 
 /// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
 const MOST_CLIPPED: usize = 256;
+/// Of no more operands than this each has a box of its own.
+const MOST_BOXES: usize = 16;
 
 /// What was modelled and why.
 #[derive(Clone, Debug, Default)]
@@ -177,7 +179,8 @@ fn flatten(
     let qualities = Qualities::of_scene(graph, root, &params);
     let field = sound_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
-    let mut apart = parts(graph, &mut expander, &qualities, root, point)?;
+    let mut bounds = Bounds::new(&params);
+    let mut apart = parts(graph, &mut expander, &qualities, &mut bounds, root, point)?;
     let rolls = match writing {
         Writing::Auto => cost(graph, &[field.distance]).operations > most_inline(&program.settings),
         Writing::Inline => false,
@@ -215,7 +218,7 @@ fn flatten(
     if !program.visits.is_empty() && leave_the_eye(&program.settings) {
         program.within = within(graph, root, &params);
     }
-    let asked = asked_of_rays(graph, &mut expander, &apart, &program.params)?;
+    let asked = asked_of_rays(graph, &mut expander, &mut bounds, &apart)?;
     program.rays = rays(&apart, &fields, asked);
     let Rays { hits, marched, clip, .. } = program.rays;
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
@@ -235,10 +238,6 @@ fn flatten(
     })
 }
 
-fn least(graph: &mut Graph, values: impl Iterator<Item = NodeId>) -> Option<NodeId> {
-    values.reduce(|a, b| graph.min(a, b))
-}
-
 /// What a ray is asked before it is marched.
 #[derive(Clone, Copy, Debug, Default)]
 struct Asked {
@@ -250,8 +249,8 @@ struct Asked {
 fn asked_of_rays(
     graph: &mut Graph,
     expander: &mut Expander,
+    bounds: &mut Bounds,
     apart: &Parts,
-    params: &[Param],
 ) -> Result<Asked, ExpandError> {
     let spans: Vec<_> = apart.closed.iter().flat_map(|part| part.spans.iter().copied()).collect();
     let mut roots = Vec::new();
@@ -259,18 +258,37 @@ fn asked_of_rays(
         roots.push(first(graph, &spans));
     }
     let hits = roots.len();
-    if let Some(rest) = rest(graph, &apart.open).filter(|_| apart.open.len() <= MOST_CLIPPED) {
-        let corners = Bounds::new(params).of(graph, rest);
-        let ray = [0, 1].map(|level| graph.point(level, Dim::Three));
-        let lo = expander.node(graph, corners[0], &ray)?;
-        let hi = expander.node(graph, corners[1], &ray)?;
-        if let Some(ends) = clip(graph, ray, [lo, hi]) {
-            roots.push(graph.compose(&ends));
-        }
+    let ray = [0, 1].map(|level| graph.point(level, Dim::Three));
+    let boxes = boxes(graph, expander, bounds, &apart.open, ray)?;
+    let ways: Option<Vec<_>> = boxes.into_iter().map(|ends| clip(graph, ray, ends)).collect();
+    if let Some(ends) = ways.and_then(|ways| through(graph, &ways)) {
+        roots.push(graph.compose(&ends));
     }
     let folded = fold_transforms(graph, &roots).roots;
     let (hits, clip) = folded.split_at(hits);
     Ok(Asked { hits: hits.first().copied(), clip: clip.first().copied() })
+}
+
+/// Corners of boxes that hold what is left to march.
+fn boxes(
+    graph: &mut Graph,
+    expander: &mut Expander,
+    bounds: &mut Bounds,
+    open: &[Open],
+    ray: [NodeId; 2],
+) -> Result<Vec<[NodeId; 2]>, ExpandError> {
+    let size = match open.len() {
+        0..=MOST_BOXES => 1,
+        many if many <= MOST_CLIPPED => many,
+        _ => return Ok(Vec::new()),
+    };
+    let mut boxes = Vec::with_capacity(open.len() / size);
+    for group in open.chunks(size) {
+        let Some(shape) = around(graph, group) else { continue };
+        let [lo, hi] = bounds.of(graph, shape);
+        boxes.push([expander.node(graph, lo, &ray)?, expander.node(graph, hi, &ray)?]);
+    }
+    Ok(outermost(graph, &boxes))
 }
 
 /// The functions of rays, from the fields of the whole, of what is closed and of what is left, as far as there are such.

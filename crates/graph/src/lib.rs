@@ -42,6 +42,7 @@
 //! [`NODE_LIMIT`] nodes. Passes over nodes do not recurse; those over shapes recurse as deep as shapes are nested, on a stack
 //! that grows.
 
+mod blend;
 mod bounds;
 mod build;
 mod continuation;
@@ -64,6 +65,7 @@ mod simplify;
 mod transforms;
 mod walk;
 
+pub use blend::{Blend, Blends, blend_at, rebuilt};
 pub use bounds::{Bounds, bounds};
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};

@@ -14,9 +14,9 @@ mod visits;
 mod within;
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type};
+use sdfc_graph::{Blends, FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type, rebuilt};
 
-use chain::{Blends, Chain};
+use chain::Chain;
 use template::{Skeletons, template};
 
 pub(crate) use visits::visits;
@@ -253,7 +253,7 @@ impl Pass<'_> {
                 }
                 Part::Step { step, before, operand } => {
                     let before = (before, value.unwrap_or(before));
-                    chain::rebuilt(self.graph, step, &[before, (operand, mapped(operand))])
+                    rebuilt(self.graph, step, &[before, (operand, mapped(operand))])
                 }
                 Part::Loop { next, inert, operands, blended } => {
                     let far = self.graph.number(FAR);

@@ -1,8 +1,9 @@
 //! Near which values of a node a surface may lie.
 
-use sdfc_graph::{Binary, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, reachable};
+use sdfc_graph::{
+    Binary, Blends, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, blend_at, reachable,
+};
 
-use super::chain::{Blends, blend_at};
 use super::visits::WIDTHS;
 
 /// What is between a node and the root.

@@ -5,7 +5,9 @@
 
 use super::Deriver;
 use super::zone::Zone;
-use crate::{Binary, Dim, Node, NodeId, ShapeId, Stage, Ternary, Unary};
+use crate::{
+    Binary, Dim, Node, NodeId, Shape, ShapeId, SidePromise, Stage, Ternary, Unary, blend_at,
+};
 
 /// What is asked of a formula. Equal questions have equal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -40,18 +42,34 @@ impl Deriver<'_> {
     fn derive_shape(&mut self, id: ShapeId, limit: NodeId) -> Zone {
         let shape = self.graph.shape(id);
         let (dim, level, formula) = (shape.dim, shape.level, shape.formula);
-        let (contract, is_leaf) = (shape.contract, shape.children.is_empty());
-        let is_exact = contract.outside.exact.is_some_and(|holds| self.is_true(holds));
+        let (contract, children) = (shape.contract, shape.children.clone());
         if let Some(stated) = contract.bounds {
             let zone = Zone::between(self.graph, stated, dim.point_type().width());
             if self.range(limit).hi() <= 0.0 {
                 return zone;
             }
-            if is_exact && is_leaf {
+            let is_exact = contract.outside.exact.is_some_and(|holds| self.is_true(holds));
+            if is_exact && children.into_iter().all(|child| self.is_exact(child)) {
                 return zone.grown(self.graph, limit);
             }
         }
         self.zone(Question { node: formula, limit, level, dim, above: false })
+    }
+
+    /// Whether a shape's field is the distance for all values of the params, as it states given that its children's are.
+    fn is_exact(&mut self, id: ShapeId) -> bool {
+        if let Some(&known) = self.memo.exact.get(&id) {
+            return known;
+        }
+        let Shape { contract, children, .. } = self.graph.shape(id).clone();
+        let sides = [contract.outside, contract.inside];
+        let states = |side: SidePromise| side.exact.is_some_and(|holds| self.is_true(holds));
+        let is_exact = sides.into_iter().all(states)
+            && stacker::maybe_grow(RED_ZONE, STACK_STEP, || {
+                children.into_iter().all(|child| self.is_exact(child))
+            });
+        self.memo.exact.insert(id, is_exact);
+        is_exact
     }
 
     /// A box that holds the points that a question asks for.
@@ -149,7 +167,19 @@ impl Deriver<'_> {
             let limit = self.graph.end_product(limit, b);
             return self.zone(on(a, limit));
         }
+        if !above && let Some(zone) = self.blended(question) {
+            return zone;
+        }
         self.opaque(question)
+    }
+
+    /// Where a blend that ends is not above the limit, either of its values is not above it by more than the blend is deep.
+    fn blended(&mut self, question: Question) -> Option<Zone> {
+        let blend = blend_at(self.graph, &mut self.memo.blends, question.node)?;
+        let depth = blend.depth(self.graph, question.node)?;
+        let limit = self.graph.end_sum(question.limit, depth);
+        let [a, b] = blend.values.map(|node| self.zone(Question { node, limit, ..question }));
+        Some(a.hull(self.graph, b).loose())
     }
 
     /// Whether no point of the formula changes the node.

@@ -2,7 +2,8 @@
 //!
 //! What a shape states is taken. Otherwise its formula is asked where it does not exceed 0, by rules that
 //! keep per-frame values: hull for `min`, overlap for `max`, a limit that travels through sums, factors and
-//! signs, and boxes seen through affine maps of the point. An operator without a rule (a smooth blend) is shown
+//! signs, and boxes seen through affine maps of the point; of a blend that ends, the hull of both beyond the limit by as much as it is
+//! deep. An operator without a rule is shown
 //! to stay positive wherever its samples are far enough from their surfaces. A leaf that states nothing is searched by
 //! interval exclusion: half-spaces first, then slabs that move the faces inwards. The result of a rule that
 //! gave something away is tightened in the same manner, on the whole formula.
@@ -23,7 +24,7 @@ use self::level_set::Question;
 use self::zone::Zone;
 use crate::eval::{FrameValues, Interval, Number, Tape, direct};
 use crate::{
-    Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
+    Blends, Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
 };
 
 /// A closed box of a shape of more parts is not tightened: a search of 32 evaluations, all that it would be granted, hardly
@@ -43,7 +44,9 @@ pub struct Bounds {
 struct Memo {
     shapes: FxHashMap<(ShapeId, NodeId), Zone>,
     questions: FxHashMap<Question, Zone>,
+    exact: FxHashMap<ShapeId, bool>,
     expander: Expander,
+    blends: Blends,
 }
 
 /// A derivation under way.
