@@ -8,7 +8,8 @@
 //! // Auto: missed 1 %, depth 0.05 px.
 //! ```
 //!
-//! What `Auto` does not name is 0; of normals it is 0.001 degrees. Without `Frames` the case is one frame, params at
+//! What `Auto` does not name is 0; of normals it is 0.001 degrees. A line `Outdone: segment, interval` names the methods that take
+//! fewer evaluations than `auto` and err less. Without `Frames` the case is one frame, params at
 //! their defaults.
 
 use std::path::{Path, PathBuf};
@@ -36,6 +37,8 @@ pub struct Case {
     pub exempt: Option<String>,
     /// What `auto` has to hold.
     pub auto: Bounds,
+    /// Methods that take fewer evaluations than `auto` and err less.
+    pub outdone: Vec<String>,
     /// Values of params, by frame.
     frames: Vec<Vec<(String, String)>>,
 }
@@ -97,6 +100,9 @@ impl Case {
         if exempt.is_none() && auto != general {
             return Err("weaker bounds than all cases hold, and no line `Exempt:`".to_owned());
         }
+        let outdone = keyed("Outdone:").map_or_else(Vec::new, |names| {
+            names.split(',').map(|name| name.trim().to_owned()).collect()
+        });
         let frames = keyed("Frames:").map_or_else(|| Ok(vec![Vec::new()]), |all| frames(&all))?;
         Ok(Self {
             name: name.to_owned(),
@@ -104,6 +110,7 @@ impl Case {
             title: title.ok_or("no leading comment")?,
             exempt,
             auto,
+            outdone,
             frames,
             text,
         })

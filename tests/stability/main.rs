@@ -80,8 +80,10 @@ fn holds(case: &Case, size: [u32; 2], update: bool, measured: &Measured) -> Resu
         let metrics = views.iter().map(judge).collect::<Result<Vec<_>, Failed>>()?;
         row.push(Figures::of(&views, &metrics));
     }
-    let verdict =
-        row.first().map_or_else(|| Err("no method".into()), |auto| held(auto, &case.auto));
+    let verdict = row.first().map_or_else(
+        || Err("no method".into()),
+        |auto| held(auto, &case.auto).and_then(|()| not_outdone(case, auto, &row)),
+    );
     if update {
         measured.lock().unwrap_or_else(PoisonError::into_inner).insert(case.name.clone(), row);
         return verdict;
@@ -102,6 +104,19 @@ fn views(
         Ok((view, frame, truth))
     };
     case.frames(scene)?.into_iter().map(look).collect()
+}
+
+/// No method takes fewer evaluations than `auto` and errs less.
+fn not_outdone(case: &Case, auto: &Figures, row: &[Figures]) -> Result<(), Failed> {
+    let methods = sdfc::march::METHODS.iter().zip(row);
+    let better: Vec<&str> = methods
+        .filter(|(_, figures)| figures.outdoes(auto))
+        .map(|(method, _)| method.name)
+        .collect();
+    if better == case.outdone {
+        return Ok(());
+    }
+    Err(format!("{better:?} are cheaper and nearer, not {:?}", case.outdone).into())
 }
 
 fn held(auto: &Figures, bounds: &Bounds) -> Result<(), Failed> {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::Failed;
 use sdfc::FrameValues;
+use sdfc::accuracy_data::chart::LEAST_ERROR;
 use sdfc::accuracy_data::{Metrics, Truth};
 use sdfc::render::{AdapterInfo, Gpu, View};
 
@@ -37,6 +38,8 @@ pub struct Figures {
     pub undecided: f64,
     pub depth: f64,
     pub normal: f64,
+    /// Per pixel.
+    pub evaluations: f64,
 }
 
 impl Figures {
@@ -54,7 +57,19 @@ impl Figures {
             undecided: percent(views.iter().map(|(.., truth)| truth.counts().undecided).sum()),
             depth: worst(|metrics| metrics.depth.pixels.p99),
             normal: worst(|metrics| metrics.normal.p99),
+            evaluations: metrics.iter().map(|metrics| metrics.evaluations.mean).sum(),
         }
+    }
+
+    /// Whether it takes fewer evaluations and errs less: at no more pixels and no farther, and less in one of these.
+    pub fn outdoes(&self, other: &Self) -> bool {
+        let errors = |figures: &Self| {
+            let Self { missed, false_hits, capped, nan, depth, .. } = *figures;
+            [missed + false_hits + capped + nan, depth.max(LEAST_ERROR)]
+        };
+        let (mine, others) = (errors(self), errors(other));
+        let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
+        self.evaluations < other.evaluations && no_worse && mine != others
     }
 
     fn cell(&self) -> String {

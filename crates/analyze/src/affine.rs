@@ -297,7 +297,7 @@ fn constant_similarity(rows: &[[f64; 3]]) -> Option<f64> {
 
 /// Largest singular value of a matrix of rows of three: the root of the largest eigenvalue of AᵀA,
 /// by cyclic Jacobi rotations (Golub and Van Loan, section 8.5).
-fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
+pub(crate) fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
     let mut m = [[0.0; 3]; 3];
     for row in rows {
         for i in 0..3 {

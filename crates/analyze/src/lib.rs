@@ -23,6 +23,7 @@ mod closed;
 mod components;
 mod cost;
 mod fault;
+mod folds;
 mod form;
 mod leaves;
 mod lipschitz;

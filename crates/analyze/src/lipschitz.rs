@@ -12,6 +12,7 @@ use sdfc_graph::{
 use crate::affine::{self, Linear};
 use crate::components::Components;
 use crate::fault::{self, Rule};
+use crate::folds;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -435,14 +436,22 @@ impl Slopes {
     }
 
     /// The lanes' constants joined: the largest where the lanes look at different components of the point
-    /// (the squares of the changes then add up to no more than the point's), else their hypotenuse.
+    /// (the squares of the changes then add up to no more than the point's), else their hypotenuse, or less where the lanes mix
+    /// what was folded.
     fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
         let constants: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;
         if self.components.are_apart(parts) {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
-        Ok(hypotenuse(graph, &constants))
+        let joined = hypotenuse(graph, &constants);
+        match folds::constant(graph, parts, self.level) {
+            Some(together) => {
+                let together = graph.number(together);
+                Ok(graph.min(joined, together))
+            }
+            None => Ok(joined),
+        }
     }
 
     fn transform(&self, graph: &mut Graph, columns: [NodeId; 3], v: NodeId) -> Constant {

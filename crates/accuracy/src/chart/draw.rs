@@ -6,11 +6,9 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::theme::Theme;
-use super::{Chart, Row};
+use super::{Chart, LEAST_ERROR, Row};
 
 pub(super) const SIZE: (u32, u32) = (960, 620);
-/// Errors below this lie on the axis: no eye and no f32 tells them apart.
-const LEAST_ERROR: f64 = 1e-5;
 /// Width and height that a count above a marker takes.
 const LABEL: (i32, i32) = (30, 13);
 

@@ -16,6 +16,9 @@ pub use draw::{DrawError, Font, svg};
 pub use pixels::png;
 pub use theme::Theme;
 
+/// Errors below this lie on the axis: no eye and no f32 tells them apart.
+pub const LEAST_ERROR: f64 = 1e-5;
+
 /// What a chart shows, and what `chart --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
@@ -139,7 +142,24 @@ impl Row {
     }
 }
 
+impl Row {
+    /// Whether it takes fewer operations and errs less: at no more pixels and no farther, and less in one of these.
+    fn outdoes(&self, other: &Self) -> bool {
+        let errors = |row: &Self| [row.failed() as f64, row.depth_px.p99.max(LEAST_ERROR)];
+        let (mine, others) = (errors(self), errors(other));
+        let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
+        self.ops_per_pixel < other.ops_per_pixel && no_worse && mine != others
+    }
+}
+
 impl Chart {
+    /// Rows of other methods that take fewer operations and err less than one does as it is used unless told otherwise.
+    pub fn outdoing(&self, method: &str) -> Vec<&Row> {
+        let own = self.methods.iter().find(|row| row.default && row.method == method);
+        let others = self.methods.iter().filter(|row| row.method != method);
+        own.map_or_else(Vec::new, |own| others.filter(|row| row.outdoes(own)).collect())
+    }
+
     /// Marks the rows that no other beats in operations, in wrong pixels and rays out of steps, and in depth (99th of 100).
     pub fn mark_front(&mut self) {
         let beaten = |row: &Row| self.methods.iter().any(|other| other.beats(row));
@@ -194,5 +214,18 @@ mod tests {
         chart.mark_front();
         let front: Vec<bool> = chart.methods.iter().map(|row| row.pareto).collect();
         assert_eq!(front, [true, true, false, true]);
+    }
+
+    #[test]
+    fn a_method_is_outdone_by_what_is_cheaper_and_nearer() {
+        let mut own = row("own", 10.0, 0.1);
+        own.default = true;
+        let mut wrong = row("wrong", 5.0, 0.01);
+        wrong.missed = 1;
+        let others = [row("near", 20.0, 0.01), row("cheap", 5.0, 0.2), row("both", 5.0, 0.05)];
+        let chart = chart(vec![own, wrong].into_iter().chain(others).collect());
+        let outdoing: Vec<&str> =
+            chart.outdoing("own").iter().map(|row| row.method.as_str()).collect();
+        assert_eq!(outdoing, ["both"]);
     }
 }

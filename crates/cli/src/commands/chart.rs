@@ -15,6 +15,9 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
+/// The method that others are held against.
+const AUTO: &str = "auto";
+
 /// Charts the scene, shows a table and writes the picture and the figures.
 ///
 /// # Errors
@@ -140,7 +143,23 @@ fn table(chart: &Figures) -> String {
     text += "  method         setting            evals/px   p99    ops/px  frame ms  missed  false   depth px p50      p99      max  normal deg p99  capped  nan\n";
     chart.methods.iter().for_each(|row| text += &line(row));
     text += "\n*: the default; +: no other is cheaper and better.\n";
-    text
+    text + &outdone(chart)
+}
+
+/// A line where other methods take fewer operations than `auto` and err less.
+pub(super) fn outdone(chart: &Figures) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for row in chart.outdoing(AUTO) {
+        if !names.contains(&row.method.as_str()) {
+            names.push(&row.method);
+        }
+    }
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [name] => format!("{name} is cheaper and nearer than `{AUTO}` here.\n"),
+        names => format!("{} are cheaper and nearer than `{AUTO}` here.\n", names.join(", ")),
+    }
 }
 
 fn line(row: &Row) -> String {

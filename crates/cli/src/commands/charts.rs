@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sdfc::accuracy_data::chart::{Chart as Figures, Row};
 
-use super::chart::{Form, charted, drawn};
+use super::chart::{Form, charted, drawn, outdone};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -169,6 +169,10 @@ fn page(args: &Chart, charts: &[(String, Figures)]) -> String {
         text += "| method | setting | evaluations / px | p99 | operations / px | ms | missed | false | NaN | out of steps | depth px p99 | normal deg p99 |\n";
         text += "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
         chart.methods.iter().filter(|row| row.default).for_each(|row| text += &line(row));
+        let outdone = outdone(chart);
+        if !outdone.is_empty() {
+            let _ = write!(text, "\n{outdone}");
+        }
     }
     text
 }

@@ -58,13 +58,23 @@ fn along(p: vec3f) -> f32 {
     return distance;
 }
 
-// What a ray has met that was marched or had no need of it. Looking ahead counts as one evaluation.
+// The ray from one of its places on. Far from the eye its places are known better when they are counted from there.
+fn moved(ray: Ray, t: f32) -> Ray {
+    var rest = ray;
+    rest.origin = ray_point(ray, t);
+    rest.radius = footprint(ray, t);
+    rest.t_max = ray.t_max - t;
+    return rest;
+}
+
+// What a ray has met that was marched from where the march begins or had no need of it. Looking ahead counts as one evaluation.
 fn met_in_all(ray: Ray, ahead: Ahead, found: Trace) -> Trace {
     var all = found;
+    all.t += ahead.start;
     all.evaluations++;
     if found.status == MISS {
         // Where the field is no number, so is the place, and both comparisons fail.
-        if found.t > ahead.end && ahead.met <= ray.t_max {
+        if found.t > ahead.end - ahead.start && ahead.met <= ray.t_max {
             all = Trace(ahead.met, HIT, all.evaluations);
         } else if found.t <= ray.t_max {
             all.t = ray.t_max;

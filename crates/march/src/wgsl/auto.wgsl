@@ -22,21 +22,21 @@ fn trace(ray: Ray) -> Trace {
     var found: Trace;
     if LOOKS_AHEAD {
         let ahead = look_ahead(ray);
-        found = Trace(ahead.start, MISS, 0u);
+        found = Trace(0.0, MISS, 0u);
         if ANY_MARCHED {
             if ahead.start <= ahead.end {
-                found = march(ray, ahead.start, ahead.end);
+                found = march(moved(ray, ahead.start), ahead.end - ahead.start);
             }
         }
         found = met_in_all(ray, ahead, found);
     } else {
-        found = march(ray, 0.0, ray.t_max);
+        found = march(ray, ray.t_max);
     }
     return found;
 }
 
-fn march(ray: Ray, start: f32, end: f32) -> Trace {
-    var bracket = Bracket(vec2f(start, 0.0), vec2f(0.0), false);
+fn march(ray: Ray, end: f32) -> Trace {
+    var bracket: Bracket;
     // From the last place outside to the next one.
     var stride = 0.0;
     // What the distance gains per unit of length, in the mean: straight towards a surface at first.

@@ -26,8 +26,8 @@ fn trace(ray: Ray) -> Trace {
     while evaluations < ray.steps {
         let distance = field(ray_point(ray, t));
         passed(t, distance);
-        // A ray that starts inside is at its hit.
-        if evaluations == 0u && distance < 0.0 {
+        // A ray that starts inside, or at a surface, is at its hit.
+        if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {
             return Trace(t, HIT, 1u);
         }
         bracket = narrowed(bracket, t, distance);

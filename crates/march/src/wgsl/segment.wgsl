@@ -17,11 +17,11 @@ fn trace(ray: Ray) -> Trace {
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
         passed(t, distance);
-        // A ray that starts inside is at its hit.
-        if step == 0u && distance < 0.0 {
+        let near = tolerance(ray, t);
+        // A ray that starts inside, or at a surface, is at its hit.
+        if step == 0u && distance < hit_within(ray, t, near) {
             return Trace(t, HIT, 1u);
         }
-        let near = tolerance(ray, t);
         bracket = narrowed(bracket, t, distance);
         if bracket.crossed {
             if width(bracket) < hit_within(ray, t, near) {

@@ -102,4 +102,11 @@ impl Interval {
         let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
         Self { lo, hi }.widened()
     }
+
+    /// `atan2(y, x)` for negative x and a y around 0: of a y that is not above 0, and of one that is not below.
+    pub(super) fn angles_at_cut(y: Self, x: Self) -> [Self; 2] {
+        let below = Self { lo: -PI, hi: if y.lo < 0.0 { y.lo.atan2(x.hi) } else { -PI } };
+        let above = Self { lo: if y.hi > 0.0 { y.hi.atan2(x.hi) } else { PI }, hi: PI };
+        [below.widened(), above.widened()]
+    }
 }

@@ -8,7 +8,7 @@ use crate::eval::watch::Watch;
 ///
 /// Over a box that holds parts of two cells of a repetition, an interval of the cell's number is of little use, and one of
 /// its hash of none. So the first operation with more than one whole result can be decided: for each of these results the
-/// field is evaluated again, with that one in the place of all. At each point of the box some path through the
+/// field is evaluated again, with that one in the place of all. An angle across its cut is decided as two results, one of each side. At each point of the box some path through the
 /// results gives the field, so what holds for all paths holds in the box; and on a path that leaves nothing open the formula is
 /// one without jumps, whose range shrinks with the box.
 ///
@@ -60,7 +60,7 @@ enum Open {
     Nothing,
     /// The results of the first operation that has more than one.
     Whole(Interval),
-    /// Operations jump whose results are not whole.
+    /// An operation jumps whose results cannot be told apart.
     Cut,
 }
 
@@ -117,8 +117,11 @@ impl Path {
 
 impl Watch<Interval> for &mut Path {
     fn jumped(&mut self, op: Op, [a, b, _]: [Interval; 3], result: Interval) -> Interval {
+        if op == Op::Atan2 && a.contains(0.0) && b.hi < 0.0 {
+            return self.on_one_side(a, b, result);
+        }
         if !op.is_whole() {
-            // Across the cut of the angle, or at the vector that has no direction.
+            // At the vector that has no direction.
             let cut = b.lo <= 0.0 && (op != Op::Atan2 || a.contains(0.0));
             if cut && self.open == Open::Nothing {
                 self.open = Open::Cut;
@@ -128,14 +131,39 @@ impl Watch<Interval> for &mut Path {
         if result.lo == result.hi {
             return result;
         }
+        match self.decision(result) {
+            Some(taken) => Interval { lo: taken, hi: taken },
+            None => result,
+        }
+    }
+}
+
+impl Path {
+    /// The angle of a vector on one side of the cut, which is a choice of two.
+    fn on_one_side(&mut self, y: Interval, x: Interval, result: Interval) -> Interval {
+        let [below, above] = Interval::angles_at_cut(y, x);
+        match self.decision(Interval { lo: 0.0, hi: 1.0 }) {
+            Some(taken) => {
+                if taken == 0.0 {
+                    below
+                } else {
+                    above
+                }
+            }
+            None => result,
+        }
+    }
+
+    /// The result that is taken of several; `None` where that is not decided.
+    fn decision(&mut self, results: Interval) -> Option<f64> {
         if let Some(decision) = self.decided.get(self.passed) {
             self.passed += 1;
-            return Interval { lo: decision.taken, hi: decision.taken };
+            return Some(decision.taken);
         }
         self.undecided += 1;
         if !matches!(self.open, Open::Whole(_)) {
-            self.open = Open::Whole(result);
+            self.open = Open::Whole(results);
         }
-        result
+        None
     }
 }
