@@ -119,6 +119,12 @@ impl<T: Real> Ray<T> {
         self.radius + self.spread * t
     }
 
+    /// The ray from one of its places on.
+    fn moved(&self, t: T) -> Self {
+        let (origin, radius, t_max) = (self.at(t), self.footprint(t), self.t_max - t);
+        Self { origin, radius, t_max, ..*self }
+    }
+
     /// How far rounding may move a point of the ray.
     pub(super) fn rounding(&self, t: T) -> T {
         let [x, y, z] = self.origin;
@@ -163,8 +169,12 @@ pub(super) struct Trace<T> {
 /// A ray on its way.
 #[derive(Clone, Copy)]
 struct Walk<T> {
-    ray: Ray<T>,
+    whole: Ray<T>,
     ahead: Ahead<T>,
+    /// The ray from where its march begins on; places are counted from there.
+    ray: Ray<T>,
+    /// Where the march ends.
+    end: T,
     t: T,
     evaluations: u32,
     clearance: T,
@@ -192,9 +202,11 @@ impl<T: Real> Walk<T> {
     fn new(ray: Ray<T>, ahead: Ahead<T>) -> Self {
         let zero = T::constant(0.0);
         Self {
-            ray,
+            whole: ray,
             ahead,
-            t: ahead.start,
+            ray: ray.moved(ahead.start),
+            end: ahead.end - ahead.start,
+            t: zero,
             evaluations: 0,
             clearance: T::constant(f64::INFINITY),
             before: (zero, zero),
@@ -214,9 +226,10 @@ impl<T: Real> Walk<T> {
 
     /// How a ray ends that has met nothing on its march; a place that is no number stays one.
     fn unmet(&self) -> Option<Trace<T>> {
-        match self.ahead.hit(&self.ray) {
-            Some(met) if self.t > self.ahead.end => self.ends(met, HIT),
-            Some(_) | None if self.t <= self.ray.t_max => self.ends(self.ray.t_max, MISS),
+        let t_max = self.whole.t_max;
+        match self.ahead.hit(&self.whole) {
+            Some(met) if self.t > self.end => self.ends(met, HIT),
+            Some(_) | None if self.t <= t_max => self.ends(t_max, MISS),
             Some(_) | None => self.ends(self.t, MISS),
         }
     }
@@ -238,19 +251,19 @@ impl<T: Real> Walk<T> {
             Method::Auto => self.auto(distance, limits),
             Method::Interval => match range {
                 Some(range) => self.interval(distance, limits, range),
-                None => return self.ends(self.t, CAPPED),
+                None => return self.ends(self.ahead.start + self.t, CAPPED),
             },
         };
         match turn {
-            Turn::Hit(t) => return self.ends(t, HIT),
+            Turn::Hit(t) => return self.ends(self.ahead.start + t, HIT),
             Turn::Onward(t) => self.t = t,
         }
         // A place that is no number ends the ray too.
-        let within = self.inside.is_some() || self.t <= self.ahead.end;
+        let within = self.inside.is_some() || self.t <= self.end;
         if !within {
             self.unmet()
         } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
-            self.ends(self.t, CAPPED)
+            self.ends(self.ahead.start + self.t, CAPPED)
         } else {
             None
         }
@@ -306,7 +319,7 @@ impl<T: Real> Walk<T> {
             return turn;
         }
         // Only the distance is known to be free.
-        let (free, end) = (self.t + distance, self.ahead.end);
+        let (free, end) = (self.t + distance, self.end);
         let goes_on = free <= end;
         if !goes_on {
             return Turn::Onward(free);

@@ -21,7 +21,8 @@ impl<T: Real> Walk<T> {
         range: &mut Evaluator<'_, T>,
     ) -> Turn<T> {
         let zero = T::constant(0.0);
-        if self.evaluations == 0 && distance < zero {
+        let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
+        if self.evaluations == 0 && distance < hit {
             self.evaluations = 1;
             return Turn::Hit(self.t);
         }
