@@ -342,7 +342,8 @@ impl<T: Real> Walk<T> {
         };
         let step = if limits.watched { step.min(distance) } else { step };
         self.stride = step.min(end - self.t);
-        Turn::Onward(self.t + self.stride)
+        // Rounded up the sum may be past the end, where the ray would be taken to have met nothing without a look.
+        Turn::Onward((self.t + self.stride).min(end))
     }
 
     /// How near to the surface a hit is, in terms of what is near.
