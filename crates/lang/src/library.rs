@@ -143,9 +143,9 @@ fn clauses(sources: &Sources, decl: &ast::Decl) -> Vec<String> {
     clauses.map(|clause| one_line(sources, clause.span)).collect()
 }
 
-/// A span's text without comments, each run of white space one blank.
+/// A span's text without comments, each run of white space one blank, and none where a list was broken into lines.
 fn one_line(sources: &Sources, span: Span) -> String {
     let code = sources.slice(span).lines().map(|line| line.split("//").next().unwrap_or(line));
     let words: Vec<&str> = code.flat_map(str::split_whitespace).collect();
-    words.join(" ")
+    words.join(" ").replace("( ", "(").replace("[ ", "[").replace(", )", ")").replace(", ]", "]")
 }
