@@ -57,10 +57,14 @@ impl<'a> Excerpts<'a> {
 
     /// The part of the bytes that is shown; `None` where nothing of what they begin with is.
     pub(crate) fn shown(&self, file: FileId, bytes: Range<usize>) -> Option<Range<usize>> {
+        let text = self.marked.get(&file);
         let clamp = |at: usize| {
             let line = self.sources.line_column(file, at as u32).line as usize - 1;
-            let window = self.windows.get(&(file, line));
-            window.map_or((at, true), |w| (at.clamp(w.start, w.end), w.contains(&at)))
+            let (Some(w), Some(text)) = (self.windows.get(&(file, line)), text) else {
+                return (at, true);
+            };
+            // Within a mark no character begins.
+            (boundary(text, at.clamp(w.start, w.end)), (w.start..=w.end).contains(&at))
         };
         let (start, seen) = clamp(bytes.start);
         seen.then(|| start..clamp(bytes.end).0.max(start))

@@ -133,6 +133,20 @@ mod tests {
     }
 
     #[test]
+    fn every_place_of_a_long_line_is_shown() {
+        for text in ["x".repeat(700), "é".repeat(400), format!("{}\nb", "😀".repeat(200))] {
+            let ends: Vec<usize> =
+                (0..=text.len()).filter(|&at| text.is_char_boundary(at)).collect();
+            for (i, &start) in ends.iter().enumerate() {
+                for &end in ends.iter().skip(i).step_by(7) {
+                    let shown = rendered(text.clone(), start..end);
+                    assert!(shown.contains("┌─ long.sdf:"), "{start}..{end}: {shown}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn long_spans_and_messages_end_somewhere() {
         let shown = rendered("x".repeat(100_000), 5..100_000);
         assert!(shown.len() < 1_000, "{} bytes", shown.len());
