@@ -41,9 +41,9 @@ impl<'a> Excerpts<'a> {
 
     fn cut(&mut self, file: FileId, line: usize, whole: Range<usize>, place: usize) {
         let text = self.marked.entry(file).or_insert_with(|| self.sources.text(file).to_owned());
-        let last = whole.end.saturating_sub(WIDTH).max(whole.start);
-        let start = boundary(text, place.saturating_sub(BEFORE).clamp(whole.start, last));
-        let end = boundary(text, (start + WIDTH).min(whole.end));
+        let from = place.saturating_sub(BEFORE).max(whole.start);
+        let end = boundary(text, (from + WIDTH).min(whole.end));
+        let start = boundary(text, end.saturating_sub(WIDTH).max(whole.start));
         if start > whole.start {
             mark(text, start);
         }

@@ -134,7 +134,8 @@ mod tests {
 
     #[test]
     fn every_place_of_a_long_line_is_shown() {
-        for text in ["x".repeat(700), "é".repeat(400), format!("{}\nb", "😀".repeat(200))] {
+        let texts = ["x".repeat(700), "é".repeat(400), "😀".repeat(200)];
+        for text in texts.into_iter().flat_map(|text| [format!("{text}\nb"), text + "x"]) {
             let ends: Vec<usize> =
                 (0..=text.len()).filter(|&at| text.is_char_boundary(at)).collect();
             for (i, &start) in ends.iter().enumerate() {

@@ -272,8 +272,9 @@ fn compared() -> Result<(), Failed> {
     let auto = auto.ok_or("auto is missing")?;
     expect(auto.failed() == 0 && auto.metrics.depth.pixels.p99 < 0.25, &format!("{auto:?}"))?;
     expect(auto.metrics == judgement.shown.metrics, "auto draws otherwise than what is shown")?;
-    // With a quarter of the steps that it needs, it does not get there.
+    // With a quarter of the steps that it needs, it does not get there: rays run out of steps, or step over what they look for,
+    // which of both depends on where steps fall.
     let fixed = judgement.all.iter().find(|it| (it.method.as_str(), it.part) == ("fixed", 0.25));
     let fixed = fixed.ok_or("fixed is missing")?;
-    expect(fixed.metrics.missed > 100, &format!("{fixed:?}"))
+    expect(fixed.failed() > 100, &format!("{fixed:?}"))
 }
