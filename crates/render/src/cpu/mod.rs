@@ -22,6 +22,7 @@ use sdfc_graph::{
 };
 use sdfc_march::PixelBlock;
 
+use crate::stats::milliseconds_since;
 use crate::{
     Clock, Footprint, Frame, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     ViewLight, ViewOcclusion, ViewShadow,
@@ -176,9 +177,9 @@ impl CpuScene {
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
-            let start = Instant::now();
+            let start = now();
             image.put(tile, draw_tile(wave, tile).into_iter());
-            let elapsed = start.elapsed().as_secs_f64() * 1e3;
+            let elapsed = start.map_or(0.0, milliseconds_since);
             tiler.took(tile, elapsed);
             milliseconds += elapsed;
             tiles += 1;
@@ -189,6 +190,11 @@ impl CpuScene {
         }
         Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles })
     }
+}
+
+/// Now; `None` where there is no clock, as in WebAssembly.
+fn now() -> Option<Instant> {
+    (!cfg!(target_family = "wasm")).then(Instant::now)
 }
 
 /// The pixels of a tile, drawn by all threads.
