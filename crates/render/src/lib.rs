@@ -30,7 +30,8 @@
 //!
 //! # Features
 //!
-//! Both are on by default: `gpu`, without which there is the CPU renderer alone and no wgpu, and `files`: PNG, GIF and EXR.
+//! All are on by default: `gpu`, without which there is the CPU renderer alone and no wgpu; `files`: PNG, GIF and EXR; and
+//! `threads`, without which the CPU renderer works on the processor that calls it.
 //!
 //! # Limits
 //!

@@ -15,6 +15,7 @@ pub use trace::Real;
 use std::time::Instant;
 
 use glam::DVec3;
+#[cfg(feature = "threads")]
 use rayon::prelude::*;
 use sdfc_graph::{
     Program,
@@ -197,17 +198,21 @@ fn now() -> Option<Instant> {
     (!cfg!(target_family = "wasm")).then(Instant::now)
 }
 
-/// The pixels of a tile, drawn by all threads.
+/// The pixels of a tile, drawn by all threads that there are.
 fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<PixelBlock> {
     let mut pixels = vec![PixelBlock::default(); tile.pixels()];
-    pixels.par_chunks_mut(GROUP).enumerate().for_each_init(
-        || wave.clone(),
-        |wave, (group, pixels)| {
-            let places: Vec<[u32; 2]> =
-                (0..pixels.len()).map(|index| tile.place(group * GROUP + index)).collect();
-            pixels.copy_from_slice(&wave.pixels(&places));
-        },
-    );
+    let draw = |wave: &mut Wave<'_, T>, (group, pixels): (usize, &mut [PixelBlock])| {
+        let places: Vec<[u32; 2]> =
+            (0..pixels.len()).map(|index| tile.place(group * GROUP + index)).collect();
+        pixels.copy_from_slice(&wave.pixels(&places));
+    };
+    #[cfg(feature = "threads")]
+    pixels.par_chunks_mut(GROUP).enumerate().for_each_init(|| wave.clone(), draw);
+    #[cfg(not(feature = "threads"))]
+    {
+        let mut wave = wave.clone();
+        pixels.chunks_mut(GROUP).enumerate().for_each(|group| draw(&mut wave, group));
+    }
     pixels
 }
 
