@@ -34,14 +34,18 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     let small = args.suite.then(suite).into_iter().flatten();
     let large = args.large.then(large_suite).into_iter().flatten();
     let wanted = |name: &str| args.only.as_ref().is_none_or(|part| name.contains(part));
-    for (name, text) in small.chain(large).filter(|(name, _)| wanted(name)) {
-        scenes.push(Entry::of_suite(name, &text)?);
+    for (name, text) in small.filter(|(name, _)| wanted(name)) {
+        scenes.push(Entry::of_suite(name, &text, true)?);
+    }
+    for (name, text) in large.filter(|(name, _)| wanted(name)) {
+        scenes.push(Entry::of_suite(name, &text, false)?);
     }
     let failed = |error: sdfc::Error| super::lowering(&error, console);
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
-    let options = BenchOptions { size: args.size, ..BenchOptions::default() };
     let mut rows = Vec::new();
-    for Entry { name, scene, slots } in &scenes {
+    for Entry { name, scene, slots, baselines } in &scenes {
+        let (size, baselines) = (args.size, *baselines);
+        let options = BenchOptions { size, baselines, ..BenchOptions::default() };
         let progress = console.progress(name);
         let row = scene.bench(slots, name, &gpu, &options, &mut |part| {
             progress.set(part.done, part.total);
@@ -63,6 +67,8 @@ struct Entry {
     scene: Scene,
     /// The same, its numbers as params.
     slots: Scene,
+    /// Whether interpreters and slots take part, which take minutes on large scenes.
+    baselines: bool,
 }
 
 impl Entry {
@@ -77,10 +83,10 @@ impl Entry {
         if !scene.draws() {
             return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
         }
-        Ok(Self { name: input.name, scene, slots })
+        Ok(Self { name: input.name, scene, slots, baselines: true })
     }
 
-    fn of_suite(name: String, text: &str) -> Result<Self, Failure> {
+    fn of_suite(name: String, text: &str, baselines: bool) -> Result<Self, Failure> {
         let compile = |options| {
             let compiled = sdfc::compile_with(&name, text, &NoFiles, options);
             // The suite's own scenes: that one of them has errors is a fault of this program.
@@ -88,7 +94,7 @@ impl Entry {
             compiled.scene.ok_or_else(fault)
         };
         let (scene, slots) = (compile(Options::default())?, compile(WITH_SLOTS)?);
-        Ok(Self { name, scene, slots })
+        Ok(Self { name, scene, slots, baselines })
     }
 }
 
@@ -97,10 +103,18 @@ impl Entry {
 fn table(report: &BenchReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {
-        let BenchRow { scene, leaves, size: [width, height], method, auto, variants } = row;
+        let BenchRow { scene, leaves, size: [width, height], method, auto, variants, .. } = row;
         text += &format!(
-            "\n{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}\n"
+            "\n{scene}: {leaves} leaves, {width}x{height}, method {method}, auto is {auto}"
         );
+        for (ratio, of) in [
+            (row.auto_times_best_frame, "frame"),
+            (row.auto_times_best_first_picture, "first picture"),
+        ] {
+            text +=
+                &ratio.map_or_else(String::new, |ratio| format!(", {ratio:.2} of the best {of}"));
+        }
+        text.push('\n');
         text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }

@@ -49,12 +49,14 @@ pub struct BenchOptions {
     pub repetitions: u32,
     /// Ray method of all variants.
     pub method: String,
+    /// Whether interpreters and slots take part.
+    pub baselines: bool,
 }
 
 impl Default for BenchOptions {
     /// 640 by 360, five frames, `sphere`: the method of the practical that `units` follows.
     fn default() -> Self {
-        Self { size: [640, 360], repetitions: 5, method: "sphere".to_owned() }
+        Self { size: [640, 360], repetitions: 5, method: "sphere".to_owned(), baselines: true }
     }
 }
 
@@ -82,6 +84,10 @@ pub struct BenchRow {
     pub method: String,
     /// The variant that `sdfc render` takes of its own accord.
     pub auto: &'static str,
+    /// What its frame takes in that of the variant whose frame takes least; by time of the processor where that is measured.
+    pub auto_times_best_frame: Option<f64>,
+    /// What its first picture takes in that of the variant that is first.
+    pub auto_times_best_first_picture: Option<f64>,
     /// One for each way to evaluate the field.
     pub variants: Vec<BenchVariant>,
 }
@@ -257,15 +263,31 @@ impl Scene {
         }
         let place = |name| Kind::ALL.iter().position(|kind| kind.name() == name);
         variants.sort_by_key(|variant| place(variant.name));
+        let auto = heat.auto.name();
+        let frame =
+            |variant: &BenchVariant| variant.cpu_ms.or(variant.frame_ms.map(|times| times.median));
         Ok(BenchRow {
             scene: name.to_owned(),
             leaves: self.report().leaves,
             size: options.size,
             method: options.method.clone(),
-            auto: heat.auto.name(),
+            auto,
+            auto_times_best_frame: times_best(&variants, auto, frame),
+            auto_times_best_first_picture: times_best(&variants, auto, |v| v.first_picture_ms),
             variants,
         })
     }
+}
+
+/// A figure of the variant of that name in the least that any variant has.
+fn times_best(
+    variants: &[BenchVariant],
+    name: &str,
+    figure: impl Fn(&BenchVariant) -> Option<f64>,
+) -> Option<f64> {
+    let own = figure(variants.iter().find(|variant| variant.name == name)?)?;
+    let best = variants.iter().filter_map(&figure).reduce(f64::min)?;
+    Some(own / best)
 }
 
 impl<'a> Heat<'a> {
@@ -306,6 +328,9 @@ impl<'a> Heat<'a> {
         }
         let leaves = self.scene.report().leaves;
         match kind {
+            Kind::Units | Kind::Tape | Kind::Slots if !self.options.baselines => {
+                Err(Inexpressible("left out".to_owned()))
+            }
             Kind::Units | Kind::Tape | Kind::Slots if leaves > MOST_INTERPRETED => {
                 let why = format!("over {MOST_INTERPRETED} leaves, which take it minutes");
                 Err(Inexpressible(why))
