@@ -60,11 +60,11 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
 pub(crate) struct Visits {
     /// The lists.
     pub(crate) lists: Handle<GlobalVariable>,
-    /// The record to go by.
-    pub(crate) record: Handle<GlobalVariable>,
+    /// How many rounds of each loop to visit, and where the first one's number stands.
+    pub(crate) spans: Handle<GlobalVariable>,
     /// What sets that for a place, and how near what is left out can be there; none: it is the same everywhere.
     pub(crate) at: Option<(Handle<Function>, Handle<GlobalVariable>)>,
-    /// The number of each loop in a record.
+    /// The place of each loop's span.
     loops: FxHashMap<Inert, u32>,
 }
 
@@ -72,15 +72,15 @@ impl Visits {
     /// Those of a picture's module; `None` where all rounds are visited.
     pub(crate) fn of(module: &Module, program: &Program) -> Option<Self> {
         let lists = link::find_variable(module, stubs::VISITS)?;
-        let record = link::find_variable(module, stubs::VISIT_RECORD)?;
+        let spans = link::find_variable(module, stubs::VISIT_SPANS)?;
         let free = link::find_variable(module, stubs::VISIT_FREE);
         let at = link::find_function(module, stubs::VISIT_AT).zip(free);
         let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
         let loops = loops.take(stubs::REACHES.len()).collect();
-        Some(Self { lists, record, at, loops })
+        Some(Self { lists, spans, at, loops })
     }
 
-    /// The number of a loop in a record, by what it says of its rounds.
+    /// The place of a loop's span, by what it says of its rounds.
     pub(crate) fn number(&self, inert: Option<Inert>) -> Option<u32> {
         self.loops.get(&inert?).copied()
     }

@@ -465,8 +465,9 @@ pub mod stubs {
         ["reach_0", "reach_1", "reach_2", "reach_3", "reach_4", "reach_5", "reach_6", "reach_7"];
     /// `var<storage, read> visits`, the lists of rounds.
     pub const VISITS: &str = "visits";
-    /// `var<private> visit_record: u32`, where in `visits` it stands how many rounds of each loop to visit, and which.
-    pub const VISIT_RECORD: &str = "visit_record";
+    /// `var<private> visit_spans: array<vec2u, 8>`, how many rounds of each loop to visit, and where in `visits` the first one's
+    /// number stands.
+    pub const VISIT_SPANS: &str = "visit_spans";
     /// `fn visit_at(p: vec3f)`, which sets the latter for a place.
     pub const VISIT_AT: &str = "visit_at";
     /// `var<private> visit_free: f32`: what is left out is no nearer than that.

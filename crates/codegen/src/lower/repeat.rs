@@ -6,7 +6,7 @@ use naga::{
 };
 use sdfc_graph::{Inert, LoopId, Node, NodeId, Place, TableId, Type};
 
-use super::{Lowering, Value, hint};
+use super::{Body, Lowering, Value, hint};
 use crate::{Error, types};
 
 /// What a round reads: its number, and the state.
@@ -24,10 +24,10 @@ impl Round {
     }
 }
 
-/// The rounds of a loop that are visited: how many, and where the first one's number stands.
+/// The rounds of a loop that are visited: where the first one's number stands, and the end of these.
 struct Listed {
-    count: Value,
     first: Value,
+    end: Value,
 }
 
 impl Lowering<'_> {
@@ -57,23 +57,26 @@ impl Lowering<'_> {
         let graph = &self.program.graph;
         let (repeated, body) = (graph.repeated(id).clone(), graph.body(id));
         let listed = self.listed(repeated.inert);
-        let limit = match &listed {
-            Some(listed) => listed.count,
-            None => self.limit(repeated.cap, repeated.count)?,
+        let (first, limit, ty, name) = match &listed {
+            Some(listed) => {
+                (listed.first, listed.end, types::words(self.types, Type::Scalar), "at")
+            }
+            None => {
+                let limit = self.limit(repeated.cap, repeated.count)?;
+                (self.body.literal(0.0), limit, types::value(self.types, Type::Scalar), "i")
+            }
         };
-        let ty = types::value(self.types, Type::Scalar);
         let counter = self.body.variable("round", ty);
-        let nought = self.body.literal(0.0);
-        self.body.store(counter, nought);
+        self.body.store(counter, first);
         let state = self.state(&repeated.start)?;
 
         self.body.open_loop();
         let matrices = self.matrices.clone();
-        let number = self.body.load(counter, "i");
-        let past = self.body.binary(BinaryOperator::GreaterEqual, number, limit);
+        let counted = self.body.load(counter, name);
+        let past = self.body.binary(BinaryOperator::GreaterEqual, counted, limit);
         self.body.break_if(past);
-        let counted = number;
-        let visited = listed.map(|listed| self.listed_round(listed.first, counted));
+        let is_listed = listed.is_some();
+        let visited = listed.and_then(|_| self.listed_round(counted));
         let number = visited.map_or(counted, |(number, _)| number);
         let listed = visited.map(|(_, word)| (word, repeated.cap));
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
@@ -93,7 +96,7 @@ impl Lowering<'_> {
         for (&(variable, _), next) in state.iter().zip(next) {
             self.body.store(variable, next);
         }
-        let one = self.body.literal(1.0);
+        let one = if is_listed { self.body.word(1) } else { self.body.literal(1.0) };
         let following = self.body.binary(BinaryOperator::Add, counted, one);
         self.body.store(counter, following);
         self.body.close_loop();
@@ -116,7 +119,7 @@ impl Lowering<'_> {
     /// Where the rounds to visit are listed, if they are.
     fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
         let visits = self.inputs.visits.as_ref().filter(|_| self.arguments.len() == 1)?;
-        let (lists, record, number) = (visits.lists, visits.record, visits.number(inert)?);
+        let (spans, number) = (visits.spans, visits.number(inert)?);
         if let Some((function, _)) = visits.at
             && !std::mem::replace(&mut self.leaves_out, true)
         {
@@ -124,33 +127,28 @@ impl Lowering<'_> {
             let (arguments, result) = (vec![point], None);
             self.body.push(Statement::Call { function, arguments, result });
         }
-        let pointer = self.body.declare(Expression::GlobalVariable(record));
-        let record = self.body.load(pointer, "record");
-        let read = |body: &mut super::Body, offset: u32, name: &str| {
-            let offset = body.word(offset);
-            let index = body.binary(BinaryOperator::Add, record, offset);
-            let base = body.declare(Expression::GlobalVariable(lists));
-            let pointer = body.compute(Expression::Access { base, index }, &[base, index]);
-            body.load(pointer, name)
+        let base = self.body.declare(Expression::GlobalVariable(spans));
+        let own = Expression::AccessIndex { base, index: number };
+        let pointer = self.body.compute(own, &[base]);
+        let span = self.body.load(pointer, "span");
+        let part = |body: &mut Body, index| {
+            body.compute(Expression::AccessIndex { base: span, index }, &[span])
         };
-        let count = read(&mut self.body, 2 * number, "count");
-        let first = read(&mut self.body, 2 * number + 1, "first");
-        let count = self.body.cast(count, ScalarKind::Float, Some(4));
-        self.body.name(count, "rounds");
-        Some(Listed { count, first })
+        let (count, first) = (part(&mut self.body, 0), part(&mut self.body, 1));
+        let end = self.body.binary(BinaryOperator::Add, first, count);
+        self.body.name(end, "end");
+        Some(Listed { first, end })
     }
 
     /// The number of the round that stands at a place of the list, and the same as a word.
-    fn listed_round(&mut self, first: Value, place: Value) -> (Value, Value) {
-        let Some(visits) = self.inputs.visits.as_ref() else { return (place, first) };
-        let place = self.body.cast(place, ScalarKind::Uint, Some(4));
-        let index = self.body.binary(BinaryOperator::Add, first, place);
-        let base = self.body.declare(Expression::GlobalVariable(visits.lists));
+    fn listed_round(&mut self, index: Value) -> Option<(Value, Value)> {
+        let base =
+            self.body.declare(Expression::GlobalVariable(self.inputs.visits.as_ref()?.lists));
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
         let word = self.body.load(pointer, "visited");
         let round = self.body.cast(word, ScalarKind::Float, Some(4));
         self.body.name(round, "round");
-        (round, word)
+        Some((round, word))
     }
 
     /// Variables that hold the start, and names for what is read from them.

@@ -170,7 +170,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
 }
 
 // Rays are cut into a slice for each so many rounds that can matter to their tile.
-const WORTH: u32 = 16;
+const WORTH: u32 = 4;
 const MOST_LOOPS: u32 = 8;
 
 // First it is found where the rounds begin to matter; then, slice by slice, which of them matter there.

@@ -3,9 +3,28 @@
 
 @group(0) @binding(4) var<storage, read> visits: array<u32>;
 
-// The record of the tile, and where it stands which rounds to visit; the scene's functions read the latter.
+// The record of the tile.
 var<private> own_record: u32;
-var<private> visit_record: u32;
+
+// How many rounds of each loop to visit, and where the number of the first stands; the scene's functions read these. Kept here,
+// since reading them from the buffer at each place takes as long as visiting a round.
+var<private> visit_spans: array<vec2u, 8>;
+
+fn span_at(record: u32, which: u32) -> vec2u {
+    return vec2u(visits[record + 2u * which], visits[record + 2u * which + 1u]);
+}
+
+// Spans of loops that the scene does not have are read by nothing, and go when it is compiled.
+fn visit_by(record: u32) {
+    visit_spans[0] = span_at(record, 0u);
+    visit_spans[1] = span_at(record, 1u);
+    visit_spans[2] = span_at(record, 2u);
+    visit_spans[3] = span_at(record, 3u);
+    visit_spans[4] = span_at(record, 4u);
+    visit_spans[5] = span_at(record, 5u);
+    visit_spans[6] = span_at(record, 6u);
+    visit_spans[7] = span_at(record, 7u);
+}
 
 // What is left out of the rounds that are visited is no nearer than this to the place at hand.
 const NOTHING_LEFT_OUT: f32 = 1e30;
@@ -51,7 +70,7 @@ fn trace_listed(ray: Ray, is_from_eye: bool) -> Trace {
         var part = ray;
         var start = 0.0;
         if is_from_eye {
-            visit_record = own_record + FIRST_SLICE + 2u * slice * visits[LOOPS];
+            visit_by(own_record + FIRST_SLICE + 2u * slice * visits[LOOPS]);
             let near = bitcast<f32>(visits[own_record + NEAR]);
             let length = bitcast<f32>(visits[own_record + SLICE_LENGTH]);
             let ends = slice_ends(slice, slices, near, length);
@@ -78,7 +97,7 @@ fn visit_cells(known: f32) {
 }
 
 fn visit_all() {
-    visit_record = WHOLE;
+    visit_by(WHOLE);
     visit_free = NOTHING_LEFT_OUT;
     roams = false;
 }
@@ -87,7 +106,7 @@ fn visit_all() {
 fn visit_at(p: vec3f) {
     if ROAMING {
         if roams {
-            visit_record = cells.outside;
+            var record = cells.outside;
             // How near what the loops are of can be; the box of that is some way from the border of the cells.
             var free = length(max(max(cells.box_low - p, p - cells.box_high), vec3f()));
             var own = WHOLE;
@@ -102,9 +121,10 @@ fn visit_at(p: vec3f) {
             }
             visit_free = free;
             if free < max(enough, known_to) {
-                visit_record = own;
+                record = own;
                 visit_free = NOTHING_LEFT_OUT;
             }
+            visit_by(record);
         }
     }
 }
