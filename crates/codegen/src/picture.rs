@@ -37,6 +37,17 @@ pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Err
     link_picture(program, Form::Compute, method)
 }
 
+/// As [`render_module`], for views from elsewhere than the scene's camera: whether their rays are parallel is not known
+/// before.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn posed_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+    let method = known_method(method_name)?;
+    link_picture(program, Form::Posed, method)
+}
+
 /// As [`render_module`], with the unit normals of what rays from the eye meet for colours, and no other rays: what
 /// the normals of pictures are measured by. The method may be one that is not in the table.
 ///
@@ -223,6 +234,7 @@ impl<'p> Picture<'p> {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let mut features = features(program, method.looks_ahead);
         features.culled = culled && is_culled(program, method);
+        features.posed = form == Form::Posed;
         let mut fillings = ahead(program, features);
         if !features.closed || features.occlusion {
             fillings.push(Filling::of_point(Some(Role::Distance), stubs::FIELD, distance));

@@ -211,6 +211,8 @@ pub struct Features {
     pub fog_color: bool,
     /// Rays from the eye are parallel.
     pub parallel: bool,
+    /// The view says whether they are, whatever the scene's camera is.
+    pub posed: bool,
     /// Rays from the eye visit only those rounds of loops that can matter to them.
     pub culled: bool,
 }
@@ -222,7 +224,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 17] {
+    pub fn overrides(self) -> [(&'static str, bool); 18] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -240,6 +242,7 @@ impl Features {
             fog,
             fog_color,
             parallel,
+            posed,
             culled,
         } = self;
         [
@@ -258,6 +261,7 @@ impl Features {
             ("FOG", fog),
             ("FOG_COLOR", fog_color),
             ("PARALLEL", parallel),
+            ("POSED", posed),
             ("CULLED", culled),
             ("ROAMING", self.roaming()),
         ]
@@ -307,6 +311,8 @@ pub enum Form {
     /// A compute stage, one invocation for each pixel of a tile, into a buffer.
     #[default]
     Compute,
+    /// As [`Form::Compute`], from wherever the view says, also by parallel rays of a scene whose camera has others.
+    Posed,
     /// As [`Form::Compute`], with the normals of what rays from the eye meet for colours, and no other rays.
     Normals,
     /// A triangle over the target and a fragment stage, the target's first row topmost.
@@ -324,7 +330,7 @@ impl Form {
         const COMPUTE: &str = include_str!("wgsl/compute.wgsl");
         const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
         match self {
-            Self::Compute => &[PICTURE, BUFFER, COMPUTE],
+            Self::Compute | Self::Posed => &[PICTURE, BUFFER, COMPUTE],
             Self::Normals => &[include_str!("wgsl/normals.wgsl"), BUFFER, COMPUTE],
             Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],

@@ -69,6 +69,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         fog,
         fog_color: _,
         parallel,
+        posed: _,
         culled,
     } = features;
     let names = [

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::time::Instant;
 
-use sdfc_codegen::render_module;
+use sdfc_codegen::{posed_module, render_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
@@ -117,7 +117,8 @@ impl Scene {
         };
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
-                let (engine, compile) = self.pipeline(&gpu, &program, &method)?;
+                let is_posed = options.pose.is_some();
+                let (engine, compile) = self.pipeline(&gpu, &program, &method, is_posed)?;
                 (engine, compile, None)
             }
             Err(note) => {
@@ -151,9 +152,11 @@ impl Scene {
         gpu: &Gpu,
         program: &Program,
         method: &str,
+        is_posed: bool,
     ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
-        let shader = render_module(program, method)?;
+        let link = if is_posed { posed_module } else { render_module };
+        let shader = link(program, method)?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;

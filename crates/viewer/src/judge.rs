@@ -13,7 +13,7 @@ use std::thread::JoinHandle;
 use std::time::Instant;
 
 use sdfc::accuracy_data::{Counts, Metrics};
-use sdfc::codegen::render_module;
+use sdfc::codegen::posed_module;
 use sdfc::march::{METHODS, Method};
 use sdfc::render::{
     Frame, Gpu, Pipeline, Pose, Progress, RenderError, RenderOptions, View, milliseconds_since,
@@ -355,7 +355,7 @@ impl Court {
         let scene = &case.model.scene;
         // `auto` is shown under its own name also where it is another method.
         let marched = scene.marched(method.name);
-        let shader = render_module(&marched.program, &marched.method)?;
+        let shader = posed_module(&marched.program, &marched.method)?;
         let pipeline = Pipeline::new(gpu, shader, marched.program.uniforms.len())?;
         let uniforms = uniform_values(&marched.program, &case.frame);
         for part in method.charted {

@@ -16,7 +16,7 @@ use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Instant;
 
-use sdfc::codegen::{Shader, render_module};
+use sdfc::codegen::{Shader, posed_module};
 use sdfc::graph::Program;
 use sdfc::lang::Options;
 use sdfc::render::{CpuScene, Gpu, Pipeline, milliseconds_since};
@@ -371,7 +371,7 @@ impl<T: FnMut(News)> Shop<T> {
         }
         let start = Instant::now();
         let marched = scene.marched(wanted);
-        let shader = render_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
+        let shader = posed_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
         let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
         stages.lower = milliseconds_since(start);
         if let Some(running) = self.running.as_mut().filter(|running| running.text == text) {

@@ -26,13 +26,14 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 8] = [
+    let tests: [(&str, Test); 9] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("a_changed_number_of_a_scene_of_many_parts_makes_no_pipeline", many),
         ("broken_text_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_smoothed", refined),
         ("all_views_are_drawn_from_one_picture", views),
         ("all_methods_draw_as_the_command_line_does", methods),
+        ("rays_are_parallel_or_not_whatever_the_camera_of_the_scene_is", parallel),
         ("lost_devices_are_opened_anew", lost),
         ("all_methods_are_compared_with_the_oracle", compared),
     ];
@@ -232,6 +233,36 @@ fn methods() -> Result<(), Failed> {
             expect(shown.capped.abs_diff(meant.capped) <= 2, &what)?;
             // Others step over a field like that.
             expect(!["auto", "interval"].contains(&method.name) || shown.hit > 100, &what)?;
+        }
+    }
+    Ok(())
+}
+
+/// A disc of the ball's own size, and the same in a file.
+fn parallel() -> Result<(), Failed> {
+    let camera = "camera(eye: [0, 0, 5], target: [0, 0, 0], ";
+    for lens in ["fov: 40deg)\n", "height: 4)\n"] {
+        let mut fixture = Fixture::new(&format!("sphere(1)\n{camera}{lens}"))?;
+        fixture.finish()?;
+        for parallel in [true, false, true] {
+            fixture.session.move_camera(|orbit| orbit.set_parallel(parallel));
+            let is_drawn = |it: &Picture| it.finished && it.view.parallel == parallel;
+            fixture.until(|session| session.picture.as_deref().is_some_and(is_drawn))?;
+            let Picture { image, view, request, counts, .. } = fixture.picture()?;
+            let is_met =
+                |(x, y): &(u32, u32)| image.pixel(*x, *y).is_some_and(|it| it.status == HIT);
+            let off = |(x, y): (u32, u32)| {
+                let ([start, direction], depth) = (view.ray(x, y), image.pixel(x, y)?.depth);
+                let point = start + direction * f64::from(depth);
+                Some((point.length() - 1.0).abs())
+            };
+            let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+            let worst = places.filter(is_met).filter_map(off).fold(0.0, f64::max);
+            expect(worst < 0.01, &format!("{lens} {parallel}: rays end {worst} off the ball"))?;
+            let pose = Some(request.pose);
+            let options = PictureOptions { size: SIZE, pose, ..PictureOptions::default() };
+            let file = request.model.scene.render(&options, &mut unwatched)?;
+            expect(file.image.counts() == *counts, &format!("{:?}", file.image.counts()))?;
         }
     }
     Ok(())
