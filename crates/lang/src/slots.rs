@@ -16,7 +16,7 @@ use crate::hir::{self, Element, Expr, ExprKind, ParamId, Program};
 /// How often a scene is elaborated before its literals are left as they are.
 const MAX_ROUNDS: usize = 64;
 /// Most literals of a scene that move: what a uniform buffer of 16 KiB holds, with room for params.
-const MAX_SLOTS: usize = 512;
+pub const MAX_SLOTS: usize = 512;
 
 /// A literal that moves.
 #[derive(Clone, Debug, PartialEq)]

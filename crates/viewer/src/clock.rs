@@ -14,9 +14,9 @@ pub struct Clock {
     pub playing: bool,
     /// Seconds of the scene a second.
     pub speed: f64,
-    /// Whether it starts again at the end.
+    /// Whether it starts again at the end, instead of stopping there.
     pub looping: bool,
-    /// Where it starts again, in seconds.
+    /// The end, in seconds.
     pub end: f64,
 }
 
@@ -32,11 +32,21 @@ impl Clock {
         if !self.playing {
             return;
         }
-        self.time += seconds.clamp(0.0, LONGEST_STEP) * self.speed;
+        let time = self.time + seconds.clamp(0.0, LONGEST_STEP) * self.speed;
         if self.looping && self.end > 0.0 {
-            self.time = self.time.rem_euclid(self.end);
+            self.time = time.rem_euclid(self.end);
         } else {
-            self.time = self.time.max(0.0);
+            self.time = time.clamp(0.0, self.end.max(0.0));
+            self.playing = self.time == time;
+        }
+    }
+
+    /// Plays or pauses; from where it stopped at an end it plays all of it again.
+    pub fn toggle(&mut self) {
+        self.playing = !self.playing;
+        let ahead = if self.speed < 0.0 { 0.0 } else { self.end };
+        if self.playing && self.time == ahead {
+            self.time = self.end - ahead;
         }
     }
 
@@ -64,5 +74,18 @@ mod tests {
         let mut backwards = Clock { speed: -1.0, playing: true, ..Clock::default() };
         backwards.advance(0.25);
         assert_eq!(backwards.time, 9.75);
+    }
+
+    #[test]
+    fn without_a_loop_it_stops_at_its_end_and_plays_again() {
+        for (speed, start, end) in [(1.0, 0.0, 0.5), (-1.0, 0.5, 0.0)] {
+            let mut clock =
+                Clock { speed, time: start, looping: false, end: 0.5, ..Clock::default() };
+            clock.toggle();
+            (0..4).for_each(|_| clock.advance(0.2));
+            assert_eq!((clock.time, clock.playing), (end, false));
+            clock.toggle();
+            assert_eq!((clock.time, clock.playing), (start, true));
+        }
     }
 }

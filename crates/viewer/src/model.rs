@@ -1,5 +1,6 @@
 //! A scene that has compiled, with what draws it.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -82,6 +83,14 @@ impl Model {
         self.scene.slots().iter().filter_map(|slot| Some((slot, params.get(slot.param)?)))
     }
 
+    /// Those that are all of a `let` with a line of its own, by its name.
+    pub fn named(&self) -> impl Iterator<Item = (&str, &Slot, &Param)> {
+        self.literals().filter_map(|(slot, param)| {
+            let (start, end) = (slot.span.start as usize, slot.span.end as usize);
+            Some((let_name(&self.text, start..end)?, slot, param))
+        })
+    }
+
     /// The program that the engine was made from.
     pub fn marched(&self) -> &Program {
         self.enclosed.as_ref().unwrap_or(self.scene.drawn())
@@ -106,6 +115,15 @@ impl Model {
     }
 }
 
+/// The name in `let name = value`, where that is all of a line but for a comment.
+fn let_name(text: &str, value: Range<usize>) -> Option<&str> {
+    let (before, after) = (text.get(..value.start)?, text.get(value.end..)?);
+    let (line, rest) = (before.rsplit('\n').next()?, after.lines().next().unwrap_or_default());
+    let name = line.trim_start_matches('\u{feff}').strip_prefix("let ")?.trim_end();
+    let ends = rest.trim().is_empty() || rest.trim_start().starts_with("//");
+    name.strip_suffix('=').map(str::trim).filter(|_| ends)
+}
+
 /// Whether anything per frame reads time or frame.
 pub fn reads_time(scene: &Scene) -> bool {
     let program = scene.program();
@@ -113,4 +131,22 @@ pub fn reads_time(scene: &Scene) -> bool {
     roots.extend(program.settings.nodes());
     let is_time = |node| matches!(node, Node::Frame(FrameInput::Time | FrameInput::Frame, _));
     reachable(&program.graph, &roots).into_iter().any(|id| is_time(program.graph.node(id)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_has_the_name_of_the_let_that_it_is_all_of() {
+        let name = |text: &str| {
+            let at = text.find("0.4").unwrap();
+            let_name(text, at..at + 3).map(str::to_owned)
+        };
+        let named = ["let k = 0.4", "\u{feff}let k = 0.4\r\nsphere(k)\n", "a()\nlet  k=0.4 // k"];
+        named.iter().for_each(|text| assert_eq!(name(text).as_deref(), Some("k"), "{text}"));
+        let unnamed =
+            ["let k = 0.4 + 1", "let k = -0.4", "sphere(0.4)", "  let k = 0.4", "outlet = 0.4"];
+        unnamed.iter().for_each(|text| assert_eq!(name(text), None, "{text}"));
+    }
 }

@@ -277,11 +277,7 @@ impl Session {
             return;
         }
         self.size = size;
-        if self.follows
-            && let Some(pose) = self.home()
-        {
-            self.orbit = Some(Orbit::new(&pose));
-        }
+        self.follow();
         let (Some(model), Some(orbit)) = (&self.model, &self.orbit) else { return };
         let request = Request {
             model: Arc::clone(model),
@@ -355,6 +351,11 @@ impl Session {
         self.samples.or(model.scene.program().settings.samples).unwrap_or(4)
     }
 
+    /// Whether the picture depends on time.
+    pub fn moves(&self) -> bool {
+        self.model.as_ref().is_some_and(|model| model.moves)
+    }
+
     /// The values of the frame as it stands.
     pub fn values(&self, model: &Model) -> FrameValues {
         self.knobs.frame(model, self.clock.time, self.clock.frame())
@@ -384,6 +385,16 @@ impl Session {
     /// Back to the scene's own camera.
     pub fn go_home(&mut self) {
         self.follows = true;
+        self.follow();
+    }
+
+    /// Puts the camera where the scene's is, unless it has been moved.
+    fn follow(&mut self) {
+        if self.follows
+            && let Some(pose) = self.home()
+        {
+            self.orbit = Some(Orbit::new(&pose));
+        }
     }
 
     /// Whether the camera is the scene's own.

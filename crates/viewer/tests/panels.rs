@@ -2,14 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use eframe::egui::accesskit::Role;
 use eframe::egui::{Context, DroppedFile, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
+use sdfc_viewer::views::Mode;
 
 /// Long enough for a busy machine; reached only where a test fails.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -24,9 +27,13 @@ struct Fixture {
 
 impl Fixture {
     fn new() -> Self {
+        Self::of(SCENE)
+    }
+
+    fn of(text: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.sdf");
-        std::fs::write(&path, SCENE).unwrap();
+        std::fs::write(&path, text).unwrap();
         let place = Some(folder.path().join("view.json"));
         let mut app = App::new(&Context::default(), &path, place).unwrap();
         app.session().set_build(|build| build.on_cpu = true);
@@ -74,6 +81,28 @@ impl Fixture {
         self.harness.run_steps(2);
     }
 
+    /// What can be clicked, dragged or typed into and says nothing where the pointer rests on it.
+    fn unexplained(&self) -> Vec<String> {
+        let widgets = [
+            Role::Button,
+            Role::CheckBox,
+            Role::ColorWell,
+            Role::ComboBox,
+            Role::Link,
+            Role::RadioButton,
+            Role::Slider,
+            Role::SpinButton,
+            Role::TextInput,
+        ];
+        let silent = by().predicate(|node| {
+            // What egui puts there itself.
+            let own = node.label().is_some_and(|label| label == "Close window");
+            widgets.contains(&node.role()) && node.data().description().is_none() && !own
+        });
+        let named = |node: egui_kittest::Node<'_>| format!("{node:?}");
+        self.harness.query_all(silent).map(named).collect()
+    }
+
     fn has(&self, text: &str) -> bool {
         self.harness.query_all_by_label_contains(text).next().is_some()
     }
@@ -115,6 +144,17 @@ fn the_text_opens_and_params_can_be_reset() {
     reset.unwrap().click();
     fixture.harness.run_steps(3);
     assert!(fixture.harness.state_mut().session().knobs.params.is_empty());
+}
+
+#[test]
+fn a_number_that_a_let_names_has_a_slider() {
+    let mut fixture = Fixture::of("let k = 0.4\nsphere(k)\n");
+    let slider = fixture.harness.get_by_role_and_label(Role::Slider, "k");
+    slider.set_value_accesskit(0.6);
+    fixture.harness.run_steps(3);
+    fixture.click("Write");
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == "let k = 0.6\nsphere(k)\n");
 }
 
 #[test]
@@ -175,6 +215,29 @@ fn the_picture_is_compared_with_the_oracle() {
     // Compared anew of its own accord.
     fixture.click("at rest");
     fixture.until(|harness| harness.query_by_label_contains("of another picture").is_none());
+}
+
+/// Params of all kinds, a number with a name, and time.
+const ALL_KINDS: &str = "param width = 0.5 in 0..1\nparam count: int = 2 in 1..5\nparam lean = 10deg\n\
+                         param red: color = #d94f30\nparam whole = true\nparam kind = \"ball\" in [\"ball\", \"box\"]\n\
+                         let k = 0.25\nsphere(width + k + 0.1 * sin(time)).color(red)\n";
+
+#[test]
+fn every_widget_explains_itself() {
+    let mut fixture = Fixture::of(ALL_KINDS);
+    fixture.click("Text");
+    fixture.click("Save");
+    fixture.harness.state_mut().session().mode = Mode::Slice;
+    let mut unexplained = BTreeSet::new();
+    for what in ["Picture", "Animation", "Shader", "render", "Window"] {
+        fixture.click(what);
+        unexplained.extend(fixture.unexplained());
+    }
+    for menu in ["scene.sdf", "Examples"] {
+        fixture.click(menu);
+        unexplained.extend(fixture.unexplained());
+    }
+    assert_eq!(unexplained, BTreeSet::new());
 }
 
 #[test]

@@ -57,13 +57,14 @@ fn orders(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         let text = "Compare this view, at a reduced size, with an oracle that proves in double precision where each ray \
                     meets the surface.";
-        if ui.add_enabled(drawn, egui::Button::new("Compare")).on_hover_text(text).clicked() {
+        let compare = ui.add_enabled(drawn, egui::Button::new("Compare")).on_hover_text(text);
+        if compare.on_disabled_hover_text("There is no picture yet.").clicked() {
             session.compare(false);
         }
         let text = "Draw this view with every ray method at several settings, and compare each. Takes seconds to \
                     minutes; a click on a mark of the chart chooses that method.";
         let all = ui.add_enabled(drawn && has_adapter, egui::Button::new("All methods"));
-        let why = "Shaders need an adapter.";
+        let why = if drawn { "Shaders need an adapter." } else { "There is no picture yet." };
         if all.on_hover_text(text).on_disabled_hover_text(why).clicked() {
             session.compare(true);
         }

@@ -56,7 +56,7 @@ impl Canvas {
             ui.ctx().request_repaint_after(REST);
         }
         let pressed = ui.input(|input| input.pointer.any_down());
-        let playing = session.clock.playing && session.model.as_ref().is_some_and(|it| it.moves);
+        let playing = session.clock.playing && session.moves();
         let scale = f64::from(ui.ctx().pixels_per_point());
         let most = ui.input(|input| input.max_texture_side) as f64;
         let side = |points: f32| (f64::from(points) * scale).round().clamp(0.0, most) as u32;
@@ -136,7 +136,7 @@ fn drive(ui: &Ui, response: &Response, rect: Rect, session: &mut Session) -> boo
 }
 
 fn fly(ui: &Ui, session: &mut Session) -> bool {
-    if ui.ctx().egui_wants_keyboard_input() {
+    if ui.ctx().text_edit_focused() {
         return false;
     }
     let axes = [(Key::D, Key::A), (Key::E, Key::Q), (Key::W, Key::S)];
@@ -214,7 +214,8 @@ fn lines(ui: &Ui, look: &Look) -> Vec<(String, Color32)> {
         _ => lines.push(("the ray meets nothing".to_owned(), style::of(ui).weak)),
     }
     let distance = look.distance.map_or(String::new(), |d| format!("   field {d:.2e}"));
-    let text = format!("ray {:.4}{distance}   {} evaluations", look.depth, look.evaluations);
+    let plural = if look.evaluations == 1 { "" } else { "s" };
+    let text = format!("ray {:.4}{distance}   {} evaluation{plural}", look.depth, look.evaluations);
     lines.push((text, style::of(ui).weak));
     lines
 }

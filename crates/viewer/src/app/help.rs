@@ -30,7 +30,7 @@ const ROWS: [(&str, &str); 19] = [
     ("V", "next view"),
     ("Space", "play or pause the time"),
     ("Ctrl S", "save a picture, an animation, the shader, the window"),
-    ("Tab, T", "panel of knobs, panel of the text"),
+    ("K, T", "panel of knobs, panel of the text"),
     ("Esc", "stop refining, and go on"),
     ("drop a file", "show that scene"),
     ("?", "this"),

@@ -27,12 +27,16 @@ pub fn show(ui: &mut Ui, path: &Path, memory: &mut Memory) -> Option<Choice> {
     let mut choice = None;
     let menu = ui.menu_button(RichText::new(name).strong(), |ui| {
         ui.set_min_width(180.0);
-        ui.menu_button("Examples", |ui| examples(ui, &mut choice));
-        ui.menu_button("Open before", |ui| recent(ui, path, memory, &mut choice));
-        ui.menu_button("In this folder", |ui| beside(ui, path, &mut choice));
+        let menu = ui.menu_button("Examples", |ui| examples(ui, &mut choice));
+        menu.response.on_hover_text("Scenes to begin with, each of which shows one thing.");
+        let menu = ui.menu_button("Open before", |ui| recent(ui, path, memory, &mut choice));
+        menu.response.on_hover_text("Scenes that this window has shown, the last one first.");
+        let menu = ui.menu_button("In this folder", |ui| beside(ui, path, &mut choice));
+        menu.response.on_hover_text("Scenes beside this one.");
         ui.label(RichText::new("or drop a file on the window").small().color(style::of(ui).weak));
         ui.separator();
-        if ui.checkbox(&mut memory.light, "Light").clicked() {
+        let light = ui.checkbox(&mut memory.light, "Light");
+        if light.on_hover_text("Dark writing on light panels.").clicked() {
             style::set_light(ui.ctx(), memory.light);
         }
     });

@@ -8,6 +8,7 @@ mod leave;
 mod menu;
 mod overlay;
 mod panels;
+mod params;
 mod save;
 mod shell;
 mod source;
@@ -188,8 +189,7 @@ impl App {
     fn pass_time(&mut self, ctx: &Context) {
         let seconds = self.last_frame.elapsed().as_secs_f64();
         self.last_frame = Instant::now();
-        let moves = self.session.model.as_ref().is_some_and(|model| model.moves);
-        if moves && self.session.clock.playing {
+        if self.session.moves() && self.session.clock.playing {
             self.session.clock.advance(seconds);
             ctx.request_repaint();
         }
@@ -224,7 +224,7 @@ impl App {
 
     /// Keys that work wherever the pointer is, unless a text is being typed.
     fn keys(&mut self, ctx: &Context, wishes: &mut Vec<Wish>) {
-        if ctx.egui_wants_keyboard_input() {
+        if ctx.text_edit_focused() {
             return;
         }
         let pressed = |key| ctx.input(|input| input.modifiers.is_none() && input.key_pressed(key));
@@ -248,8 +248,9 @@ impl App {
         {
             wishes.push(Wish::Copy(orbit.text()));
         }
-        if pressed(Key::Space) {
-            session.clock.playing = !session.clock.playing;
+        // It also presses the button that Tab has come to.
+        if pressed(Key::Space) && !ctx.egui_wants_keyboard_input() && session.moves() {
+            session.clock.toggle();
         }
         if pressed(Key::V) {
             session.mode = panels::next_mode(session.mode);
@@ -260,7 +261,7 @@ impl App {
         if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
             ctx.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        if pressed(Key::Tab) {
+        if pressed(Key::K) {
             self.shows.knobs = !self.shows.knobs;
         }
         if pressed(Key::T) {

@@ -1,20 +1,15 @@
 //! The bar above the picture, and the knobs beside it.
 
-use eframe::egui::{self, Response, RichText, Ui};
-use sdfc::graph::{Param, ParamKind};
+use eframe::egui::{self, RichText, Ui};
 use sdfc::march::{Knob, METHODS};
 
 use super::menu::{self, Choice};
+use super::params::{self, drag};
 use super::{Shows, Wish, accuracy, style};
-use crate::knobs::{display_text, value_text};
 use crate::memory::Memory;
-use crate::model::Model;
 use crate::orbit::Side;
 use crate::session::Session;
 use crate::views::Mode;
-
-/// What stands beside the slider of a param.
-const BESIDE_SLIDER: f32 = 96.0;
 
 /// The view after this one.
 pub fn next_mode(mode: Mode) -> Mode {
@@ -34,7 +29,7 @@ pub fn bar(
         state(ui, session);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.toggle_value(&mut shows.help, "?").on_hover_text("Keys and buttons.");
-            ui.toggle_value(&mut shows.knobs, "Knobs").on_hover_text("Params, time, camera. Tab");
+            ui.toggle_value(&mut shows.knobs, "Knobs").on_hover_text("Params, time, camera. K");
             ui.toggle_value(&mut shows.source, "Text")
                 .on_hover_text("The scene's text; its numbers can be dragged. T");
             ui.toggle_value(&mut shows.save, "Save")
@@ -113,174 +108,29 @@ pub fn knobs(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.add_space(4.0);
         if let Some(model) = session.model.clone() {
-            section(ui, "Params", |ui| params(ui, session, &model, wishes));
+            section(ui, "Params", "What the scene lets you move: its `param`s, and numbers to which a `let` gives a name.", |ui| params::show(ui, session, &model, wishes));
             if model.moves {
-                section(ui, "Time", |ui| time(ui, session));
+                section(ui, "Time", "The `time` that the scene reads.", |ui| time(ui, session));
             }
         }
-        section(ui, "Camera", |ui| camera(ui, session, wishes));
+        section(ui, "Camera", "From where the scene is seen.", |ui| camera(ui, session, wishes));
         if session.mode == Mode::Slice {
-            section(ui, "Slice", |ui| slice(ui, session));
+            section(ui, "Slice", "A plane through the scene that shows its field.", |ui| slice(ui, session));
         }
-        section(ui, "Accuracy", |ui| accuracy::show(ui, session));
-        section(ui, "Drawing", |ui| drawing(ui, session));
+        section(ui, "Accuracy", "How far the picture is from the truth.", |ui| accuracy::show(ui, session));
+        section(ui, "Drawing", "How fine, and what draws.", |ui| drawing(ui, session));
     });
 }
 
-fn section(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+fn section(ui: &mut Ui, name: &str, help: &str, contents: impl FnOnce(&mut Ui)) {
     let title = RichText::new(name).strong().color(style::of(ui).weak);
-    egui::CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| {
+    let header = egui::CollapsingHeader::new(title).default_open(true);
+    let shown = header.show_unindented(ui, |ui| {
         ui.add_space(2.0);
         contents(ui);
         ui.add_space(6.0);
     });
-}
-
-fn params(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
-    if model.declared().is_empty() {
-        let text = "none: `param r = 0.5 in 0..1` in the scene makes a slider here. Under “Text” its numbers can be \
-                    dragged.";
-        ui.label(RichText::new(text).small().color(style::of(ui).weak));
-        return;
-    }
-    let values = session.values(model);
-    for (param, lanes) in model.declared().iter().zip(values.params) {
-        let moved = session.knobs.params.contains_key(&param.name);
-        let mut value = lanes;
-        ui.horizontal(|ui| {
-            let color = if moved { style::of(ui).accent } else { style::of(ui).text };
-            let left = egui::Layout::left_to_right(egui::Align::Center);
-            let label = ui.allocate_ui_with_layout(egui::vec2(84.0, 18.0), left, |ui| {
-                ui.set_min_width(84.0);
-                let name = RichText::new(&param.name).color(color);
-                ui.add(egui::Label::new(name).truncate()).on_hover_text(hint(param)).id
-            });
-            // Room for the number and for the way back, so that the panel does not grow when something is moved.
-            ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(48.0);
-            knob(ui, param, &mut value, label.inner).on_hover_text(hint(param));
-            let back = egui::Button::new(RichText::new("reset").small()).frame(false);
-            let text = format!("Back to {}.", value_text(param, param.default));
-            if moved && ui.add(back).on_hover_text(text).clicked() {
-                session.knobs.params.remove(&param.name);
-                value = lanes;
-            }
-        });
-        if value != lanes {
-            session.knobs.params.insert(param.name.clone(), value);
-        }
-    }
-    ui.horizontal(|ui| {
-        let reset = ui.add_enabled(!session.knobs.params.is_empty(), egui::Button::new("Reset"));
-        if reset.on_hover_text("All params back to what the scene says.").clicked() {
-            session.knobs.params.clear();
-        }
-        let copy = ui.button("Copy values");
-        if copy.on_hover_text("Copy them as arguments of `sdfc render`.").clicked() {
-            wishes.push(Wish::Copy(session.knobs.arguments(model)));
-        }
-    });
-}
-
-fn hint(param: &Param) -> String {
-    let kind = match param.kind {
-        ParamKind::Number => "a number",
-        ParamKind::Int => "a whole number",
-        ParamKind::Angle => "an angle",
-        ParamKind::Bool => "true or false",
-        ParamKind::Color => "a colour",
-        ParamKind::Choice => "a choice",
-    };
-    let summary = if param.summary.is_empty() { &param.name } else { &param.summary };
-    let default = value_text(param, param.default);
-    format!("{summary}\n{kind}; {default} in the scene")
-}
-
-/// The widget for a param; `label` is that of its name, for those who hear it.
-fn knob(ui: &mut Ui, param: &Param, value: &mut [f64; 4], label: egui::Id) -> Response {
-    let [number, ..] = value;
-    match param.kind {
-        ParamKind::Number => number_knob(ui, number, param.range, "", label),
-        ParamKind::Angle => {
-            let mut degrees = number.to_degrees();
-            let range = param.range.map(|ends| ends.map(f64::to_degrees));
-            let knob = number_knob(ui, &mut degrees, range, "°", label);
-            if degrees.to_radians() != *number {
-                *number = degrees.to_radians();
-                if let Some([low, high]) = param.range {
-                    *number = number.clamp(low, high);
-                }
-            }
-            knob
-        }
-        ParamKind::Int => {
-            let before = *number;
-            let range = param.range.map(|[low, high]| [low.ceil(), high.floor()]);
-            let knob = number_knob(ui, number, range, "", label);
-            if *number != before {
-                *number = number.round();
-            }
-            knob
-        }
-        ParamKind::Bool => {
-            let mut on = *number != 0.0;
-            let knob = ui.checkbox(&mut on, "").labelled_by(label);
-            *number = f64::from(u8::from(on));
-            knob
-        }
-        ParamKind::Color => {
-            let mut color = [value[0], value[1], value[2]].map(|lane| lane as f32);
-            let button = egui::color_picker::color_edit_button_rgb(ui, &mut color);
-            if button.changed() {
-                for (lane, new) in value.iter_mut().zip(color) {
-                    *lane = f64::from(new);
-                }
-            }
-            button.labelled_by(label)
-        }
-        ParamKind::Choice => {
-            let mut index = *number as usize;
-            let name = |index: usize| param.choices.get(index).map_or("", String::as_str);
-            let combo = egui::ComboBox::from_id_salt(&param.name).selected_text(name(index));
-            let combo = combo.show_ui(ui, |ui| {
-                for choice in 0..param.choices.len() {
-                    ui.selectable_value(&mut index, choice, name(choice));
-                }
-            });
-            *number = index as f64;
-            combo.response.labelled_by(label)
-        }
-    }
-}
-
-/// A number that can be dragged and typed. It is shown rounded; opened and left as it was, it keeps its value.
-pub fn drag(number: &mut f64) -> egui::DragValue<'_> {
-    let before = *number;
-    let read = move |text: &str| match text.trim() {
-        same if same == display_text(before) => Some(before),
-        other => other.parse().ok(),
-    };
-    let drag = egui::DragValue::new(number).custom_formatter(|value, _| display_text(value));
-    drag.custom_parser(read)
-}
-
-/// A slider where the range is finite, and the number, which can be dragged and typed.
-fn number_knob(
-    ui: &mut Ui,
-    number: &mut f64,
-    range: Option<[f64; 2]>,
-    unit: &str,
-    label: egui::Id,
-) -> Response {
-    let [low, high] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let mut speed = (number.abs() * 0.005).max(0.002);
-    let mut slider = None;
-    if low.is_finite() && high.is_finite() {
-        let knob = ui.add(egui::Slider::new(number, low..=high).show_value(false));
-        slider = Some(knob.labelled_by(label));
-        speed = (high - low) / 400.0;
-    }
-    let drag = ui.add(drag(number).range(low..=high).speed(speed).suffix(unit)).labelled_by(label);
-    slider.map_or(drag.clone(), |slider| slider | drag)
+    shown.header_response.on_hover_text(help);
 }
 
 fn time(ui: &mut Ui, session: &mut Session) {
@@ -288,13 +138,16 @@ fn time(ui: &mut Ui, session: &mut Session) {
     ui.horizontal(|ui| {
         let text = if clock.playing { "Pause" } else { "Play" };
         if ui.button(text).on_hover_text("Play or pause. Space").clicked() {
-            clock.playing = !clock.playing;
+            clock.toggle();
         }
         if ui.button("To 0").on_hover_text("Back to 0.").clicked() {
             clock.time = 0.0;
         }
-        let slider = egui::Slider::new(&mut clock.time, 0.0..=clock.end.max(0.1)).suffix(" s");
-        ui.add(slider.max_decimals(2)).on_hover_text("The scene's `time`.");
+        let slider = egui::Slider::new(&mut clock.time, 0.0..=clock.end.max(0.1));
+        ui.add(slider.show_value(false)).on_hover_text("The scene's `time`.");
+        let seconds = egui::DragValue::new(&mut clock.time).range(0.0..=f64::INFINITY);
+        let seconds = ui.add(seconds.speed(0.02).fixed_decimals(2).suffix(" s"));
+        seconds.on_hover_text("The scene's `time`: drag, or click to type.");
     });
     ui.horizontal(|ui| {
         let speed = egui::DragValue::new(&mut clock.speed).speed(0.02).range(-10.0..=10.0);
@@ -312,7 +165,8 @@ fn camera(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
             session.frame_all();
         }
         let home = ui.add_enabled(!session.follows(), egui::Button::new("Scene's own"));
-        if home.on_hover_text("Back to the camera of the scene. H").clicked() {
+        let home = home.on_hover_text("Back to the camera of the scene. H");
+        if home.on_disabled_hover_text("The camera is the scene's own.").clicked() {
             session.go_home();
         }
         if ui.button("Copy").on_hover_text(format!("Copy {}", orbit.text())).clicked() {

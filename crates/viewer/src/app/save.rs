@@ -6,7 +6,7 @@ use eframe::egui::{self, Context, RichText, Ui};
 use sdfc::render::MAX_SIDE;
 use sdfc::{Backend, Emit, PictureOptions, ShaderOptions, Stage, Target};
 
-use super::{panels, style};
+use super::{params, style};
 use crate::clerk::Errand;
 use crate::session::Session;
 
@@ -107,7 +107,7 @@ impl Save {
             What::Picture => self.picture(ui),
             What::Animation => {
                 self.picture(ui);
-                let drag = panels::drag(&mut self.seconds).range(0.04..=600.0).speed(0.05);
+                let drag = params::drag(&mut self.seconds).range(0.04..=600.0).speed(0.05);
                 labelled(ui, "length", |ui| {
                     ui.add(drag.suffix(" s")).on_hover_text("25 frames a second, from time 0.");
                 });

@@ -2,9 +2,9 @@
 
 use eframe::egui::{self, RichText, Ui};
 use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::slots::Slot;
+use sdfc::lang::slots::{MAX_SLOTS, Slot};
 
-use super::panels::drag;
+use super::params::drag;
 use super::{Wish, style};
 use crate::model::Model;
 use crate::session::Session;
@@ -13,7 +13,7 @@ use crate::session::Session;
 pub fn show(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
     let Some(model) = session.model.clone() else { return };
     ui.add_space(4.0);
-    buttons(ui, session, &model, wishes);
+    orders(ui, session, &model, wishes);
     ui.separator();
     let lines: Vec<(usize, &str)> = lines(&model.text);
     let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
@@ -37,30 +37,39 @@ pub fn show(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
     });
 }
 
-fn buttons(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
+/// How many numbers have been moved, and what can be done with them.
+pub fn orders(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<Wish>) {
     let moved = session.knobs.moved_literals();
     ui.horizontal(|ui| {
         let what = match moved {
             0 if model.literals().next().is_none() => "no number to drag".to_owned(),
+            0 if model.scene.slots().len() == MAX_SLOTS => {
+                format!("drag one of the first {MAX_SLOTS} numbers")
+            }
             0 => "drag a number".to_owned(),
             1 => "1 number moved".to_owned(),
             moved => format!("{moved} numbers moved"),
         };
         let color = if moved > 0 { style::of(ui).accent } else { style::of(ui).weak };
-        let help = "Numbers that decide what is built stay as they are, and so do those of a scene whose many parts are \
-                    loops: change them in the file.";
+        let help = format!(
+            "Numbers that decide what is built stay as they are, and so do those of a scene whose many parts are \
+             loops, and all beyond the first {MAX_SLOTS}: change them in the file, which may take a new shader."
+        );
         ui.label(RichText::new(what).small().color(color)).on_hover_text(help);
-        ui.add_enabled_ui(moved > 0, |ui| {
-            if ui.small_button("Write").on_hover_text("Write them into the file.").clicked() {
-                session.write_literals();
-            }
-            if ui.small_button("Copy").on_hover_text("Copy the text with them.").clicked() {
-                wishes.push(Wish::Copy(session.knobs.rewritten(model)));
-            }
-            if ui.small_button("Reset").on_hover_text("All back to what the file says.").clicked() {
-                session.knobs.forget_literals();
-            }
-        });
+        let order = |ui: &mut Ui, name: &str, help: &str| {
+            let button = ui.add_enabled(moved > 0, egui::Button::new(name).small());
+            let button = button.on_hover_text(help);
+            button.on_disabled_hover_text("No number of the text has been moved.").clicked()
+        };
+        if order(ui, "Write", "Write them into the file.") {
+            session.write_literals();
+        }
+        if order(ui, "Copy", "Copy the text with them.") {
+            wishes.push(Wish::Copy(session.knobs.rewritten(model)));
+        }
+        if order(ui, "Reset", "All back to what the file says.") {
+            session.knobs.forget_literals();
+        }
     });
 }
 

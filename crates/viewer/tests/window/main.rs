@@ -232,12 +232,12 @@ fn idle(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(BALL)?;
     let window = Window::open(&display, &scene)?;
     window.settled(|picture| is_red(picture, PLACE))?;
-    // Past what a remark or a cursor may still have to do.
-    std::thread::sleep(Duration::from_secs(5));
-    let before = window.processor_ticks();
-    std::thread::sleep(Duration::from_secs(3));
-    let spent = window.processor_ticks() - before;
-    expect(spent <= 10, &format!("{spent} hundredths of a second"))
+    // Smoothing on a busy machine, a remark or a cursor may still have to do something.
+    window.until("it takes time for ever", || {
+        let before = window.processor_ticks();
+        std::thread::sleep(Duration::from_secs(3));
+        Ok(window.processor_ticks() - before <= 10)
+    })
 }
 
 /// No driver for Vulkan: OpenGL shows the window.

@@ -256,12 +256,15 @@ impl<'a> Window<'a> {
 
     /// What is on the screen once it is as expected and no longer changes.
     pub fn settled(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
+        // The next finer picture of a slow machine comes later than one look.
+        const SAME: u32 = 4;
         let start = Instant::now();
-        let mut before = self.screen()?;
+        let (mut before, mut same) = (self.screen()?, 0);
         loop {
             std::thread::sleep(Duration::from_millis(300));
             let now = self.screen()?;
-            if now == before && expected(&now) {
+            same = if now == before { same + 1 } else { 0 };
+            if same >= SAME && expected(&now) {
                 return Ok(now);
             }
             if start.elapsed() > PATIENCE {
