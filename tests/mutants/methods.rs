@@ -10,7 +10,7 @@ type Mutant = (&'static str, &'static str, &'static str, &'static str);
 
 const TAKEN_BACK: &str = "if stride > radius + abs(distance) {";
 
-const MUTANTS: [Mutant; 13] = [
+const MUTANTS: [Mutant; 15] = [
     (
         "auto",
         "if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {",
@@ -37,7 +37,19 @@ const MUTANTS: [Mutant; 13] = [
         "width(bracket) < 64.0 * near",
         "stability/bumps",
     ),
+    (
+        "segment",
+        "if step == 0u && distance < hit_within(ray, t, near) {",
+        "if false {",
+        "stability/resting_eye",
+    ),
     ("interval", "if least > 0.0 ||", "if least > -1.0 ||", "stability/plates"),
+    (
+        "interval",
+        "if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {",
+        "if false {",
+        "stability/resting_eye",
+    ),
     (
         "interval",
         "width(bracket) < hit_within(ray, t, near)",

@@ -7,12 +7,14 @@ use sdfc_analyze::Rule;
 use crate::{Subject, compiled};
 
 /// Plain steps by the field, from the eye on: what looks ahead sees less of a scene's field.
-const METHOD: &str = "sphere";
+const PLAIN: &str = "sphere";
+/// For what is known of a ray before it is marched.
+const AHEAD: &str = "auto";
 /// Error in depth that 99 of 100 pixels of a right picture keep, in widths of a pixel.
 const DEPTH: f64 = 0.5;
 
 /// Each rule and the scene in this folder that stands for it.
-const RULES: [(Rule, &str); 23] = [
+const RULES: [(Rule, &str); 24] = [
     (Rule::Affine, "affine"),
     (Rule::Sum, "sum"),
     (Rule::Product, "product"),
@@ -36,6 +38,7 @@ const RULES: [(Rule, &str); 23] = [
     (Rule::Continuation, "continuation"),
     (Rule::Within, "within"),
     (Rule::Similarity, "similarity"),
+    (Rule::Reach, "reach"),
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -45,7 +48,8 @@ pub fn trials() -> Vec<Trial> {
 
 fn is_noticed(rule: Rule, name: &str) -> Result<(), Failed> {
     let subject = Subject::read(&format!("mutants/{name}"))?;
-    let method = sdfc::march::method(METHOD).ok_or("no such method")?;
+    let name = if rule == Rule::Reach { AHEAD } else { PLAIN };
+    let method = sdfc::march::method(name).ok_or("no such method")?;
     let is_wrong = |metrics: &Metrics| {
         metrics.missed + metrics.false_hits + metrics.nan > 0 || metrics.depth.pixels.p99 > DEPTH
     };
@@ -92,6 +96,7 @@ fn every_rule_is_listed(rule: Rule) {
         | Rule::Division
         | Rule::Continuation
         | Rule::Within
-        | Rule::Similarity => {}
+        | Rule::Similarity
+        | Rule::Reach => {}
     }
 }

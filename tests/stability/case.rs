@@ -8,7 +8,7 @@
 //! // Auto: missed 1 %, depth 0.05 px.
 //! ```
 //!
-//! What `Auto` does not name is 0; of normals it is 0.001 degrees. A line `Outdone: segment, interval` names the methods that take
+//! What `Auto` does not name is 0. A line `Outdone: segment, interval` names the methods that take
 //! fewer evaluations than `auto` and err less. Without `Frames` the case is one frame, params at
 //! their defaults.
 
@@ -18,9 +18,7 @@ use libtest_mimic::Failed;
 use sdfc::{FrameValues, Scene};
 
 /// Most error in depth that a case may allow unless it is exempt, in widths of a pixel.
-const MOST_DEPTH: f64 = 0.1;
-/// Error of a normal in degrees that 99 of 100 pixels on smooth surfaces keep.
-const NORMAL: f64 = 0.001;
+const MOST_DEPTH: f64 = 0.05;
 
 /// One file.
 #[derive(Clone, Debug)]
@@ -58,8 +56,6 @@ pub struct Bounds {
     pub undecided: f64,
     /// In widths of a pixel, 99 of 100 pixels.
     pub depth: f64,
-    /// In degrees, on smooth surfaces, 99 of 100 pixels.
-    pub normal: f64,
 }
 
 /// The cases, by name.
@@ -95,8 +91,7 @@ impl Case {
         };
         let exempt = keyed("Exempt:");
         let auto = Bounds::parse(&keyed("Auto:").ok_or("no line `Auto:`")?)?;
-        let general =
-            Bounds { depth: auto.depth.min(MOST_DEPTH), normal: NORMAL, ..Bounds::default() };
+        let general = Bounds { depth: auto.depth.min(MOST_DEPTH), ..Bounds::default() };
         if exempt.is_none() && auto != general {
             return Err("weaker bounds than all cases hold, and no line `Exempt:`".to_owned());
         }
@@ -141,7 +136,7 @@ fn frames(text: &str) -> Result<Vec<Vec<(String, String)>>, String> {
 impl Bounds {
     /// `missed 1 %, depth 0.05 px`
     fn parse(text: &str) -> Result<Self, String> {
-        let mut bounds = Self { normal: NORMAL, ..Self::default() };
+        let mut bounds = Self::default();
         for part in text.split(',') {
             let mut words = part.split_whitespace();
             let (name, value) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
@@ -152,7 +147,6 @@ impl Bounds {
                 "nan" => (&mut bounds.nan, "%"),
                 "undecided" => (&mut bounds.undecided, "%"),
                 "depth" => (&mut bounds.depth, "px"),
-                "normal" => (&mut bounds.normal, "degrees"),
                 _ => return Err(format!("`{name}` is no bound")),
             };
             *place = value.parse().map_err(|_| format!("`{value}` is no number"))?;

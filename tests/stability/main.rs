@@ -24,6 +24,9 @@ use sdfc::{FrameValues, Scene};
 /// Width and height in pixels of the pictures that the page is about.
 const SIZE: [u32; 2] = [160, 120];
 
+/// Error of a normal in degrees that 99 of 100 pixels on smooth surfaces keep, in every case.
+const NORMAL: f64 = 0.001;
+
 /// Figures by case.
 type Measured = Arc<Mutex<BTreeMap<String, Vec<Figures>>>>;
 
@@ -134,9 +137,8 @@ fn held(auto: &Figures, bounds: &Bounds) -> Result<(), Failed> {
     if auto.depth > bounds.depth {
         wrong.push(format!("depths off by {:.4} px, {} px allowed", auto.depth, bounds.depth));
     }
-    if auto.normal > bounds.normal {
-        let (found, most) = (auto.normal, bounds.normal);
-        wrong.push(format!("normals off by {found:.5} degrees, {most} allowed"));
+    if auto.normal > NORMAL {
+        wrong.push(format!("normals off by {:.5} degrees, {NORMAL} allowed", auto.normal));
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("; ").into()) }
 }

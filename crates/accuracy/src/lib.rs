@@ -50,6 +50,6 @@ mod oracle;
 mod truth;
 
 pub use kept::TruthStore;
-pub use metrics::{Depth, Evaluations, Metrics, PixelSample, Quantiles, Status, compare};
+pub use metrics::{Depth, Evaluations, Metrics, Normal, PixelSample, Quantiles, Status, compare};
 pub use oracle::{Oracle, OracleError, Probe, Prober, Ray, Verdict};
 pub use truth::{Camera, Counts, Kind, Truth};

@@ -33,13 +33,24 @@ pub struct PixelSample {
     pub t: f64,
     /// Evaluations of the field for the ray from the eye.
     pub evaluations: u32,
-    /// Outward normal of what was hit, of any length; `None` where the picture does not tell.
-    pub normal: Option<[f64; 3]>,
+    /// Of what was hit; `None` where the picture does not tell.
+    pub normal: Option<Normal>,
 }
 
-/// Of a sorted list: the middle, the 99th of 100, the last; 0 for an empty one.
+/// A normal that a picture shades with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normal {
+    /// Where it was taken. That is the ray's hit as the method itself has it, which it gives away as a distance, rounded.
+    pub place: [f64; 3],
+    /// Outward, of any length.
+    pub direction: [f64; 3],
+}
+
+/// Of a sorted list: the middle, the 99th of 100, the last. Of an empty one they say nothing, and are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Quantiles {
+    /// How many there are.
+    pub n: u64,
     /// The middle.
     pub p50: f64,
     /// 99 of 100 are at most this.
@@ -77,7 +88,7 @@ pub struct Metrics {
     pub false_hits: u64,
     /// Errors in depth.
     pub depth: Depth,
-    /// Angle in degrees between the picture's normal and the field's gradient in f64 at the picture's own hit, over plain
+    /// Angle in degrees between the picture's normal and the field's gradient in f64 where the picture takes it, over plain
     /// pixels where the surface is smooth.
     pub normal: Quantiles,
     /// What is hit in the picture or in truth but not in both, as a part of what is hit in either.
@@ -199,7 +210,7 @@ fn angle(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
     let is_plain = truth.kinds[pixel] == Kind::Plain && seen.status == Status::Hit && seen.t > 0.0;
     let is_hit = matches!(truth.verdicts[pixel], Verdict::Hit(_)) && is_plain;
     let normal = seen.normal.filter(|_| is_hit)?;
-    normal_error(prober, &truth.camera, &truth.camera.ray(pixel), seen.t, normal)
+    normal_error(prober, truth.camera.pixel_width(seen.t), normal)
 }
 
 /// 1 - the intersection over the union of what is hit in truth and in the picture.
@@ -253,7 +264,8 @@ fn led_through(
 
 fn quantiles(mut values: Vec<f64>) -> Quantiles {
     values.sort_by(f64::total_cmp);
-    Quantiles { p50: rank(&values, 0.5), p99: rank(&values, 0.99), max: rank(&values, 1.0) }
+    let [p50, p99, max] = [0.5, 0.99, 1.0].map(|part| rank(&values, part));
+    Quantiles { n: values.len() as u64, p50, p99, max }
 }
 
 /// The value that a part of a sorted list does not exceed (nearest rank); the default for an empty one.

@@ -1,31 +1,25 @@
 //! How far a picture's normals are off, where the surface has one.
 
-use crate::oracle::{Prober, Ray};
-use crate::truth::Camera;
+use crate::metrics::Normal;
+use crate::oracle::Prober;
 
 /// A surface whose normal turns by more within half a pixel has a crease there, or bends within the pixel: no
 /// picture of that size shows its normal.
 const SMOOTH_DEGREES: f64 = 5.0;
 
-/// Degrees between the normal that a picture shows where its ray ended and the field's gradient at just that point, in f64;
-/// none where the surface is not smooth there. A normal that is no number is as wrong as can be.
-pub(crate) fn normal_error(
-    prober: &mut Prober<'_>,
-    camera: &Camera,
-    ray: &Ray,
-    t: f64,
-    normal: [f64; 3],
-) -> Option<f64> {
-    let point = ray.at(t);
-    let gradient = prober.gradient(point);
-    let half = 0.5 * camera.pixel_width(t);
+/// Degrees between the normal that a picture shows and the field's gradient at just the place where it was taken, in f64;
+/// none where the surface is not smooth there, within half the width of a pixel. A normal that is no number is as wrong as can be.
+pub(crate) fn normal_error(prober: &mut Prober<'_>, width: f64, normal: Normal) -> Option<f64> {
+    let Normal { place, direction } = normal;
+    let gradient = prober.gradient(place);
+    let half = 0.5 * width;
     let is_smooth = (0..6).all(|side| {
-        let mut beside = point;
+        let mut beside = place;
         beside[side / 2] += if side % 2 == 0 { half } else { -half };
         // What is no number is not smooth.
         degrees(prober.gradient(beside), gradient) <= SMOOTH_DEGREES
     });
-    let error = degrees(normal, gradient);
+    let error = degrees(direction, gradient);
     is_smooth.then_some(if error.is_nan() { 180.0 } else { error })
 }
 

@@ -2,7 +2,9 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use sdfc_accuracy::{Camera, Kind, Metrics, Oracle, PixelSample, Status, Truth, Verdict, compare};
+use sdfc_accuracy::{
+    Camera, Kind, Metrics, Normal, Oracle, PixelSample, Status, Truth, Verdict, compare,
+};
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Dim, Graph, Program, gradient};
 
@@ -99,6 +101,7 @@ fn a_perfect_picture_has_no_errors() {
     let metrics = Case::new().metrics();
     assert_eq!((metrics.missed, metrics.false_hits, metrics.nan, metrics.capped), (0, 0, 0, 0));
     assert_eq!(metrics.depth.pixels.max, 0.0);
+    assert!(metrics.depth.pixels.n > 0 && metrics.normal.n == 0, "no normal is told");
     assert_eq!((metrics.evaluations.mean, metrics.evaluations.max), (10.0, 10));
 }
 
@@ -147,21 +150,23 @@ fn an_edge_excuses_a_quarter_of_a_pixel() {
 }
 
 #[test]
-fn a_normal_is_held_against_the_gradient_where_the_ray_ended() {
+fn a_normal_is_held_against_the_gradient_where_it_was_taken() {
     let mut case = Case::new();
     let hit = case.pixel(Kind::Plain, true);
     let ray = camera().ray(hit);
     // Not at the ball: a sample deeper has another normal.
     case.picture[hit].t += 0.1;
-    let [x, y, z] = ray.at(case.picture[hit].t);
-    case.picture[hit].normal = Some([x, y, z]);
+    let place = ray.at(case.picture[hit].t);
+    let [x, y, z] = place;
+    case.picture[hit].normal = Some(Normal { place, direction: place });
     assert!(case.metrics().normal.max < 1e-9);
     // Turned about y by half a degree, at most.
     let (sine, cosine) = 0.5f64.to_radians().sin_cos();
-    case.picture[hit].normal = Some([cosine * x + sine * z, y, cosine * z - sine * x]);
+    let direction = [cosine * x + sine * z, y, cosine * z - sine * x];
+    case.picture[hit].normal = Some(Normal { place, direction });
     let off = case.metrics().normal.max;
     assert!(off > 0.2 && off < 0.5 + 1e-9, "{off}");
-    case.picture[hit].normal = Some([f64::NAN; 3]);
+    case.picture[hit].normal = Some(Normal { place, direction: [f64::NAN; 3] });
     assert_eq!(case.metrics().normal.max, 180.0);
 }
 

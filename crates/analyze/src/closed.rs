@@ -14,6 +14,7 @@ use sdfc_graph::{
     ShapeId, SidePromise, blend_at,
 };
 
+use crate::fault::Rule;
 use crate::form::{self, Form};
 use crate::lipschitz::Slopes;
 use crate::quality::Qualities;
@@ -207,6 +208,7 @@ impl Pass<'_> {
             let other = endless.as_ref().map_or(operand, |(_, other)| *other);
             // Nearer than the blend is wide and deep it may be something else.
             let reach = self.graph.add(blend.width, depth);
+            let reach = if Rule::Reach.is_broken() { self.graph.number(0.0) } else { reach };
             let past = self.graph.sub(other, reach);
             let least = beside.map_or(past, |beside| self.graph.min(beside, past));
             if let Some((closed, _)) = endless {

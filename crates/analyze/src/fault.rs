@@ -57,6 +57,8 @@ pub enum Rule {
     Within,
     /// A sample at a point that is not moved rigidly is not the child's field.
     Similarity,
+    /// A floor in a blend is nothing else where all else is farther away than the blend reaches.
+    Reach,
 }
 
 #[cfg(feature = "faults")]

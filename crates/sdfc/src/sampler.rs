@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use sdfc_accuracy::{PixelSample, Status};
+use sdfc_accuracy::{Normal, PixelSample, Status};
 use sdfc_codegen::normals_module;
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
@@ -52,12 +52,24 @@ impl Sampler<'_> {
 }
 
 fn sample(pixel: &PixelBlock) -> PixelSample {
-    let [x, y, z, _] = pixel.color.map(f64::from);
+    // As `normals.wgsl` has it.
+    let [x, y, z, u] = pixel.color.map(f64::from);
+    let v = f64::from(f32::from_bits(pixel.evaluations));
     PixelSample {
         status: status(pixel),
         t: f64::from(pixel.depth),
         evaluations: pixel.primary_evaluations,
-        normal: Some([x, y, z]),
+        normal: Some(Normal { place: [x, y, z], direction: folded([u, v]) }),
+    }
+}
+
+/// The direction to a place on an octahedron whose lower half is turned outward.
+fn folded([u, v]: [f64; 2]) -> [f64; 3] {
+    let up = 1.0 - u.abs() - v.abs();
+    if up < 0.0 {
+        [(1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v), up]
+    } else {
+        [u, v, up]
     }
 }
 
@@ -67,5 +79,23 @@ pub(crate) fn status(pixel: &PixelBlock) -> Status {
         HIT => Status::Hit,
         MISS => Status::Miss,
         _ => Status::Capped,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::folded;
+
+    #[test]
+    fn a_direction_is_what_the_octahedron_makes_of_it() {
+        for [x, y, z] in
+            [[1.0, 2.0, 5.0], [-3.0, 1.0, -2.0], [0.5, -1.0, -9.0], [0.0, 0.0, -1.0f64]]
+        {
+            let size = x.abs() + y.abs() + z.abs();
+            let [u, v] = [x / size, y / size];
+            let turned = [(1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v)];
+            let back = folded(if z < 0.0 { turned } else { [u, v] });
+            assert!([x, y, z].iter().zip(back).all(|(a, b)| (a / size - b).abs() < 1e-15));
+        }
     }
 }

@@ -135,21 +135,20 @@ impl Row {
 
     /// Whether it is at least as good in all that counts, and better in something.
     fn beats(&self, other: &Self) -> bool {
-        let mine = [self.ops_per_pixel, self.failed() as f64, self.depth_px.p99];
-        let others = [other.ops_per_pixel, other.failed() as f64, other.depth_px.p99];
-        let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
-        no_worse && mine != others
+        let figures = |row: &Self| [row.ops_per_pixel, row.failed() as f64, row.depth_px.p99];
+        is_less(figures(self), figures(other))
     }
-}
 
-impl Row {
     /// Whether it takes fewer operations and errs less: at no more pixels and no farther, and less in one of these.
     fn outdoes(&self, other: &Self) -> bool {
         let errors = |row: &Self| [row.failed() as f64, row.depth_px.p99.max(LEAST_ERROR)];
-        let (mine, others) = (errors(self), errors(other));
-        let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
-        self.ops_per_pixel < other.ops_per_pixel && no_worse && mine != others
+        self.ops_per_pixel < other.ops_per_pixel && is_less(errors(self), errors(other))
     }
+}
+
+/// Whether nothing is more than in others, and something is less.
+fn is_less<const N: usize>(figures: [f64; N], others: [f64; N]) -> bool {
+    figures.iter().zip(&others).all(|(a, b)| a <= b) && figures != others
 }
 
 impl Chart {

@@ -3,8 +3,8 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::accuracy_data::TruthStore;
 use sdfc::accuracy_data::chart::{Chart as Figures, Font, Row, Theme, png, svg};
+use sdfc::accuracy_data::{Quantiles, TruthStore};
 use sdfc::render::Gpu;
 use sdfc::{ChartOptions, Error, OracleOptions, Scene};
 
@@ -162,11 +162,18 @@ pub(super) fn outdone(chart: &Figures) -> String {
     }
 }
 
+/// A figure of some errors; of none there is nothing to say.
+pub(super) fn told(errors: &Quantiles, figure: impl FnOnce(&Quantiles) -> String) -> String {
+    if errors.n == 0 { "-".to_owned() } else { figure(errors) }
+}
+
 fn line(row: &Row) -> String {
     let settings = row.settings.iter().map(|(name, value)| format!("{name} {value:.3e}"));
-    let depth = row.depth_px;
+    let depth = |of: fn(&Quantiles) -> f64, places: usize| {
+        told(&row.depth_px, |errors| format!("{:.places$}", of(errors)))
+    };
     format!(
-        "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12.5}  {:>7.4}  {:>7.3}  {:>14.5}  {:>6}  {:>3}\n",
+        "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12}  {:>7}  {:>7}  {:>14}  {:>6}  {:>3}\n",
         if row.default { '*' } else { ' ' },
         if row.pareto { '+' } else { ' ' },
         row.method,
@@ -177,10 +184,10 @@ fn line(row: &Row) -> String {
         row.frame_ms.median,
         row.missed,
         row.false_hits,
-        depth.p50,
-        depth.p99,
-        depth.max,
-        row.normal_deg.p99,
+        depth(|errors| errors.p50, 5),
+        depth(|errors| errors.p99, 4),
+        depth(|errors| errors.max, 3),
+        told(&row.normal_deg, |errors| format!("{:.5}", errors.p99)),
         row.capped,
         row.nan,
     )

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use sdfc::accuracy_data::Quantiles;
 use sdfc::accuracy_data::chart::{Chart as Figures, Row};
 
-use super::chart::{Form, charted, drawn, outdone};
+use super::chart::{Form, charted, drawn, outdone, told};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -151,8 +152,8 @@ fn summary_line(name: &str, chart: &Figures) -> String {
         both(&|row| format!("{:.0}", row.ops_per_pixel)),
         figure("auto", &|row| row.wrong().to_string()),
         figure("auto", &|row| row.capped.to_string()),
-        both(&|row| format!("{:.1e}", row.depth_px.p99)),
-        figure("auto", &|row| format!("{:.1e}", row.normal_deg.p99)),
+        both(&|row| p99(&row.depth_px)),
+        figure("auto", &|row| p99(&row.normal_deg)),
         chart.oracle.undecided,
         front.collect::<Vec<_>>().join(", "),
     )
@@ -180,7 +181,7 @@ fn page(args: &Chart, charts: &[(String, Figures)]) -> String {
 fn line(row: &Row) -> String {
     let settings = row.settings.iter().map(|(name, value)| format!("{name} {}", short(*value)));
     format!(
-        "| `{}` | {} | {:.1} | {} | {:.0} | {:.1} | {} | {} | {} | {} | {:.1e} | {:.1e} |\n",
+        "| `{}` | {} | {:.1} | {} | {:.0} | {:.1} | {} | {} | {} | {} | {} | {} |\n",
         row.method,
         settings.collect::<Vec<_>>().join(", "),
         row.evals_per_pixel.mean,
@@ -191,9 +192,13 @@ fn line(row: &Row) -> String {
         row.false_hits,
         row.nan,
         row.capped,
-        row.depth_px.p99,
-        row.normal_deg.p99,
+        p99(&row.depth_px),
+        p99(&row.normal_deg),
     )
+}
+
+fn p99(errors: &Quantiles) -> String {
+    told(errors, |errors| format!("{:.1e}", errors.p99))
 }
 
 /// As few digits as tell the value.
