@@ -37,6 +37,11 @@ typedef enum {
 } sdfc_status;
 
 /*
+ The contents of a file that a scene imports, given by `sdfc_file_give`.
+ */
+typedef struct sdfc_file sdfc_file;
+
+/*
  A compiled scene, and values of its params.
 
  Any number of threads may call functions that take it as `const`, while none calls another.
@@ -47,6 +52,13 @@ typedef struct sdfc_scene sdfc_scene;
  A scene written as a shader.
  */
 typedef struct sdfc_shader sdfc_shader;
+
+/*
+ Gives a file that a scene imports to `file`, and returns 0; anything else where there is none or the scene may not have it,
+ which is then an error at its `import`. `path` is below the scene's folder, with `/` between its parts and neither `.` nor `..`
+ among them: `parts/gear.sdf`. `context` is what `sdfc_compile_with_files` was given.
+ */
+typedef int (*sdfc_read)(void *context, const char *path, sdfc_file *file);
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,7 +78,7 @@ const char *sdfc_error(void);
  Compiles a scene: `length` bytes of source, UTF-8; `name` is what messages call it. Where `diagnostics` is not null, a
  JSON array of all findings is stored there, as `sdfc check --json` writes it, to be freed with `sdfc_string_free`.
 
- Null where the source has errors; else to be freed with `sdfc_scene_free`.
+ Null where the source has errors, or imports a file; else to be freed with `sdfc_scene_free`.
 
  # Safety
 
@@ -76,6 +88,21 @@ sdfc_scene *sdfc_compile(const char *name,
                          const char *source,
                          size_t length,
                          char **diagnostics);
+
+/*
+ As `sdfc_compile`, for a scene that imports files: `read` gives them. It is called while this runs, by this thread, with
+ `context`. Null for it is none.
+
+ # Safety
+
+ As `sdfc_compile`; `read` may be called with `context`, and neither throws nor jumps out of it.
+ */
+sdfc_scene *sdfc_compile_with_files(const char *name,
+                                    const char *source,
+                                    size_t length,
+                                    sdfc_read read,
+                                    void *context,
+                                    char **diagnostics);
 
 /*
  Frees what `sdfc_compile` gave; null is nothing.
@@ -220,6 +247,15 @@ sdfc_status sdfc_shader_uniform(const sdfc_shader *shader,
  It came from there and is not used again.
  */
 void sdfc_shader_free(sdfc_shader *shader);
+
+/*
+ Adds bytes to a file that a scene imports, which are copied. A scene's text is UTF-8.
+
+ # Safety
+
+ The file is that of a call of `sdfc_read` that has not returned; there are that many bytes.
+ */
+sdfc_status sdfc_file_give(sdfc_file *file, const void *bytes, size_t length);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -15,18 +15,46 @@ fn examples() -> PathBuf {
 
 /// Compiles a program that includes `NAME.rs` of a folder, runs it, and gives what it prints.
 fn run(program: &Path, folder: &Path) -> String {
+    run_with(program, folder, &[]).unwrap_or_else(|why| panic!("{why}"))
+}
+
+/// The same, with more arguments for the compiler.
+fn run_with(program: &Path, folder: &Path, arguments: &[String]) -> Result<String, String> {
     let to = folder.join("program");
     let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
     let compiled = Command::new(rustc)
         .args(["--edition", "2024", "-D", "warnings", "-A", "dead_code", "-o"])
         .args([&to, program])
+        .args(arguments)
         .env("OUT_DIR", folder)
         .output()
         .unwrap();
-    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    if !compiled.status.success() {
+        return Err(String::from_utf8_lossy(&compiled.stderr).into_owned());
+    }
     let output = Command::new(&to).output().unwrap();
-    assert!(output.status.success());
-    String::from_utf8(output.stdout).unwrap()
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Ok(String::from_utf8(output.stdout).unwrap())
+}
+
+/// Arguments with which rustc finds bytemuck: as Cargo built it for this test, one of those beside it.
+fn with_bytemuck() -> Vec<[String; 4]> {
+    let beside = std::env::current_exe().unwrap().parent().unwrap().to_owned();
+    let built = std::fs::read_dir(&beside).unwrap().map(|entry| entry.unwrap().path());
+    let built = built.filter(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("libbytemuck-") && name.ends_with(".rlib")
+    });
+    let arguments = built.map(|path| {
+        let (folder, library) = (beside.display(), path.display());
+        [
+            "-L".into(),
+            format!("dependency={folder}"),
+            "--extern".into(),
+            format!("bytemuck={library}"),
+        ]
+    });
+    arguments.collect()
 }
 
 #[test]
@@ -50,31 +78,61 @@ fn the_example_holds_its_scene() {
 }
 
 /// Every kind of param, between members that want other alignments, under names that Rust reserves.
+const EVERY_KIND: &str = "param box = 0.5 in 0..2\nparam lid = true\nparam wood = #ff0000\nparam n: int = 3 in 1..9\n\
+                          param gen = 10deg in 0deg..45deg\nparam style = \"a\" in [\"b\", \"a\"]\n\
+                          let s = if style == \"a\" { sphere(box) } else { cylinder(r: box) }\n\
+                          (if lid { s } else { s | torus() }).rotate(y: gen).color(wood)\n\
+                          sphere(0.1 * n).translate(y: time)";
+
+/// Writes the module of that scene and a program that includes it, and gives the program.
+fn every_kind(build: &Build, folder: &Path, main: &str) -> PathBuf {
+    let path = folder.join("all.sdf");
+    std::fs::write(&path, EVERY_KIND).unwrap();
+    let made = build.generate(&path, &mut Vec::new()).map_err(|(_, why)| why).unwrap();
+    std::fs::write(folder.join("all.rs"), made.text).unwrap();
+    let program = folder.join("main.rs");
+    let module = "mod all { include!(concat!(env!(\"OUT_DIR\"), \"/all.rs\")); }";
+    std::fs::write(&program, format!("{module}\nfn main() {{ {main} }}")).unwrap();
+    program
+}
+
 #[test]
 fn a_structure_is_laid_out_as_the_buffer() {
-    let scene = "param box = 0.5 in 0..2\nparam lid = true\nparam wood = #ff0000\nparam n: int = 3 in 1..9\n\
-                 param gen = 10deg in 0deg..45deg\nparam style = \"a\" in [\"b\", \"a\"]\n\
-                 let s = if style == \"a\" { sphere(box) } else { cylinder(r: box) }\n\
-                 (if lid { s } else { s | torus() }).rotate(y: gen).color(wood)\n\
-                 sphere(0.1 * n).translate(y: time)";
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("all.sdf");
-    std::fs::write(&path, scene).unwrap();
-    let made = Build::new().generate(&path, &mut Vec::new()).map_err(|(_, why)| why).unwrap();
-    std::fs::write(folder.path().join("all.rs"), made.text).unwrap();
-    let program = folder.path().join("main.rs");
-    let main = "mod all { include!(concat!(env!(\"OUT_DIR\"), \"/all.rs\")); }\n\
-                fn main() { println!(\"{:?}\", all::Params { time: 0.25, ..Default::default() }.to_bytes()); }";
-    std::fs::write(&program, main).unwrap();
+    let main = "println!(\"{:?}\", all::Params { time: 0.25, ..Default::default() }.to_bytes());";
+    let program = every_kind(&Build::new(), folder.path(), main);
     let printed = run(&program, folder.path());
 
-    let scene = Scene::from_source("all.sdf", scene).unwrap();
+    let scene = Scene::from_source("all.sdf", EVERY_KIND).unwrap();
     let written = scene.write_shader(&ShaderOptions::default()).unwrap();
     let mut frame = scene.defaults();
     frame.time = 0.25;
     let bytes = uniform_bytes(&written.reflection, &frame);
     assert_eq!(written.reflection.members.len(), 7);
     assert_eq!(printed.trim_end(), format!("{bytes:?}"));
+}
+
+/// `Pod` is derived only for structures whose every byte is a member's.
+#[test]
+fn a_structure_is_plain_bytes_where_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let main = "let params = all::Params { time: 0.25, lid: 0, ..Default::default() };\n\
+                assert_eq!(bytemuck::bytes_of(&params), params.to_bytes());\n\
+                let zero: all::Params = bytemuck::Zeroable::zeroed();\n\
+                assert_eq!(zero.to_bytes(), [0; size_of::<all::Params>()]);\n\
+                println!(\"same\");";
+    let program = every_kind(&Build::new().bytemuck(true), folder.path(), main);
+    // Other versions and features may lie there too.
+    let tried = with_bytemuck().into_iter().map(|found| run_with(&program, folder.path(), &found));
+    let tried: Vec<_> = tried.collect();
+    let ran = tried.iter().flatten().next();
+    assert_eq!(ran.map(|text| text.trim_end()), Some("same"), "{tried:#?}");
+
+    // What was not asked for is not there.
+    let program = every_kind(&Build::new(), folder.path(), main);
+    let mut tried =
+        with_bytemuck().into_iter().map(|found| run_with(&program, folder.path(), &found));
+    assert!(tried.all(|tried| tried.is_err()));
 }
 
 #[test]

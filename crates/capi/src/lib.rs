@@ -1,18 +1,21 @@
 //! The compiler and the fields of its scenes for C: see `sdfc.h` beside this crate, which is made from it.
 //!
-//! Nothing here opens files: a scene that imports others is refused. Every function takes null and text that is not
+//! Nothing here opens files: a scene that imports others has them from a function of the program that calls, or is refused. Every function takes null and text that is not
 //! UTF-8 without harm, and says so: a pointer that it gives is then null, a status is not [`Status::Ok`], and
 //! [`sdfc_error`] says why. The compiler does not panic, which lints and tests with arbitrary input hold; should it all the
 //! same, that ends at this boundary as [`Status::Internal`], for nothing may unwind into C.
 
 mod boundary;
+mod files;
 
-use std::ffi::{CString, c_char};
+use std::ffi::{CString, c_char, c_void};
 
 use sdfc::codegen::Reflection;
 use sdfc::{Emit, FrameValues, ShaderOptions, Target, uniform_bytes};
 
 use boundary::{Failure, fill, guarded, handle, handle_mut, slice, slice_mut, text};
+use files::Host;
+pub use files::{File, Read, sdfc_file_give};
 
 /// How a call ended.
 #[repr(C)]
@@ -66,7 +69,7 @@ pub extern "C" fn sdfc_error() -> *const c_char {
 /// Compiles a scene: `length` bytes of source, UTF-8; `name` is what messages call it. Where `diagnostics` is not null, a
 /// JSON array of all findings is stored there, as `sdfc check --json` writes it, to be freed with `sdfc_string_free`.
 ///
-/// Null where the source has errors; else to be freed with `sdfc_scene_free`.
+/// Null where the source has errors, or imports a file; else to be freed with `sdfc_scene_free`.
 ///
 /// # Safety
 ///
@@ -78,12 +81,34 @@ pub unsafe extern "C" fn sdfc_compile(
     length: usize,
     diagnostics: *mut *mut c_char,
 ) -> *mut Scene {
+    let (read, context) = (None, std::ptr::null_mut());
+    // SAFETY: as this function's; nothing is called.
+    unsafe { sdfc_compile_with_files(name, source, length, read, context, diagnostics) }
+}
+
+/// As `sdfc_compile`, for a scene that imports files: `read` gives them. It is called while this runs, by this thread, with
+/// `context`. Null for it is none.
+///
+/// # Safety
+///
+/// As `sdfc_compile`; `read` may be called with `context`, and neither throws nor jumps out of it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sdfc_compile_with_files(
+    name: *const c_char,
+    source: *const c_char,
+    length: usize,
+    read: Read,
+    context: *mut c_void,
+    diagnostics: *mut *mut c_char,
+) -> *mut Scene {
     let mut made = std::ptr::null_mut();
     guarded(|| {
         // SAFETY: as this function's.
         let (name, source) = unsafe { (text(name)?, slice(source.cast::<u8>(), length)?) };
         let source = std::str::from_utf8(source).map_err(|_| Failure::not_utf8("source"))?;
-        let compiled = sdfc::compile(name, source);
+        // SAFETY: as this function's.
+        let host = unsafe { Host::new(read, context) };
+        let compiled = sdfc::compile_with_imports(name, source, &host);
         if !diagnostics.is_null() {
             let rows =
                 c_string(serde_json::to_string(&compiled.rows()).map_err(Failure::internal)?)?;

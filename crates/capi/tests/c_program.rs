@@ -2,48 +2,60 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::io::Write;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
 
 use sdfc::Scene;
 
 const SOURCE: &str = include_str!("../../../examples/embed/bowl.sdf");
 
 /// The folder of the shared library, which is built beside this test.
-fn libraries() -> std::path::PathBuf {
+fn libraries() -> PathBuf {
     std::env::current_exe().unwrap().parent().unwrap().to_owned()
 }
 
-#[test]
-fn a_c_program_calls_the_field() {
+/// `field.c`, compiled to a program in the folder.
+fn compiled(folder: &Path) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("field");
-    let libraries = libraries();
+    let program = folder.join("field");
     let compiled = Command::new("cc")
         .args(["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"])
         .arg(env!("CARGO_MANIFEST_DIR"))
         .arg(root.join("examples/embed/c/field.c"))
         .arg("-L")
-        .arg(&libraries)
+        .arg(libraries())
         .args(["-lsdfc_capi", "-lm", "-o"])
         .arg(&program)
         .output()
         .unwrap();
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    program
+}
 
-    let points = [[0.0, 0.0, 0.0], [0.4, -0.3, 0.7], [1.5, 0.2, -0.1], [-0.3, -1.4, 0.2]];
-    let mut child = Command::new(&program)
-        .args([root.join("examples/embed/bowl.sdf").as_os_str(), "0.1".as_ref()])
-        .env("LD_LIBRARY_PATH", &libraries)
-        .env("DYLD_LIBRARY_PATH", &libraries)
+/// What the program says of a scene and of points.
+fn run(program: &Path, scene: &Path, points: &[[f64; 3]]) -> Output {
+    let mut child = Command::new(program)
+        .args([scene.as_os_str(), "0.1".as_ref()])
+        .env("LD_LIBRARY_PATH", libraries())
+        .env("DYLD_LIBRARY_PATH", libraries())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let lines = points.map(|[x, y, z]| format!("{x} {y} {z}\n")).concat();
-    child.stdin.take().unwrap().write_all(lines.as_bytes()).unwrap();
-    let output = child.wait_with_output().unwrap();
+    let lines: String = points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
+    // A program that ends early reads none.
+    let _ = child.stdin.take().unwrap().write_all(lines.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_c_program_calls_the_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = compiled(folder.path());
+    let points = [[0.0, 0.0, 0.0], [0.4, -0.3, 0.7], [1.5, 0.2, -0.1], [-0.3, -1.4, 0.2]];
+    let bowl = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/embed/bowl.sdf");
+    let output = run(&program, &bowl, &points);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
     let (rests, rows) = text.split_once('\n').unwrap();
@@ -63,4 +75,17 @@ fn a_c_program_calls_the_field() {
         assert_eq!(numbers(line), [found.distance, gx, gy, gz]);
     }
     assert_eq!(rows.lines().count(), points.len());
+
+    // A scene of two files, the second of which is there only at last.
+    let path = folder.path().join("two.sdf");
+    std::fs::write(&path, "import ball from \"parts/ball.sdf\"\nball()").unwrap();
+    let output = run(&program, &path, &points);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && said.contains("the program gives no such file"), "{said}");
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    let ball = "solid ball() = length(p) - 0.25";
+    std::fs::write(folder.path().join("parts/ball.sdf"), ball).unwrap();
+    let output = run(&program, &path, &points);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.starts_with("rests ") && text.contains("\n-0.25 "), "{text}");
 }

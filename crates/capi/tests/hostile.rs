@@ -6,7 +6,7 @@
     reason = "a test fails by panicking"
 )]
 
-use std::ffi::{CStr, c_char};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut};
 
 use sdfc_capi::*;
@@ -98,6 +98,80 @@ fn errors_come_as_json_and_files_are_not_read() {
     assert_eq!(rows[0]["severity"], "error");
     assert!(rows.as_array().unwrap().iter().any(|row| row["code"] == "E0201" && row["line"] == 2));
     unsafe { sdfc_string_free(found) };
+}
+
+/// Gives what is under the last part of the path in the map that is the context, and notes what it is asked for.
+#[derive(Default)]
+struct Files {
+    asked: Vec<String>,
+    held: Vec<(&'static str, &'static [u8])>,
+}
+
+unsafe extern "C" fn read(context: *mut c_void, path: *const c_char, file: *mut File) -> c_int {
+    let (files, path) = unsafe { (&mut *context.cast::<Files>(), CStr::from_ptr(path)) };
+    files.asked.push(path.to_str().unwrap().to_owned());
+    let Some((_, bytes)) = files.held.iter().find(|(name, _)| path.to_str() == Ok(name)) else {
+        return 1;
+    };
+    // In two parts.
+    let (one, other) = bytes.split_at(bytes.len() / 2);
+    for part in [one, other] {
+        unsafe {
+            assert_eq!(sdfc_file_give(file, part.as_ptr().cast(), part.len()), Status::Ok);
+            assert_eq!(sdfc_file_give(null_mut(), part.as_ptr().cast(), 1), Status::Null);
+            assert_eq!(sdfc_file_give(file, null(), 1), Status::Null);
+        }
+    }
+    0
+}
+
+/// The distance at the origin, or what is wrong.
+fn distance_with(source: &str, files: &mut Files) -> Result<f64, String> {
+    let (text, length) = (source.as_ptr().cast(), source.len());
+    let context = std::ptr::from_mut(files).cast();
+    unsafe {
+        let name = c"scenes/a.sdf".as_ptr();
+        let scene = sdfc_compile_with_files(name, text, length, Some(read), context, null_mut());
+        if scene.is_null() {
+            return Err(error());
+        }
+        let (point, mut distance) = ([0.0; 3], 0.0);
+        assert_eq!(sdfc_distance(scene, point.as_ptr(), 1, &mut distance), Status::Ok);
+        sdfc_scene_free(scene);
+        Ok(distance)
+    }
+}
+
+#[test]
+fn a_scene_imports_what_the_program_gives_and_nothing_else() {
+    let held: Vec<(_, &[u8])> =
+        vec![("parts/ball.sdf", b"solid ball() = length(p) - 0.25"), ("bad.sdf", b"\xff\xfe")];
+    let mut files = Files { held, ..Files::default() };
+    let given = distance_with("import ball from \"parts/ball.sdf\"\nball()", &mut files);
+    assert_eq!(given, Ok(-0.25));
+    let refused = |source: &str, files: &mut Files| distance_with(source, files).unwrap_err();
+    let error = refused("import ball from \"none.sdf\"\nball()", &mut files);
+    assert!(
+        error.contains("the program gives no such file") && error.contains("a.sdf:1"),
+        "{error}"
+    );
+    assert!(refused("import a from \"bad.sdf\"\na()", &mut files).contains("not UTF-8"));
+    for path in ["/etc/passwd", "../ball.sdf", "parts/../../ball.sdf", "C:\\\\ball.sdf"] {
+        refused(&format!("import ball from \"{path}\"\nball()"), &mut files);
+    }
+    assert_eq!(files.asked, ["parts/ball.sdf", "none.sdf", "bad.sdf"]);
+
+    // Without a function there are no files.
+    let source = c"import ball from \"parts/ball.sdf\"\nball()";
+    let (text, length) = (source.as_ptr(), source.to_bytes().len());
+    let name = CString::new("a.sdf").unwrap();
+    unsafe {
+        let none = null_mut();
+        assert!(
+            sdfc_compile_with_files(name.as_ptr(), text, length, None, none, null_mut()).is_null()
+        );
+    }
+    assert!(crate::error().contains("without access to files"), "{}", crate::error());
 }
 
 #[test]

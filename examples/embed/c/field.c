@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static char *read_file(const char *path, size_t *length) {
     FILE *file = fopen(path, "rb");
@@ -27,7 +28,24 @@ static char *read_file(const char *path, size_t *length) {
     return text;
 }
 
-static sdfc_scene *read_scene(const char *path) {
+/* Gives a file that a scene imports, which is below the scene's folder: the path cannot lead out of it. */
+static int read_beside(void *scene_path, const char *path, sdfc_file *file) {
+    const char *scene = scene_path;
+    const char *slash = strrchr(scene, '/');
+    size_t folder = slash ? (size_t)(slash - scene) + 1 : 0;
+    char *whole = malloc(folder + strlen(path) + 1);
+    if (!whole) return 1;
+    memcpy(whole, scene, folder);
+    strcpy(whole + folder, path);
+    size_t length;
+    char *text = read_file(whole, &length);
+    free(whole);
+    int refused = !text || sdfc_file_give(file, text, length) != SDFC_STATUS_OK;
+    free(text);
+    return refused;
+}
+
+static sdfc_scene *read_scene(char *path) {
     size_t length;
     char *text = read_file(path, &length);
     if (!text) {
@@ -35,7 +53,7 @@ static sdfc_scene *read_scene(const char *path) {
         return NULL;
     }
     char *diagnostics = NULL;
-    sdfc_scene *scene = sdfc_compile(path, text, length, &diagnostics);
+    sdfc_scene *scene = sdfc_compile_with_files(path, text, length, read_beside, path, &diagnostics);
     /* Warnings come with a scene, too; an empty array is "[]". */
     if (diagnostics && diagnostics[1] != ']') fprintf(stderr, "%s\n", diagnostics);
     sdfc_string_free(diagnostics);
