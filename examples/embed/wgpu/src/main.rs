@@ -11,14 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     renderer.scenes[1].frame_mut().time = 2.0;
 
     let size = [640, 480];
-    let camera = Camera {
-        eye: [2.2, 2.4, 3.0],
-        target: [0.0, -0.2, 0.0],
-        fov: 40f32.to_radians(),
-        sun: [1.0, 2.0, 1.5],
-        ambient: 0.15,
-    };
-    let pixels = renderer.draw(size, &camera)?;
+    let pixels = renderer.draw(size, &Camera::default())?;
     let image = image::RgbaImage::from_raw(size[0], size[1], pixels).ok_or("too few pixels")?;
     image.save(&path)?;
     Ok(())

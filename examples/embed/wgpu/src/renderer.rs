@@ -153,6 +153,19 @@ fn pipeline(
     })
 }
 
+impl Default for Camera {
+    /// One that sees both scenes.
+    fn default() -> Self {
+        Self {
+            eye: [2.2, 2.4, 3.0],
+            target: [0.0, -0.2, 0.0],
+            fov: 40f32.to_radians(),
+            sun: [1.0, 2.0, 1.5],
+            ambient: 0.15,
+        }
+    }
+}
+
 impl Camera {
     /// As `frame.wgsl` lays it out.
     fn bytes(&self, [width, height]: [u32; 2]) -> Vec<u8> {

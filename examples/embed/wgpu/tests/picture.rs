@@ -33,15 +33,9 @@ fn same_picture() -> Result<(), Failed> {
     bowl.set("wall", 0.15)?;
     bowl.set("opening", 0.4)?;
     ring.frame_mut().time = 2.0;
-    let camera = Camera {
-        eye: [2.2, 2.4, 3.0],
-        target: [0.0, -0.2, 0.0],
-        fov: 40f32.to_radians(),
-        sun: [1.0, 2.0, 1.5],
-        ambient: 0.15,
-    };
-    let drawn = renderer.draw(SIZE, &camera)?;
+    let drawn = renderer.draw(SIZE, &Camera::default())?;
 
+    // The camera and lights of `Camera::default`, as a scene has them.
     let settings = "camera(eye: [2.2, 2.4, 3], target: [0, -0.2, 0], fov: 40deg)\n\
                     sun(direction: [1, 2, 1.5])\nambient(strength: 0.15)\n\
                     background(rgb(0.1, 0.2, 0.3))";
