@@ -11,10 +11,18 @@ use crate::tools::Tool;
 
 const TEXTS: [Target; 5] = [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
 
+/// Lists that are short enough to be constants of a text, of numbers and of points; no example has such.
+const SHORT_LISTS: &str = "let heights = [for i in 0..9: 0.05 * i * i]
+let places = [for i in 0..5: [i, 0.1 * i * i, 0]]
+solid steps() = 0.5 * (p.y - heights[floor(clamp(p.x, 0, 8))])
+solid dots() = length(p - places[floor(clamp(p.x, 0, 4))]) - 0.2
+(steps() & box(4)) | dots()";
+
 /// Every example beside itself, with another prefix and binding: no name is declared by both, and where a
 /// validator is here, it takes the two as one file.
 pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
-    for (name, scene) in examples()? {
+    let lists = Scene::from_source("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
+    for (name, scene) in examples()?.into_iter().chain([("short lists".to_owned(), lists)]) {
         for target in TEXTS {
             for emit in [Emit::Field, Emit::March] {
                 let place = format!("{name} as {}, {emit:?}", target.name());

@@ -13,6 +13,10 @@ use crate::reflect::{Parts, Reflection, reflect, reflect_written};
 use crate::stopwatch::Stopwatch;
 use crate::target::{self, Code, Target};
 
+/// How names begin of what naga's writers add: conversions, and in HLSL constructors of arrays. Two texts in one file would both
+/// declare them.
+const WRITERS_OWN: [&str; 2] = ["naga_", "Constructarray"];
+
 /// A shader in a target's language, and what it offers by the names that it has there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
@@ -100,8 +104,9 @@ impl Shader {
     pub fn write(&self, target: Target, comment: &str) -> Result<Written, Error> {
         let mut written = target::write(target, &self.module, &self.info, comment)?;
         if let Code::Text(text) = &mut written.code {
-            // What naga's writers add, such as conversions: two texts in one file would both declare it.
-            *text = text.replace("naga_", &format!("{}naga_", self.parts.prefix));
+            for added in WRITERS_OWN {
+                *text = text.replace(added, &format!("{}{added}", self.parts.prefix));
+            }
         }
         let reflection = reflect_written(&self.module, &self.parts, &written);
         Ok(Written { code: written.code, reflection })

@@ -1,5 +1,7 @@
 //! The languages that shaders are written in.
 
+mod lists;
+
 use naga::proc::NameKey;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
@@ -330,7 +332,7 @@ fn hlsl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<String>), Err
     let mut writer = back::hlsl::Writer::new(&mut text, &options, &stages);
     let reflected = writer.write(module, info, None).map_err(refused)?;
     let names: Result<_, _> = reflected.entry_point_names.into_iter().collect();
-    Ok((text, names.map_err(refused)?))
+    Ok((lists::with_plain_lists(&text), names.map_err(refused)?))
 }
 
 /// The text, and what entry points are called in it.
