@@ -41,10 +41,32 @@ export function paramBytes(reflection, values = {}) {
   return bytes;
 }
 
+// What moves by itself.
+const CLOCK = ["time", "frame"];
+
+/// Tells `changed` what `time`, in seconds, and `frame` are, before each picture of the screen, if the scene uses either. The page's
+/// address can stop it: `?time=1.5`. Gives what ends it.
+export function clock(reflection, changed) {
+  if (!reflection.params.some(({ param }) => CLOCK.includes(param))) return () => {};
+  const stopped = new URLSearchParams(location.search).get("time");
+  if (stopped !== null) {
+    changed({ time: Number(stopped), frame: 0 });
+    return () => {};
+  }
+  const start = performance.now();
+  let frame = 0;
+  let waiting = requestAnimationFrame(tick);
+  function tick(now) {
+    waiting = requestAnimationFrame(tick);
+    changed({ time: Math.max(0, now - start) / 1000, frame: frame++ });
+  }
+  return () => cancelAnimationFrame(waiting);
+}
+
 /// A knob for each param, in `parent`. `changed` is told the values of those that were moved.
 export function knobs(reflection, parent, changed) {
   const values = {};
-  for (const row of reflection.params) {
+  for (const row of reflection.params.filter(({ param }) => !CLOCK.includes(param))) {
     const [input, read] = knob(row);
     input.name = row.param;
     input.oninput = () => {

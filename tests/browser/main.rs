@@ -50,10 +50,13 @@ fn main() {
     for embedding in &pages::EMBEDDINGS[..2] {
         let name = format!("{}_follows_knobs_and_mouse", embedding.name);
         add(name, Box::new(|place| pages::follow_knobs_and_mouse(place, embedding)));
+        let name = format!("{}_follows_the_clock", embedding.name);
+        add(name, Box::new(|place| pages::follow_the_clock(place, embedding)));
     }
     let clock = "shadertoy_follows_clock_and_mouse".to_owned();
     add(clock, Box::new(pages::shadertoy_follows_clock_and_mouse));
     add("three_shows_the_field".to_owned(), Box::new(three::shows_the_field));
+    add("three_follows_the_clock".to_owned(), Box::new(three::follows_the_clock));
     let package = "the_package_gives_the_same_in_a_browser".to_owned();
     add(package, Box::new(compiler::gives_the_same_in_a_browser));
     add("the_package_draws_what_is_typed".to_owned(), Box::new(compiler::draws_what_is_typed));

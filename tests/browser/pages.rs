@@ -14,6 +14,8 @@ use crate::{Place, table};
 const COLOR: u8 = 1;
 /// At most so many pixels in a thousand may differ by more: drivers round differently, and at an edge that shows.
 pub const EDGES: f64 = 5.0;
+/// A scene that moves shows it sooner.
+const MOST_PICTURES: usize = 100;
 /// Room for knobs below the picture.
 const WINDOW: [u32; 2] = [VIEW_SIZE[0], VIEW_SIZE[1] + 240];
 
@@ -128,6 +130,27 @@ pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Resul
     let pose = turned(pose(&scene)?, [0.0; 3], -0.5);
     check(&shown(place)?, &drawn(&scene, Some(frame), Some(pose))?, "the mouse")?;
     Ok(())
+}
+
+/// A scene with `time` is at the time that the page is told, and moves where it is told none.
+pub fn follow_the_clock(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
+    let scene = example("time.sdf")?;
+    embedding.open(place, &scene, "?time=0.75")?;
+    let frame = FrameValues { time: 0.75, ..FrameValues::defaults(scene.params()) };
+    check(&shown(place)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
+    embedding.open(place, &scene, "")?;
+    moves(place)
+}
+
+/// Whether the canvas shows something else within some pictures of the screen.
+pub fn moves(place: &mut Place) -> Result<(), Failed> {
+    let first = shown(place)?;
+    for _ in 0..MOST_PICTURES {
+        if shown(place)? != first {
+            return Ok(());
+        }
+    }
+    Err("the picture stands still".into())
 }
 
 /// The clock moves the scene, and the mouse turns the camera: by a turn over the width of the picture.

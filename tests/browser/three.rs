@@ -7,7 +7,7 @@ use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, unwatched};
 
 use crate::Place;
 use crate::examples::{example, folder};
-use crate::pages::{Pixels, SCENES, THREE, check, shown};
+use crate::pages::{Pixels, SCENES, THREE, check, moves, shown};
 use crate::table;
 
 /// The scene that the page's camera is made for.
@@ -35,6 +35,22 @@ pub fn shows_the_field(place: &mut Place) -> Result<(), Failed> {
         return Err(format!("{count} of {whole} pixels of the mesh are seen").into());
     }
     table::check(THREE.name, &[found])
+}
+
+/// A scene with `time` stands at the time that the page is told, and moves where it is told none.
+pub fn follows_the_clock(place: &mut Place) -> Result<(), Failed> {
+    let scene = example("time.sdf")?;
+    let at = |place: &mut Place, query: &str| -> Result<Pixels, Failed> {
+        THREE.open(place, &scene, query)?;
+        shown(place)
+    };
+    let [one, again, later] =
+        [at(place, "?time=0.5")?, at(place, "?time=0.5")?, at(place, "?time=1")?];
+    if one != again || one == later {
+        return Err("the page is not at the time that it is told".into());
+    }
+    THREE.open(place, &scene, "")?;
+    moves(place)
 }
 
 /// The shading of `main.js`, on what `sdfc render` meets.

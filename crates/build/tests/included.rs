@@ -15,7 +15,7 @@ fn examples() -> PathBuf {
 
 /// Compiles a program that includes `NAME.rs` of a folder, runs it, and gives what it prints.
 fn run(program: &Path, folder: &Path) -> String {
-    run_with(program, folder, &[]).unwrap_or_else(|why| panic!("{why}"))
+    run_with(program, folder, &[]).unwrap()
 }
 
 /// The same, with more arguments for the compiler.

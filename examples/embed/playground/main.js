@@ -1,7 +1,7 @@
 // Compiles the scene in the text area whenever it changes, and draws it. Served from the root of the repository.
 
 import { load } from "../../../crates/web/npm/index.js";
-import { knobs } from "../reflection.js";
+import { clock, knobs } from "../reflection.js";
 import { openDevice, picture } from "../webgpu/picture.js";
 
 const [canvas, editor, messages, form] = ["canvas", "textarea", "pre", "form"].map((name) =>
@@ -10,6 +10,7 @@ const [canvas, editor, messages, form] = ["canvas", "textarea", "pre", "form"].m
 
 async function main() {
   const [compiler, device] = await Promise.all([load(), openDevice()]);
+  let endClock = () => {};
 
   async function show() {
     const options = { emit: "render", stage: "fragment" };
@@ -17,9 +18,11 @@ async function main() {
     messages.textContent = diagnostics.map(line).join("\n");
     // A broken text keeps the last good picture.
     if (text === null) return;
+    endClock();
     const { setParams } = await picture(device, canvas, text, reflection);
     form.replaceChildren();
     knobs(reflection, form, setParams);
+    endClock = clock(reflection, setParams);
   }
 
   // One after the other, and of those that wait only the last.

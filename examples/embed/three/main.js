@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { knobs } from "../reflection.js";
+import { clock, knobs } from "../reflection.js";
 
 // The ray through each corner of a triangle that covers the picture.
 const VERTEX = `
@@ -89,12 +89,17 @@ async function main() {
   const scene = new THREE.Scene().add(field, knot, lamp, new THREE.AmbientLight("white", 0.6));
 
   const draw = () => renderer.render(scene, camera);
-  knobs(reflection, document.querySelector("form"), (values) => {
+  function setParams(values) {
     for (const [param, value] of Object.entries(values)) {
-      uniforms[param].value = Array.isArray(value) ? new THREE.Vector4(...value) : value;
+      // The clock has `frame` also where the scene does not.
+      if (param in uniforms) {
+        uniforms[param].value = Array.isArray(value) ? new THREE.Vector4(...value) : value;
+      }
     }
     requestAnimationFrame(draw);
-  });
+  }
+  knobs(reflection, document.querySelector("form"), setParams);
+  clock(reflection, setParams);
   const controls = new OrbitControls(camera, canvas);
   controls.target.set(0, 0, 0.2);
   controls.update();

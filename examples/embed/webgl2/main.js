@@ -1,12 +1,7 @@
-// Draws the scene in scene.glsl, which `sdfc compile --emit render --target glsl-es` wrote, on a canvas.
+// Draws the scene in scene.glsl, which `sdfc compile --emit render --target glsl-es` wrote, on a canvas. Where it uses `time` it moves.
 
-import { paramBytes, knobs, turn, viewBytes } from "../reflection.js";
-
-// One triangle that covers the canvas.
-const VERTEX = `#version 300 es
-void main() {
-    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
-}`;
+import { clock, knobs, paramBytes, turn, viewBytes } from "../reflection.js";
+import { fullScreen } from "./program.js";
 
 // The shader gives linear light. A WebGL canvas takes numbers as they are, so they are encoded behind it, in a
 // second `main` that calls the first.
@@ -30,18 +25,7 @@ async function main() {
   const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
   if (!gl) throw new Error("this browser has no WebGL 2 here");
 
-  const program = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, encoded(text)]]) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    gl.attachShader(program, shader);
-  }
-  gl.linkProgram(program);
-  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
-    const logs = gl.getAttachedShaders(program).map((shader) => gl.getShaderInfoLog(shader));
-    throw new Error([...logs, gl.getProgramInfoLog(program)].join("\n"));
-  }
+  const program = fullScreen(gl, encoded(text));
   gl.useProgram(program);
 
   // The reflection lists every uniform block that the shader reads. WebGL knows them by their names.
@@ -63,21 +47,32 @@ async function main() {
   }
 
   function draw() {
+    waits = false;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
+  // Once for all that changes before the next picture of the screen.
+  let waits = false;
+  function redraw() {
+    if (!waits) requestAnimationFrame(draw);
+    waits = true;
+  }
+
   // A param is a few bytes of a uniform: nothing is compiled again.
-  knobs(reflection, document.querySelector("form"), (values) => {
-    contents.params = paramBytes(reflection, values);
+  const values = {};
+  function setParams(some) {
+    contents.params = paramBytes(reflection, Object.assign(values, some));
     fill("params");
-    requestAnimationFrame(draw);
-  });
+    redraw();
+  }
+  knobs(reflection, document.querySelector("form"), setParams);
+  clock(reflection, setParams);
   canvas.onpointermove = ({ buttons, movementX }) => {
     if (buttons === 0) return;
     turn(reflection, contents.view, -movementX / 100);
     fill("view");
-    requestAnimationFrame(draw);
+    redraw();
   };
   draw();
   const error = gl.getError();

@@ -1,6 +1,6 @@
-// Draws the scene in scene.wgsl on the canvas, with a knob for each of its params.
+// Draws the scene in scene.wgsl on the canvas, with a knob for each of its params. Where it uses `time` it moves.
 
-import { knobs } from "../reflection.js";
+import { clock, knobs } from "../reflection.js";
 import { openDevice, picture } from "./picture.js";
 
 async function main() {
@@ -11,6 +11,7 @@ async function main() {
   const canvas = document.querySelector("canvas");
   const { setParams } = await picture(await openDevice(), canvas, text, reflection);
   knobs(reflection, document.querySelector("form"), setParams);
+  clock(reflection, setParams);
 }
 
 main().then(

@@ -42,6 +42,7 @@ export async function picture(device, canvas, text, reflection) {
   const group = device.createBindGroup({ layout: pipeline.getBindGroupLayout(0), entries });
 
   function draw() {
+    waits = false;
     const encoder = device.createCommandEncoder();
     const view = context.getCurrentTexture().createView({ format });
     const target = { view, loadOp: "clear", storeOp: "store" };
@@ -53,17 +54,26 @@ export async function picture(device, canvas, text, reflection) {
     device.queue.submit([encoder.finish()]);
   }
 
-  // A param is a few bytes of a uniform: nothing is compiled again.
-  function setParams(values) {
+  // A param is a few bytes of a uniform: nothing is compiled again. Those that are not named keep their values.
+  const values = {};
+  function setParams(some) {
+    Object.assign(values, some);
     device.queue.writeBuffer(buffers.params, 0, paramBytes(reflection, values));
-    requestAnimationFrame(draw);
+    redraw();
+  }
+
+  // Once for all that changes before the next picture of the screen.
+  let waits = false;
+  function redraw() {
+    if (!waits) requestAnimationFrame(draw);
+    waits = true;
   }
 
   canvas.onpointermove = ({ buttons: pressed, movementX }) => {
     if (pressed === 0) return;
     turn(reflection, contents.view, -movementX / 100);
     device.queue.writeBuffer(buffers.view, 0, contents.view);
-    requestAnimationFrame(draw);
+    redraw();
   };
   draw();
   await device.queue.onSubmittedWorkDone();
