@@ -62,6 +62,8 @@ pub(crate) struct Visits {
     pub(crate) lists: Handle<GlobalVariable>,
     /// How many rounds of each loop to visit, and where the first one's number stands.
     pub(crate) spans: Handle<GlobalVariable>,
+    /// What counts the rounds that are visited; none: nothing does.
+    pub(crate) visited: Option<Handle<GlobalVariable>>,
     /// What sets that for a place, and how near what is left out can be there; none: it is the same everywhere.
     pub(crate) at: Option<(Handle<Function>, Handle<GlobalVariable>)>,
     /// The place of each loop's span.
@@ -73,11 +75,12 @@ impl Visits {
     pub(crate) fn of(module: &Module, program: &Program) -> Option<Self> {
         let lists = link::find_variable(module, stubs::VISITS)?;
         let spans = link::find_variable(module, stubs::VISIT_SPANS)?;
+        let visited = link::find_variable(module, stubs::VISITED);
         let free = link::find_variable(module, stubs::VISIT_FREE);
         let at = link::find_function(module, stubs::VISIT_AT).zip(free);
         let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
         let loops = loops.take(stubs::REACHES.len()).collect();
-        Some(Self { lists, spans, at, loops })
+        Some(Self { lists, spans, visited, at, loops })
     }
 
     /// The place of a loop's span, by what it says of its rounds.

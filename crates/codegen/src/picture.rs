@@ -75,6 +75,25 @@ pub fn measured_module(
     method_name: &str,
     field: FieldSource,
 ) -> Result<Shader, Error> {
+    measured(program, method_name, field, false)
+}
+
+/// As [`measured_module`] of the scene's distance, whose pixels tell as evaluations how many rounds of loops were visited, where these
+/// are listed; those for normals are among them.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn counted_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+    measured(program, method_name, FieldSource::Distance, true)
+}
+
+fn measured(
+    program: &Program,
+    method_name: &str,
+    field: FieldSource,
+    counted: bool,
+) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let distance = match field {
         FieldSource::Scene => return link_picture(program, Form::Compute, method),
@@ -83,7 +102,8 @@ pub fn measured_module(
     };
     // All of the field is marched.
     let culled = field == FieldSource::Distance && is_culled(program, method);
-    let features = Features { materials: false, culled, ..features(program, false) };
+    let counted = culled && counted;
+    let features = Features { materials: false, culled, counted, ..features(program, false) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
     let source = source_over(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;

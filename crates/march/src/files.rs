@@ -215,6 +215,8 @@ pub struct Features {
     pub posed: bool,
     /// Rays from the eye visit only those rounds of loops that can matter to them.
     pub culled: bool,
+    /// A pixel's evaluations are not those of the field, but of operands of its loops: all rounds that were visited.
+    pub counted: bool,
 }
 
 impl Features {
@@ -224,7 +226,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 18] {
+    pub fn overrides(self) -> [(&'static str, bool); 19] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -244,6 +246,7 @@ impl Features {
             parallel,
             posed,
             culled,
+            counted,
         } = self;
         [
             ("CLOSED", closed),
@@ -264,6 +267,7 @@ impl Features {
             ("POSED", posed),
             ("CULLED", culled),
             ("ROAMING", self.roaming()),
+            ("COUNTED", counted),
         ]
     }
 
@@ -471,6 +475,8 @@ pub mod stubs {
         ["reach_0", "reach_1", "reach_2", "reach_3", "reach_4", "reach_5", "reach_6", "reach_7"];
     /// `var<storage, read> visits`, the lists of rounds.
     pub const VISITS: &str = "visits";
+    /// `var<private> visited: u32`, how many rounds were visited, where [`super::Features::counted`] is set.
+    pub const VISITED: &str = "visited";
     /// `var<private> visit_spans: array<vec2u, 8>`, how many rounds of each loop to visit, and where in `visits` the first one's
     /// number stands.
     pub const VISIT_SPANS: &str = "visit_spans";

@@ -27,6 +27,9 @@ const LEVELS: u32 = 3;
 const LEVEL_BYTES: u64 = 16;
 const WIDER: u32 = 4;
 const TALLY: u32 = 7;
+/// Words of the tally before the least operands, and where it counts operands that were evaluated.
+const TALLY_HEAD: usize = 2;
+pub(crate) const EVALUATED: u64 = 1;
 /// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
 const HEAD: u32 = 6;
 /// Groups of cells, to an axis and in all.
@@ -80,6 +83,7 @@ struct CellStages {
 #[derive(Debug)]
 pub(crate) struct Visits {
     pub(crate) lists: wgpu::Buffer,
+    pub(crate) tally: wgpu::Buffer,
     tiles: [u32; 2],
     /// For each level.
     bind_groups: Vec<wgpu::BindGroup>,
@@ -158,13 +162,15 @@ impl Culling {
         let first = first_record(&self.rounds, has_cells);
         let bytes = 4 * (first + lowest(tiles) * u64::from(stride(&self.rounds)));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
-        let head = head(&self.rounds, self.cells.as_ref(), within);
+        let joined = self.cells.as_ref().map(|cells| &cells.is_joined[..]);
+        let head = head(&self.rounds, joined, within);
         gpu.queue.write_buffer(&lists, 0, &bytes_of(&head));
         let groups = if has_cells { u64::from(GROUPS) } else { 0 };
         let marks = on_all_levels(tiles).max(groups) * mark_bytes(&self.rounds);
         let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
         let none = bytes_of(&tally(&self.rounds, has_cells));
-        let tally = buffer(gpu, "tally", none.len() as u64, Usage::STORAGE | Usage::COPY_DST);
+        let tally_usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
+        let tally = buffer(gpu, "tally", none.len() as u64, tally_usage);
         gpu.queue.write_buffer(&tally, 0, &none);
         let bind_group = |level| {
             let buffers = [
@@ -186,7 +192,7 @@ impl Culling {
             })
         };
         let bind_groups = self.levels.iter().map(bind_group).collect();
-        Visits { lists, tiles, bind_groups }
+        Visits { lists, tally, tiles, bind_groups }
     }
 
     /// Finds what can matter in so many groups of cells; once, since it fills what was empty.
@@ -240,11 +246,11 @@ pub(crate) fn fits(gpu: &Gpu, rounds: &[u32], has_cells: bool) -> Result<(), Ren
     gpu.has_workgroups(what, u64::from(most_words(rounds).div_ceil(LANES)))
 }
 
-/// What the lists begin with: the layout, what stands for a slice by which all rounds are visited and its lists; the same outside all
-/// cells, and what tells of the cells.
-fn head(rounds: &[u32], cells: Option<&CellStages>, within: Option<[DVec3; 2]>) -> Vec<u32> {
+/// What the lists begin with: the layout, what stands for a slice by which all rounds are visited and its lists; where rays go by cells,
+/// the same outside all of these, given for each loop whether no round need be visited there, and what tells of the cells.
+fn head(rounds: &[u32], joined: Option<&[bool]>, within: Option<[DVec3; 2]>) -> Vec<u32> {
     let loops = rounds.len() as u32;
-    let (about, end) = (about_cells(rounds), first_record(rounds, cells.is_some()) as u32);
+    let (about, end) = (about_cells(rounds), first_record(rounds, joined.is_some()) as u32);
     let mut head = vec![end, stride(rounds), CAPACITY, most_words(rounds), loops, about];
     let mut first = HEAD + 2 * loops;
     for &rounds in rounds {
@@ -252,8 +258,8 @@ fn head(rounds: &[u32], cells: Option<&CellStages>, within: Option<[DVec3; 2]>) 
         first += rounds;
     }
     head.extend(rounds.iter().flat_map(|&rounds| 0..rounds));
-    let Some(cells) = cells else { return head };
-    for (place, &is_joined) in cells.is_joined.iter().enumerate() {
+    let Some(joined) = joined else { return head };
+    for (place, &is_joined) in joined.iter().enumerate() {
         let place = HEAD as usize + 2 * place;
         head.extend([if is_joined { 0 } else { head[place] }, head[place + 1]]);
     }
@@ -265,7 +271,7 @@ fn head(rounds: &[u32], cells: Option<&CellStages>, within: Option<[DVec3; 2]>) 
     let lists = records + (2 * loops + 1) * cell_count(rounds);
     head.extend([loops, group(rounds), records, about - 2 * loops, lists, end]);
     let grid = grid(within, GROUP_SIDE * group(rounds));
-    let is_joined = cells.is_joined.iter().all(|&is_joined| is_joined);
+    let is_joined = joined.iter().all(|&is_joined| is_joined);
     let least_step = if is_joined { SHORTEST * grid[1].recip().min_element() } else { FAR };
     head.push((least_step as f32).to_bits());
     head.extend(grid.iter().flat_map(|v| v.as_vec3().to_array()).map(f32::to_bits));
@@ -296,11 +302,11 @@ fn first_record(rounds: &[u32], has_cells: bool) -> u64 {
     about + u64::from(ABOUT_CELLS) + cell * u64::from(cell_count(rounds))
 }
 
-/// What the stages for cells count from: nothing is filled, no operand known.
+/// What the stages count from: nothing is filled, none was evaluated, no least operand known.
 fn tally(rounds: &[u32], has_cells: bool) -> Vec<u32> {
     let known = if has_cells { GROUPS as usize * rounds.len() } else { 0 };
-    let mut tally = vec![u32::MAX; 1 + known];
-    tally[0] = 0;
+    let mut tally = vec![0; TALLY_HEAD];
+    tally.resize(TALLY_HEAD + known, u32::MAX);
     tally
 }
 
@@ -347,4 +353,63 @@ fn layout(device: &wgpu::Device, uniform_count: usize) -> wgpu::BindGroupLayout 
         label: Some("culling"),
         entries: &entries,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a constant of the shaders is.
+    fn constant(name: &str) -> u32 {
+        let text = sdfc_march::prune_source();
+        let stated = text.split_once(&format!("const {name}: u32 = ")).unwrap().1;
+        stated.split_once(';').unwrap().0.parse().unwrap()
+    }
+
+    #[test]
+    fn what_the_shaders_know_of_the_lists_is_what_is_written() {
+        assert_eq!(constant("FIRST_SLICE"), RECORD_HEAD);
+        assert_eq!(constant("MOST_SLICES"), MOST_SLICES);
+        assert_eq!(constant("WHOLE"), HEAD);
+        assert_eq!(constant("TILE"), WORKGROUP);
+        assert_eq!(constant("HIGHEST") + 1, LEVELS);
+        assert_eq!(1 << constant("WIDER_BITS"), WIDER);
+        assert_eq!(constant("GROUP_SIDE"), GROUP_SIDE);
+        assert_eq!(constant("LEAST") as usize, TALLY_HEAD);
+        assert_eq!(u64::from(constant("EVALUATED")), EVALUATED);
+    }
+
+    #[test]
+    fn the_lists_begin_with_what_the_shaders_look_for() {
+        let rounds = [40, 50];
+        let is_round = |head: &[u32], loops: usize| {
+            let [count, first] = [0, 1].map(|word| head[HEAD as usize + 2 * loops + word]);
+            let all = &head[first as usize..][..count as usize];
+            count == rounds[loops] && all.iter().copied().eq(0..count)
+        };
+        let head_of = |joined, within| {
+            let head = head(&rounds, joined, within);
+            let at = |name| head[constant(name) as usize];
+            assert_eq!(at("RECORD_STRIDE"), stride(&rounds));
+            assert_eq!(at("CAPACITY"), CAPACITY);
+            assert_eq!(at("MOST_WORDS"), 2);
+            assert_eq!(at("LOOPS"), 2);
+            assert!(is_round(&head, 0) && is_round(&head, 1));
+            (at("FIRST_RECORD"), at("CELLS") as usize, head)
+        };
+        let (first, _, head) = head_of(None, None);
+        assert_eq!(first as usize, head.len());
+
+        let within = Some([DVec3::splat(-1.0), DVec3::ONE]);
+        let (first, cells, head) = head_of(Some(&[true, false]), within);
+        assert_eq!(cells + ABOUT_CELLS as usize, head.len());
+        // The order of `cells_at`.
+        let [loops, side, records, outside, lists, end] =
+            [0, 1, 2, 3, 4, 5].map(|i| head[cells + i]);
+        assert_eq!((loops, side, records as usize, end), (2, GROUP[0], head.len(), first));
+        assert_eq!(head[outside as usize..][..4], [0, head[7], 50, head[9]]);
+        assert_eq!(lists, records + 5 * cell_count(&rounds));
+        let last = format!("three_at(place + {}u)", ABOUT_CELLS - 3);
+        assert!(sdfc_march::prune_source().contains(&last));
+    }
 }

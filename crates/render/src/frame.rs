@@ -44,6 +44,9 @@ pub struct Frame {
     pub clock: Clock,
     /// How many tiles it was drawn in.
     pub tiles: u32,
+    /// How many operands of loops were evaluated before the rays, by a shader that counts them
+    /// ([`counted_module`](sdfc_codegen::counted_module)).
+    pub evaluated_before: u64,
 }
 
 /// The values of a program's per-frame nodes, as its shader reads them.

@@ -27,8 +27,9 @@ const MAX_TILE_PIXELS: u32 = 1 << 20;
 const PATIENCE: Duration = Duration::from_secs(300);
 /// Binding of the first table.
 const FIRST_TABLE: u32 = 3;
-/// Bytes of the two timestamps about a pass.
+/// Bytes of the two timestamps about a pass, and of what follows them: how many operands were evaluated before.
 const TIMESTAMP_BYTES: u64 = 16;
+const COUNT_BYTES: u64 = 4;
 
 /// A shader made ready for a device.
 #[derive(Debug)]
@@ -202,14 +203,15 @@ impl Pipeline {
                 return Err(RenderError::Cancelled);
             }
         }
-        Ok(Frame { image, milliseconds, clock, tiles })
+        let evaluated_before = run.evaluated_before;
+        Ok(Frame { image, milliseconds, clock, tiles, evaluated_before })
     }
 
     /// What fits the limits of the adapter: a buffer, a binding, the workgroups of a row of tiles.
     fn max_tile_pixels(&self) -> u32 {
         let limits = self.gpu.device.limits();
         let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        let fitting = bytes.saturating_sub(TIMESTAMP_BYTES) / PIXEL_BYTES as u64;
+        let fitting = bytes.saturating_sub(TIMESTAMP_BYTES + COUNT_BYTES) / PIXEL_BYTES as u64;
         let culled = self.culling.as_ref().map(|culling| culling.max_pixels(&limits));
         (fitting.min(u64::from(MAX_TILE_PIXELS)) as u32).min(culled.unwrap_or(u32::MAX))
     }
@@ -239,12 +241,14 @@ struct Run<'a> {
     /// The box that cells are about, and how many groups of them are still to be looked at.
     within: Option<[DVec3; 2]>,
     cell_groups: u32,
+    /// How many operands were evaluated before the rays, where they are counted.
+    evaluated_before: u64,
 }
 
 struct PixelBuffers {
     capacity: u32,
     storage: wgpu::Buffer,
-    /// The pixels, then two timestamps.
+    /// The pixels, then two timestamps and the count.
     staging: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
@@ -273,8 +277,17 @@ impl<'a> Run<'a> {
                 uniforms
             });
             let timestamps = gpu.has_timestamps().then(|| Timestamps::new(gpu));
-            let (pixels, visits, cell_groups) = (None, None, 0);
-            Self { pipeline, view, uniforms, timestamps, pixels, visits, within, cell_groups }
+            Self {
+                pipeline,
+                view,
+                uniforms,
+                timestamps,
+                pixels: None,
+                visits: None,
+                within,
+                cell_groups: 0,
+                evaluated_before: 0,
+            }
         })
     }
 
@@ -299,7 +312,7 @@ impl<'a> Run<'a> {
         let buffers = gpu.scoped("a tile's pixels", || {
             let storage = buffer(gpu, "pixels", bytes, Usage::STORAGE | Usage::COPY_SRC);
             let usage = Usage::MAP_READ | Usage::COPY_DST;
-            let staging = buffer(gpu, "staging", bytes + TIMESTAMP_BYTES, usage);
+            let staging = buffer(gpu, "staging", bytes + TIMESTAMP_BYTES + COUNT_BYTES, usage);
             let bind_group = self.bind_group(&storage);
             PixelBuffers { capacity: pixels, storage, staging, bind_group }
         })?;
@@ -368,15 +381,25 @@ impl<'a> Run<'a> {
             if let Some(timestamps) = &self.timestamps {
                 timestamps.resolve(&mut encoder, &buffers.staging, bytes);
             }
+            if let Some(visits) = &self.visits {
+                let (from, to) = (4 * culling::EVALUATED, bytes + TIMESTAMP_BYTES);
+                encoder.copy_buffer_to_buffer(
+                    &visits.tally,
+                    from,
+                    &buffers.staging,
+                    to,
+                    COUNT_BYTES,
+                );
+            }
             gpu.queue.submit([encoder.finish()]);
         })
     }
 
     /// Reads the pixels of a tile, and its time.
-    fn read(&self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
+    fn read(&mut self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
         let Some(buffers) = &self.pixels else { return Ok(None) };
         let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
-        let slice = buffers.staging.slice(..bytes + TIMESTAMP_BYTES);
+        let slice = buffers.staging.slice(..bytes + TIMESTAMP_BYTES + COUNT_BYTES);
         let (sender, receiver) = mpsc::channel();
         self.pipeline.gpu.scoped("reading a tile", || {
             slice.map_async(wgpu::MapMode::Read, move |result| {
@@ -392,7 +415,13 @@ impl<'a> Run<'a> {
             Err(error) => return Err(refused(error.to_string())),
         }
         let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
-        let (pixels, times) = mapped.split_at(bytes as usize);
+        let (pixels, rest) = mapped.split_at(bytes as usize);
+        let (times, count) = rest.split_at(TIMESTAMP_BYTES as usize);
+        // Counted from the first tile on, unless the buffers are made anew.
+        if self.visits.is_some() {
+            let count = count.try_into().map_or(0, u32::from_ne_bytes);
+            self.evaluated_before = self.evaluated_before.max(u64::from(count));
+        }
         image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
         let time = self.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
         drop(mapped);

@@ -71,6 +71,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         parallel,
         posed: _,
         culled,
+        counted: _,
     } = features;
     let names = [
         ("material", materials),

@@ -5,10 +5,10 @@
 use std::fmt::Write;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::codegen::render_module;
+use sdfc::codegen::{FieldSource, Shader, counted_module, measured_module, render_module};
 use sdfc::graph::{Program, Type};
 use sdfc::render::{
-    Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
+    Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
 use sdfc::{FrameValues, Scene, Writing, compile, unwatched};
 
@@ -100,6 +100,8 @@ fn main() {
     }
     let too_few = Trial::test("lists that lack something show", missing_rounds_show);
     trials.push(too_few.with_ignored_flag(without_gpu));
+    let counted = Trial::test("what is visited is counted", visited_rounds_are_counted);
+    trials.push(counted.with_ignored_flag(without_gpu));
     let small = Trial::test("an adapter that is too small is told by its limit", limits_are_named);
     trials.push(small.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
@@ -152,12 +154,16 @@ fn scene(text: &str) -> Scene {
 
 /// A picture by a program, in tiles that begin anywhere.
 fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {
+    Ok(frame(scene, program, render_module(program, "auto")?)?.image)
+}
+
+fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Failed> {
     let (gpu, frame) = (Gpu::new()?, FrameValues::defaults(scene.params()));
     let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE)?;
     let uniforms = uniform_values(program, &frame);
-    let pipeline = Pipeline::new(&gpu, render_module(program, "auto")?, uniforms.len())?;
+    let pipeline = Pipeline::new(&gpu, shader, uniforms.len())?;
     let options = RenderOptions { tile_size: TileSize::Fixed([60, 44]) };
-    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?.image)
+    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
 }
 
 /// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
@@ -209,6 +215,39 @@ fn missing_rounds_show() -> Result<(), Failed> {
         if differing == 0 {
             return Err("nothing shows".into());
         }
+    }
+    Ok(())
+}
+
+/// Where nothing is left out, each evaluation visits all parts, those for normals too; else far fewer are visited.
+fn visited_rounds_are_counted() -> Result<(), Failed> {
+    let scene = scene(&(hard() + OUTSIDE));
+    let mut all = scene.program().clone();
+    for visit in &mut all.visits {
+        let near = all.graph.number(-1e3);
+        let near = all.graph.splat(Type::Vec3, near);
+        visit.ends = all.graph.add(visit.ends, near);
+    }
+    let plain = measured_module(&all, "sphere", FieldSource::Distance)?;
+    let plain = frame(&scene, &all, plain)?.image;
+    let counted = frame(&scene, &all, counted_module(&all, "sphere")?)?;
+    for (plain, counted) in plain.pixels().iter().zip(counted.image.pixels()) {
+        let normals = if plain.status == HIT { 4 } else { 0 };
+        let expected = PARTS as u32 * (plain.evaluations + normals);
+        if counted.evaluations != expected {
+            return Err(format!("{} rounds, not {expected}", counted.evaluations).into());
+        }
+    }
+    let program = scene.program();
+    let few = frame(&scene, program, counted_module(program, "sphere")?)?;
+    let sum = |image: &Image| -> u64 {
+        image.pixels().iter().map(|pixel| u64::from(pixel.evaluations)).sum()
+    };
+    let (few_rounds, all_rounds) = (sum(&few.image), sum(&counted.image));
+    // What finds them asks for each part at least once.
+    let before = few.evaluated_before;
+    if few_rounds == 0 || 10 * (few_rounds + before) > all_rounds || before < PARTS as u64 {
+        return Err(format!("{few_rounds} and {before} before of {all_rounds}").into());
     }
     Ok(())
 }

@@ -115,7 +115,7 @@ fn table(report: &BenchReport) -> String {
                 &ratio.map_or_else(String::new, |ratio| format!(", {ratio:.2} of the best {of}"));
         }
         text.push('\n');
-        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  turns/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
+        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  leaves/px  turns/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }
     text
@@ -131,7 +131,7 @@ fn line(variant: &BenchVariant) -> String {
         Some(value) => format!("{value:>width$.decimals$}"),
         None => format!("{:>width$}", "-"),
     };
-    let compile = variant.compile_ms.as_ref();
+    let (compile, leaves) = (variant.compile_ms.as_ref(), variant.leaf_evals_per_pixel.as_ref());
     let notes = [
         variant.slots.map(|slots| format!("{slots} slots")),
         variant.differing_pixels.filter(|count| *count > 0).map(|n| format!("{n} pixels differ")),
@@ -144,6 +144,7 @@ fn line(variant: &BenchVariant) -> String {
         number(variant.cpu_ms, 8, 1),
         number(variant.cpu_times_specialized, 6, 2),
         number(variant.evals_per_pixel.map(|evals| evals.mean), 8, 1),
+        number(leaves.and_then(|leaves| leaves.mean), 9, 0),
         number(variant.turns_per_eval.map(|turns| turns as f64), 10, 0),
         number(compile.and_then(|times| times.front), 8, 1),
         number(compile.and_then(|times| times.analyze), 10, 1),

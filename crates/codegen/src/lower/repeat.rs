@@ -119,7 +119,7 @@ impl Lowering<'_> {
     /// Where the rounds to visit are listed, if they are.
     fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
         let visits = self.inputs.visits.as_ref().filter(|_| self.arguments.len() == 1)?;
-        let (spans, number) = (visits.spans, visits.number(inert)?);
+        let (spans, number, visited) = (visits.spans, visits.number(inert)?, visits.visited);
         if let Some((function, _)) = visits.at
             && !std::mem::replace(&mut self.leaves_out, true)
         {
@@ -135,6 +135,12 @@ impl Lowering<'_> {
             body.compute(Expression::AccessIndex { base: span, index }, &[span])
         };
         let (count, first) = (part(&mut self.body, 0), part(&mut self.body, 1));
+        if let Some(visited) = visited {
+            let pointer = self.body.declare(Expression::GlobalVariable(visited));
+            let before = self.body.load(pointer, "before");
+            let after = self.body.binary(BinaryOperator::Add, before, count);
+            self.body.store(pointer, after);
+        }
         let end = self.body.binary(BinaryOperator::Add, first, count);
         self.body.name(end, "end");
         Some(Listed { first, end })

@@ -2,9 +2,6 @@
 // less what blends reach, may be as little as the least of all in some place of the cell. First for groups of cells, then for each cell
 // among those of its group.
 
-// How much of the lists is filled; then for each loop and group the least operand there, as a word that is ordered as it is.
-@group(0) @binding(7) var<storage, read_write> tally: array<atomic<u32>>;
-
 // Where more rounds of a loop than this can matter in a cell, all are visited.
 const MOST_OF_CELL: u32 = 1024;
 // Part of a cell's width that a round is kept beyond, for rounding.
@@ -64,7 +61,8 @@ fn least_of_groups(@builtin(global_invocation_id) place: vec3u) {
     for (var i = 32u * place.y; i < min(32u * place.y + 32u, all); i++) {
         least = min(least, reach(place.z, f32(i), ball.center).z);
     }
-    atomicMin(&tally[1u + place.z * groups() + place.x], word_of(least));
+    atomicMin(&tally[LEAST + place.z * groups() + place.x], word_of(least));
+    tell_evaluated();
 }
 
 // The same.
@@ -76,7 +74,7 @@ fn mark_groups(@builtin(global_invocation_id) place: vec3u) {
     }
     load_frame();
     let ball = ball_around_group(cells_at(visits[CELLS]), place.x);
-    let limit = limit_of(ball, value_of(atomicLoad(&tally[1u + place.z * groups() + place.x])));
+    let limit = limit_of(ball, value_of(atomicLoad(&tally[LEAST + place.z * groups() + place.x])));
     var bits = 0u;
     for (var i = 0u; i < min(32u, all - 32u * place.y); i++) {
         // Also where it is no number.
@@ -85,6 +83,7 @@ fn mark_groups(@builtin(global_invocation_id) place: vec3u) {
         }
     }
     marks[group_words(place.z, place.x) + place.y] = bits;
+    tell_evaluated();
 }
 
 // Whether the rounds that can matter in a group can matter in the cell at hand, a bit for each; of rounds past these they do.
@@ -110,6 +109,7 @@ fn list_cells(@builtin(global_invocation_id) place: vec3u) {
         free = min(free, list_cell(cells, ball, which, group_words(which, group), record + 2u * which));
     }
     visits[record + 2u * cells.loops] = bitcast<u32>(free);
+    tell_evaluated();
 }
 
 // Lists the rounds of a loop that can matter in a ball, among those that are marked, and gives how far its middle is from where any can
@@ -150,7 +150,7 @@ fn list_cell(cells: Cells, ball: Ball, which: u32, first_word: u32, record: u32)
     }
     var next = cells.lists_end;
     if count <= MOST_OF_CELL {
-        next = cells.lists + atomicAdd(&tally[0], count);
+        next = cells.lists + atomicAdd(&tally[FILLED], count);
     }
     if next + count > cells.lists_end {
         visits[record] = all;

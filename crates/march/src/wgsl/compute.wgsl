@@ -12,4 +12,7 @@ fn main(@builtin(global_invocation_id) place: vec3u) {
         open_visits(place.xy);
     }
     pixels[place.y * view.tile_size.x + place.x] = picture(view.tile_origin + place.xy);
+    if COUNTED {
+        pixels[place.y * view.tile_size.x + place.x].evaluations = visited;
+    }
 }

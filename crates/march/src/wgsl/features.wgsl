@@ -31,3 +31,5 @@ override POSED: bool;
 override CULLED: bool;
 // There are others then.
 override ROAMING: bool;
+// What is asked for is not how often the field was evaluated, but how many rounds of loops were visited.
+override COUNTED: bool;

@@ -9,8 +9,16 @@
 @group(0) @binding(5) var<storage, read_write> marks: array<u32>;
 // The level at hand. The tiles of level 0 have lists, those of each other are four by four of the one below.
 @group(0) @binding(6) var<uniform> level: u32;
+// How much of the cells' lists is filled; how many operands were evaluated; then for each loop and group of cells the least operand
+// there, as a word that is ordered as it is.
+@group(0) @binding(7) var<storage, read_write> tally: array<atomic<u32>>;
+
+const FILLED: u32 = 0;
+const EVALUATED: u32 = 1;
+const LEAST: u32 = 2;
 
 const HIGHEST: u32 = 2;
+const WIDER_BITS: u32 = 2;
 
 // Supplied by the scene, as many as it has loops: how far a point is from where a round can matter to a ray, or less; the round's operand
 // less what blends reach; the operand.
@@ -47,7 +55,13 @@ fn reach_7(round: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
+// How many operands were evaluated, where that is counted.
+var<private> evaluated: u32;
+
 fn reach(which: u32, round: f32, p: vec3f) -> vec3f {
+    if COUNTED {
+        evaluated++;
+    }
     switch which {
         case 0u: {
             return reach_0(round, p);
@@ -76,6 +90,13 @@ fn reach(which: u32, round: f32, p: vec3f) -> vec3f {
     }
 }
 
+// At the end of each stage.
+fn tell_evaluated() {
+    if COUNTED {
+        atomicAdd(&tally[EVALUATED], evaluated);
+    }
+}
+
 // Rays that start and lead near others: those through the pixels of a tile.
 struct Cone {
     origin: vec3f,
@@ -91,7 +112,7 @@ const SLACK: f32 = 0.1;
 const MOST_STEPS: u32 = 32;
 
 fn side_of(at: u32) -> u32 {
-    return TILE << (2u * at);
+    return TILE << (WIDER_BITS * at);
 }
 
 fn counts_of(at: u32) -> vec2u {
@@ -156,7 +177,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     let cone = cone_around(place);
     var asked = 0xffffffffu >> (32u - min(32u, all - 32u * word));
     if level < HIGHEST {
-        asked = marks[words_of(level + 1u, place / 4u, which) + word];
+        asked = marks[words_of(level + 1u, place >> vec2u(WIDER_BITS), which) + word];
     }
     var bits = 0u;
     while asked != 0u {
@@ -167,6 +188,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
         }
     }
     marks[words_of(level, place, which) + word] = bits;
+    tell_evaluated();
 }
 
 // Rays are cut into a slice for each so many rounds that can matter to their tile.
@@ -246,4 +268,5 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
     visits[record + SLICE_COUNT] = slices;
     visits[record + NEAR] = bitcast<u32>(near);
     visits[record + SLICE_LENGTH] = bitcast<u32>(slice_length);
+    tell_evaluated();
 }

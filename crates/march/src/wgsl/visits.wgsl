@@ -36,6 +36,9 @@ var<private> known_to: f32;
 
 var<private> cells: Cells;
 
+// How many rounds the scene's functions have visited, where that is counted.
+var<private> visited: u32;
+
 // Before a pixel.
 fn open_visits(place: vec2u) {
     let tile = place / TILE;
@@ -50,12 +53,17 @@ fn open_visits(place: vec2u) {
 // What a ray meets: one from the eye, slice after slice, each by its own lists; another by what can matter where it is.
 fn trace_listed(ray: Ray, is_from_eye: bool) -> Trace {
     var slices = 1u;
+    var near = 0.0;
+    var length = 0.0;
     if is_from_eye {
         slices = visits[own_record + SLICE_COUNT];
+        near = bitcast<f32>(visits[own_record + NEAR]);
+        length = bitcast<f32>(visits[own_record + SLICE_LENGTH]);
     }
-    visit_all();
     if ROAMING {
-        if !is_from_eye {
+        if is_from_eye {
+            stay();
+        } else {
             visit_cells(0.0);
             if SOFT_SHADOWS {
                 if watched {
@@ -71,8 +79,6 @@ fn trace_listed(ray: Ray, is_from_eye: bool) -> Trace {
         var start = 0.0;
         if is_from_eye {
             visit_by(own_record + FIRST_SLICE + 2u * slice * visits[LOOPS]);
-            let near = bitcast<f32>(visits[own_record + NEAR]);
-            let length = bitcast<f32>(visits[own_record + SLICE_LENGTH]);
             let ends = slice_ends(slice, slices, near, length);
             start = ends.x;
             part.origin = ray_point(ray, start);
@@ -98,6 +104,11 @@ fn visit_cells(known: f32) {
 
 fn visit_all() {
     visit_by(WHOLE);
+    stay();
+}
+
+// What is visited is the same everywhere.
+fn stay() {
     visit_free = NOTHING_LEFT_OUT;
     roams = false;
 }

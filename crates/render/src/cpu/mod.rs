@@ -189,7 +189,7 @@ impl CpuScene {
                 return Err(RenderError::Cancelled);
             }
         }
-        Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles })
+        Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles, evaluated_before: 0 })
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use sdfc_analyze::{Writing, cost, prepare_about};
-use sdfc_codegen::{FieldSource, measured_module};
+use sdfc_codegen::{FieldSource, counted_module, measured_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
@@ -49,7 +49,8 @@ pub struct BenchOptions {
     pub repetitions: u32,
     /// Ray method of all variants.
     pub method: String,
-    /// Whether interpreters and slots take part.
+    /// Whether interpreters and slots take part. Then all variants are unpainted and take normals by differences, as interpreters
+    /// must; or else each is the picture that `sdfc render` draws.
     pub baselines: bool,
 }
 
@@ -157,11 +158,14 @@ impl Kind {
         }
     }
 
-    fn field(self) -> FieldSource {
+    fn field(self, by_differences: bool) -> FieldSource {
         match self {
             Self::Units => FieldSource::Units,
             Self::Tape => FieldSource::Tape,
-            Self::Specialized | Self::Slots | Self::Rolled | Self::Pruned => FieldSource::Distance,
+            Self::Specialized | Self::Slots | Self::Rolled | Self::Pruned => match by_differences {
+                true => FieldSource::Distance,
+                false => FieldSource::Scene,
+            },
         }
     }
 }
@@ -177,7 +181,7 @@ struct Contestant {
     /// How many frames are timed.
     repetitions: u32,
     image: Image,
-    leaves: usize,
+    leaf_evaluations: LeafEvaluations,
     turns: Option<usize>,
     times: Vec<f64>,
     /// What the process took of the processor for each of them, on an adapter that is one.
@@ -208,7 +212,7 @@ struct Heat<'a> {
 
 impl Scene {
     /// Measures the scene at its params' defaults: after a first frame of every variant, which is not timed,
-    /// one frame of each in turn, then the next of each. All are unpainted and take normals by differences.
+    /// one frame of each in turn, then the next of each.
     ///
     /// `slots` is the same scene with its numbers as params ([`compile_with`](crate::compile_with)).
     ///
@@ -366,7 +370,8 @@ impl<'a> Heat<'a> {
             Ok(data) => data,
             Err(inexpressible) => return Ok(Err(inexpressible)),
         };
-        let shader = measured_module(program, &self.options.method, kind.field())?;
+        let shader =
+            measured_module(program, &self.options.method, kind.field(self.options.baselines))?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, turns) = match &data {
@@ -389,6 +394,10 @@ impl<'a> Heat<'a> {
         }
         let options = RenderOptions::default();
         let first = counted.draw(&pipeline, &self.view, &uniforms, &options)?;
+        let first_picture =
+            times.front + compile.analyze.unwrap_or(0.0) + milliseconds_since(start);
+        let of_all =
+            |leaves| LeafEvaluations::of_all_leaves(EvaluationCounts::of(&first.image), leaves);
         let whole = TileSize::Fixed(self.options.size);
         let tile_size = if first.milliseconds < ONE_TILE { whole } else { options.tile_size };
         let once = first.milliseconds > LONG;
@@ -396,19 +405,43 @@ impl<'a> Heat<'a> {
             kind,
             pipeline,
             uniforms,
-            first_picture: times.front + compile.analyze.unwrap_or(0.0) + milliseconds_since(start),
+            first_picture,
             compile,
             options: RenderOptions { tile_size },
             repetitions: if once { 1 } else { self.options.repetitions.max(1) },
-            image: first.image,
-            leaves: match &data {
-                Data::Encoded(encoded) => encoded.leaves,
-                Data::Uniforms(_) => scene.report().leaves,
+            leaf_evaluations: match &data {
+                Data::Uniforms(uniforms) if kind == Kind::Pruned => {
+                    self.counted(program, uniforms, counted)?
+                }
+                Data::Uniforms(_) => of_all(scene.report().leaves),
+                Data::Encoded(encoded) => of_all(encoded.leaves),
             },
+            image: first.image,
             turns,
             times: Vec::new(),
             cpu: Vec::new(),
         }))
+    }
+
+    /// Leaf evaluations where only those rounds of loops are visited that can matter, what finds these included, counted by a
+    /// shader of its own.
+    fn counted(
+        &self,
+        program: &Program,
+        uniforms: &[[f32; 4]],
+        counted: &mut Counted<'_, '_>,
+    ) -> Result<LeafEvaluations, Error> {
+        let rounds = program.visits.iter().map(|visit| visit.rounds as usize).sum::<usize>();
+        if rounds != self.scene.report().leaves {
+            return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
+        }
+        let shader = counted_module(program, &self.options.method)?;
+        let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
+        let frame = counted.draw(&pipeline, &self.view, uniforms, &RenderOptions::default())?;
+        counted.drawn -= 1;
+        let visited = EvaluationCounts::of(&frame.image).mean;
+        let before = frame.evaluated_before as f64 / frame.image.pixels().len() as f64;
+        Ok(LeafEvaluations { mean: Some(visited + before), ..LeafEvaluations::default() })
     }
 
     fn draw(&self, contestant: &Contestant, counted: &mut Counted<'_, '_>) -> Result<Frame, Error> {
@@ -428,7 +461,6 @@ impl<'a> Heat<'a> {
         let ratio =
             |of: fn(&Contestant) -> &[f64]| Some(median(of(contestant))? / median(of(reference))?);
         let evals = EvaluationCounts::of(&contestant.image);
-        let leaf_evals = LeafEvaluations::of_all_leaves(evals, contestant.leaves);
         let mut variant = BenchVariant {
             name: contestant.kind.name(),
             frame_ms,
@@ -438,17 +470,12 @@ impl<'a> Heat<'a> {
             compile_ms: Some(contestant.compile.clone()),
             first_picture_ms: Some(contestant.first_picture),
             evals_per_pixel: Some(evals),
-            leaf_evals_per_pixel: Some(leaf_evals),
+            leaf_evals_per_pixel: Some(contestant.leaf_evaluations.clone()),
             turns_per_eval: contestant.turns,
             slots: (contestant.kind == Kind::Slots).then(|| self.slots.slots().len()),
             differing_pixels: Some(self.differing(contestant, reference)),
             why: Why::new(),
         };
-        if contestant.kind == Kind::Pruned {
-            variant.leaf_evals_per_pixel = None;
-            let why = "which leaves a ray visits is not counted".to_owned();
-            variant.why.insert("leaf_evals_per_pixel", why);
-        }
         if contestant.turns.is_none() {
             variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
         }
