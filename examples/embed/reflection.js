@@ -1,7 +1,20 @@
 // What the files that `sdfc compile --reflect` writes tell a page: what the buffers hold, and which knobs there are.
 
+/// The text and the reflection of a scene, which `sdfc compile` wrote beside the page.
+export async function compiled(file) {
+  const [text, reflection] = await Promise.all(
+    [file, "scene.json"].map(async (name) => {
+      const response = await fetch(name);
+      if (!response.ok) throw new Error(`no ${name} beside the page: sdfc compile writes it`);
+      return response.text();
+    }),
+  );
+  return [text, JSON.parse(reflection)];
+}
+
 /// What the buffer of camera, lights and limits holds for a picture of this size.
 export function viewBytes(reflection, width, height) {
+  if (reflection.view.length === 0) throw new Error("no picture: compile with --emit render");
   const bytes = new Uint32Array(reflection.view).buffer;
   const floats = new Float32Array(bytes);
   const words = new Uint32Array(bytes);

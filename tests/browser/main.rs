@@ -56,6 +56,7 @@ fn main() {
     let clock = "shadertoy_follows_clock_and_mouse".to_owned();
     add(clock, Box::new(pages::shadertoy_follows_clock_and_mouse));
     add("three_shows_the_field".to_owned(), Box::new(three::shows_the_field));
+    add("three_takes_a_scene_without_params".to_owned(), Box::new(three::takes_a_bare_scene));
     add("three_follows_the_clock".to_owned(), Box::new(three::follows_the_clock));
     let package = "the_package_gives_the_same_in_a_browser".to_owned();
     add(package, Box::new(compiler::gives_the_same_in_a_browser));

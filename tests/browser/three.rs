@@ -37,6 +37,17 @@ pub fn shows_the_field(place: &mut Place) -> Result<(), Failed> {
     table::check(THREE.name, &[found])
 }
 
+/// A scene without params, and without paint: two scenes are two pictures, and nothing is complained of.
+pub fn takes_a_bare_scene(place: &mut Place) -> Result<(), Failed> {
+    let mut seen = Vec::new();
+    for text in ["sphere(1)", "box(3)"] {
+        let scene = Scene::from_source("bare.sdf", text).map_err(|e| e.to_string())?;
+        THREE.open(place, &scene, "")?;
+        seen.push(shown(place)?);
+    }
+    if seen[0] == seen[1] { Err("two scenes look the same".into()) } else { Ok(()) }
+}
+
 /// A scene with `time` stands at the time that the page is told, and moves where it is told none.
 pub fn follows_the_clock(place: &mut Place) -> Result<(), Failed> {
     let scene = example("time.sdf")?;

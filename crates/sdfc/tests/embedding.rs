@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use proptest::prelude::*;
 use sdfc::lang::{NoFiles, Resolver};
 use sdfc::{
-    Compiled, Emit, Error, Field, FrameValues, Scene, ShaderOptions, SourceErrors, Target, compile,
-    compile_with_imports, uniform_bytes,
+    Compiled, Emit, Error, Field, FrameValues, Scene, ShaderOptions, SourceErrors, Stage, Target,
+    compile, compile_with_imports, uniform_bytes,
 };
 
 const SCENE: &str = "param r = 1 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt = 10deg in \
@@ -128,9 +128,10 @@ proptest! {
         binding in any::<u32>(),
         method in prop::option::of("[a-z-]{0,12}"),
         target in prop::sample::select(&Target::ALL[..]),
-        emit in prop::sample::select(&[Emit::Field, Emit::March][..]),
+        emit in prop::sample::select(&[Emit::Field, Emit::March, Emit::Render][..]),
+        stage in prop::sample::select(&[Stage::Compute, Stage::Fragment][..]),
     ) {
-        let options = ShaderOptions { target, emit, method, prefix, group, binding, ..Default::default() };
+        let options = ShaderOptions { target, emit, stage, method, prefix, group, binding };
         let _ = scene().write_shader(&options);
     }
 }

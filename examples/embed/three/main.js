@@ -3,7 +3,7 @@
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { clock, knobs } from "../reflection.js";
+import { clock, compiled, knobs } from "../reflection.js";
 
 // The ray through each corner of a triangle that covers the picture.
 const VERTEX = `
@@ -14,7 +14,8 @@ void main() {
   ray = far.xyz / far.w - cameraPosition;
 }`;
 
-const FRAGMENT = `
+// A text has `sdf_material` where something is painted.
+const fragment = (isPainted) => `
 uniform mat4 projectionMatrix;
 uniform vec3 sun;
 in vec3 ray;
@@ -26,7 +27,7 @@ void main() {
   vec3 p = cameraPosition + found.t * direction;
   vec3 normal = normalize(sdf_gradient(p).xyz);
   float light = 0.2 + 0.8 * max(dot(normal, sun), 0.0);
-  color = linearToOutputTexel(vec4(light * sdf_material(p).color, 1.0));
+  color = linearToOutputTexel(vec4(light * ${isPainted ? "sdf_material(p).color" : "vec3(0.5)"}, 1.0));
 
   // Depth as three.js has it, so that meshes and field hide each other.
   vec4 place = projectionMatrix * viewMatrix * vec4(p, 1.0);
@@ -38,24 +39,22 @@ function functions(text) {
   return text.replace(/^#version.*/, "").replace("void main()", "void sdf_unused()");
 }
 
-/// The uniform block of params. three.js lays it out by the same rules.
-function paramGroup(reflection) {
+/// The uniform block of params, if there are any. three.js lays it out by the same rules.
+function paramGroups(reflection) {
+  const uniforms = {};
+  if (!reflection.uniform) return { groups: [], uniforms };
   const group = new THREE.UniformsGroup();
   group.setName(reflection.uniform.block);
-  const uniforms = {};
   for (const { param, default: lanes } of reflection.params) {
     const value = lanes.length === 4 ? new THREE.Vector4(...lanes) : lanes[0];
     uniforms[param] = new THREE.Uniform(value);
     group.add(uniforms[param]);
   }
-  return { group, uniforms };
+  return { groups: [group], uniforms };
 }
 
 async function main() {
-  const [text, reflection] = await Promise.all([
-    fetch("scene.glsl").then((response) => response.text()),
-    fetch("scene.json").then((response) => response.json()),
-  ]);
+  const [text, reflection] = await compiled("scene.glsl");
   const canvas = document.querySelector("canvas");
   const { width, height } = canvas;
   const renderer = new THREE.WebGLRenderer({ canvas, preserveDrawingBuffer: true });
@@ -64,13 +63,14 @@ async function main() {
   camera.position.set(4.4, 2.4, 2.6);
   const sun = new THREE.Vector3(1.5, 2, 0.2).normalize();
 
-  const { group, uniforms } = paramGroup(reflection);
+  const { groups, uniforms } = paramGroups(reflection);
+  const isPainted = reflection.functions.some(({ role }) => role === "material");
   const material = new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: VERTEX,
-    fragmentShader: functions(text) + FRAGMENT,
+    fragmentShader: functions(text) + fragment(isPainted),
     uniforms: { sun: { value: sun } },
-    uniformsGroups: [group],
+    uniformsGroups: groups,
   });
   const triangle = new THREE.BufferGeometry();
   const corners = new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]);

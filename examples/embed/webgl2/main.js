@@ -1,6 +1,6 @@
 // Draws the scene in scene.glsl, which `sdfc compile --emit render --target glsl-es` wrote, on a canvas. Where it uses `time` it moves.
 
-import { clock, knobs, paramBytes, turn, viewBytes } from "../reflection.js";
+import { clock, compiled, knobs, paramBytes, turn, viewBytes } from "../reflection.js";
 import { fullScreen } from "./program.js";
 
 // The shader gives linear light. A WebGL canvas takes numbers as they are, so they are encoded behind it, in a
@@ -17,10 +17,7 @@ void main() {
 }
 
 async function main() {
-  const [text, reflection] = await Promise.all([
-    fetch("scene.glsl").then((response) => response.text()),
-    fetch("scene.json").then((response) => response.json()),
-  ]);
+  const [text, reflection] = await compiled("scene.glsl");
   const canvas = document.querySelector("canvas");
   const gl = canvas.getContext("webgl2", { antialias: false, preserveDrawingBuffer: true });
   if (!gl) throw new Error("this browser has no WebGL 2 here");

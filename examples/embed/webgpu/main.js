@@ -1,13 +1,10 @@
 // Draws the scene in scene.wgsl on the canvas, with a knob for each of its params. Where it uses `time` it moves.
 
-import { clock, knobs } from "../reflection.js";
+import { clock, compiled, knobs } from "../reflection.js";
 import { openDevice, picture } from "./picture.js";
 
 async function main() {
-  const [text, reflection] = await Promise.all([
-    fetch("scene.wgsl").then((response) => response.text()),
-    fetch("scene.json").then((response) => response.json()),
-  ]);
+  const [text, reflection] = await compiled("scene.wgsl");
   const canvas = document.querySelector("canvas");
   const { setParams } = await picture(await openDevice(), canvas, text, reflection);
   knobs(reflection, document.querySelector("form"), setParams);

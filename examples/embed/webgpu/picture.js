@@ -18,7 +18,11 @@ export async function picture(device, canvas, text, reflection) {
   context.configure({ device, format: stored, viewFormats: [format] });
 
   const module = device.createShaderModule({ code: text });
-  const entry = (stage) => reflection.entry_points.find((found) => found.stage === stage).name;
+  const entry = (stage) => {
+    const found = reflection.entry_points.find((entry) => entry.stage === stage);
+    if (!found) throw new Error(`no ${stage} stage: compile with --emit render --stage fragment`);
+    return found.name;
+  };
   const pipeline = await device.createRenderPipelineAsync({
     layout: "auto",
     vertex: { module, entryPoint: entry("vertex") },
