@@ -55,7 +55,8 @@ fn main() {
     }
     let clock = "shadertoy_follows_clock_and_mouse".to_owned();
     add(clock, Box::new(pages::shadertoy_follows_clock_and_mouse));
-    add("three_shows_the_field".to_owned(), Box::new(three::shows_the_field));
+    add("three_shows_what_render_meets".to_owned(), Box::new(three::shows_every_scene));
+    add("three_hides_meshes_and_fields".to_owned(), Box::new(three::hides_meshes_and_fields));
     add("three_takes_a_scene_without_params".to_owned(), Box::new(three::takes_a_bare_scene));
     add("three_follows_the_clock".to_owned(), Box::new(three::follows_the_clock));
     let package = "the_package_gives_the_same_in_a_browser".to_owned();

@@ -171,7 +171,7 @@ pub fn shadertoy_follows_clock_and_mouse(place: &mut Place) -> Result<(), Failed
 }
 
 /// The scene's own camera.
-fn pose(scene: &Scene) -> Result<Pose, Failed> {
+pub fn pose(scene: &Scene) -> Result<Pose, Failed> {
     let frame = FrameValues::defaults(scene.params());
     let [width, height] = VIEW_SIZE.map(f64::from);
     Ok(Pose::new(scene.program(), &frame, scene.bounds_at(&frame), width / height)?)

@@ -2,30 +2,57 @@
 
 use libtest_mimic::Failed;
 use sdfc::graph::eval::{FieldSample, Tape, sample_field};
-use sdfc::render::{View, linear_to_srgb8};
+use sdfc::render::{HIT, View, linear_to_srgb8};
 use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, unwatched};
+use serde_json::json;
 
 use crate::Place;
 use crate::examples::{example, folder};
-use crate::pages::{Pixels, SCENES, THREE, check, moves, shown};
+use crate::pages::{Pixels, SCENES, THREE, check, moves, pose, shown};
 use crate::table;
 
-/// The scene that the page's camera is made for.
+/// The scene that the page's camera and mesh are made for.
 const SCENE: &str = SCENES[0];
+
+/// Where the page's rays end; behind it is black.
+const FAR: f32 = 100.0;
 
 /// Whether three.js is not installed, and not required either.
 pub fn is_missing() -> bool {
     !crate::chromium::is_required() && !folder().join("embed/three/node_modules/three").exists()
 }
 
-/// Without the mesh the picture is that of the field; with it, some pixels are the mesh's.
-pub fn shows_the_field(place: &mut Place) -> Result<(), Failed> {
-    let scene = example(SCENE)?;
-    THREE.open(place, &scene, "")?;
+/// Each scene at its defaults, seen by its camera; the differences are a row of the documentation's table.
+pub fn shows_every_scene(place: &mut Place) -> Result<(), Failed> {
+    let mut found = Vec::new();
+    for name in SCENES {
+        let scene = example(name)?;
+        THREE.open(place, &scene, "")?;
+        let pose = pose(&scene)?;
+        let (eye, target) = (pose.eye.to_array(), pose.target.to_array());
+        let fov = 2.0 * pose.half_height.atan().to_degrees();
+        place.chromium.apply(LOOK, &json!({ "eye": eye, "target": target, "fov": fov }))?;
+        found.push(check(&shown(place)?, &expected(&scene)?, name)?);
+    }
+    table::check(THREE.name, &found)
+}
+
+/// Looks at the field alone.
+const LOOK: &str = "({ eye, target, fov }) => {
+    page.knot.visible = false;
+    page.camera.position.set(...eye);
+    page.camera.fov = fov;
+    page.camera.lookAt(...target);
+    page.camera.updateProjectionMatrix();
+    page.draw();
+}";
+
+/// Some of the mesh's pixels are the field's.
+pub fn hides_meshes_and_fields(place: &mut Place) -> Result<(), Failed> {
+    THREE.open(place, &example(SCENE)?, "")?;
     let with_mesh = shown(place)?;
     place.chromium.evaluate("page.knot.visible = false; page.draw()")?;
     let field = shown(place)?;
-    let found = check(&field, &expected(&scene)?, SCENE)?;
     let count = with_mesh.iter().zip(&field).filter(|(a, b)| a != b).count();
     place
         .chromium
@@ -34,7 +61,7 @@ pub fn shows_the_field(place: &mut Place) -> Result<(), Failed> {
     if !(2 * count > whole && 10 * count < 9 * whole) {
         return Err(format!("{count} of {whole} pixels of the mesh are seen").into());
     }
-    table::check(THREE.name, &[found])
+    Ok(())
 }
 
 /// A scene without params, and without paint: two scenes are two pictures, and nothing is complained of.
@@ -79,17 +106,25 @@ fn expected(scene: &Scene) -> Result<Pixels, Failed> {
         })
         .collect();
     let samples = sample_field(scene.program(), &frame, &points)?;
-    let [color, ..] = scene.program().material.ok_or("nothing is painted")?;
-    let tape = Tape::new(&scene.program().graph, &[color])?;
-    let mut paint = tape.prepare::<f64>(&frame);
+    let paint = match scene.program().material {
+        Some([color, ..]) => Some(Tape::new(&scene.program().graph, &[color])?),
+        None => None,
+    };
+    let mut paint = paint.as_ref().map(|tape| tape.prepare::<f64>(&frame));
     let sun = [1.5, 2.0, 0.2];
-    let shade = |(sample, point): (&FieldSample, &[f64; 3])| {
+    let mut shade = |(sample, point): (&FieldSample, &[f64; 3])| {
         let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let gradient = sample.gradient;
         let lengths = (dot(gradient, gradient) * dot(sun, sun)).sqrt();
         let light = 0.2 + 0.8 * (dot(gradient, sun) / lengths).max(0.0);
-        let [[red, green, blue, _]] = paint.eval(*point) else { return [0; 3] };
+        let painted = paint.as_mut().and_then(|paint| paint.eval(*point).first().copied());
+        let [red, green, blue, _] = painted.unwrap_or([0.5; 4]);
         [red, green, blue].map(|lane| linear_to_srgb8((light * lane) as f32))
     };
-    Ok(samples.iter().zip(&points).map(shade).collect())
+    let pixels = samples.iter().zip(&points).zip(picture.pixels());
+    let pixels = pixels.map(|(at, pixel)| {
+        let is_met = pixel.status == HIT && pixel.depth < FAR;
+        if is_met { shade(at) } else { [0; 3] }
+    });
+    Ok(pixels.collect())
 }

@@ -106,7 +106,7 @@ async function main() {
   controls.addEventListener("change", () => requestAnimationFrame(draw));
   draw();
   // To play with in the browser's console.
-  window.page = { scene, knot, draw };
+  window.page = { scene, camera, knot, draw };
 }
 
 main().then(
