@@ -1,9 +1,9 @@
 // What the files that `sdfc compile --reflect` writes tell a page: what the buffers hold, and which knobs there are.
 
 /// The text and the reflection of a scene, which `sdfc compile` wrote beside the page.
-export async function compiled(file) {
+export async function compiled(file, described = "scene.json") {
   const [text, reflection] = await Promise.all(
-    [file, "scene.json"].map(async (name) => {
+    [file, described].map(async (name) => {
       const response = await fetch(name);
       if (!response.ok) throw new Error(`no ${name} beside the page: sdfc compile writes it`);
       return response.text();

@@ -12,7 +12,7 @@ mod slice;
 
 const SIZE: [u32; 2] = [160, 120];
 /// Steps of 1/255.
-const MOST: u8 = 2;
+const MOST: u8 = 1;
 /// Pixels in a thousand that may see past another edge.
 const EDGES: usize = 5;
 
