@@ -8,7 +8,7 @@ use codespan_reporting::files::{Error, Files};
 use crate::{FileId, Sources};
 
 /// Bytes of a line that are shown at most.
-pub(crate) const WIDTH: usize = 240;
+const WIDTH: usize = 240;
 /// Bytes that are shown before what is marked, where a line is longer.
 const BEFORE: usize = 80;
 /// Stands where a line was cut.
@@ -42,15 +42,13 @@ impl<'a> Excerpts<'a> {
     fn cut(&mut self, file: FileId, line: usize, whole: Range<usize>, place: usize) {
         let text = self.marked.entry(file).or_insert_with(|| self.sources.text(file).to_owned());
         let from = place.saturating_sub(BEFORE).max(whole.start);
-        let end = boundary(text, (from + WIDTH).min(whole.end));
-        let start = boundary(text, end.saturating_sub(WIDTH).max(whole.start));
+        let end = text.floor_char_boundary((from + WIDTH).min(whole.end));
+        let start = text.floor_char_boundary(end.saturating_sub(WIDTH).max(whole.start));
         if start > whole.start {
             mark(text, start);
         }
         if end < whole.end {
-            let width = CUT.len();
-            let before = boundary(text, end - width);
-            mark(text, before);
+            mark(text, text.floor_char_boundary(end - CUT.len()));
         }
         self.windows.insert((file, line), start..end);
     }
@@ -64,16 +62,11 @@ impl<'a> Excerpts<'a> {
                 return (at, true);
             };
             // Within a mark no character begins.
-            (boundary(text, at.clamp(w.start, w.end)), (w.start..=w.end).contains(&at))
+            (text.floor_char_boundary(at.clamp(w.start, w.end)), (w.start..=w.end).contains(&at))
         };
         let (start, seen) = clamp(bytes.start);
         seen.then(|| start..clamp(bytes.end).0.max(start))
     }
-}
-
-/// The nearest offset at or before this one that begins a character.
-fn boundary(text: &str, at: usize) -> usize {
-    (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
 
 /// Writes [`CUT`] over the characters from an offset on, blanks behind it where they were longer.

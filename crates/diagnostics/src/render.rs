@@ -18,7 +18,7 @@ pub fn render(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> Str
     let config = term::Config::default();
     for diagnostic in diagnostics {
         let excerpts = Excerpts::around(sources, &places(diagnostic));
-        let report = report(diagnostic, &excerpts);
+        let report = report(sources, diagnostic, &excerpts);
         // Writing to memory fails only for a span outside its file; the message still counts.
         if term::emit_to_write_style(&mut out, &config, &excerpts, &report).is_err() {
             let line = format!("{}: {}\n", diagnostic.code, shortened(&diagnostic.message));
@@ -35,29 +35,30 @@ fn places(diagnostic: &Diagnostic) -> Vec<(FileId, usize)> {
     spans.flat_map(|s| [(s.file, s.start as usize), (s.file, s.end as usize)]).collect()
 }
 
-fn report(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> Report<FileId> {
+fn report(sources: &Sources, diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> Report<FileId> {
     let mut report = match diagnostic.severity {
         Severity::Error => Report::error(),
         Severity::Warning => Report::warning(),
     };
-    let mut add = |style, span: Span, message: &str| {
-        let bytes = span.start as usize..span.end as usize;
-        match excerpts.shown(span.file, bytes) {
-            Some(shown) => {
-                let label = Label::new(style, span.file, shown);
-                report.labels.push(label.with_message(shortened(message)));
+    let mut add = |style, span: Option<Span>, message: &str| {
+        let message = shortened(message);
+        let shown = span.and_then(|s| excerpts.shown(s.file, s.start as usize..s.end as usize));
+        match (span, shown) {
+            (Some(span), Some(shown)) => {
+                report.labels.push(Label::new(style, span.file, shown).with_message(message));
             }
-            None => report.notes.push(format!("note: {}", shortened(message))),
+            (Some(span), None) => {
+                let LineColumn { line, column } = sources.line_column(span.file, span.start);
+                let name = sources.name(span.file);
+                report.notes.push(format!("note: {name}:{line}:{column}: {message}"));
+            }
+            (None, _) => report.notes.push(format!("note: {message}")),
         }
     };
-    add(LabelStyle::Primary, diagnostic.span, &diagnostic.label);
+    add(LabelStyle::Primary, Some(diagnostic.span), &diagnostic.label);
     for note in diagnostic.notes.iter() {
-        if let Some(span) = note.span {
-            add(LabelStyle::Secondary, span, &note.message);
-        }
+        add(LabelStyle::Secondary, note.span, &note.message);
     }
-    let placeless = diagnostic.notes.iter().filter(|note| note.span.is_none());
-    report.notes.extend(placeless.map(|note| format!("note: {}", shortened(&note.message))));
     let ways = diagnostic.ways_to_mend();
     report.notes.extend(ways.iter().map(|help| format!("help: {}", shortened(help))));
     report.with_code(diagnostic.code.0).with_message(shortened(&diagnostic.message))

@@ -116,13 +116,14 @@ impl Lowering<'_> {
         self.body.call2(MathFunction::Min, distance, free)
     }
 
-    /// Where the rounds to visit are listed, if they are.
+    /// Where the rounds to visit are listed, if they are. Lists tell of places: a function of a whole ray visits all rounds.
     fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
-        let visits = self.inputs.visits.as_ref().filter(|_| self.arguments.len() == 1)?;
+        let is_of_a_place = self.arguments.len() == 1;
+        let visits = self.inputs.visits.as_ref().filter(|_| is_of_a_place)?;
         let (spans, number, visited) = (visits.spans, visits.number(inert)?, visits.visited);
-        if let Some((function, _)) = visits.at
-            && !std::mem::replace(&mut self.leaves_out, true)
-        {
+        let is_first = !self.leaves_out;
+        self.leaves_out = true;
+        if let Some((function, _)) = visits.at.filter(|_| is_first) {
             let point = self.body.declare(Expression::FunctionArgument(self.first_point));
             let (arguments, result) = (vec![point], None);
             self.body.push(Statement::Call { function, arguments, result });

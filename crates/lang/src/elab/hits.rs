@@ -13,16 +13,13 @@ use crate::hir::{Hits, ShapeDefId};
 /// meeting each.
 const MOST_INSTANCES: usize = 512;
 
-/// Instances of one definition that may be asked where rays meet them.
-#[derive(Default)]
-pub(super) struct Waiting<'p> {
-    instances: Vec<Unasked<'p>>,
-    too_many: bool,
-}
+/// Instances of one definition that may be asked where rays meet them; `None` if there are too many.
+pub(super) type Waiting<'p> = Option<Vec<Unasked<'p>>>;
 
-/// An instance, with what its clause may name and the calls that built it.
-struct Unasked<'p> {
+/// An instance, with its clause, what that may name and the calls that built it.
+pub(super) struct Unasked<'p> {
     shape: ShapeId,
+    stated: &'p Hits,
     env: Env<'p>,
     frames: Vec<Frame<'p>>,
 }
@@ -32,34 +29,29 @@ impl<'p> Elaborator<'p> {
     /// each round of a loop, nothing is asked.
     pub(super) fn may_be_hit(&mut self, id: ShapeDefId, shape: ShapeId, env: Env<'p>) {
         let definition = self.program.shapes.get(id.0 as usize);
-        let is_asked = definition.is_some_and(|definition| definition.hits.is_some());
-        if !is_asked || self.graph.shape(shape).level > 0 || self.loop_depth > 0 {
+        let Some(stated) = definition.and_then(|definition| definition.hits.as_ref()) else {
+            return;
+        };
+        if self.graph.shape(shape).level > 0 || self.loop_depth > 0 {
             return;
         }
-        let waiting = self.waiting.entry(id).or_default();
-        waiting.too_many |= waiting.instances.len() == MOST_INSTANCES;
-        if waiting.too_many {
-            waiting.instances = Vec::new();
-        } else {
-            waiting.instances.push(Unasked { shape, env, frames: self.frames.clone() });
+        let waiting = self.waiting.entry(id).or_insert_with(|| Some(Vec::new()));
+        waiting.take_if(|instances| instances.len() == MOST_INSTANCES);
+        if let Some(instances) = waiting {
+            instances.push(Unasked { shape, stated, env, frames: self.frames.clone() });
         }
     }
 
     /// Asks all that wait.
     pub(super) fn ask_hits(&mut self) {
-        for (id, waiting) in std::mem::take(&mut self.waiting) {
-            let definition = self.program.shapes.get(id.0 as usize);
-            let Some(stated) = definition.and_then(|definition| definition.hits.as_ref()) else {
-                continue;
-            };
-            for Unasked { shape, mut env, frames } in waiting.instances {
-                let outer = std::mem::replace(&mut self.frames, frames);
-                // What is wrong has been said.
-                if let Ok(hits) = self.hits(&mut env, stated) {
-                    self.graph.set_hits(shape, hits);
-                }
-                self.frames = outer;
+        for instance in std::mem::take(&mut self.waiting).into_values().flatten().flatten() {
+            let Unasked { shape, stated, mut env, frames } = instance;
+            let outer = std::mem::replace(&mut self.frames, frames);
+            // What is wrong has been said.
+            if let Ok(hits) = self.hits(&mut env, stated) {
+                self.graph.set_hits(shape, hits);
             }
+            self.frames = outer;
         }
     }
 
@@ -104,12 +96,6 @@ impl<'p> Elaborator<'p> {
 /// A node in which no constant is infinite.
 fn without_infinity(graph: &mut Graph, root: NodeId) -> NodeId {
     let order = reachable(graph, &[root]);
-    let is_finite = |id: &NodeId| {
-        graph.as_const(*id).is_none_or(|value| value.lanes().iter().all(|lane| lane.abs() <= FAR))
-    };
-    if order.iter().all(is_finite) {
-        return root;
-    }
     let mut finite: FxHashMap<NodeId, NodeId> = FxHashMap::default();
     for id in order {
         let new = match graph.as_const(id) {

@@ -142,16 +142,8 @@ impl Path {
     /// The angle of a vector on one side of the cut, which is a choice of two.
     fn on_one_side(&mut self, y: Interval, x: Interval, result: Interval) -> Interval {
         let [below, above] = Interval::angles_at_cut(y, x);
-        match self.decision(Interval { lo: 0.0, hi: 1.0 }) {
-            Some(taken) => {
-                if taken == 0.0 {
-                    below
-                } else {
-                    above
-                }
-            }
-            None => result,
-        }
+        let taken = self.decision(Interval { lo: 0.0, hi: 1.0 });
+        taken.map_or(result, |taken| if taken == 0.0 { below } else { above })
     }
 
     /// The result that is taken of several; `None` where that is not decided.
