@@ -5,6 +5,7 @@
 //! matrix. For constant matrices that is computed; for per-frame ones a multiple of a rotation is
 //! recognised at every angle by an identity (see [`sdfc_graph::Polynomial`]).
 
+use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square};
 
 /// A coefficient, known before the point is. Numbers stay out of the arena: most are only steps to others.
@@ -105,35 +106,36 @@ impl Linear {
     }
 }
 
-/// The linear part of `node` in the point of `level`, given those of its arguments; `None` if it is not affine.
+/// The linear part of a node that the point of `level` moves, given those of its arguments that it moves; `None` if it is not affine.
 pub(crate) fn linear_part(
     graph: &mut Graph,
     node: NodeId,
     level: u16,
-    of: &dyn Fn(NodeId) -> Option<Linear>,
+    known: &FxHashMap<NodeId, Option<Linear>>,
 ) -> Option<Linear> {
     let width = graph.ty(node).width();
     if graph.ty(node) == Type::Bool {
         return None;
     }
-    if is_fixed(graph, node, level) {
-        return Some(Linear::new(width, |_| [ZERO; 3]));
-    }
+    let of = |graph: &Graph, id: NodeId| match is_fixed(graph, id, level) {
+        true => Some(Linear::new(graph.ty(id).width(), |_| [ZERO; 3])),
+        false => known.get(&id).copied().flatten(),
+    };
     match graph.node(node) {
         Node::Point(at, _) if at == level => Some(Linear::new(width, |lane| {
             std::array::from_fn(|i| if i == lane { ONE } else { ZERO })
         })),
         Node::Unary(Unary::Neg, a) => {
             let minus = Coefficient::Number(-1.0);
-            Some(of(a)?.map(|_, coefficient| coefficient.times(graph, minus)))
+            Some(of(graph, a)?.map(|_, coefficient| coefficient.times(graph, minus)))
         }
         Node::Binary(Binary::Add, a, b) => {
-            let (a, b) = (of(a)?, of(b)?);
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
             let sum = |lane: usize, i: usize| a.rows[lane][i].plus(graph, b.rows[lane][i]);
             Some(by_place(a.lanes, sum))
         }
         Node::Binary(Binary::Sub, a, b) => {
-            let (a, b) = (of(a)?, of(b)?);
+            let (a, b) = (of(graph, a)?, of(graph, b)?);
             let difference = |lane: usize, i: usize| a.rows[lane][i].minus(graph, b.rows[lane][i]);
             Some(by_place(a.lanes, difference))
         }
@@ -143,11 +145,14 @@ pub(crate) fn linear_part(
                 return None;
             }
             let factors = lanes_of(graph, fixed);
-            Some(of(varying)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
+            Some(
+                of(graph, varying)?
+                    .map(|lane, coefficient| coefficient.times(graph, factors[lane])),
+            )
         }
         Node::Binary(Binary::Div, a, b) if is_fixed(graph, b, level) => {
             let factors = lanes_of(graph, b).map(|divisor| ONE.over(graph, divisor));
-            Some(of(a)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
+            Some(of(graph, a)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
         Node::Binary(Binary::Dot, a, b) => {
             let (fixed, varying) = if is_fixed(graph, a, level) { (a, b) } else { (b, a) };
@@ -155,29 +160,29 @@ pub(crate) fn linear_part(
                 return None;
             }
             let weights = lanes_of(graph, fixed);
-            let linear = of(varying)?;
+            let linear = of(graph, varying)?;
             Some(Linear::new(1, |_| weighted_sum(graph, linear.rows(), &weights)))
         }
         Node::Splat(_, a) => {
-            let row = of(a)?.rows[0];
+            let row = of(graph, a)?.rows[0];
             Some(Linear::new(width, |_| row))
         }
         Node::Compose(_, parts) => {
             let mut rows = [[ZERO; 3]; 4];
             for (row, &part) in rows.iter_mut().zip(&parts[..width]) {
-                *row = of(part)?.rows[0];
+                *row = of(graph, part)?.rows[0];
             }
             Some(Linear { rows, lanes: width })
         }
         Node::Swizzle(_, a, lanes) => {
-            let from = of(a)?;
+            let from = of(graph, a)?;
             Some(Linear::new(width, |lane| from.rows[usize::from(lanes[lane])]))
         }
         Node::Transform(columns, v) => {
             if !columns.iter().all(|&column| is_fixed(graph, column, level)) {
                 return None;
             }
-            let linear = of(v)?;
+            let linear = of(graph, v)?;
             let columns = columns.map(|column| lanes_of(graph, column));
             Some(Linear::new(width, |lane| {
                 weighted_sum(graph, linear.rows(), &columns.map(|column| column[lane]))

@@ -16,7 +16,7 @@ use sdfc_graph::{
 
 use crate::fault::Rule;
 use crate::form::{self, Form};
-use crate::lipschitz::Slopes;
+use crate::maps::Maps;
 use crate::quality::Qualities;
 use crate::sound::sound_field;
 use crate::spans::{MOST, Span, complement, intersection, scaled};
@@ -108,13 +108,19 @@ pub(crate) fn least(graph: &mut Graph, values: impl IntoIterator<Item = NodeId>)
     values.into_iter().reduce(|a, b| graph.min(a, b))
 }
 
+/// Whether a shape's bounds are known on all sides.
+pub(crate) fn has_end(graph: &mut Graph, bounds: &mut Bounds, shape: ShapeId) -> bool {
+    let corners = bounds.of(graph, shape);
+    corners.into_iter().all(|corner| graph.is_finite(corner))
+}
+
 /// A shape of the scene's own point that no one will see.
-fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<ShapeId>) -> ShapeId {
+pub(crate) fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<ShapeId>) -> ShapeId {
     children.sort_unstable();
     children.dedup();
     let depth = children.iter().map(|&child| graph.shape(child).depth).max().unwrap_or(0);
     graph.add_shape(Shape {
-        definition: "what is marched".to_owned(),
+        definition: "unnamed".to_owned(),
         dim: Dim::Three,
         level: 0,
         args: vec![Arg::Node(formula)],
@@ -146,7 +152,7 @@ enum Found {
 
 /// A formula being looked at, in its own point, and the ray there.
 struct Formula {
-    slopes: Slopes,
+    maps: Maps,
     place: Place,
     /// Where a ray is inside a node, or inside its complement; `None` where that is not known.
     known: FxHashMap<(NodeId, bool), Option<Vec<Span>>>,
@@ -191,47 +197,48 @@ impl Pass<'_> {
         place: Place,
     ) -> Result<Option<(Vec<Closed>, ShapeId)>, ExpandError> {
         let Shape { formula: root, dim, level, .. } = *self.graph.shape(shape);
-        if dim != Dim::Three || level > 0 {
+        if dim != Dim::Three || level > 0 || has_end(self.graph, self.bounds, shape) {
             return Ok(None);
         }
-        let slopes = self.qualities.slopes(self.graph, shape);
-        let formula = Formula { slopes, place, known: FxHashMap::default() };
-        let (mut node, mut beside) = (root, None);
-        while let Some(blend) = blend_at(self.graph, &mut self.blends, node) {
-            let Some(depth) = blend.depth(self.graph, node) else { break };
+        let mut formula = Formula { maps: Maps::new(level), place, known: FxHashMap::default() };
+        let (mut node, mut chain) = (root, Vec::new());
+        let closed = loop {
+            let Some(blend) = blend_at(self.graph, &mut self.blends, node) else { return Ok(None) };
             let [a, b] = blend.values;
-            let endless = match self.endless(&formula, a)? {
-                Some(closed) => Some((closed, b)),
-                None => self.endless(&formula, b)?.map(|closed| (closed, a)),
-            };
+            if let Some(closed) = self.endless(&mut formula, a)? {
+                chain.push((node, blend, b));
+                break closed;
+            }
+            if let Some(closed) = self.endless(&mut formula, b)? {
+                chain.push((node, blend, a));
+                break closed;
+            }
             let [before, operand] = blend.in_order(self.graph, &mut self.blends);
-            let other = endless.as_ref().map_or(operand, |(_, other)| *other);
+            chain.push((node, blend, operand));
+            node = before;
+        };
+        let mut beside = Vec::with_capacity(chain.len());
+        for (node, blend, operand) in chain {
             // Nearer than the blend is wide and deep it may be something else.
+            let Some(depth) = blend.depth(self.graph, node) else { return Ok(None) };
             let reach = self.graph.add(blend.width, depth);
             let reach = if Rule::Reach.is_broken() { self.graph.number(0.0) } else { reach };
-            let past = self.graph.sub(other, reach);
-            let least = beside.map_or(past, |beside| self.graph.min(beside, past));
-            if let Some((closed, _)) = endless {
-                let children = self.graph.shape(shape).children.clone();
-                return Ok(Some((closed, unnamed(self.graph, least, children))));
-            }
-            (node, beside) = (before, Some(least));
+            beside.push(self.graph.sub(operand, reach));
         }
-        Ok(None)
+        let children = self.graph.shape(shape).children.clone();
+        let around = least(self.graph, beside).map(|value| unnamed(self.graph, value, children));
+        Ok(around.map(|around| (closed, around)))
     }
 
     /// A sample of what has no end, and is met without marching.
     fn endless(
         &mut self,
-        formula: &Formula,
+        formula: &mut Formula,
         node: NodeId,
     ) -> Result<Option<Vec<Closed>>, ExpandError> {
         let Some(Parts { closed, open }) = self.sampled(formula, node)? else { return Ok(None) };
-        let has_end = |part: &Closed| {
-            let corners = self.bounds.of(self.graph, part.shape);
-            corners.into_iter().all(|corner| self.graph.is_finite(corner))
-        };
-        let is_endless = open.is_empty() && !closed.iter().all(has_end);
+        let is_endless = open.is_empty()
+            && !closed.iter().all(|part| has_end(self.graph, self.bounds, part.shape));
         Ok(is_endless.then_some(closed))
     }
 
@@ -281,17 +288,16 @@ impl Pass<'_> {
         if dim != Dim::Three || level > 0 {
             return Ok(None);
         }
-        let slopes = self.qualities.slopes(self.graph, shape);
-        let mut formula = Formula { slopes, place, known: FxHashMap::default() };
+        let mut formula = Formula { maps: Maps::new(level), place, known: FxHashMap::default() };
         let (mut parts, mut others) = (Parts::default(), Vec::new());
         let (mut seen, mut pending) = (FxHashSet::default(), vec![root]);
         while let Some(node) = pending.pop() {
             if !seen.insert(node) {
                 continue;
             }
-            if let Form::Least(a, b) = form::form(self.graph, node, &formula.slopes) {
+            if let Form::Least(a, b) = form::form(self.graph, node, &mut formula.maps) {
                 pending.extend([b, a]);
-            } else if let Some(found) = self.sampled(&formula, node)? {
+            } else if let Some(found) = self.sampled(&mut formula, node)? {
                 parts.closed.extend(found.closed);
                 parts.open.extend(found.open);
             } else if let Some(spans) = self.spans(&mut formula, node, false)? {
@@ -331,7 +337,7 @@ impl Pass<'_> {
         node: NodeId,
         negated: bool,
     ) -> Result<Option<Vec<Span>>, ExpandError> {
-        let (a, b, is_union) = match form::form(self.graph, node, &formula.slopes) {
+        let (a, b, is_union) = match form::form(self.graph, node, &mut formula.maps) {
             Form::Least(a, b) => (a, b, !negated),
             Form::Greatest(a, b) => (a, b, negated),
             Form::Negative(a) => return self.spans(formula, a, !negated),
@@ -353,9 +359,13 @@ impl Pass<'_> {
     }
 
     /// What a sample of a child at a rigid map of the point, or a scaled one, is made of; `None` for anything else.
-    fn sampled(&mut self, formula: &Formula, node: NodeId) -> Result<Option<Parts>, ExpandError> {
-        let Formula { slopes, place, .. } = formula;
-        let (child, q, factor) = match form::form(self.graph, node, slopes) {
+    fn sampled(
+        &mut self,
+        formula: &mut Formula,
+        node: NodeId,
+    ) -> Result<Option<Parts>, ExpandError> {
+        let Formula { maps, place, .. } = formula;
+        let (child, q, factor) = match form::form(self.graph, node, maps) {
             Form::Sampled(child, q) => (child, q, None),
             Form::Scaled(factor, child, q) if self.graph.range(factor).lo > 0.0 => {
                 (child, q, Some(factor))
@@ -372,7 +382,7 @@ impl Pass<'_> {
             return Ok(None);
         }
         let own_direction = self.graph.point(1, Dim::Three);
-        let direction = slopes.direction(self.graph, q, own_direction);
+        let direction = maps.direction(self.graph, q, own_direction);
         let ray = [place.point, place.direction];
         let mut inner = Place {
             point: self.expander.node(self.graph, q, &ray)?,

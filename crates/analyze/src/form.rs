@@ -4,7 +4,7 @@
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};
 
-use crate::lipschitz::Slopes;
+use crate::maps::Maps;
 use crate::quality::{is_one, scaled_sample};
 
 /// How a node of a formula passes its value on.
@@ -19,14 +19,14 @@ pub(crate) enum Form {
 }
 
 /// The nodes that a descent from a formula visits, arguments before uses.
-pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, slopes: &Slopes) -> Vec<NodeId> {
+pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, maps: &mut Maps) -> Vec<NodeId> {
     let mut seen = FxHashSet::default();
     let mut pending = vec![formula];
     while let Some(node) = pending.pop() {
         if !seen.insert(node) {
             continue;
         }
-        match form(graph, node, slopes) {
+        match form(graph, node, maps) {
             Form::Least(a, b) | Form::Greatest(a, b) | Form::Chosen(_, a, b) => {
                 pending.extend([a, b]);
             }
@@ -40,7 +40,7 @@ pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, slopes: &Slopes) -
 }
 
 /// How a descent goes on at a node of a formula.
-pub(crate) fn form(graph: &mut Graph, node: NodeId, slopes: &Slopes) -> Form {
+pub(crate) fn form(graph: &mut Graph, node: NodeId, maps: &mut Maps) -> Form {
     let scalar = graph.ty(node) == Type::Scalar;
     match graph.node(node) {
         Node::Binary(Binary::Min, a, b) if scalar => Form::Least(a, b),
@@ -52,14 +52,13 @@ pub(crate) fn form(graph: &mut Graph, node: NodeId, slopes: &Slopes) -> Form {
             Form::Chosen(condition, a, b)
         }
         Node::Sample(child, q)
-            if is_one(graph, child, slopes.level()) && slopes.is_isometry(graph, q) =>
+            if is_one(graph, child, maps.level()) && maps.is_isometry(graph, q) =>
         {
             Form::Sampled(child, q)
         }
         Node::Binary(Binary::Mul, a, b) => match scaled_sample(graph, a, b) {
             Some((factor, child, q))
-                if is_one(graph, child, slopes.level())
-                    && slopes.is_similarity(graph, q, factor) =>
+                if is_one(graph, child, maps.level()) && maps.is_similarity(graph, q, factor) =>
             {
                 Form::Scaled(factor, child, q)
             }

@@ -27,6 +27,7 @@ mod folds;
 mod form;
 mod leaves;
 mod lipschitz;
+mod maps;
 mod prepare;
 mod quality;
 mod refute;

@@ -9,10 +9,11 @@ use sdfc_graph::{
     reachable,
 };
 
-use crate::affine::{self, Linear};
+use crate::affine;
 use crate::components::Components;
-use crate::fault::{self, Rule};
+use crate::fault;
 use crate::folds;
+use crate::maps::Maps;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,12 +78,11 @@ const MOST_ROUNDS: u32 = 16;
 
 /// Constants of the nodes of one formula.
 pub(crate) struct Slopes {
-    /// The level of the formula's point.
-    level: u16,
-    /// Arguments before their uses.
-    nodes: Vec<NodeId>,
+    /// The nodes of the formula, and those that claims there speak of; arguments before their uses.
+    pub(crate) nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
-    linear: FxHashMap<NodeId, Linear>,
+    /// Where the formula samples its children.
+    pub(crate) maps: Maps,
     components: Components,
 }
 
@@ -97,10 +97,9 @@ impl Slopes {
     ) -> Self {
         let nodes = with_claimed_arguments(graph, roots);
         let mut slopes = Self {
-            level,
             nodes: Vec::new(),
             constants: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
-            linear: FxHashMap::with_capacity_and_hasher(nodes.len(), FxBuildHasher),
+            maps: Maps::new(level),
             components: Components::default(),
         };
         for &node in &nodes {
@@ -111,16 +110,6 @@ impl Slopes {
         Self { nodes, ..slopes }
     }
 
-    /// The level of the formula's point.
-    pub(crate) fn level(&self) -> u16 {
-        self.level
-    }
-
-    /// The nodes of the formula, and those that claims there speak of; arguments before their uses.
-    pub(crate) fn nodes(&self) -> &[NodeId] {
-        &self.nodes
-    }
-
     fn visit(
         &mut self,
         graph: &mut Graph,
@@ -129,12 +118,8 @@ impl Slopes {
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) {
         self.components.visit(graph, node, level);
-        let lookup = |id: NodeId| self.linear.get(&id).copied();
-        let linear = affine::linear_part(graph, node, level, &lookup);
-        let stretch = linear.as_ref().and_then(|linear| affine::stretch(graph, linear));
-        if let Some(linear) = linear {
-            self.linear.insert(node, linear);
-        }
+        let linear = self.maps.visit(graph, node);
+        let stretch = linear.and_then(|linear| affine::stretch(graph, linear));
         let constant = match (stretch, graph.node(node)) {
             (Some(constant), _) => Ok(constant),
             (None, Node::Variable(..)) => return, // known since its loop was entered
@@ -181,7 +166,6 @@ impl Slopes {
             let next: Vec<NodeId> = next.collect::<Result<_, _>>()?;
             for node in &body.round {
                 self.constants.remove(node);
-                self.linear.remove(node);
             }
             let pairs = known.iter().zip(next);
             let raised: Vec<NodeId> = pairs.map(|(&x, y)| graph.max(x, y)).collect();
@@ -196,38 +180,6 @@ impl Slopes {
     /// The constant of a node that the roots reach.
     pub(crate) fn constant(&self, node: NodeId) -> Constant {
         self.constants.get(&node).cloned().unwrap_or(Err(Reason::Unbounded("this")))
-    }
-
-    /// Whether the node maps the point to a point of the same distances.
-    pub(crate) fn is_isometry(&self, graph: &mut Graph, q: NodeId) -> bool {
-        let one = graph.number(1.0);
-        self.is_similarity(graph, q, one)
-    }
-
-    /// What the affine map of the point that a node is makes of a direction; the direction itself for another node.
-    pub(crate) fn direction(&self, graph: &mut Graph, q: NodeId, direction: NodeId) -> NodeId {
-        match self.linear.get(&q) {
-            Some(linear) => affine::applied(graph, linear, direction),
-            None => direction,
-        }
-    }
-
-    /// Whether the node shrinks all distances of the point by `factor`: one that then stretches a
-    /// sampled distance by it gives a distance again.
-    pub(crate) fn is_similarity(&self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {
-        if Rule::Similarity.is_broken() {
-            return true;
-        }
-        let Some(linear) = self.linear.get(&q) else { return false };
-        let Some(stretch) = affine::similarity(graph, linear) else { return false };
-        let product = graph.mul(stretch, factor);
-        if let Some(value) = graph.as_number(product) {
-            return (value.abs() - 1.0).abs() < 1e-12;
-        }
-        // A factor that follows a param: equal values are one node.
-        let one = graph.number(1.0);
-        let inverse = graph.div(one, factor);
-        stretch == inverse || stretch == graph.abs(inverse)
     }
 
     /// The derived constant, or the one that the node's function states if that is better.
@@ -445,7 +397,7 @@ impl Slopes {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
         let joined = hypotenuse(graph, &constants);
-        match folds::constant(graph, parts, self.level) {
+        match folds::constant(graph, parts, self.maps.level()) {
             Some(together) => {
                 let together = graph.number(together);
                 Ok(graph.min(joined, together))

@@ -216,7 +216,7 @@ fn flatten(
     });
     program.visits = visits(graph, &fields, steepest.filter(|_| field.uncertified.is_empty()));
     if !program.visits.is_empty() && leave_the_eye(&program.settings) {
-        program.within = within(graph, root, &params);
+        program.within = within(graph, &mut bounds, root);
     }
     let asked = asked_of_rays(graph, &mut expander, &mut bounds, &apart)?;
     program.rays = rays(&apart, &fields, asked);

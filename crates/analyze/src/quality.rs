@@ -11,6 +11,7 @@ use sdfc_graph::{
 
 use crate::fault::Rule;
 use crate::lipschitz::{Constant, Reason, Slopes};
+use crate::maps::Maps;
 use crate::within::steepest_within;
 
 /// What |f| is on one side of the surface, from weak to strong.
@@ -203,7 +204,7 @@ impl Qualities {
             };
         }
         let formula = graph.shape(shape).formula;
-        let slopes = self.slopes(graph, shape);
+        let mut slopes = self.slopes(graph, shape);
         let derived = slopes.constant(formula);
         let children_everywhere =
             children.iter().all(|child| self.get(*child).is_some_and(|q| q.everywhere));
@@ -236,7 +237,7 @@ impl Qualities {
             }
             known => (known, everywhere, None),
         };
-        let mut sides = stated.stronger(self.structural(graph, &slopes, shape));
+        let mut sides = stated.stronger(self.structural(graph, &mut slopes, shape));
         if lipschitz.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l <= 1.0)) {
             sides = sides.stronger(Sides::both(Promise::Bound));
         }
@@ -283,12 +284,14 @@ impl Qualities {
     }
 
     /// Promises that follow from the form of a formula alone.
-    fn structural(&self, graph: &mut Graph, slopes: &Slopes, shape: ShapeId) -> Sides {
-        let (formula, level) = (graph.shape(shape).formula, graph.shape(shape).level);
+    fn structural(&self, graph: &mut Graph, slopes: &mut Slopes, shape: ShapeId) -> Sides {
+        let formula = graph.shape(shape).formula;
         let mut sides: FxHashMap<NodeId, Sides> = FxHashMap::default();
-        for &node in slopes.nodes() {
-            let value = self.structural_node(graph, node, level, slopes, &sides);
-            sides.insert(node, value);
+        for &node in &slopes.nodes {
+            let value = self.structural_node(graph, node, &mut slopes.maps, &sides);
+            if value != Sides::NONE {
+                sides.insert(node, value);
+            }
         }
         sides.get(&formula).copied().unwrap_or(Sides::NONE)
     }
@@ -297,15 +300,14 @@ impl Qualities {
         &self,
         graph: &mut Graph,
         node: NodeId,
-        level: u16,
-        slopes: &Slopes,
+        maps: &mut Maps,
         sides: &FxHashMap<NodeId, Sides>,
     ) -> Sides {
         let of = |id: NodeId| sides.get(&id).copied().unwrap_or(Sides::NONE);
         match graph.node(node) {
             // Sampled through an isometry, a field keeps its promises.
             Node::Sample(child, q)
-                if is_one(graph, child, level) && slopes.is_isometry(graph, q) =>
+                if is_one(graph, child, maps.level()) && maps.is_isometry(graph, q) =>
             {
                 self.get(child).map_or(Sides::NONE, |quality| quality.sides)
             }
@@ -328,7 +330,7 @@ impl Qualities {
             // A scaled copy: s * a(p / s); a negative factor turns it inside out.
             Node::Binary(Binary::Mul, a, b) => scaled_sample(graph, a, b)
                 .filter(|(factor, child, q)| {
-                    is_one(graph, *child, level) && slopes.is_similarity(graph, *q, *factor)
+                    is_one(graph, *child, maps.level()) && maps.is_similarity(graph, *q, *factor)
                 })
                 .and_then(|(factor, child, _)| Some((factor, self.get(child)?.sides)))
                 .map_or(Sides::NONE, |(factor, sides)| match graph.as_number(factor) {

@@ -103,8 +103,8 @@ impl Pass<'_> {
             }
             (_, None, _) => {
                 let formula = self.graph.shape(shape).formula;
-                let slopes = self.qualities.slopes(self.graph, shape);
-                self.descend(shape, formula, &slopes, &points)?
+                let mut slopes = self.qualities.slopes(self.graph, shape);
+                self.descend(shape, formula, &mut slopes, &points)?
             }
         };
         self.expander.name(self.graph, value, shape);
@@ -141,13 +141,13 @@ impl Pass<'_> {
         &mut self,
         shape: ShapeId,
         formula: NodeId,
-        slopes: &Slopes,
+        slopes: &mut Slopes,
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
         let mut sound: FxHashMap<NodeId, NodeId> = FxHashMap::default();
-        for node in form::chain_below(self.graph, formula, slopes) {
+        for node in form::chain_below(self.graph, formula, &mut slopes.maps) {
             let of = |id: NodeId| sound.get(&id).copied().unwrap_or(id);
-            let value = match form::form(self.graph, node, slopes) {
+            let value = match form::form(self.graph, node, &mut slopes.maps) {
                 Form::Whole => self.divided(shape, node, slopes, points)?,
                 Form::Least(a, b) => self.graph.min(of(a), of(b)),
                 Form::Greatest(a, b) => self.graph.max(of(a), of(b)),

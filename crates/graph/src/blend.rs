@@ -19,11 +19,12 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// Its values, that of a blend before that of another thing.
+    /// Its values, that of a blend, or of a loop that a chain of blends may have become, before that of another thing.
     pub fn in_order(self, graph: &Graph, blends: &mut Blends) -> [NodeId; 2] {
         let [a, b] = self.values;
-        let mut is_blend = |id| blend_at(graph, blends, id).is_some();
-        if !is_blend(a) && is_blend(b) { [b, a] } else { [a, b] }
+        let mut goes_on =
+            |id| matches!(graph.node(id), Node::Loop(..)) || blend_at(graph, blends, id).is_some();
+        if !goes_on(a) && goes_on(b) { [b, a] } else { [a, b] }
     }
 
     /// How far it may lie below the lesser of its values, per frame; `id` is the node that it ends in. `None` where that is
@@ -109,8 +110,7 @@ pub fn rebuilt(graph: &mut Graph, id: NodeId, new: &[(NodeId, NodeId)]) -> NodeI
         }
         let before = pending.len();
         let missing = |arg: &NodeId| graph.stage(*arg) == Stage::Point && !done.contains_key(arg);
-        let missing: Vec<NodeId> = graph.arguments(id).filter(missing).collect();
-        pending.extend(missing);
+        pending.extend(graph.arguments(id).filter(missing));
         if pending.len() == before {
             let built = graph.rebuild(id, |old| done.get(&old).copied().unwrap_or(old));
             done.insert(id, built);

@@ -122,12 +122,7 @@ fn arguments(
         return None;
     }
     if let Some(blend) = blend_at(graph, blends, id) {
-        let [a, b] = blend.values;
-        let goes_on = |blends: &mut Blends, id| {
-            matches!(graph.node(id), Node::Loop(..)) || blend_at(graph, blends, id).is_some()
-        };
-        let (first, second) =
-            if !goes_on(blends, a) && goes_on(blends, b) { (b, a) } else { (a, b) };
+        let [first, second] = blend.in_order(graph, blends);
         let before = near.before(graph, blend.width);
         let operand = near.of_chain(graph, blend.width);
         return Some(vec![(first, Some(before)), (second, Some(operand))]);

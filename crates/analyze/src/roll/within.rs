@@ -1,19 +1,16 @@
 //! Where the surfaces lie that loops are part of, if something endless stands beside them.
 
-use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{
-    Arg, Bounds, Contract, Dim, Graph, MaterialRule, Node, NodeId, Param, Shape, ShapeId,
-};
+use rustc_hash::FxHashMap;
+use sdfc_graph::{Bounds, Graph, Node, NodeId, ShapeId};
 
 use super::FEWEST;
 use super::chain::{Chain, least};
-use crate::clip::is_finite;
+use crate::closed::{self, has_end, unnamed};
 use crate::quality::shapes_below;
 
 /// Corners of a box around all that a scene is the union of but floors and the like: shapes without bounds that are too few
 /// and too simple for a loop. `None` where there are no such; the scene's own bounds tell then.
-pub(crate) fn within(graph: &mut Graph, root: ShapeId, params: &[Param]) -> Option<[NodeId; 2]> {
-    let mut bounds = Bounds::new(params);
+pub(crate) fn within(graph: &mut Graph, bounds: &mut Bounds, root: ShapeId) -> Option<[NodeId; 2]> {
     let all = operands(graph, graph.shape(root).formula);
     let mut counts: FxHashMap<String, usize> = FxHashMap::default();
     for child in all.iter().filter_map(|&operand| sampled(graph, operand)) {
@@ -25,30 +22,14 @@ pub(crate) fn within(graph: &mut Graph, root: ShapeId, params: &[Param]) -> Opti
         let is_one_of_few = counts[&graph.shape(child).definition] < FEWEST;
         let is_simple = || shapes_below(graph, child).len() < FEWEST;
         let is_loop = !is_one_of_few || !is_simple();
-        is_loop || !is_endless(graph, &mut bounds, child)
+        is_loop || has_end(graph, bounds, child)
     });
     if rest.len() == all.len() {
         return None;
     }
-    let children: FxHashSet<ShapeId> =
-        rest.iter().filter_map(|&operand| sampled(graph, operand)).collect();
-    let mut children: Vec<ShapeId> = children.into_iter().collect();
-    children.sort_unstable();
-    let depth = graph.shape(root).depth;
-    let formula = rest.into_iter().reduce(|a, b| graph.min(a, b))?;
-    let shape = graph.add_shape(Shape {
-        definition: "what is in loops".to_owned(),
-        dim: Dim::Three,
-        level: 0,
-        args: vec![Arg::Node(formula)],
-        formula,
-        contract: Contract::default(),
-        hits: Vec::new(),
-        material: MaterialRule::Shares(formula),
-        children,
-        depth,
-        name: None,
-    });
+    let children = rest.iter().filter_map(|&operand| sampled(graph, operand)).collect();
+    let formula = closed::least(graph, rest)?;
+    let shape = unnamed(graph, formula, children);
     Some(bounds.of(graph, shape))
 }
 
@@ -62,14 +43,4 @@ fn operands(graph: &Graph, formula: NodeId) -> Vec<NodeId> {
 
 fn sampled(graph: &Graph, operand: NodeId) -> Option<ShapeId> {
     if let Node::Sample(child, _) = graph.node(operand) { Some(child) } else { None }
-}
-
-fn is_endless(graph: &mut Graph, bounds: &mut Bounds, shape: ShapeId) -> bool {
-    let corners = bounds.of(graph, shape);
-    let walls: Vec<NodeId> = corners
-        .into_iter()
-        .flat_map(|corner| (0..3).map(move |lane| (corner, lane)))
-        .map(|(corner, lane)| graph.component(corner, lane))
-        .collect();
-    !walls.into_iter().all(|wall| is_finite(graph, wall))
 }

@@ -54,9 +54,7 @@ impl Deriver<'_> {
                 if op == Binary::Add {
                     Some(this.summed(a, b))
                 } else if op == Binary::Sub {
-                    let minus = this.graph.number(-1.0);
-                    let b = this.scaled(b, minus);
-                    Some(this.summed(a, b))
+                    Some(this.differing(a, b))
                 } else if op == Binary::Mul {
                     this.product(a, b)
                 } else if op == Binary::Div && this.is_uniform(b) {
@@ -124,6 +122,11 @@ impl Deriver<'_> {
         Form { slopes, offset: self.graph.end_sum(a.offset, b.offset) }
     }
 
+    fn differing(&mut self, a: Form, b: Form) -> Form {
+        let slopes = [0, 1, 2].map(|i| self.graph.end_difference(a.slopes[i], b.slopes[i]));
+        Form { slopes, offset: self.graph.end_difference(a.offset, b.offset) }
+    }
+
     fn product(&mut self, a: Form, b: Form) -> Option<Form> {
         if self.is_uniform(a) {
             Some(self.scaled(b, a.offset))
@@ -151,9 +154,7 @@ impl Deriver<'_> {
             let axes: Vec<usize> = (0..3).filter(steep).collect();
             if let [axis] = axes[..] {
                 let ends = self.divided(moved, form.slopes[axis]);
-                let mut bound = Zone::everywhere(self.graph);
-                bound.axes[axis] = ends;
-                zone = zone.overlap(self.graph, bound);
+                zone.axes[axis] = self.graph.common_ends(zone.axes[axis], ends);
             } else {
                 mixing |= !axes.is_empty();
             }

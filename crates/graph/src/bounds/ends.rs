@@ -1,6 +1,5 @@
 //! Ends of ranges as nodes. Constants may be infinite here, which folding elsewhere leaves alone.
 
-use crate::eval::Number;
 use crate::{Binary, Graph, Node, NodeId};
 
 /// A range from a lower to an upper end, both scalar nodes.
@@ -70,6 +69,9 @@ impl Graph {
         if self.as_number(b).is_none() && !self.is_infinite(a) && !self.is_number(a, 0.0) {
             return self.sub(a, b);
         }
+        if let (Some(x), Some(y)) = (self.as_number(a), self.as_number(b)) {
+            return self.number(x - y);
+        }
         let b = self.end_negated(b);
         self.end_sum(a, b)
     }
@@ -120,10 +122,15 @@ impl Graph {
         }
     }
 
+    /// What two ranges have in common.
+    pub(super) fn common_ends(&mut self, [lo, hi]: Ends, [other_lo, other_hi]: Ends) -> Ends {
+        [self.end_max(lo, other_lo), self.end_min(hi, other_hi)]
+    }
+
     /// The lesser of two ends.
     pub(super) fn end_min(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.as_number(a), self.as_number(b)) {
-            (Some(x), Some(y)) => self.number(Number::min(x, y)),
+            (Some(x), Some(y)) => [a, b][usize::from(y < x)],
             (Some(x), _) if x.is_infinite() => {
                 if x < 0.0 {
                     a
@@ -145,7 +152,7 @@ impl Graph {
     /// The greater of two ends.
     pub(super) fn end_max(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.as_number(a), self.as_number(b)) {
-            (Some(x), Some(y)) => self.number(Number::max(x, y)),
+            (Some(x), Some(y)) => [a, b][usize::from(x < y)],
             (Some(x), _) if x.is_infinite() => {
                 if x > 0.0 {
                     a

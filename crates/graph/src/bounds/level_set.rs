@@ -5,9 +5,7 @@
 
 use super::Deriver;
 use super::zone::Zone;
-use crate::{
-    Binary, Dim, Node, NodeId, Shape, ShapeId, SidePromise, Stage, Ternary, Unary, blend_at,
-};
+use crate::{Binary, Dim, Node, NodeId, ShapeId, SidePromise, Stage, Ternary, Unary, blend_at};
 
 /// What is asked of a formula. Equal questions have equal answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -61,7 +59,8 @@ impl Deriver<'_> {
         if let Some(&known) = self.memo.exact.get(&id) {
             return known;
         }
-        let Shape { contract, children, .. } = self.graph.shape(id).clone();
+        let shape = self.graph.shape(id);
+        let (contract, children) = (shape.contract, shape.children.clone());
         let sides = [contract.outside, contract.inside];
         let states = |side: SidePromise| side.exact.is_some_and(|holds| self.is_true(holds));
         let is_exact = sides.into_iter().all(states)

@@ -54,9 +54,7 @@ impl Zone {
 
     /// What both hold.
     pub(super) fn overlap(self, graph: &mut Graph, other: Self) -> Self {
-        self.with(other, |[lo, hi], [other_lo, other_hi]| {
-            [graph.end_max(lo, other_lo), graph.end_min(hi, other_hi)]
-        })
+        self.with(other, |ends, other| graph.common_ends(ends, other))
     }
 
     /// One of two by a condition that no point changes.

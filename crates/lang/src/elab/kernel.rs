@@ -115,9 +115,13 @@ impl<'p> Elaborator<'p> {
         env: &mut Env<'p>,
         args: &'p [Expr],
     ) -> Outcome<[NodeId; N]> {
-        let nodes: Vec<_> = args.iter().map(|arg| self.number(env, arg)).collect();
-        let nodes = nodes.into_iter().collect::<Outcome<Vec<_>>>()?;
-        nodes.try_into().map_err(|_| Poison)
+        let mut are_known = args.len() == N;
+        let nodes = std::array::from_fn(|i| {
+            let node = args.get(i).and_then(|arg| self.number(env, arg).ok());
+            are_known &= node.is_some();
+            node.unwrap_or_else(|| self.graph.number(0.0))
+        });
+        are_known.then_some(nodes).ok_or(Poison)
     }
 
     fn unary(&mut self, env: &mut Env<'p>, at: Application<'p>, op: Unary) -> Outcome<Value<'p>> {
@@ -164,8 +168,9 @@ impl<'p> Elaborator<'p> {
         args: &[NodeId],
         result: NodeId,
     ) -> Outcome<Value<'p>> {
-        let (result, lanes) = self.settled(result);
-        let Some(lanes) = lanes else { return Ok(Value::Node(result)) };
+        let result = self.settled(result);
+        let Some((lanes, width)) = self.as_lanes(result) else { return Ok(Value::Node(result)) };
+        let lanes = &lanes[..width];
         let infinite = |node: &NodeId| {
             self.as_lanes(*node).is_some_and(|(lanes, _)| lanes.iter().any(|v| v.is_infinite()))
         };
@@ -173,23 +178,20 @@ impl<'p> Elaborator<'p> {
         if inherited || self.in_clause || lanes.iter().all(|lane| lane.is_finite()) {
             return Ok(Value::Node(result));
         }
-        let (name, value) = (name(at.op), show_lanes(&lanes));
+        let (name, value) = (name(at.op), show_lanes(lanes));
         let message = format!("the result of `{name}` is {value}, which no shader can hold");
         Err(self.fail(ErrorCode::NOT_FINITE, at.span, message))
     }
 
-    /// A constant node as a literal, with its lanes. The graph folds finite results only.
-    pub(super) fn settled(&mut self, node: NodeId) -> (NodeId, Option<Vec<f64>>) {
-        if self.graph.stage(node) != Stage::Const {
-            return (node, None);
+    /// A constant node as a literal; any other as it is. The graph folds finite results only.
+    pub(super) fn settled(&mut self, node: NodeId) -> NodeId {
+        if self.graph.stage(node) != Stage::Const || self.as_lanes(node).is_some() {
+            return node;
         }
         let ty = self.graph.ty(node);
-        if let Some((lanes, width)) = self.as_lanes(node) {
-            return (node, Some(lanes[..width].to_vec()));
-        }
         let lanes = evaluate_frame(&self.graph, &[node], &FrameValues::default());
         let lanes = lanes.first().map_or(vec![f64::NAN], |lanes| lanes[..ty.width()].to_vec());
-        (self.graph.constant(ty, &lanes), Some(lanes))
+        self.graph.constant(ty, &lanes)
     }
 
     /// `==` on numbers, truth values and texts.

@@ -275,11 +275,10 @@ impl<'p> Elaborator<'p> {
     /// A constant with `otherwise` in place of what is not a number: 0 times infinity, for
     /// example, where a shape without bounds is twisted by 0.
     fn known(&mut self, node: NodeId, otherwise: f64) -> NodeId {
-        let (node, Some(mut lanes)) = self.settled(node) else { return node };
-        for lane in lanes.iter_mut().filter(|lane| lane.is_nan()) {
-            *lane = otherwise;
-        }
-        self.graph.constant(self.graph.ty(node), &lanes)
+        let node = self.settled(node);
+        let Some((lanes, width)) = self.as_lanes(node) else { return node };
+        let lanes = lanes.map(|lane| if lane.is_nan() { otherwise } else { lane });
+        self.graph.constant(self.graph.ty(node), &lanes[..width])
     }
 }
 
