@@ -111,7 +111,7 @@ pub(crate) fn linear_part(
     graph: &mut Graph,
     node: NodeId,
     level: u16,
-    known: &FxHashMap<NodeId, Option<Linear>>,
+    known: &FxHashMap<NodeId, Option<Box<Linear>>>,
 ) -> Option<Linear> {
     let width = graph.ty(node).width();
     if graph.ty(node) == Type::Bool {
@@ -119,7 +119,7 @@ pub(crate) fn linear_part(
     }
     let of = |graph: &Graph, id: NodeId| match is_fixed(graph, id, level) {
         true => Some(Linear::new(graph.ty(id).width(), |_| [ZERO; 3])),
-        false => known.get(&id).copied().flatten(),
+        false => known.get(&id)?.as_deref().copied(),
     };
     match graph.node(node) {
         Node::Point(at, _) if at == level => Some(Linear::new(width, |lane| {

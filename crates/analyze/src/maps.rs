@@ -10,8 +10,8 @@ use crate::fault::Rule;
 pub(crate) struct Maps {
     /// The level of the formula's point.
     level: u16,
-    /// `None` of what is not affine. Nodes that the point does not move are not listed.
-    known: FxHashMap<NodeId, Option<Linear>>,
+    /// `None` of what is not affine, as most nodes are. Nodes that the point does not move are not listed.
+    known: FxHashMap<NodeId, Option<Box<Linear>>>,
 }
 
 impl Maps {
@@ -33,7 +33,7 @@ impl Maps {
                 self.visit(graph, id);
             }
         }
-        self.known.get(&node)?.as_ref()
+        self.known.get(&node)?.as_deref()
     }
 
     /// The same of a node whose arguments were asked for, or visited.
@@ -43,9 +43,9 @@ impl Maps {
         }
         if !self.known.contains_key(&node) {
             let linear = affine::linear_part(graph, node, self.level, &self.known);
-            self.known.insert(node, linear);
+            self.known.insert(node, linear.map(Box::new));
         }
-        self.known.get(&node)?.as_ref()
+        self.known.get(&node)?.as_deref()
     }
 
     /// Whether the node maps the point to a point of the same distances.
