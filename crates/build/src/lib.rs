@@ -129,8 +129,12 @@ impl Build {
         let files = Noted { folder: Folder::of(path), asked: RefCell::default() };
         let compiled = sdfc::compile_with_imports(&input.name, &input.text, &files);
         let beside = path.parent().unwrap_or(Path::new(""));
-        read.extend(files.asked.into_inner().iter().map(|asked| beside.join(asked)));
-        let lines = lines(&compiled);
+        let asked = files.asked.into_inner();
+        read.extend(asked.iter().map(|asked| beside.join(asked)));
+        let lines = lines(&compiled, |file| match asked.contains(file) {
+            true => beside.join(file).display().to_string(),
+            false => file.clone(),
+        });
         let scene = match compiled.into_scene() {
             Ok(scene) => scene,
             Err(errors) => return Err((lines, Error(format!("\n{errors}")))),
@@ -143,13 +147,14 @@ impl Build {
     }
 }
 
-/// The findings as compilers show them in one line.
-fn lines(compiled: &Compiled) -> Vec<String> {
+/// The findings as compilers show them in one line; `path` of a file's name is where it lies.
+fn lines(compiled: &Compiled, path: impl Fn(&String) -> String) -> Vec<String> {
     let rows = compiled.rows().into_iter();
     let line = rows.map(|row| {
         let help = row.help.replace('\n', "; ");
         let help = if help.is_empty() { help } else { format!(" ({help})") };
-        format!("{}:{}:{}: {}: {}{help}", row.file, row.line, row.column, row.code, row.message)
+        let file = path(&row.file);
+        format!("{file}:{}:{}: {}: {}{help}", row.line, row.column, row.code, row.message)
     });
     line.collect()
 }

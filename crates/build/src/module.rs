@@ -29,20 +29,26 @@ pub(crate) fn text(
             let (group, binding) = (uniform.group, uniform.binding);
             quote! {
                 /// Bind group of the uniform buffer that holds [`Params`].
+                #[allow(dead_code)]
                 pub const GROUP: u32 = #group;
                 /// Its binding in the group.
+                #[allow(dead_code)]
                 pub const BINDING: u32 = #binding;
                 #params
             }
         }
         None => TokenStream::new(),
     };
+    // Few programs need all of it.
     let module = quote! {
         /// The shader.
+        #[allow(dead_code)]
         #shader
         /// What it offers and reads, and what is certified of its field, as JSON.
+        #[allow(dead_code)]
         pub const REFLECTION: &str = #described;
         /// What its storage buffer of long lists holds; empty without one.
+        #[allow(dead_code)]
         pub const LISTS: &[[f32; 4]] = &[#(#lists),*];
         #params
     };
@@ -78,6 +84,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
         #[repr(C)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         #derive
+        #[allow(dead_code)]
         pub struct Params { #(#declared),* }
         const _: () = assert!(size_of::<Params>() == #bytes);
 
@@ -88,6 +95,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
             }
         }
 
+        #[allow(dead_code)]
         impl Params {
             /// The bytes of the uniform buffer.
             pub fn to_bytes(&self) -> [u8; #bytes] {

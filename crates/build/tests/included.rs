@@ -23,7 +23,7 @@ fn run_with(program: &Path, folder: &Path, arguments: &[String]) -> Result<Strin
     let to = folder.join("program");
     let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
     let compiled = Command::new(rustc)
-        .args(["--edition", "2024", "-D", "warnings", "-A", "dead_code", "-o"])
+        .args(["--edition", "2024", "-D", "warnings", "-o"])
         .args([&to, program])
         .args(arguments)
         .env("OUT_DIR", folder)
@@ -148,6 +148,13 @@ fn errors_point_into_the_file_of_the_scene() {
     assert!(format!("{error:?}").contains("did you mean `sphere`?"), "{error:?}");
     // What it would import is waited for.
     assert_eq!(read, [path.clone(), folder.path().join("part.sdf")]);
+
+    // Of an imported file, too, the path is that from where Cargo is.
+    std::fs::write(&path, "import part from \"part.sdf\"\npart()").unwrap();
+    std::fs::write(folder.path().join("part.sdf"), "solid part() = lenght(p) - 1").unwrap();
+    let (lines, _) = Build::new().generate(&path, &mut Vec::new()).unwrap_err();
+    let expected = format!("{}:1:16: E0201", folder.path().join("part.sdf").display());
+    assert!(lines.iter().any(|line| line.starts_with(&expected)), "{lines:#?}");
 
     let missing = folder.path().join("none.sdf");
     let (lines, _) = Build::new().generate(&missing, &mut Vec::new()).unwrap_err();
