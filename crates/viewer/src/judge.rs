@@ -9,7 +9,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, PoisonError, RwLock};
-use std::thread::JoinHandle;
 use std::time::Instant;
 
 use sdfc::accuracy_data::{Counts, Metrics};
@@ -21,13 +20,11 @@ use sdfc::render::{
 };
 use sdfc::{Comparison, Error, FrameValues};
 
-use crate::mailbox::Mailbox;
+use crate::mailbox::{Attendant, Mailbox};
 use crate::model::{Engine, Model};
 
 /// Most pixels of a picture that is compared.
 const MOST_PIXELS: f64 = 24_000.0;
-/// Room for what the compiler does in depth.
-const STACK: usize = 16 << 20;
 /// Progress is told in so many parts.
 const PARTS: u32 = 1000;
 
@@ -144,9 +141,8 @@ pub enum Judged {
 /// The thread, as others see it.
 #[derive(Debug)]
 pub struct Judge {
-    cases: Arc<Mailbox<Option<Case>>>,
+    cases: Attendant<Option<Case>>,
     progress: Arc<Reached>,
-    thread: Option<JoinHandle<()>>,
 }
 
 /// How far it is.
@@ -159,45 +155,32 @@ struct Reached {
 
 impl Judge {
     /// Starts it. `wake` is called when there is something to tell.
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no thread.
     pub fn new(
         to: Sender<Judged>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> std::io::Result<Self> {
-        let cases = Arc::new(Mailbox::default());
         let progress = Arc::new(Reached::default());
-        let mailbox = Arc::clone(&cases);
-        let mut court = Court {
-            cases: Arc::clone(&cases),
-            progress: Arc::clone(&progress),
-            wake: Box::new(wake),
-            to,
-            compared: None,
-            gpu: None,
-            started: Instant::now(),
+        let reached = Arc::clone(&progress);
+        let begin = |cases| {
+            let mut court = Court::new(cases, reached, to, Box::new(wake));
+            move |order| court.serve(order)
         };
-        let run = move || {
-            while let Some(order) = mailbox.take() {
-                if let Some(case) = order {
-                    court.guarded(Arc::new(case));
-                }
-                // One that came in meanwhile is not done.
-                court.progress.busy.store(mailbox.calls(), Ordering::Relaxed);
-                (court.wake)();
-            }
-        };
-        let thread = std::thread::Builder::new().name("judge".into()).stack_size(STACK);
-        Ok(Self { cases, progress, thread: Some(thread.spawn(run)?) })
+        Ok(Self { cases: Attendant::start("judge", begin)?, progress })
     }
 
     /// Has a case compared in place of whatever is being compared.
     pub fn ask(&self, case: Case) {
         self.progress.busy.store(true, Ordering::Relaxed);
-        self.cases.put(Some(case));
+        self.cases.mailbox().put(Some(case));
     }
 
     /// Gives up what is being compared.
     pub fn cancel(&self) {
-        self.cases.put(None);
+        self.cases.mailbox().put(None);
     }
 
     /// The part that is done, 0 to 1, of what; `None` where nothing is to be done.
@@ -208,14 +191,6 @@ impl Judge {
         let part = self.progress.part.load(Ordering::Relaxed) as f32 / PARTS as f32;
         // A word, replaced whole.
         Some((part, *self.progress.what.read().unwrap_or_else(PoisonError::into_inner)))
-    }
-}
-
-impl Drop for Judge {
-    fn drop(&mut self) {
-        self.cases.close();
-        // Not joined: a driver may be compiling for minutes, and the process ends anyway.
-        drop(self.thread.take());
     }
 }
 
@@ -241,6 +216,26 @@ struct Court {
 }
 
 impl Court {
+    fn new(
+        cases: Arc<Mailbox<Option<Case>>>,
+        progress: Arc<Reached>,
+        to: Sender<Judged>,
+        wake: Box<dyn Fn() + Send + Sync>,
+    ) -> Self {
+        let started = Instant::now();
+        Self { cases, progress, wake, to, compared: None, gpu: None, started }
+    }
+
+    /// Compares; `None` only ends what was being compared.
+    fn serve(&mut self, order: Option<Case>) {
+        if let Some(case) = order {
+            self.guarded(Arc::new(case));
+        }
+        // One that came in meanwhile is not done.
+        self.progress.busy.store(self.cases.calls(), Ordering::Relaxed);
+        (self.wake)();
+    }
+
     fn tell(&self, judged: Judged) {
         // The receiver is gone only where the window is.
         let _ = self.to.send(judged);

@@ -1,7 +1,14 @@
-//! A box that holds the newest letter only: what a slow thread has not taken is replaced.
+//! A box that holds the newest letter only, and a thread that takes them: what it has not taken when the next comes is
+//! replaced.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
+
+/// What an attendant is at may take so long when it is dropped.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// Most of what input controls in depth is bounded by the compiler; this is room for that.
+const STACK: usize = 16 << 20;
 
 /// The newest letter, if it has not been taken.
 #[derive(Debug)]
@@ -62,9 +69,69 @@ impl<T> Mailbox<T> {
     }
 }
 
+/// A thread that serves one letter after the other, until this is dropped.
+#[derive(Debug)]
+pub struct Attendant<T> {
+    mailbox: Arc<Mailbox<T>>,
+    /// Of a sender that the thread has until it ends.
+    ended: Receiver<()>,
+}
+
+impl<T: Send + 'static> Attendant<T> {
+    /// Starts it. `begin` is given the box, so that what serves can see whether a newer letter waits.
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no thread.
+    pub fn start<S>(name: &str, begin: impl FnOnce(Arc<Mailbox<T>>) -> S) -> std::io::Result<Self>
+    where
+        S: FnMut(T) + Send + 'static,
+    {
+        let mailbox = Arc::new(Mailbox::default());
+        let mut serve = begin(Arc::clone(&mailbox));
+        let letters = Arc::clone(&mailbox);
+        let (until_end, ended) = channel();
+        let run = move || {
+            while let Some(letter) = letters.take() {
+                serve(letter);
+            }
+            // What it holds of a driver goes first.
+            drop(serve);
+            drop::<Sender<()>>(until_end);
+        };
+        std::thread::Builder::new().name(name.to_owned()).stack_size(STACK).spawn(run)?;
+        Ok(Self { mailbox, ended })
+    }
+
+    /// The way in.
+    pub fn mailbox(&self) -> &Arc<Mailbox<T>> {
+        &self.mailbox
+    }
+}
+
+impl<T> Drop for Attendant<T> {
+    fn drop(&mut self) {
+        self.mailbox.close();
+        // A process that ends takes its drivers away from under threads that are in them. But one may compile for minutes.
+        let _ = self.ended.recv_timeout(PATIENCE);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn letters_are_served_until_nobody_is_there_to_send_them() {
+        let (sender, served) = std::sync::mpsc::channel();
+        let attendant =
+            Attendant::start("test", |_| move |letter: i32| sender.send(letter).unwrap()).unwrap();
+        attendant.mailbox().put(1);
+        assert_eq!(served.recv(), Ok(1));
+        drop(attendant);
+        // The thread is gone, and the sender with it.
+        assert!(served.recv().is_err());
+    }
 
     #[test]
     fn only_the_newest_is_kept() {

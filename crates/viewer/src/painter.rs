@@ -9,7 +9,6 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use sdfc::render::{
@@ -18,9 +17,11 @@ use sdfc::render::{
 };
 use sdfc::{Error, FrameValues};
 
-use crate::mailbox::Mailbox;
+use crate::legend::Legend;
+use crate::mailbox::{Attendant, Mailbox};
+use crate::mode::{Mode, Slice};
 use crate::model::{Engine, Model};
-use crate::views::{Legend, Mode, Seen, Slice, paint};
+use crate::views::{Seen, paint};
 
 /// Milliseconds that a pass may take while the camera moves.
 pub const BUDGET: f64 = 30.0;
@@ -128,41 +129,30 @@ pub enum Painted {
 
 /// The thread, as others see it.
 #[derive(Debug)]
-pub struct Painter {
-    requests: Arc<Mailbox<Request>>,
-    thread: Option<JoinHandle<()>>,
-}
+pub struct Painter(Attendant<Request>);
 
 impl Painter {
     /// Starts it. `wake` is called after each message.
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no thread.
     pub fn new(to: Sender<Painted>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let requests = Arc::new(Mailbox::default());
-        let mailbox = Arc::clone(&requests);
-        let mut studio = Studio::new(Arc::clone(&requests), move |message| {
+        let tell = move |message| {
             // The receiver is gone only where the window is.
             let _ = to.send(message);
             wake();
-        });
-        let run = move || {
-            while let Some(request) = mailbox.take() {
-                studio.guarded(request);
-            }
         };
-        let thread = std::thread::Builder::new().name("painter".into()).spawn(run)?;
-        Ok(Self { requests, thread: Some(thread) })
+        let begin = |requests| {
+            let mut studio = Studio::new(requests, tell);
+            move |request| studio.guarded(request)
+        };
+        Attendant::start("painter", begin).map(Self)
     }
 
     /// Asks for a picture in place of whatever was asked before.
     pub fn ask(&self, request: Request) {
-        self.requests.put(request);
-    }
-}
-
-impl Drop for Painter {
-    fn drop(&mut self) {
-        self.requests.close();
-        // Not joined: a tile may take long, and the process ends anyway.
-        drop(self.thread.take());
+        self.0.mailbox().put(request);
     }
 }
 

@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::DVec3;
 use sdfc::FrameValues;
-use sdfc::render::{HIT, Pose};
+use sdfc::render::Pose;
 
 use crate::clerk::{Clerk, Errand, Outcome};
 use crate::clock::Clock;
@@ -15,10 +14,11 @@ use crate::document;
 use crate::findings::{Finding, Findings};
 use crate::judge::{Case, Judge, Judged, Judgement};
 use crate::knobs::Knobs;
+use crate::look::Look;
+use crate::mode::{Mode, Slice};
 use crate::model::Model;
 use crate::orbit::{Kept, Orbit};
 use crate::painter::{Painted, Painter, Picture, Request};
-use crate::views::{Mode, Slice};
 use crate::watch::Watch;
 use crate::worker::{Build, News, Worker};
 
@@ -27,25 +27,6 @@ const MOST_RENEWALS: u32 = 3;
 
 /// Frames of an animation.
 const MOST_FRAMES: f64 = 20_000.0;
-
-/// What a look at a pixel tells.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Look {
-    /// The pixel's ray ended like this: [`HIT`] and its like.
-    pub status: u32,
-    /// Length of the ray.
-    pub depth: f64,
-    /// Where it ended.
-    pub point: DVec3,
-    /// The field there, in double precision.
-    pub distance: Option<f64>,
-    /// The field's gradient there, of length 1.
-    pub normal: Option<DVec3>,
-    /// Evaluations of the field for this pixel.
-    pub evaluations: u32,
-    /// What the shape is called, and where it is written, once that is known.
-    pub shape: Option<String>,
-}
 
 /// Wakes the window.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -77,6 +58,8 @@ pub struct Session {
     pub mode: Mode,
     /// The plane of [`Mode::Slice`].
     pub slice: Slice,
+    /// Whether axes and bounds are drawn over the picture.
+    pub guides: bool,
     /// Rays for each pixel when all rests.
     pub samples: Option<u32>,
     /// The knob of the method, such as its tolerance, as a multiple of the scene's.
@@ -153,6 +136,7 @@ impl Session {
             clock: Clock::default(),
             mode: Mode::default(),
             slice: Slice::default(),
+            guides: false,
             samples: None,
             tolerance: 1.0,
             refine: true,
@@ -411,34 +395,8 @@ impl Session {
     }
 
     /// What is at a place of the picture, from its upper left corner in parts of its sides.
-    pub fn look(&self, [right, down]: [f64; 2]) -> Option<Look> {
-        let picture = self.picture.as_ref()?;
-        let [width, height] = picture.image.size();
-        let place = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side - 1);
-        let (x, y) = (place(right, width), place(down, height));
-        let pixel = picture.image.pixel(x, y)?;
-        let [start, direction] = picture.view.ray(x, y);
-        let depth = f64::from(pixel.depth);
-        let point = start + direction * depth;
-        let request = &picture.request;
-        let field = request.model.probe.at(&request.frame, point.to_array());
-        // Rays and field are counted from there.
-        let origin = DVec3::from(request.model.scene.drawn().origin);
-        let gradient = field.map(|field| DVec3::from(field.partials));
-        let (shapes, scene) = (&request.model.shapes, &request.model.scene);
-        let shape = shapes.known_leaves().filter(|_| pixel.status == HIT).and_then(|leaves| {
-            let place = leaves.at(&request.frame, &[Some(point.to_array())]).pop()??;
-            Some(shapes.label(scene, *leaves.shapes().get(place)?))
-        });
-        Some(Look {
-            status: pixel.status,
-            depth,
-            point: point + origin,
-            distance: field.map(|field| field.value),
-            normal: gradient.and_then(DVec3::try_normalize).filter(|_| pixel.status == HIT),
-            evaluations: pixel.evaluations,
-            shape,
-        })
+    pub fn look(&self, place: [f64; 2]) -> Option<Look> {
+        Look::at(self.picture.as_deref()?, place)
     }
 
     /// Where a finding is, as an absolute path where there is one.

@@ -12,187 +12,10 @@ use sdfc::render::{CAPPED, EvaluationCounts, HIT, Image, View, is_finite, linear
 use sdfc::{FrameValues, Scene};
 
 use crate::identity::{Quality, Shapes};
+use crate::legend::{Legend, Ramp, mix};
 use crate::material::{Material, Materials};
+use crate::mode::{Mode, Slice};
 use crate::probe::Probe;
-
-/// What is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// Light and materials.
-    #[default]
-    Shaded,
-    /// Directions of the surface.
-    Normals,
-    /// Lengths of the rays.
-    Depth,
-    /// Evaluations of the field.
-    Evaluations,
-    /// Rays that ran out of steps.
-    Capped,
-    /// Rays that went through a surface.
-    Overshoot,
-    /// Length of the gradient.
-    Slope,
-    /// Which shape it is.
-    Shapes,
-    /// What it is made of.
-    Materials,
-    /// What the field promises.
-    Quality,
-    /// The field on a plane.
-    Slice,
-}
-
-impl Mode {
-    /// All of them, in the order in which they are offered.
-    pub const ALL: [Self; 11] = [
-        Self::Shaded,
-        Self::Normals,
-        Self::Depth,
-        Self::Evaluations,
-        Self::Capped,
-        Self::Overshoot,
-        Self::Slope,
-        Self::Shapes,
-        Self::Materials,
-        Self::Quality,
-        Self::Slice,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Shaded => "Shaded",
-            Self::Normals => "Normals",
-            Self::Depth => "Depth",
-            Self::Evaluations => "Evaluations",
-            Self::Capped => "Capped rays",
-            Self::Overshoot => "Overshoot",
-            Self::Slope => "Gradient length",
-            Self::Shapes => "Shapes",
-            Self::Materials => "Materials",
-            Self::Quality => "Distance quality",
-            Self::Slice => "Slice",
-        }
-    }
-
-    /// What it shows.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Shaded => "Light and materials, as `sdfc render` draws them.",
-            Self::Normals => {
-                "The direction of the surface, from the field's gradient in double precision: \
-                 x, y, z as red, green, blue, with 0 in the middle."
-            }
-            Self::Depth => "How long each ray is, from the nearest hit to the farthest.",
-            Self::Evaluations => {
-                "How often the field was evaluated for each pixel, shadows and mirrors included."
-            }
-            Self::Capped => {
-                "Rays that ran out of steps before they met anything, and pixels that are no number."
-            }
-            Self::Overshoot => {
-                "The field in double precision where each ray stopped: deeper inside than a quarter of \
-                 a pixel, the ray went through the surface. A ray that left again on the other side \
-                 cannot be told from one that met nothing."
-            }
-            Self::Slope => {
-                "The length of the gradient where each ray stopped: 1 is a distance, above 1 the field \
-                 grows faster than the distance and rays may step through."
-            }
-            Self::Shapes => {
-                "Each shape in a colour of its own; where two blend, that of the one with the greater share."
-            }
-            Self::Materials => {
-                "The colour of each surface without light and shadow, and what the most seen materials are."
-            }
-            Self::Quality => {
-                "What the field of each part promises outside: the distance itself, a bound of it, or a bound \
-                 after division by a constant. Nothing keeps rays from stepping through what is uncertified."
-            }
-            Self::Slice => {
-                "The field on a plane: warm inside, cool outside, with lines of equal distance."
-            }
-        }
-    }
-}
-
-/// A plane to show the field on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slice {
-    /// Which coordinate is the same all over it, 0 to 2.
-    pub axis: usize,
-    /// That coordinate, in scene units.
-    pub offset: f64,
-    /// From line to line, in scene units.
-    pub spacing: f64,
-}
-
-impl Default for Slice {
-    fn default() -> Self {
-        Self { axis: 2, offset: 0.0, spacing: 0.1 }
-    }
-}
-
-/// What the colours mean.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Legend {
-    /// What they are.
-    None,
-    /// A scale from one number to another.
-    Scale {
-        /// What is measured.
-        label: &'static str,
-        /// The numbers at the ends.
-        ends: [f64; 2],
-        /// Which colours.
-        ramp: Ramp,
-    },
-    /// Single colours.
-    Keys(Vec<([u8; 3], String)>),
-}
-
-/// Colours for numbers from 0 to 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ramp {
-    /// From little to much.
-    Heat,
-    /// From near to far.
-    Grey,
-    /// About a middle.
-    Balance,
-}
-
-impl Ramp {
-    /// The colour of a number from 0 to 1.
-    pub fn color(self, value: f64) -> [u8; 3] {
-        // Evenly spaced samples: of viridis (Smith and van der Walt, CC0), of two greys, of a diverging scale.
-        const HEAT: &[[u8; 3]] = &[
-            [68, 1, 84],
-            [72, 40, 120],
-            [62, 74, 137],
-            [49, 104, 142],
-            [38, 130, 142],
-            [31, 158, 137],
-            [53, 183, 121],
-            [109, 205, 89],
-            [180, 222, 44],
-            [253, 231, 37],
-        ];
-        const GREY: &[[u8; 3]] = &[[245, 245, 245], [28, 30, 34]];
-        const BALANCE: &[[u8; 3]] =
-            &[[33, 102, 172], [146, 197, 222], [247, 247, 247], [244, 165, 130], [178, 24, 43]];
-        let stops = match self {
-            Self::Heat => HEAT,
-            Self::Grey => GREY,
-            Self::Balance => BALANCE,
-        };
-        let place = value.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
-        // NaN becomes 0 on the way.
-        let index = (place as usize).min(stops.len() - 2);
-        mix(stops[index], stops[index + 1], place - index as f64)
-    }
-}
 
 const ALARM: [u8; 3] = [255, 64, 129];
 const NOTICE: [u8; 3] = [255, 193, 7];
@@ -203,6 +26,8 @@ const INSIDE: [u8; 3] = [224, 122, 63];
 const OUTSIDE: [u8; 3] = [58, 124, 165];
 /// Of a pixel's width: where a ray must not be deeper inside.
 const QUARTER: f64 = 0.25;
+/// So many of all hits are at most as far away as what is darkest.
+const FAR_SHARE: f64 = 0.9;
 /// Lines of a legend.
 const MOST_KEYS: usize = 12;
 
@@ -289,17 +114,20 @@ impl Seen<'_> {
     }
 
     fn depth(&self) -> (Vec<u8>, Legend) {
-        let depths = || self.image.pixels().iter().filter(|it| it.status == HIT).map(|it| it.depth);
-        let near = f64::from(depths().fold(f32::INFINITY, f32::min));
-        let far = f64::from(depths().fold(f32::NEG_INFINITY, f32::max));
+        let hits = self.image.pixels().iter().filter(|it| it.status == HIT);
+        let mut depths: Vec<f32> = hits.map(|it| it.depth).collect();
+        depths.sort_by(f32::total_cmp);
+        // A floor goes so far that all that stands on it would be one grey.
+        let at = |share: f64| depths.get((depths.len() as f64 * share) as usize).copied();
+        let [near, far] = [0.0, FAR_SHARE].map(|share| f64::from(at(share).unwrap_or_default()));
         let color = |index: usize, _: &PixelBlock| match self.image.pixels()[index] {
             PixelBlock { status: HIT, depth, .. } => {
                 Ramp::Grey.color((f64::from(depth) - near) / (far - near).max(1e-12))
             }
             _ => NOTHING,
         };
-        let ends = if near <= far { [near, far] } else { [0.0, 0.0] };
-        (self.each(color), Legend::Scale { label: "length of the ray", ends, ramp: Ramp::Grey })
+        let label = "length of the ray, up to the 90th percentile";
+        (self.each(color), Legend::Scale { label, ends: [near, far], ramp: Ramp::Grey })
     }
 
     fn evaluations(&self) -> (Vec<u8>, Legend) {
@@ -429,12 +257,12 @@ impl Seen<'_> {
     }
 
     fn slice(&self) -> (Vec<u8>, Legend) {
-        let Slice { axis, offset, spacing } = self.slice;
+        let Slice { axis, offset, spacing, over } = self.slice;
         let axis = axis.min(2);
         let point = |(index, pixel): (usize, &PixelBlock)| {
             let [start, direction] = self.ray(index);
             let t = (offset - self.origin[axis] - start[axis]) / direction[axis];
-            let behind = pixel.status == HIT && f64::from(pixel.depth) < t;
+            let behind = !over && pixel.status == HIT && f64::from(pixel.depth) < t;
             (t.is_finite() && t > 0.0 && t < self.view.t_max && !behind)
                 .then(|| ((start + direction * t).to_array(), t))
         };
@@ -506,11 +334,6 @@ fn dimmed(color: [u8; 3]) -> [u8; 3] {
     let [red, green, blue] = color.map(u32::from);
     let grey = ((red * 54 + green * 183 + blue * 19) / 256) as u8;
     mix([grey; 3], [0; 3], 0.45)
-}
-
-fn mix(a: [u8; 3], b: [u8; 3], share: f64) -> [u8; 3] {
-    let lane = |i: usize| f64::from(a[i]) + (f64::from(b[i]) - f64::from(a[i])) * share;
-    [0, 1, 2].map(|i| lane(i).round() as u8)
 }
 
 #[cfg(test)]

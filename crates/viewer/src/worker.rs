@@ -4,33 +4,26 @@
 //! A text that does not compile gives findings and leaves the last model standing. Numbers of the scene are
 //! elaborated as params, so that a changed number gives the same shader with other values: then the running
 //! pipeline is taken over. Where many parts of a scene are loops, numbers stay what they are: they lie in lists, and the
-//! running pipeline is given others. Two devices take turns, because a device that compiles for one pipeline may hold
-//! up what another draws.
+//! running pipeline is given others.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::thread::JoinHandle;
 use std::time::Instant;
 
-use sdfc::codegen::{Shader, posed_module};
-use sdfc::graph::Program;
 use sdfc::lang::Options;
-use sdfc::render::{CpuScene, Gpu, Pipeline, milliseconds_since};
-use sdfc::{Compiled, Error, FrameValues, Marched, Scene};
+use sdfc::{Compiled, Error, FrameValues, Scene};
 
 use crate::document::{Document, Imports};
+use crate::engine::{Engines, Prepared, on_cpu};
 use crate::findings::Findings;
 use crate::identity::Shapes;
-use crate::mailbox::Mailbox;
-use crate::model::{Engine, Model, Stages, reads_time};
+use crate::mailbox::{Attendant, Mailbox};
+use crate::model::{Model, Stages, reads_time};
 use crate::probe::Probe;
 
-/// Most of what input controls in depth is bounded by the compiler; this is room for that.
-const STACK: usize = 16 << 20;
 /// Fields of at most so many operations are written out, see `docs/scale.md`.
 const MOST_INLINE: usize = 2000;
 /// A text whose pipeline is not made because a newer one waits: so often in a row at most.
@@ -85,17 +78,16 @@ pub enum News {
 
 /// The thread, as others see it.
 #[derive(Debug)]
-pub struct Worker {
-    orders: Arc<Mailbox<Build>>,
-    thread: Option<JoinHandle<()>>,
-}
+pub struct Worker(Attendant<Build>);
 
 impl Worker {
     /// Starts it. `wake` is called when there is news.
+    ///
+    /// # Errors
+    ///
+    /// Where the system gives no thread.
     pub fn new(news: Sender<News>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let orders = Arc::new(Mailbox::default());
-        let mailbox = Arc::clone(&orders);
-        let mut shop = Shop::new(Arc::clone(&orders), move |letter| {
+        let tell = move |letter| {
             // What follows at once is shown with it.
             let is_last = !matches!(letter, News::Compiled { draws: true, .. });
             // The receiver is gone only where the window is.
@@ -103,67 +95,23 @@ impl Worker {
             if is_last {
                 wake();
             }
-        });
-        let run = move || {
-            while let Some(build) = mailbox.take() {
-                shop.guarded(&build);
-            }
         };
-        let thread = std::thread::Builder::new().name("worker".into()).stack_size(STACK);
-        Ok(Self { orders, thread: Some(thread.spawn(run)?) })
+        let begin = |orders| {
+            let mut shop = Shop::new(orders, tell);
+            move |build| shop.guarded(&build)
+        };
+        Attendant::start("worker", begin).map(Self)
     }
 
     /// Orders a build; the texts are read when it begins, and nothing is done where neither they nor the
     /// order differ from the last.
     pub fn order(&self, build: Build) {
-        self.orders.put(build);
+        self.0.mailbox().put(build);
     }
 
     /// The way in for those who only know that something may have changed.
     pub fn orders(&self) -> Arc<Mailbox<Build>> {
-        Arc::clone(&self.orders)
-    }
-}
-
-impl Drop for Worker {
-    fn drop(&mut self) {
-        self.orders.close();
-        // Not joined: a driver may be compiling for minutes, and the process ends anyway.
-        drop(self.thread.take());
-    }
-}
-
-/// A pipeline, and what it was made from.
-struct Running {
-    text: Text,
-    lists: Lists,
-    pipeline: Arc<Pipeline>,
-}
-
-/// What a driver compiles for a scene.
-#[derive(Debug, PartialEq, Eq)]
-struct Text {
-    picture: String,
-    /// What runs before it, and how many rounds each of its loops has.
-    culling: Option<(String, Vec<u32>)>,
-}
-
-impl Text {
-    fn of(shader: &Shader) -> Result<Self, Error> {
-        let culling = shader.culling().map(|it| Ok((it.shader.wgsl()?, it.rounds.clone())));
-        let culling = culling.transpose().map_err(Error::Codegen)?;
-        Ok(Self { picture: shader.wgsl().map_err(Error::Codegen)?, culling })
-    }
-}
-
-/// What both read from buffers.
-#[derive(Debug, PartialEq)]
-struct Lists([Vec<[f32; 4]>; 2]);
-
-impl Lists {
-    fn of(shader: &Shader) -> Self {
-        let culling = shader.culling().map(|culling| culling.shader.lists());
-        Self([shader.lists(), culling.unwrap_or_default()].map(<[_]>::to_vec))
+        Arc::clone(self.0.mailbox())
     }
 }
 
@@ -189,13 +137,9 @@ struct Shop<T> {
     tell: T,
     /// The last order, and the texts that it met.
     last: Option<Met>,
-    /// The running shader, its lists, and its pipeline.
-    running: Option<Running>,
-    devices: [Option<Gpu>; 2],
-    turn: usize,
+    engines: Engines,
     serial: u64,
     content: u64,
-    pipelines: u64,
     skipped: u32,
     /// Whether parts of the last scene became loops.
     rolls: bool,
@@ -207,12 +151,9 @@ impl<T: FnMut(News)> Shop<T> {
             orders,
             tell,
             last: None,
-            running: None,
-            devices: [None, None],
-            turn: 0,
+            engines: Engines::default(),
             serial: 0,
             content: 0,
-            pipelines: 0,
             skipped: 0,
             rolls: false,
         }
@@ -243,7 +184,7 @@ impl<T: FnMut(News)> Shop<T> {
         }
         self.content += u64::from(!reads_same);
         if self.last.as_ref().is_some_and(|last| last.build.renewed != build.renewed) {
-            self.forget_devices();
+            self.engines.forget_devices();
         }
         let imports = Imports::of(&build.path);
         let mut compiled = self.compiled(build, &document, &imports);
@@ -312,11 +253,11 @@ impl<T: FnMut(News)> Shop<T> {
         let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
         // Derived when first asked for, which is not to be where input is heard.
         scene.bounds_at(&FrameValues::defaults(scene.params()));
-        let had_devices = self.devices.iter().any(Option::is_some);
+        let had_devices = self.engines.has_devices();
         let mut made = self.engine(build, &scene, &mut stages);
         if had_devices && made.as_ref().is_err_and(Error::is_machine) {
             // A device that was lost while nothing was drawn on it.
-            self.forget_devices();
+            self.engines.forget_devices();
             made = self.engine(build, &scene, &mut stages);
         }
         match made {
@@ -324,7 +265,7 @@ impl<T: FnMut(News)> Shop<T> {
                 self.skipped = 0;
                 self.serial += 1;
                 let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
-                let (text, pipelines) = (document.text, self.pipelines);
+                let (text, pipelines) = (document.text, self.engines.pipelines);
                 let (serial, content) = (self.serial, self.content);
                 let model = Model {
                     scene,
@@ -352,13 +293,13 @@ impl<T: FnMut(News)> Shop<T> {
             }
             Err(error) => {
                 self.last = None;
-                self.forget_devices();
+                self.engines.forget_devices();
                 (self.tell)(News::Failed(error.to_string()));
             }
         }
     }
 
-    /// What draws the scene, and with which method; `None` where a newer order makes it pointless.
+    /// What draws the scene; `None` where a newer order makes it pointless.
     fn engine(
         &mut self,
         build: &Build,
@@ -369,85 +310,20 @@ impl<T: FnMut(News)> Shop<T> {
         if build.on_cpu {
             return on_cpu(scene, wanted, None).map(Some);
         }
-        let start = Instant::now();
-        let marched = scene.marched(wanted);
-        let shader = posed_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
-        let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
-        stages.lower = milliseconds_since(start);
-        if let Some(running) = self.running.as_mut().filter(|running| running.text == text) {
-            if running.lists != lists {
-                running.pipeline = Arc::new(running.pipeline.with_lists_of(&shader)?);
-                running.lists = lists;
+        let Self { engines, orders, skipped, tell, .. } = self;
+        let begins = || {
+            let goes_on = !orders.calls() || *skipped >= MOST_SKIPPED;
+            if goes_on {
+                tell(News::Builds);
             }
-            let engine = Engine::Gpu(Arc::clone(&running.pipeline));
-            return Ok(Some(Prepared::new(engine, marched, None)));
-        }
-        if self.orders.calls() && self.skipped < MOST_SKIPPED {
-            return Ok(None);
-        }
-        let gpu = match self.device() {
-            Ok(gpu) => gpu,
-            Err(error) => {
-                let note = format!("drawn on the processor: {error}");
-                return on_cpu(scene, wanted, Some(note)).map(Some);
-            }
+            goes_on
         };
-        (self.tell)(News::Builds);
-        let start = Instant::now();
-        let pipeline = Pipeline::new(&gpu, shader, marched.program.uniforms.len())?;
-        stages.pipeline = Some(milliseconds_since(start));
-        self.pipelines += 1;
-        let pipeline = Arc::new(pipeline);
-        self.running = Some(Running { text, lists, pipeline: Arc::clone(&pipeline) });
-        Ok(Some(Prepared::new(Engine::Gpu(pipeline), marched, None)))
-    }
-
-    /// The device that is not drawing.
-    fn device(&mut self) -> Result<Gpu, sdfc::render::RenderError> {
-        self.turn = (self.turn + 1) % self.devices.len();
-        let place = &mut self.devices[self.turn];
-        if let Some(gpu) = place {
-            return Ok(gpu.clone());
-        }
-        let gpu = Gpu::new()?;
-        *place = Some(gpu.clone());
-        Ok(gpu)
-    }
-
-    fn forget_devices(&mut self) {
-        self.devices = [None, None];
-        self.running = None;
-    }
-}
-
-/// What draws a scene, and with which method; what is otherwise than asked.
-struct Prepared {
-    engine: Engine,
-    method: String,
-    enclosed: Option<Program>,
-    note: Option<String>,
-}
-
-impl Prepared {
-    fn new(engine: Engine, marched: Marched<'_>, elsewhere: Option<String>) -> Self {
-        let notes: Vec<String> = elsewhere.into_iter().chain(marched.note).collect();
-        let note = (!notes.is_empty()).then(|| notes.join("; "));
-        let enclosed = match marched.program {
-            Cow::Owned(program) => Some(program),
-            Cow::Borrowed(_) => None,
-        };
-        Self { engine, method: marched.method, enclosed, note }
+        engines.on_device(scene, wanted, stages, begins)
     }
 }
 
 fn is_rolled(scene: &Scene) -> bool {
     !scene.report().rolled.is_empty()
-}
-
-fn on_cpu(scene: &Scene, wanted: &str, why: Option<String>) -> Result<Prepared, Error> {
-    let marched = scene.marched_on_cpu(wanted);
-    let engine = Engine::Cpu(Arc::new(CpuScene::new(&marched.program)?));
-    Ok(Prepared::new(engine, marched, why))
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::march::METHODS;
 use sdfc::render::{Gpu, HIT, testing};
 use sdfc::{PictureOptions, unwatched};
+use sdfc_viewer::mode::Mode;
 use sdfc_viewer::model::{Engine, Model};
 use sdfc_viewer::painter::Picture;
 use sdfc_viewer::session::Session;
-use sdfc_viewer::views::Mode;
 
 /// Long enough for a busy machine and a software adapter; reached only where a test fails.
 const PATIENCE: Duration = Duration::from_secs(300);

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, DroppedFile, ViewportEvent, ViewportId};
+use eframe::egui::{Context, DroppedFile, Key, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
-use sdfc_viewer::views::Mode;
+use sdfc_viewer::mode::Mode;
 
 /// Long enough for a busy machine; reached only where a test fails.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -235,6 +235,13 @@ fn every_widget_explains_itself() {
     }
     for menu in ["scene.sdf", "Examples"] {
         fixture.click(menu);
+        unexplained.extend(fixture.unexplained());
+    }
+    fixture.harness.key_press(Key::Escape);
+    for list in ["What is shown. V for the next.", "How rays are marched."] {
+        fixture.harness.get_by_role_and_label(Role::ComboBox, list).click();
+        fixture.harness.run_steps(3);
+        assert!(fixture.has(if list.starts_with("What") { "Overshoot" } else { "auto-relaxed" }));
         unexplained.extend(fixture.unexplained());
     }
     assert_eq!(unexplained, BTreeSet::new());

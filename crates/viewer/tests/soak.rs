@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use sdfc_viewer::mode::Mode;
 use sdfc_viewer::session::Session;
-use sdfc_viewer::views::Mode;
 
 /// Long enough for a busy machine and a software adapter; reached only where the test fails.
 const PATIENCE: Duration = Duration::from_secs(300);

@@ -9,10 +9,11 @@ use eframe::egui::{
 use glam::DVec3;
 use sdfc::render::{CAPPED, HIT};
 
-use super::style;
+use super::{guides, style};
+use crate::legend::Legend;
+use crate::look::Look;
 use crate::painter::Picture;
-use crate::session::{Look, Session};
-use crate::views::Legend;
+use crate::session::Session;
 
 /// So long after the wheel was turned the camera counts as moving.
 const REST: Duration = Duration::from_millis(160);
@@ -45,6 +46,9 @@ impl Canvas {
             ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
         } else {
             waiting(ui, rect, session);
+        }
+        if let Some(picture) = session.picture.as_deref().filter(|_| session.guides) {
+            guides::show(ui, rect, picture);
         }
         let flying = drive(ui, &response, rect, session);
         let wheel = wheel(ui, &response, rect, session);

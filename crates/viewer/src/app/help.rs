@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 19] = [
+const ROWS: [(&str, &str); 20] = [
     ("drag", "turn about the pivot"),
     ("right or middle drag", "move sideways"),
     ("wheel", "come nearer to what is under the pointer"),
@@ -26,6 +26,7 @@ const ROWS: [(&str, &str); 19] = [
     ("H, Home", "the scene's own camera"),
     ("1 2 3 4 7 8", "front, back, right, left, top, bottom"),
     ("P", "perspective or parallel rays"),
+    ("B", "axes, and the box that the scene lies in"),
     ("C", "copy the camera, to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),

@@ -3,6 +3,7 @@
 mod accuracy;
 mod canvas;
 mod editor;
+mod guides;
 mod help;
 mod leave;
 mod menu;
@@ -242,6 +243,9 @@ impl App {
         }
         if pressed(Key::P) {
             session.move_camera(|orbit| orbit.set_parallel(!orbit.is_parallel()));
+        }
+        if pressed(Key::B) {
+            session.guides = !session.guides;
         }
         if pressed(Key::C)
             && let Some(orbit) = session.orbit()

@@ -7,9 +7,9 @@ use super::menu::{self, Choice};
 use super::params::{self, drag};
 use super::{Shows, Wish, accuracy, style};
 use crate::memory::Memory;
+use crate::mode::Mode;
 use crate::orbit::Side;
 use crate::session::Session;
-use crate::views::Mode;
 
 /// The view after this one.
 pub fn next_mode(mode: Mode) -> Mode {
@@ -90,7 +90,8 @@ fn methods(ui: &mut Ui, session: &mut Session) {
     let combo = egui::ComboBox::from_id_salt("method").selected_text(shown);
     let combo = combo.height(400.0).show_ui(ui, |ui| {
         let text = format!("as the scene says ({own})");
-        if ui.selectable_label(chosen.is_none(), text).clicked() {
+        let scenes_own = ui.selectable_label(chosen.is_none(), text);
+        if scenes_own.on_hover_text("What `march` in the scene says, else auto.").clicked() {
             session.set_build(|build| build.method = None);
         }
         for method in METHODS {
@@ -201,6 +202,9 @@ fn camera(ui: &mut Ui, session: &mut Session, wishes: &mut Vec<Wish>) {
         {
             session.move_camera(|orbit| orbit.set_parallel(parallel));
         }
+        ui.checkbox(&mut session.guides, "axes").on_hover_text(
+            "Where the axes point, and the box that the scene lies in, if it ends. B",
+        );
         if let Some(fov) = orbit.fov() {
             let mut degrees = fov.to_degrees();
             let drag = egui::DragValue::new(&mut degrees).range(2.0..=150.0).speed(0.3);
@@ -222,6 +226,8 @@ fn slice(ui: &mut Ui, session: &mut Session) {
         let drag = egui::DragValue::new(&mut slice.offset).speed(0.01).max_decimals(4);
         ui.add(drag.prefix("at ")).on_hover_text("Where it crosses it.");
     });
+    ui.checkbox(&mut slice.over, "over the scene")
+        .on_hover_text("Shown also where something stands before it: the inside of what it cuts.");
     let drag = egui::DragValue::new(&mut slice.spacing).speed(0.005).range(1e-4..=1e4);
     ui.add(drag.prefix("a line every ").max_decimals(4)).on_hover_text("In scene units.");
 }

@@ -168,7 +168,8 @@ impl Save {
             let combo = egui::ComboBox::from_id_salt("target").selected_text(self.target.name());
             let combo = combo.show_ui(ui, |ui| {
                 for target in Target::ALL {
-                    if ui.selectable_value(&mut self.target, target, target.name()).clicked() {
+                    let choice = ui.selectable_value(&mut self.target, target, target.name());
+                    if choice.on_hover_text("What your program reads.").clicked() {
                         self.path = self.proposed();
                     }
                 }

@@ -27,7 +27,7 @@ const AGAIN: Duration = Duration::from_millis(100);
 /// What was asked of a device is done after so long, or never.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The environment variable that makes a build with debug assertions lose the window's device, once it has shown so
-/// many frames.
+/// many frames, or, with `.5` behind the number, in the middle of the next.
 pub const LOSE_WINDOW: &str = "SDFC_LOSE_WINDOW_AFTER";
 
 /// The app, once the first window is there.
@@ -232,14 +232,16 @@ struct Shell {
     events: Arc<Events>,
 }
 
+/// Of all windows.
+static FRAMES: AtomicU32 = AtomicU32::new(0);
+
 impl Shell {
-    /// For tests: lost, and heard of, between two frames.
-    fn lose_if_asked(&self) {
-        static FRAMES: AtomicU32 = AtomicU32::new(0);
+    /// For tests: lost, and heard of, between two frames or in the middle of one.
+    fn lose_if_asked(&self, part: &str) {
         if cfg!(debug_assertions)
             && let Some(state) = self.events.state.get()
             && let Some(after) = std::env::var_os(LOSE_WINDOW)
-            && *after == *FRAMES.fetch_add(1, Ordering::Relaxed).to_string()
+            && *after == *format!("{}{part}", FRAMES.load(Ordering::Relaxed))
         {
             state.device.destroy();
             self.events.poll();
@@ -249,7 +251,7 @@ impl Shell {
 
 impl eframe::App for Shell {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
-        self.lose_if_asked();
+        self.lose_if_asked("");
         if self.events.noted().lost {
             // With nothing to draw, nothing is asked of the device until the window is gone.
             return ui.ctx().send_viewport_cmd(ViewportCommand::Close);
@@ -258,6 +260,8 @@ impl eframe::App for Shell {
         let remarks = std::mem::take(&mut self.events.noted().remarks);
         app.session().remarks.extend(remarks.into_iter().map(str::to_owned));
         app.show(ui);
+        self.lose_if_asked(".5");
+        FRAMES.fetch_add(1, Ordering::Relaxed);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
@@ -292,5 +296,31 @@ impl std::fmt::Display for Monitor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { size, scale } = self;
         write!(f, "a monitor of {} × {} pixels, {scale} to a point", size.x, size.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_befalls_the_surface_is_told_once_and_mended() {
+        use CurrentSurfaceTexture::{Lost, Occluded, Outdated, Timeout, Validation};
+        let events = Arc::new(Events::default());
+        let on_status = surface_options(&events).on_surface_status;
+        // Resized or out of sight: nothing is amiss.
+        assert!(matches!(on_status(&Outdated), SurfaceErrorAction::Reconfigure));
+        assert!(matches!(on_status(&Occluded), SurfaceErrorAction::SkipFrame));
+        assert!(events.noted().remarks.is_empty());
+        for _ in 0..2 {
+            assert!(matches!(on_status(&Lost), SurfaceErrorAction::RecreateSurface));
+            assert!(matches!(on_status(&Timeout), SurfaceErrorAction::SkipFrame));
+            assert!(matches!(on_status(&Validation), SurfaceErrorAction::SkipFrame));
+        }
+        let told = events.noted().remarks.join("; ");
+        assert_eq!(
+            told,
+            "the window's surface was lost and is made anew; the window could not be drawn, and is drawn again"
+        );
     }
 }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 12] = [
+    let trials: [(&str, Test); 13] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         ("any_size_is_survived_and_a_hidden_window_shows_the_newest_text", sizes),
         ("closed_by_the_window_manager_it_remembers", closing),
         ("a_window_whose_device_is_lost_is_replaced_by_another", lost),
+        ("a_window_whose_device_is_lost_while_it_is_drawn_is_not_forgotten", lost_midway),
         ("a_still_window_takes_no_processor_time", idle),
         ("without_an_adapter_the_processor_draws_in_a_window", no_adapter),
         ("without_any_driver_it_says_what_to_do", no_driver),
@@ -225,6 +226,26 @@ fn lost(display: Display) -> Result<(), Failed> {
     window.input(&["key", "h"])?;
     window.settled(|picture| differ(picture, &before, PICTURE) < 200)?;
     Ok(())
+}
+
+/// There egui cannot go on: the program ends, and keeps what was moved.
+fn lost_midway(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(BALL)?;
+    let mut window = Window::open_with(&display, &scene, &[(LOSE_WINDOW, "60.5")])?;
+    window.settled(|picture| is_red(picture, PLACE))?;
+    window.input(&["key", "3"])?;
+    let mut steps = 0..3000;
+    let status = loop {
+        let step = steps.next().ok_or("the window is still open")?;
+        if let Some(status) = window.status()? {
+            break status;
+        }
+        window.input(&["mousemove", &(PLACE[0] + step % 30).to_string(), "370"])?;
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    expect(status.code() == Some(3), &format!("{status}"))?;
+    let memory = std::fs::read_to_string(scene.own().join("sdfc/view.json"))?;
+    expect(memory.contains("scene.sdf") && memory.contains("\"eye\""), &memory)
 }
 
 /// A tenth of a second of the processor in three is more than wake-ups take, and far less than drawing.

@@ -208,11 +208,16 @@ impl<'a> Window<'a> {
         fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<u64>().ok()).sum()
     }
 
-    /// How it ended.
+    /// How it ended, if it has.
+    pub fn status(&mut self) -> Result<Option<ExitStatus>, Failed> {
+        Ok(self.viewer.try_wait()?)
+    }
+
+    /// How it ended, once it has.
     pub fn ended(&mut self) -> Result<ExitStatus, Failed> {
         let start = Instant::now();
         loop {
-            if let Some(status) = self.viewer.try_wait()? {
+            if let Some(status) = self.status()? {
                 return Ok(status);
             }
             expect(start.elapsed() < PATIENCE, "the window is still open")?;
