@@ -94,6 +94,11 @@ impl Visits {
     pub(crate) fn fit(&self, tiles: [u32; 2]) -> bool {
         lowest(self.tiles) >= lowest(tiles) && on_all_levels(self.tiles) >= on_all_levels(tiles)
     }
+
+    /// Nothing was evaluated yet.
+    pub(crate) fn count_anew(&self, gpu: &Gpu) {
+        gpu.queue.write_buffer(&self.tally, 4 * EVALUATED, &0_u32.to_ne_bytes());
+    }
 }
 
 fn lowest([columns, rows]: [u32; 2]) -> u64 {
@@ -148,30 +153,25 @@ impl Culling {
         }
     }
 
-    /// Room for so many columns and rows of tiles of a workgroup each, and for cells about a box of surfaces if there is one.
+    /// Room for so many columns and rows of tiles of a workgroup each, and for cells; to be opened before it is used.
     pub(crate) fn room(
         &self,
         gpu: &Gpu,
         tiles: [u32; 2],
         view: &wgpu::Buffer,
         uniforms: Option<&wgpu::Buffer>,
-        within: Option<[DVec3; 2]>,
     ) -> Visits {
         use wgpu::BufferUsages as Usage;
         let has_cells = self.cells.is_some();
         let first = first_record(&self.rounds, has_cells);
         let bytes = 4 * (first + lowest(tiles) * u64::from(stride(&self.rounds)));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
-        let joined = self.cells.as_ref().map(|cells| &cells.is_joined[..]);
-        let head = head(&self.rounds, joined, within);
-        gpu.queue.write_buffer(&lists, 0, &bytes_of(&head));
         let groups = if has_cells { u64::from(GROUPS) } else { 0 };
         let marks = on_all_levels(tiles).max(groups) * mark_bytes(&self.rounds);
         let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
-        let none = bytes_of(&tally(&self.rounds, has_cells));
+        let tally_bytes = 4 * tally(&self.rounds, has_cells).len() as u64;
         let tally_usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
-        let tally = buffer(gpu, "tally", none.len() as u64, tally_usage);
-        gpu.queue.write_buffer(&tally, 0, &none);
+        let tally = buffer(gpu, "tally", tally_bytes, tally_usage);
         let bind_group = |level| {
             let buffers = [
                 (0, Some(view)),
@@ -193,6 +193,15 @@ impl Culling {
         };
         let bind_groups = self.levels.iter().map(bind_group).collect();
         Visits { lists, tally, tiles, bind_groups }
+    }
+
+    /// Writes what the stages begin with, for cells about a box of surfaces if there is one.
+    pub(crate) fn open(&self, gpu: &Gpu, visits: &Visits, within: Option<[DVec3; 2]>) {
+        let joined = self.cells.as_ref().map(|cells| &cells.is_joined[..]);
+        let head = head(&self.rounds, joined, within);
+        gpu.queue.write_buffer(&visits.lists, 0, &bytes_of(&head));
+        let tally = tally(&self.rounds, joined.is_some());
+        gpu.queue.write_buffer(&visits.tally, 0, &bytes_of(&tally));
     }
 
     /// Finds what can matter in so many groups of cells; once, since it fills what was empty.

@@ -1,19 +1,13 @@
 //! Drawing a frame on the GPU: one compute dispatch a tile, read back tile by tile.
 
-use std::{
-    borrow::Cow,
-    num::NonZero,
-    sync::mpsc,
-    time::{Duration, Instant},
-};
-
-use glam::DVec3;
+use std::{borrow::Cow, num::NonZero, sync::Mutex, time::Instant};
 
 use crate::{
-    Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
-    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
-    culling::{self, Culling, Visits},
+    Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, View,
+    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes},
+    culling::{self, Culling},
     image::check_size,
+    run::{BESIDE_PIXELS, Buffers, Moment, Run},
     stats::milliseconds_since,
     testing,
     tiles::Tiler,
@@ -23,24 +17,21 @@ use crate::{
 pub(crate) const WORKGROUP: u32 = 8;
 /// Most pixels of a tile: 32 MiB to read back.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
-/// A tile that takes longer is given up.
-const PATIENCE: Duration = Duration::from_secs(300);
 /// Binding of the first table.
-const FIRST_TABLE: u32 = 3;
-/// Bytes of the two timestamps about a pass, and of what follows them: how many operands were evaluated before.
-const TIMESTAMP_BYTES: u64 = 16;
-const COUNT_BYTES: u64 = 4;
+pub(crate) const FIRST_TABLE: u32 = 3;
 
 /// A shader made ready for a device.
 #[derive(Debug)]
 pub struct Pipeline {
-    gpu: Gpu,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    pub(crate) gpu: Gpu,
+    pub(crate) pipeline: wgpu::ComputePipeline,
+    pub(crate) layout: wgpu::BindGroupLayout,
     uniform_count: usize,
-    tables: Vec<wgpu::Buffer>,
-    culling: Option<Culling>,
+    pub(crate) tables: Vec<wgpu::Buffer>,
+    pub(crate) culling: Option<Culling>,
     milliseconds: f64,
+    /// Of the last frame, where the next one has a use for what they hold.
+    buffers: Mutex<Option<Buffers>>,
 }
 
 impl Pipeline {
@@ -122,8 +113,17 @@ impl Pipeline {
             (pipeline, layout, culling.map(|made| Culling::new(gpu, made, uniform_count)))
         })?;
         let gpu = gpu.clone();
-        let mut ready =
-            Self { gpu, pipeline, layout, uniform_count, tables, culling, milliseconds: 0.0 };
+        let buffers = Mutex::default();
+        let mut ready = Self {
+            gpu,
+            pipeline,
+            layout,
+            uniform_count,
+            tables,
+            culling,
+            milliseconds: 0.0,
+            buffers,
+        };
         ready.dispatch_once()?;
         ready.milliseconds = milliseconds_since(start);
         Ok(ready)
@@ -154,6 +154,7 @@ impl Pipeline {
             tables: lists.into_iter().chain(kept).collect(),
             culling,
             milliseconds: self.milliseconds,
+            buffers: Mutex::default(),
         })
     }
 
@@ -187,7 +188,8 @@ impl Pipeline {
         let mut image = Image::new(view.size, view.footprint())?;
         let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
         let clock = if self.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
-        let mut run = Run::new(self, uniforms, view.within)?;
+        let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
+        let mut run = Run::new(self, self.kept_buffers(), moment)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
@@ -203,15 +205,29 @@ impl Pipeline {
                 return Err(RenderError::Cancelled);
             }
         }
-        let evaluated_before = run.evaluated_before;
+        let evaluated_before = run.evaluated_before();
+        if self.culling.is_some() {
+            self.keep(run.into_buffers());
+        }
         Ok(Frame { image, milliseconds, clock, tiles, evaluated_before })
+    }
+
+    /// Those of the last frame, unless another is being drawn with them.
+    fn kept_buffers(&self) -> Option<Buffers> {
+        self.buffers.lock().ok()?.take()
+    }
+
+    fn keep(&self, buffers: Buffers) {
+        if let Ok(mut kept) = self.buffers.lock() {
+            *kept = Some(buffers);
+        }
     }
 
     /// What fits the limits of the adapter: a buffer, a binding, the workgroups of a row of tiles.
     fn max_tile_pixels(&self) -> u32 {
         let limits = self.gpu.device.limits();
         let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        let fitting = bytes.saturating_sub(TIMESTAMP_BYTES + COUNT_BYTES) / PIXEL_BYTES as u64;
+        let fitting = bytes.saturating_sub(BESIDE_PIXELS) / PIXEL_BYTES as u64;
         let culled = self.culling.as_ref().map(|culling| culling.max_pixels(&limits));
         (fitting.min(u64::from(MAX_TILE_PIXELS)) as u32).min(culled.unwrap_or(u32::MAX))
     }
@@ -219,247 +235,12 @@ impl Pipeline {
     /// Runs one workgroup over an empty tile, because software drivers compile when they run.
     fn dispatch_once(&self) -> Result<(), RenderError> {
         let uniforms = vec![[0.0; 4]; self.uniform_count];
-        let mut run = Run::new(self, &uniforms, None)?;
+        let mut run = Run::new(self, None, Moment { uniforms, within: None })?;
         run.make_room(WORKGROUP * WORKGROUP, [1, 1])?;
-        run.cell_groups = 1;
         let empty = vec![0; VIEW_BYTES];
-        run.submit(&empty, [1, 1], 0)?;
+        run.submit(&empty, [1, 1], 1, 0)?;
         // Compiling thousands of leaves can take a software driver many minutes.
         self.gpu.wait(None)
-    }
-}
-
-/// The buffers of one frame.
-struct Run<'a> {
-    pipeline: &'a Pipeline,
-    view: wgpu::Buffer,
-    uniforms: Option<wgpu::Buffer>,
-    timestamps: Option<Timestamps>,
-    /// Both grow with the tiles.
-    pixels: Option<PixelBuffers>,
-    visits: Option<Visits>,
-    /// The box that cells are about, and how many groups of them are still to be looked at.
-    within: Option<[DVec3; 2]>,
-    cell_groups: u32,
-    /// How many operands were evaluated before the rays, where they are counted.
-    evaluated_before: u64,
-}
-
-struct PixelBuffers {
-    capacity: u32,
-    storage: wgpu::Buffer,
-    /// The pixels, then two timestamps and the count.
-    staging: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
-}
-
-struct Timestamps {
-    queries: wgpu::QuerySet,
-    resolved: wgpu::Buffer,
-    period_ns: f64,
-}
-
-impl<'a> Run<'a> {
-    fn new(
-        pipeline: &'a Pipeline,
-        uniforms: &[[f32; 4]],
-        within: Option<[DVec3; 2]>,
-    ) -> Result<Self, RenderError> {
-        use wgpu::BufferUsages as Usage;
-        let gpu = &pipeline.gpu;
-        gpu.scoped("the frame's buffers", || {
-            let view = buffer(gpu, "view", VIEW_BYTES as u64, Usage::UNIFORM | Usage::COPY_DST);
-            let uniforms = (!uniforms.is_empty()).then(|| {
-                let bytes = uniform_bytes(uniforms);
-                let usage = Usage::UNIFORM | Usage::COPY_DST;
-                let uniforms = buffer(gpu, "uniforms", bytes.len() as u64, usage);
-                gpu.queue.write_buffer(&uniforms, 0, &bytes);
-                uniforms
-            });
-            let timestamps = gpu.has_timestamps().then(|| Timestamps::new(gpu));
-            Self {
-                pipeline,
-                view,
-                uniforms,
-                timestamps,
-                pixels: None,
-                visits: None,
-                within,
-                cell_groups: 0,
-                evaluated_before: 0,
-            }
-        })
-    }
-
-    /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
-    fn make_room(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
-        use wgpu::BufferUsages as Usage;
-        let gpu = &self.pipeline.gpu;
-        if let Some(culling) = &self.pipeline.culling
-            && !self.visits.as_ref().is_some_and(|visits| visits.fit(groups))
-        {
-            (self.visits, self.pixels) = (None, None);
-            let (uniforms, within) = (self.uniforms.as_ref(), self.within);
-            let room = || culling.room(gpu, groups, &self.view, uniforms, within);
-            self.visits = Some(gpu.scoped("lists of what can matter to a tile", room)?);
-            self.cell_groups = within.map_or(0, |_| culling::GROUPS);
-        }
-        if self.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
-            return Ok(());
-        }
-        self.pixels = None;
-        let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
-        let buffers = gpu.scoped("a tile's pixels", || {
-            let storage = buffer(gpu, "pixels", bytes, Usage::STORAGE | Usage::COPY_SRC);
-            let usage = Usage::MAP_READ | Usage::COPY_DST;
-            let staging = buffer(gpu, "staging", bytes + TIMESTAMP_BYTES + COUNT_BYTES, usage);
-            let bind_group = self.bind_group(&storage);
-            PixelBuffers { capacity: pixels, storage, staging, bind_group }
-        })?;
-        self.pixels = Some(buffers);
-        Ok(())
-    }
-
-    fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
-        let buffers = [(0, Some(&self.view)), (1, self.uniforms.as_ref()), (2, Some(storage))];
-        let tables = (FIRST_TABLE..).zip(self.pipeline.tables.iter().map(Some));
-        let visits = (culling::VISITS, self.visits.as_ref().map(|visits| &visits.lists));
-        let entries: Vec<_> = buffers
-            .into_iter()
-            .chain(tables)
-            .chain([visits])
-            .filter_map(|(binding, buffer)| {
-                Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
-            })
-            .collect();
-        self.pipeline.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tile"),
-            layout: &self.pipeline.layout,
-            entries: &entries,
-        })
-    }
-
-    /// Draws a tile into the image; its time in milliseconds where the adapter tells one.
-    fn draw(
-        &mut self,
-        view: &View,
-        tile: Tile,
-        image: &mut Image,
-    ) -> Result<Option<f64>, RenderError> {
-        let count = tile.pixels() as u32;
-        let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
-        self.make_room(count.max(WORKGROUP * WORKGROUP), groups)?;
-        self.submit(&view_bytes(&view.block(tile)), groups, count)?;
-        self.cell_groups = 0;
-        self.read(tile, image)
-    }
-
-    /// Hands in workgroups, and the copying of the pixels that they make.
-    fn submit(&self, view: &[u8], groups: [u32; 2], pixels: u32) -> Result<(), RenderError> {
-        let Some(buffers) = &self.pixels else { return Ok(()) };
-        let gpu = &self.pipeline.gpu;
-        gpu.scoped("a tile", || {
-            gpu.queue.write_buffer(&self.view, 0, view);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some("tile"),
-                    timestamp_writes: self.timestamps.as_ref().map(Timestamps::about_a_pass),
-                });
-                if let (Some(culling), Some(visits)) = (&self.pipeline.culling, &self.visits) {
-                    if self.cell_groups > 0 {
-                        culling.run_cells(&mut pass, visits, self.cell_groups);
-                    }
-                    culling.run(&mut pass, visits, groups);
-                }
-                pass.set_pipeline(&self.pipeline.pipeline);
-                pass.set_bind_group(0, &buffers.bind_group, &[]);
-                pass.dispatch_workgroups(groups[0], groups[1], 1);
-            }
-            let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
-            encoder.copy_buffer_to_buffer(&buffers.storage, 0, &buffers.staging, 0, bytes);
-            if let Some(timestamps) = &self.timestamps {
-                timestamps.resolve(&mut encoder, &buffers.staging, bytes);
-            }
-            if let Some(visits) = &self.visits {
-                let (from, to) = (4 * culling::EVALUATED, bytes + TIMESTAMP_BYTES);
-                encoder.copy_buffer_to_buffer(
-                    &visits.tally,
-                    from,
-                    &buffers.staging,
-                    to,
-                    COUNT_BYTES,
-                );
-            }
-            gpu.queue.submit([encoder.finish()]);
-        })
-    }
-
-    /// Reads the pixels of a tile, and its time.
-    fn read(&mut self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
-        let Some(buffers) = &self.pixels else { return Ok(None) };
-        let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
-        let slice = buffers.staging.slice(..bytes + TIMESTAMP_BYTES + COUNT_BYTES);
-        let (sender, receiver) = mpsc::channel();
-        self.pipeline.gpu.scoped("reading a tile", || {
-            slice.map_async(wgpu::MapMode::Read, move |result| {
-                // The receiver waits below; it is gone only where the wait itself failed.
-                let _ = sender.send(result);
-            });
-        })?;
-        self.pipeline.gpu.wait(Some(PATIENCE))?;
-        let refused = |detail: String| RenderError::DeviceLost(format!("reading a tile: {detail}"));
-        match receiver.try_recv() {
-            Ok(Ok(())) => {}
-            Ok(Err(error)) => return Err(refused(error.to_string())),
-            Err(error) => return Err(refused(error.to_string())),
-        }
-        let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
-        let (pixels, rest) = mapped.split_at(bytes as usize);
-        let (times, count) = rest.split_at(TIMESTAMP_BYTES as usize);
-        // Counted from the first tile on, unless the buffers are made anew.
-        if self.visits.is_some() {
-            let count = count.try_into().map_or(0, u32::from_ne_bytes);
-            self.evaluated_before = self.evaluated_before.max(u64::from(count));
-        }
-        image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
-        let time = self.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
-        drop(mapped);
-        buffers.staging.unmap();
-        Ok(time)
-    }
-}
-
-impl Timestamps {
-    fn new(gpu: &Gpu) -> Self {
-        use wgpu::BufferUsages as Usage;
-        let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
-            label: Some("tile times"),
-            ty: wgpu::QueryType::Timestamp,
-            count: 2,
-        });
-        let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC;
-        let resolved = buffer(gpu, "tile times", TIMESTAMP_BYTES, usage);
-        Self { queries, resolved, period_ns: f64::from(gpu.queue.get_timestamp_period()) }
-    }
-
-    fn about_a_pass(&self) -> wgpu::ComputePassTimestampWrites<'_> {
-        wgpu::ComputePassTimestampWrites {
-            query_set: &self.queries,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
-        }
-    }
-
-    fn resolve(&self, encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer, offset: u64) {
-        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, TIMESTAMP_BYTES);
-    }
-
-    fn milliseconds(&self, bytes: &[u8]) -> f64 {
-        let tick = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_ne_bytes);
-        let (begin, end) = bytes.split_at(bytes.len() / 2);
-        tick(end).saturating_sub(tick(begin)) as f64 * self.period_ns * 1e-6
     }
 }
 

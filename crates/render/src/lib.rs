@@ -51,6 +51,8 @@ mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod image;
+#[cfg(feature = "gpu")]
+mod run;
 mod stats;
 #[cfg(feature = "gpu")]
 pub mod testing;

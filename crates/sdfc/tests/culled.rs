@@ -102,6 +102,8 @@ fn main() {
     trials.push(too_few.with_ignored_flag(without_gpu));
     let counted = Trial::test("what is visited is counted", visited_rounds_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
+    let kept = Trial::test("lists of cells are kept until something moves", cells_are_kept);
+    trials.push(kept.with_ignored_flag(without_gpu));
     let small = Trial::test("an adapter that is too small is told by its limit", limits_are_named);
     trials.push(small.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
@@ -250,6 +252,41 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
         return Err(format!("{few_rounds} and {before} before of {all_rounds}").into());
     }
     Ok(())
+}
+
+/// A second frame finds nothing for the cells, whatever the eye does; one with another param does, and is the picture of that param.
+fn cells_are_kept() -> Result<(), Failed> {
+    let text = format!("param s: length = 0.2 in 0..1\nplane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard());
+    let scene = scene(&text.replace("sphere(0.2)", "sphere(s)"));
+    let (gpu, program) = (Gpu::new()?, scene.program());
+    let pipeline = || {
+        let shader = counted_module(program, "sphere")?;
+        Ok::<_, Failed>(Pipeline::new(&gpu, shader, program.uniforms.len())?)
+    };
+    let draw = |pipeline: &Pipeline, s: f64, width: u32| {
+        let mut frame = FrameValues::defaults(scene.params());
+        frame.params = vec![[s, 0.0, 0.0, 0.0]];
+        let view = View::new(program, &frame, scene.bounds_at(&frame), [width, SIZE[1]])?;
+        let uniforms = uniform_values(program, &frame);
+        let options = RenderOptions { tile_size: TileSize::Fixed(SIZE) };
+        Ok::<_, Failed>(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
+    };
+    let kept = pipeline()?;
+    let first = draw(&kept, 0.2, SIZE[0])?;
+    let again = draw(&kept, 0.2, SIZE[0])?;
+    let narrower = draw(&kept, 0.2, SIZE[0] / 2)?;
+    let moved = draw(&kept, 0.3, SIZE[0])?;
+    // There are 4096 cells of many more parts than a tile's.
+    let [a, b, c, d] = [&first, &again, &narrower, &moved].map(|frame| frame.evaluated_before);
+    if 2 * b > a || 2 * c > a || d < a / 2 {
+        return Err(format!("{a}, {b}, {c} and {d} evaluations before the rays").into());
+    }
+    let same = |a: &Frame, b: &Frame| a.image.pixels() == b.image.pixels();
+    let fresh = draw(&pipeline()?, 0.3, SIZE[0])?;
+    match (same(&first, &again), same(&moved, &fresh), same(&moved, &first)) {
+        (true, true, false) => Ok(()),
+        told => Err(format!("{told:?}").into()),
+    }
 }
 
 /// 150 parts take 4 or 5 KiB as constants, and their lists more than that.

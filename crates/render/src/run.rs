@@ -1,0 +1,312 @@
+//! The buffers of frames, and what is handed in to draw one.
+
+use std::{sync::mpsc, time::Duration};
+
+use glam::DVec3;
+
+use crate::{
+    Gpu, Image, Pipeline, RenderError, Tile, View,
+    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
+    culling::{self, Visits},
+    gpu::{FIRST_TABLE, WORKGROUP, buffer},
+};
+
+/// A tile that takes longer is given up.
+const PATIENCE: Duration = Duration::from_secs(300);
+/// Bytes of the two timestamps about a pass, and of what follows them: how many operands were evaluated before.
+const TIMESTAMP_BYTES: u64 = 16;
+const COUNT_BYTES: u64 = 4;
+/// What is read back beside the pixels.
+pub(crate) const BESIDE_PIXELS: u64 = TIMESTAMP_BYTES + COUNT_BYTES;
+
+/// What the lists of cells follow from, beside the shader.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Moment {
+    /// What is known per frame.
+    pub(crate) uniforms: Vec<[f32; 4]>,
+    /// The box that cells are about.
+    pub(crate) within: Option<[DVec3; 2]>,
+}
+
+/// The buffers that a frame is drawn with.
+#[derive(Debug)]
+pub(crate) struct Buffers {
+    view: wgpu::Buffer,
+    uniforms: Option<wgpu::Buffer>,
+    timestamps: Option<Timestamps>,
+    /// Both grow with the tiles.
+    pixels: Option<PixelBuffers>,
+    visits: Option<Visits>,
+    /// The moment of which there are lists of cells; none: they are still to be made.
+    listed: Option<Moment>,
+}
+
+/// A frame while it is drawn.
+pub(crate) struct Run<'a> {
+    pipeline: &'a Pipeline,
+    moment: Moment,
+    buffers: Buffers,
+    /// How many operands were evaluated before the rays, where they are counted.
+    evaluated_before: u32,
+}
+
+#[derive(Debug)]
+struct PixelBuffers {
+    capacity: u32,
+    storage: wgpu::Buffer,
+    /// The pixels, then two timestamps and the count.
+    staging: wgpu::Buffer,
+    bind_group: wgpu::BindGroup,
+}
+
+#[derive(Debug)]
+struct Timestamps {
+    queries: wgpu::QuerySet,
+    resolved: wgpu::Buffer,
+    period_ns: f64,
+}
+
+impl Buffers {
+    fn new(pipeline: &Pipeline, uniforms: usize) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let (gpu, usage) = (&pipeline.gpu, Usage::UNIFORM | Usage::COPY_DST);
+        let uniform_bytes = (uniforms * UNIFORM_BYTES) as u64;
+        Self {
+            view: buffer(gpu, "view", VIEW_BYTES as u64, usage),
+            uniforms: (uniforms > 0).then(|| buffer(gpu, "uniforms", uniform_bytes, usage)),
+            timestamps: gpu.has_timestamps().then(|| Timestamps::new(gpu)),
+            pixels: None,
+            visits: None,
+            listed: None,
+        }
+    }
+}
+
+impl<'a> Run<'a> {
+    /// Goes on with the buffers of another frame of the pipeline, if there are such.
+    pub(crate) fn new(
+        pipeline: &'a Pipeline,
+        buffers: Option<Buffers>,
+        moment: Moment,
+    ) -> Result<Self, RenderError> {
+        let gpu = &pipeline.gpu;
+        let buffers = gpu.scoped("the frame's buffers", || {
+            let count = moment.uniforms.len();
+            let buffers = buffers.unwrap_or_else(|| Buffers::new(pipeline, count));
+            if let Some(uniforms) = &buffers.uniforms {
+                gpu.queue.write_buffer(uniforms, 0, &uniform_bytes(&moment.uniforms));
+            }
+            buffers
+        })?;
+        Ok(Self { pipeline, moment, buffers, evaluated_before: 0 })
+    }
+
+    pub(crate) fn into_buffers(self) -> Buffers {
+        self.buffers
+    }
+
+    /// How many operands were evaluated before the rays, where they are counted.
+    pub(crate) fn evaluated_before(&self) -> u64 {
+        u64::from(self.evaluated_before)
+    }
+
+    /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
+    pub(crate) fn make_room(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
+        use wgpu::BufferUsages as Usage;
+        let gpu = &self.pipeline.gpu;
+        if let Some(culling) = &self.pipeline.culling
+            && !self.buffers.visits.as_ref().is_some_and(|visits| visits.fit(groups))
+        {
+            (self.buffers.visits, self.buffers.pixels) = (None, None);
+            self.buffers.listed = None;
+            let (view, uniforms) = (&self.buffers.view, self.buffers.uniforms.as_ref());
+            let room = || culling.room(gpu, groups, view, uniforms);
+            self.buffers.visits = Some(gpu.scoped("lists of what can matter to a tile", room)?);
+        }
+        if self.buffers.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
+            return Ok(());
+        }
+        self.buffers.pixels = None;
+        let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
+        let buffers = gpu.scoped("a tile's pixels", || {
+            let storage = buffer(gpu, "pixels", bytes, Usage::STORAGE | Usage::COPY_SRC);
+            let usage = Usage::MAP_READ | Usage::COPY_DST;
+            let staging = buffer(gpu, "staging", bytes + BESIDE_PIXELS, usage);
+            let bind_group = self.bind_group(&storage);
+            PixelBuffers { capacity: pixels, storage, staging, bind_group }
+        })?;
+        self.buffers.pixels = Some(buffers);
+        Ok(())
+    }
+
+    fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
+        let Buffers { view, uniforms, visits, .. } = &self.buffers;
+        let buffers = [(0, Some(view)), (1, uniforms.as_ref()), (2, Some(storage))];
+        let tables = (FIRST_TABLE..).zip(self.pipeline.tables.iter().map(Some));
+        let visits = (culling::VISITS, visits.as_ref().map(|visits| &visits.lists));
+        let entries: Vec<_> = buffers
+            .into_iter()
+            .chain(tables)
+            .chain([visits])
+            .filter_map(|(binding, buffer)| {
+                Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
+            })
+            .collect();
+        self.pipeline.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tile"),
+            layout: &self.pipeline.layout,
+            entries: &entries,
+        })
+    }
+
+    /// How many groups of cells are to be looked at: none where the lists are those of the moment.
+    fn cells_to_list(&self) -> Result<u32, RenderError> {
+        let Pipeline { gpu, culling: Some(culling), .. } = self.pipeline else { return Ok(0) };
+        let Some(visits) = &self.buffers.visits else { return Ok(0) };
+        if self.buffers.listed.as_ref() == Some(&self.moment) {
+            return Ok(0);
+        }
+        let within = self.moment.within;
+        gpu.scoped("lists of what can matter in a cell", || culling.open(gpu, visits, within))?;
+        Ok(within.map_or(0, |_| culling::GROUPS))
+    }
+
+    /// Draws a tile into the image; its time in milliseconds where the adapter tells one.
+    pub(crate) fn draw(
+        &mut self,
+        view: &View,
+        tile: Tile,
+        image: &mut Image,
+    ) -> Result<Option<f64>, RenderError> {
+        let count = tile.pixels() as u32;
+        let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
+        self.make_room(count.max(WORKGROUP * WORKGROUP), groups)?;
+        let cell_groups = self.cells_to_list()?;
+        self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, count)?;
+        self.buffers.listed = Some(self.moment.clone());
+        self.read(tile, image)
+    }
+
+    /// Hands in workgroups, what comes before them, and the copying of the pixels that they make.
+    pub(crate) fn submit(
+        &self,
+        view: &[u8],
+        groups: [u32; 2],
+        cell_groups: u32,
+        pixels: u32,
+    ) -> Result<(), RenderError> {
+        let Some(buffers) = &self.buffers.pixels else { return Ok(()) };
+        let gpu = &self.pipeline.gpu;
+        gpu.scoped("a tile", || {
+            if let Some(visits) = &self.buffers.visits {
+                visits.count_anew(gpu);
+            }
+            gpu.queue.write_buffer(&self.buffers.view, 0, view);
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("tile"),
+                    timestamp_writes: self
+                        .buffers
+                        .timestamps
+                        .as_ref()
+                        .map(Timestamps::about_a_pass),
+                });
+                if let (Some(culling), Some(visits)) =
+                    (&self.pipeline.culling, &self.buffers.visits)
+                {
+                    if cell_groups > 0 {
+                        culling.run_cells(&mut pass, visits, cell_groups);
+                    }
+                    culling.run(&mut pass, visits, groups);
+                }
+                pass.set_pipeline(&self.pipeline.pipeline);
+                pass.set_bind_group(0, &buffers.bind_group, &[]);
+                pass.dispatch_workgroups(groups[0], groups[1], 1);
+            }
+            let bytes = u64::from(pixels) * PIXEL_BYTES as u64;
+            encoder.copy_buffer_to_buffer(&buffers.storage, 0, &buffers.staging, 0, bytes);
+            if let Some(timestamps) = &self.buffers.timestamps {
+                timestamps.resolve(&mut encoder, &buffers.staging, bytes);
+            }
+            if let Some(visits) = &self.buffers.visits {
+                let (from, to) = (4 * culling::EVALUATED, bytes + TIMESTAMP_BYTES);
+                encoder.copy_buffer_to_buffer(
+                    &visits.tally,
+                    from,
+                    &buffers.staging,
+                    to,
+                    COUNT_BYTES,
+                );
+            }
+            gpu.queue.submit([encoder.finish()]);
+        })
+    }
+
+    /// Reads the pixels of a tile, and its time.
+    fn read(&mut self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
+        let Some(buffers) = &self.buffers.pixels else { return Ok(None) };
+        let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
+        let slice = buffers.staging.slice(..bytes + BESIDE_PIXELS);
+        let (sender, receiver) = mpsc::channel();
+        self.pipeline.gpu.scoped("reading a tile", || {
+            slice.map_async(wgpu::MapMode::Read, move |result| {
+                // The receiver waits below; it is gone only where the wait itself failed.
+                let _ = sender.send(result);
+            });
+        })?;
+        self.pipeline.gpu.wait(Some(PATIENCE))?;
+        let refused = |detail: String| RenderError::DeviceLost(format!("reading a tile: {detail}"));
+        match receiver.try_recv() {
+            Ok(Ok(())) => {}
+            Ok(Err(error)) => return Err(refused(error.to_string())),
+            Err(error) => return Err(refused(error.to_string())),
+        }
+        let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
+        let (pixels, rest) = mapped.split_at(bytes as usize);
+        let (times, count) = rest.split_at(TIMESTAMP_BYTES as usize);
+        if self.buffers.visits.is_some() {
+            let count = count.try_into().map_or(0, u32::from_ne_bytes);
+            self.evaluated_before = self.evaluated_before.saturating_add(count);
+        }
+        image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
+        let time =
+            self.buffers.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
+        drop(mapped);
+        buffers.staging.unmap();
+        Ok(time)
+    }
+}
+
+impl Timestamps {
+    fn new(gpu: &Gpu) -> Self {
+        use wgpu::BufferUsages as Usage;
+        let queries = gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+            label: Some("tile times"),
+            ty: wgpu::QueryType::Timestamp,
+            count: 2,
+        });
+        let usage = Usage::QUERY_RESOLVE | Usage::COPY_SRC;
+        let resolved = buffer(gpu, "tile times", TIMESTAMP_BYTES, usage);
+        Self { queries, resolved, period_ns: f64::from(gpu.queue.get_timestamp_period()) }
+    }
+
+    fn about_a_pass(&self) -> wgpu::ComputePassTimestampWrites<'_> {
+        wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        }
+    }
+
+    fn resolve(&self, encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer, offset: u64) {
+        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
+        encoder.copy_buffer_to_buffer(&self.resolved, 0, staging, offset, TIMESTAMP_BYTES);
+    }
+
+    fn milliseconds(&self, bytes: &[u8]) -> f64 {
+        let tick = |bytes: &[u8]| bytes.try_into().map_or(0, u64::from_ne_bytes);
+        let (begin, end) = bytes.split_at(bytes.len() / 2);
+        tick(end).saturating_sub(tick(begin)) as f64 * self.period_ns * 1e-6
+    }
+}
