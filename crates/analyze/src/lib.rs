@@ -41,9 +41,7 @@ pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
-pub use prepare::{
-    Lipschitz, Prepared, Report, ShapeReport, Writing, most_inline, prepare, prepare_about,
-};
+pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, Writing, prepare, prepare_about};
 pub use quality::{Promise, Qualities, Quality, Sides};
 pub use refute::{Clause, ParamEnd, RayFault, Refuted, refute, refute_hits};
 pub use roll::Rolled;

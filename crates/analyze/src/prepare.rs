@@ -29,7 +29,7 @@ pub struct Prepared {
 /// How a field of many parts is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Writing {
-    /// As costs less: [`Writing::Rolled`] where the field takes more operations than [`most_inline`] says.
+    /// As costs less: [`Writing::Rolled`] where the field takes more operations than [`Report::most_inline`] says.
     #[default]
     Auto,
     /// All that there is, one operation after the other.
@@ -38,13 +38,44 @@ pub enum Writing {
     Rolled,
 }
 
-/// More operations of a field take longer to compile than they save, if loops can take their place: of a scene all of whose rays
-/// come from the eye, and of another, whose rays to lamps and mirrored rays visit all rounds of a loop.
-const MOST_INLINE: [usize; 2] = [2000, 4500];
+/// More operations of a field take longer to compile and to evaluate than loops that visit what matters: of a scene all of whose rays come
+/// from the eye, of one whose rays to lamps and mirrored rays go by lists for cells, and of one with soft shadows, which visit all rounds.
+const MOST_INLINE: [usize; 3] = [600, 1200, 4500];
+/// So many more for each loop, which is compiled too, and entered at each place.
+const MORE_FOR_A_LOOP: [usize; 3] = [150, 250, 0];
+/// The same where loops visit all rounds.
+const MOST_WITHOUT_LISTS: usize = 4500;
 
-/// How many operations a field may take that is written out by [`Writing::Auto`].
-pub fn most_inline(settings: &Settings) -> usize {
-    MOST_INLINE[usize::from(leave_the_eye(settings))]
+/// How many operations a field may take that is written out though so many loops with lists could stand in its place.
+fn most_inline(settings: &Settings, loops: usize) -> usize {
+    if loops == 0 {
+        return MOST_WITHOUT_LISTS;
+    }
+    let kind = if settings.lights.iter().any(|light| matches!(light.shadow, Shadow::Soft(_))) {
+        2
+    } else {
+        usize::from(leave_the_eye(settings))
+    };
+    MOST_INLINE[kind] + loops * MORE_FOR_A_LOOP[kind]
+}
+
+/// Whether loops cost less, and up to how many operations they do not. `steepest` is as for [`visits`].
+fn loops_pay(
+    graph: &Graph,
+    distance: NodeId,
+    settings: &Settings,
+    steepest: Option<f64>,
+) -> (bool, usize) {
+    let operations = cost(graph, &[distance]).operations;
+    let least = most_inline(settings, 1);
+    if operations <= least || operations > MOST_WITHOUT_LISTS {
+        return (operations > least, least);
+    }
+    let mut trial = graph.clone();
+    let folded = fold_transforms(&mut trial, &[distance]).roots;
+    let rolled = roll(&mut trial, &folded).0;
+    let most = most_inline(settings, visits(&mut trial, &rolled, steepest).len());
+    (operations > most, most)
 }
 
 /// Whether the field is asked for elsewhere than on rays from the eye.
@@ -64,6 +95,8 @@ const MOST_BOXES: usize = 16;
 pub struct Report {
     /// What became loops; empty where all is written out.
     pub rolled: Vec<Rolled>,
+    /// Up to how many operations the field would have been written out.
+    pub most_inline: usize,
     /// Leaf shapes evaluated per field evaluation: childless instances at distinct points.
     pub leaves: usize,
     /// Cost of the distance alone.
@@ -181,8 +214,14 @@ fn flatten(
     let leaves = count_leaves(graph, &mut expander, root, point)?;
     let mut bounds = Bounds::new(&params);
     let mut apart = parts(graph, &mut expander, &qualities, &mut bounds, root, point)?;
+    let steepest = qualities.get(root).and_then(|quality| {
+        let constant = quality.lipschitz.as_ref().ok()?;
+        Some(graph.as_number(*constant).unwrap_or(f64::INFINITY))
+    });
+    let steepest = steepest.filter(|_| field.uncertified.is_empty());
+    let (pays, most_inline) = loops_pay(graph, field.distance, &program.settings, steepest);
     let rolls = match writing {
-        Writing::Auto => cost(graph, &[field.distance]).operations > most_inline(&program.settings),
+        Writing::Auto => pays,
         Writing::Inline => false,
         Writing::Rolled => true,
     };
@@ -210,11 +249,7 @@ fn flatten(
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, own_point));
-    let steepest = qualities.get(root).and_then(|quality| {
-        let constant = quality.lipschitz.as_ref().ok()?;
-        Some(graph.as_number(*constant).unwrap_or(f64::INFINITY))
-    });
-    program.visits = visits(graph, &fields, steepest.filter(|_| field.uncertified.is_empty()));
+    program.visits = visits(graph, &fields, steepest);
     if !program.visits.is_empty() && leave_the_eye(&program.settings) {
         program.within = within(graph, &mut bounds, root);
     }
@@ -224,6 +259,7 @@ fn flatten(
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
         rolled,
+        most_inline,
         leaves,
         distance: cost(graph, &[distance]),
         gradient: cost(graph, program.gradient.as_slice()),

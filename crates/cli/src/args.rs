@@ -351,6 +351,9 @@ pub struct Bench {
     /// Where the figures go, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
+    /// Where a plot of what a pixel of the scattered scenes costs goes, over their leaves
+    #[arg(long, value_name = "OUT.svg", requires = "large")]
+    pub plot: Option<PathBuf>,
 }
 
 /// Arguments of `doc`.

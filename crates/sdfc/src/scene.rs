@@ -1,6 +1,5 @@
 //! A compiled scene's field on the CPU, as a shader, and explained.
 
-use sdfc_analyze::most_inline;
 use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
@@ -109,7 +108,7 @@ impl Scene {
     /// Why the field is written as it is, in one line.
     fn why_written(&self) -> String {
         let rolled = &self.report.rolled;
-        let most = most_inline(&self.program.settings);
+        let most = self.report.most_inline;
         if rolled.is_empty() {
             return match self.report.distance.operations > most {
                 true => "few of its parts are alike".to_owned(),

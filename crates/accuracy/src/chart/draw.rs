@@ -23,6 +23,10 @@ impl Font {
     }
 }
 
+/// What is drawn on, and how that fails.
+type Area<B> = DrawingArea<B, plotters::coord::Shift>;
+type Failed = DrawingAreaErrorKind<std::io::Error>;
+
 /// Why a chart could not be drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DrawError(String);
@@ -48,10 +52,18 @@ impl std::error::Error for DrawError {}
 /// [`DrawError`] if there is no row to draw, or the font is none.
 pub fn svg(chart: &Chart, font: Font) -> Result<String, DrawError> {
     font.register()?;
+    themed(SIZE, |root, theme| draw(chart, root, theme))
+}
+
+/// A picture as SVG that is dark where the reader's page is.
+pub(super) fn themed(
+    size: (u32, u32),
+    draw: impl FnOnce(&Area<SVGBackend<'_>>, &Theme) -> Result<(), Failed>,
+) -> Result<String, DrawError> {
     let mut text = String::new();
     {
-        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        draw(chart, &root, &Theme::LIGHT).map_err(|error| DrawError::new(&error))?;
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        draw(&root, &Theme::LIGHT).map_err(|error| DrawError::new(&error))?;
     }
     let head = text.find('\n').map_or(0, |end| end + 1);
     text.insert_str(head, &format!("<style>{}</style>\n", Theme::css()));
@@ -208,6 +220,6 @@ fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
 }
 
 /// 0.001, 20, 3000: as few digits as the axis needs.
-fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     if value >= 1.0 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) }
 }

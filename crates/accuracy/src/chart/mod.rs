@@ -1,6 +1,7 @@
 //! Cost against error: every method at several settings, on one scene.
 
 mod draw;
+mod growth;
 mod pixels;
 mod theme;
 mod tune;
@@ -13,6 +14,7 @@ use crate::metrics::{Metrics, Quantiles};
 use crate::truth::Counts;
 
 pub use draw::{DrawError, Font, svg};
+pub use growth::{Growth, growth_svg};
 pub use pixels::png;
 pub use theme::Theme;
 

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use sdfc::accuracy_data::chart::{Font, Growth, growth_svg};
 use sdfc::lang::{NoFiles, Options};
 use sdfc::render::Gpu;
 use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, large_suite, suite};
@@ -26,6 +27,8 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         output::distinct(file, &[json])?;
     }
     json.as_ref().map_or(Ok(()), Output::check)?;
+    let plot = args.plot.as_deref().map(Output::new);
+    plot.as_ref().map_or(Ok(()), Output::check)?;
     if args.faults {
         return super::faults::run(args.size, json, console);
     }
@@ -58,7 +61,33 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     if json != Some(Output::Stdout) {
         output::to_stdout(table(&report).as_bytes())?;
     }
+    if let Some(plot) = plot {
+        let drawn = growth_svg(&growth(&report), Font(sdfc::lang::font::SANS));
+        plot.write(drawn.map_err(|error| Failure::Machine(error.to_string()))?.as_bytes())?;
+    }
     json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
+}
+
+/// What a pixel of the scattered scenes costs, by time of the processor where it is the adapter.
+fn growth(report: &BenchReport) -> Growth {
+    let names = ["pruned", "specialized"];
+    let rows = || report.rows.iter().filter(|row| row.scene.starts_with("scattered"));
+    let points = |name: &str| {
+        let place = |row: &BenchRow| {
+            let variant = row.variants.iter().find(|variant| variant.name == name)?;
+            let frame = variant.cpu_ms.or(variant.frame_ms.map(|times| times.median))?;
+            let [width, height] = row.size.map(f64::from);
+            Some((row.leaves as f64, 1e6 * frame / (width * height)))
+        };
+        (name.to_owned(), rows().filter_map(place).collect())
+    };
+    let size = rows().next().map_or([0, 0], |row| row.size);
+    let (adapter, driver) = (&report.adapter, &report.driver);
+    Growth {
+        title: format!("scattered, {}x{}, on {adapter}, {driver}", size[0], size[1]),
+        cost: "nanoseconds per pixel".to_owned(),
+        series: names.map(points).to_vec(),
+    }
 }
 
 /// A scene to be measured.
