@@ -1,6 +1,6 @@
 //! A Chromium without a window, driven by the DevTools protocol.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, ErrorKind};
 use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -128,8 +128,14 @@ impl Chromium {
     }
 
     fn receive(&mut self) -> Result<Value, Failed> {
-        let message = self.socket.read().map_err(|e| format!("{e}; {:?}", self.complaints))?;
-        Ok(serde_json::from_str(message.to_text()?)?)
+        loop {
+            match self.socket.read() {
+                Ok(message) => return Ok(serde_json::from_str(message.to_text()?)?),
+                // A process that was stopped and goes on.
+                Err(tungstenite::Error::Io(e)) if e.kind() == ErrorKind::Interrupted => {}
+                Err(e) => return Err(format!("{e}; {:?}", self.complaints).into()),
+            }
+        }
     }
 
     /// Opens a page; what was in the one before is gone. `size` is that of the window.
