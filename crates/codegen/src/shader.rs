@@ -59,6 +59,18 @@ impl Shader {
         self.culling.as_deref()
     }
 
+    /// The same with another number for a constant of what runs before it: what tests break that by. `None` where it has no such
+    /// constant.
+    #[doc(hidden)]
+    pub fn with_broken_culling(mut self, name: &str, number: u32) -> Option<Self> {
+        let module = &mut self.culling.as_mut()?.shader.module;
+        let known = |constant: &naga::Constant| constant.name.as_deref() == Some(name);
+        let init = module.constants.iter().find(|(_, constant)| known(constant))?.1.init;
+        *module.global_expressions.get_mut(init) =
+            naga::Expression::Literal(naga::Literal::U32(number));
+        Some(self)
+    }
+
     /// How long validation took.
     pub fn validation_time(&self) -> Duration {
         let before = self.culling.as_ref().map(|culling| culling.shader.validation);

@@ -100,6 +100,8 @@ fn main() {
     }
     let too_few = Trial::test("lists that lack something show", missing_rounds_show);
     trials.push(too_few.with_ignored_flag(without_gpu));
+    let broken = Trial::test("broken tiles, slices and cells show", broken_lists_show);
+    trials.push(broken.with_ignored_flag(without_gpu));
     let counted = Trial::test("what is visited is counted", visited_rounds_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
     let kept = Trial::test("lists of cells are kept until something moves", cells_are_kept);
@@ -168,15 +170,23 @@ fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Fail
     Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
 }
 
-/// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
+/// How many pixels of a scene differ between rays that visit what the program says and such that visit all.
 fn differing(scene: &Scene, culled: &Program) -> Result<(usize, String), Failed> {
-    let whole = Program { visits: Vec::new(), ..culled.clone() };
-    let (culled, whole) = (picture(scene, culled)?, picture(scene, &whole)?);
+    differ(&picture(scene, culled)?, &picture(scene, &whole(culled))?)
+}
+
+/// The same, with all rounds visited.
+fn whole(culled: &Program) -> Program {
+    Program { visits: Vec::new(), ..culled.clone() }
+}
+
+/// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
+fn differ(culled: &Image, whole: &Image) -> Result<(usize, String), Failed> {
     let hits = whole.pixels().iter().filter(|pixel| pixel.status == HIT).count();
     if hits < 1000 {
         return Err(format!("only {hits} pixels show something").into());
     }
-    let edges = edges(&culled).into_iter().zip(edges(&whole)).map(|(a, b)| a || b);
+    let edges = edges(culled).into_iter().zip(edges(whole)).map(|(a, b)| a || b);
     // Less than a pixel is wide in any scene here, at depth 1 and beyond.
     let width = 2.0 * 0.0037;
     let pairs = culled.pixels().iter().zip(whole.pixels()).zip(edges);
@@ -216,6 +226,29 @@ fn missing_rounds_show() -> Result<(), Failed> {
         let (differing, _) = differing(&scene, &program)?;
         if differing == 0 {
             return Err("nothing shows".into());
+        }
+    }
+    Ok(())
+}
+
+/// The tests of pictures: where a tile asks wrong ones of the wider tiles, slices end elsewhere than their lists, or cells are left out,
+/// pixels differ.
+fn broken_lists_show() -> Result<(), Failed> {
+    let (plain, sunny) = (hard() + OUTSIDE, format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard()));
+    let mutants = [
+        ("WIDER_BITS", 1, &plain),
+        ("NEAR", 2, &plain),
+        ("SLICE_LENGTH", 1, &plain),
+        ("GROUP_SIDE", 4, &sunny),
+    ];
+    for (constant, number, text) in mutants {
+        let scene = scene(text);
+        let program = scene.program();
+        let shader = render_module(program, "auto")?.with_broken_culling(constant, number);
+        let shader = shader.ok_or_else(|| format!("there is no `{constant}`"))?;
+        let broken = frame(&scene, program, shader)?.image;
+        if differ(&broken, &picture(&scene, &whole(program))?)?.0 == 0 {
+            return Err(format!("{constant} = {number} does not show").into());
         }
     }
     Ok(())

@@ -34,8 +34,8 @@ const ONE_TILE: f64 = 1000.0;
 const MOST_INTERPRETED: usize = 300;
 /// Nor are loops that leave out nothing on scenes of more.
 const MOST_FLAT: usize = 2000;
-/// A field of more operations is not measured written out.
-const MOST_INLINED: usize = 14_000;
+/// A field of more operations is not measured written out: with normals by its derivative, and by differences.
+const MOST_INLINED: [usize; 2] = [5000, 14_000];
 /// A frame that takes longer, in milliseconds, is timed once.
 const LONG: f64 = 10_000.0;
 
@@ -321,7 +321,12 @@ impl<'a> Heat<'a> {
     /// Whether the field written out can be waited for.
     fn is_inlined(&self) -> bool {
         self.pruned.is_none()
-            || cost(&self.inline.graph, self.inline.distance.as_slice()).operations <= MOST_INLINED
+            || cost(&self.inline.graph, self.inline.distance.as_slice()).operations
+                <= self.most_inlined()
+    }
+
+    fn most_inlined(&self) -> usize {
+        MOST_INLINED[usize::from(self.options.baselines)]
     }
 
     /// What a variant's field is compiled from.
@@ -340,7 +345,8 @@ impl<'a> Heat<'a> {
                 Err(Inexpressible(why))
             }
             Kind::Specialized if !self.is_inlined() => {
-                let why = format!("over {MOST_INLINED} operations, which take minutes to compile");
+                let most = self.most_inlined();
+                let why = format!("over {most} operations, which take minutes to compile");
                 Err(Inexpressible(why))
             }
             Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.inline),
