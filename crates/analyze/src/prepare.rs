@@ -40,9 +40,9 @@ pub enum Writing {
 
 /// More operations of a field take longer to compile and to evaluate than loops that visit what matters: of a scene all of whose rays come
 /// from the eye, of one whose rays to lamps and mirrored rays go by lists for cells, and of one with soft shadows, which visit all rounds.
-const MOST_INLINE: [usize; 3] = [600, 1200, 4500];
+const MOST_INLINE: [usize; 3] = [425, 1200, 4500];
 /// So many more for each loop, which is compiled too, and entered at each place.
-const MORE_FOR_A_LOOP: [usize; 3] = [150, 250, 0];
+const MORE_FOR_A_LOOP: [usize; 3] = [125, 250, 0];
 /// The same where loops visit all rounds.
 const MOST_WITHOUT_LISTS: usize = 4500;
 
