@@ -24,7 +24,8 @@ use crate::mailbox::{Attendant, Mailbox};
 use crate::model::{Model, Stages, reads_time};
 use crate::probe::Probe;
 
-/// Fields of at most so many operations are written out, see `docs/scale.md`.
+/// A scene of at most so many nodes is written out, so that its numbers move, also where loops would cost less, see
+/// `docs/scale.md`.
 const MOST_INLINE: usize = 2000;
 /// A text whose pipeline is not made because a newer one waits: so often in a row at most.
 const MOST_SKIPPED: u32 = 3;
