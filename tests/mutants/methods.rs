@@ -10,7 +10,7 @@ type Mutant = (&'static str, &'static str, &'static str, &'static str);
 
 const TAKEN_BACK: &str = "if stride > radius + abs(distance) {";
 
-const MUTANTS: [Mutant; 15] = [
+const MUTANTS: [Mutant; 16] = [
     (
         "auto",
         "if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {",
@@ -18,6 +18,7 @@ const MUTANTS: [Mutant; 15] = [
         "stability/thin_shell",
     ),
     ("auto", "if abs(distance) < hit {", "if abs(distance) < 64.0 * hit {", "stability/bumps"),
+    ("auto", "if sampled.x <= min(sampled.y, end) {", "if sampled.x <= end {", "mutants/copies"),
     ("relaxed", TAKEN_BACK, "if false {", "stability/plates"),
     ("accelerated", TAKEN_BACK, "if false {", "stability/thin_shell"),
     ("auto-relaxed", TAKEN_BACK, "if false {", "stability/thin_shell"),

@@ -14,7 +14,7 @@ const AHEAD: &str = "auto";
 const DEPTH: f64 = 0.5;
 
 /// Each rule and the scene in this folder that stands for it.
-const RULES: [(Rule, &str); 24] = [
+const RULES: [(Rule, &str); 25] = [
     (Rule::Affine, "affine"),
     (Rule::Sum, "sum"),
     (Rule::Product, "product"),
@@ -39,6 +39,7 @@ const RULES: [(Rule, &str); 24] = [
     (Rule::Within, "within"),
     (Rule::Similarity, "similarity"),
     (Rule::Reach, "reach"),
+    (Rule::Copies, "copies"),
 ];
 
 pub fn trials() -> Vec<Trial> {
@@ -48,7 +49,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn is_noticed(rule: Rule, name: &str) -> Result<(), Failed> {
     let subject = Subject::read(&format!("mutants/{name}"))?;
-    let name = if rule == Rule::Reach { AHEAD } else { PLAIN };
+    let name = if matches!(rule, Rule::Reach | Rule::Copies) { AHEAD } else { PLAIN };
     let method = sdfc::march::method(name).ok_or("no such method")?;
     let is_wrong = |metrics: &Metrics| {
         metrics.missed + metrics.false_hits + metrics.nan > 0 || metrics.depth.pixels.p99 > DEPTH
@@ -97,6 +98,7 @@ fn every_rule_is_listed(rule: Rule) {
         | Rule::Continuation
         | Rule::Within
         | Rule::Similarity
-        | Rule::Reach => {}
+        | Rule::Reach
+        | Rule::Copies => {}
     }
 }

@@ -6,7 +6,9 @@
 //! recognised at every angle by an identity (see [`sdfc_graph::Polynomial`]).
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square};
+use sdfc_graph::{
+    Binary, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square, reachable,
+};
 
 /// A coefficient, known before the point is. Numbers stay out of the arena: most are only steps to others.
 #[derive(Clone, Copy, Debug)]
@@ -100,10 +102,47 @@ impl Linear {
             })
     }
 
+    fn is_zero(&self) -> bool {
+        let is_zero = |c: &Coefficient| matches!(c, Coefficient::Number(value) if *value == 0.0);
+        self.rows().iter().flatten().all(is_zero)
+    }
+
     /// Each row's coefficients changed.
     fn map(&self, mut change: impl FnMut(usize, Coefficient) -> Coefficient) -> Self {
         Self::new(self.lanes, |lane| self.rows[lane].map(|coefficient| change(lane, coefficient)))
     }
+}
+
+/// The linear part of a node over the point of `level` where all that jumps keeps its value; `None` if it is not affine there.
+pub(crate) fn linear_between_jumps(graph: &mut Graph, root: NodeId, level: u16) -> Option<Linear> {
+    let mut known: FxHashMap<NodeId, Option<Box<Linear>>> = FxHashMap::default();
+    for node in reachable(graph, &[root]) {
+        if is_fixed(graph, node, level) {
+            continue;
+        }
+        let is_kept = |id: NodeId| {
+            let linear = known.get(&id).and_then(Option::as_deref);
+            is_fixed(graph, id, level) || linear.is_some_and(Linear::is_zero)
+        };
+        let mut arguments = graph.arguments(node).peekable();
+        let follows = arguments.peek().is_some() && arguments.all(is_kept);
+        let linear = if follows || jumps(graph.node(node)) {
+            Some(Linear::new(graph.ty(node).width(), |_| [ZERO; 3]))
+        } else {
+            linear_part(graph, node, level, &known)
+        };
+        known.insert(node, linear.map(Box::new));
+    }
+    known.get(&root)?.as_deref().copied()
+}
+
+/// Whether a node keeps its value but where it jumps.
+fn jumps(node: Node) -> bool {
+    matches!(
+        node,
+        Node::Unary(Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc, _)
+            | Node::Binary(Binary::Step, ..)
+    )
 }
 
 /// The linear part of a node that the point of `level` moves, given those of its arguments that it moves; `None` if it is not affine.

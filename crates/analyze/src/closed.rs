@@ -7,6 +7,11 @@
 //!
 //! A floor in a smooth blend is nothing but a floor where all else is farther away than the blend reaches. So an operand without
 //! end is met in closed form there, and the blend as a whole is marched around the rest.
+//!
+//! Of copies without end only few are sampled at a place, and known in closed form as far from there as nothing else is (`copies.rs`).
+//! So what is made of them is left to march, and known there all the same.
+
+mod copies;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
@@ -19,7 +24,7 @@ use crate::form::{self, Form};
 use crate::maps::Maps;
 use crate::quality::Qualities;
 use crate::sound::sound_field;
-use crate::spans::{MOST, Span, complement, intersection, scaled};
+use crate::spans::{Known, complement, intersection, joined, scaled};
 
 /// A scene, taken apart.
 #[derive(Clone, Debug, Default)]
@@ -38,10 +43,18 @@ pub(crate) struct Closed {
     /// Its sound field.
     pub value: NodeId,
     /// Where a ray is inside.
-    pub spans: Vec<Span>,
+    pub known: Known,
     /// As of [`Open`].
     point: NodeId,
     scale: NodeId,
+}
+
+impl Closed {
+    fn marched(self) -> Open {
+        let Self { shape, value, known, point, scale } = self;
+        let near = known.reach.is_some().then_some(known);
+        Open { shape, value, near, around: shape, point, scale }
+    }
 }
 
 impl Parts {
@@ -50,14 +63,21 @@ impl Parts {
         let (mut position, mut closed) = (0, Vec::new());
         for part in std::mem::take(&mut self.closed) {
             if positions.binary_search(&position).is_ok() {
-                let Closed { shape, value, point, scale, .. } = part;
-                self.open.push(Open { shape, value, around: shape, point, scale });
+                self.open.push(part.marched());
             } else {
                 closed.push(part);
             }
             position += 1;
         }
         self.closed = closed;
+    }
+
+    /// As it is met: what is known only as far as nothing else is near is left to march.
+    fn met(self) -> Self {
+        let is_near = |part: &Closed| part.known.reach.is_some();
+        let (near, closed): (Vec<_>, Vec<_>) = self.closed.into_iter().partition(is_near);
+        let open = self.open.into_iter().chain(near.into_iter().map(Closed::marched)).collect();
+        Self { closed, open }
     }
 }
 
@@ -68,6 +88,8 @@ pub(crate) struct Open {
     pub shape: ShapeId,
     /// Its sound field.
     pub value: NodeId,
+    /// Where a ray is inside, as far from the ray's origin as that is known.
+    pub near: Option<Known>,
     /// Outside of this it is nothing that is not closed.
     around: ShapeId,
     /// Where in the scene it is sampled, and by what its distance is multiplied.
@@ -88,7 +110,8 @@ pub(crate) fn parts(
     let direction = graph.point(1, Dim::Three);
     let scale = graph.number(1.0);
     let mut pass = Pass { graph, expander, qualities, bounds, blends: Blends::default() };
-    pass.shape(root, Place { point, direction, scale })
+    let place = Place { outer: Vec::new(), point, direction, scale };
+    pass.shape(root, &place).map(Parts::met)
 }
 
 /// A shape outside of which nothing of some operands is left to march.
@@ -135,11 +158,25 @@ pub(crate) fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<Shap
 }
 
 /// Where a shape is sampled, and the ray there. Lengths are multiplied by `scale` on the way back.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Place {
+    /// The points of the formulas around it, of copies that are built anew at each: all at the ray's origin.
+    outer: Vec<NodeId>,
     point: NodeId,
     direction: NodeId,
     scale: NodeId,
+}
+
+impl Place {
+    /// What points stand for in a formula there, and in the one of a ray.
+    fn points(&self) -> Vec<NodeId> {
+        [&self.outer[..], &[self.point, self.direction]].concat()
+    }
+
+    /// Whether a shape of that level sees these points around it.
+    fn is_of(&self, level: u16) -> bool {
+        usize::from(level) == self.outer.len()
+    }
 }
 
 /// What a formula is made of.
@@ -147,7 +184,7 @@ enum Found {
     /// Operands of a union.
     Parts(Parts),
     /// Something else, of which it is known where a ray is inside.
-    Spans(Vec<Span>),
+    Known(Known),
 }
 
 /// A formula being looked at, in its own point, and the ray there.
@@ -155,7 +192,7 @@ struct Formula {
     maps: Maps,
     place: Place,
     /// Where a ray is inside a node, or inside its complement; `None` where that is not known.
-    known: FxHashMap<(NodeId, bool), Option<Vec<Span>>>,
+    known: FxHashMap<(NodeId, bool), Option<Known>>,
 }
 
 struct Pass<'a> {
@@ -167,24 +204,28 @@ struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    fn shape(&mut self, shape: ShapeId, place: Place) -> Result<Parts, ExpandError> {
+    fn shape(&mut self, shape: ShapeId, place: &Place) -> Result<Parts, ExpandError> {
         // Depth is the scene's nesting of shapes, which elaboration limits.
         stacker::maybe_grow(64 * 1024, 1024 * 1024, || self.shape_here(shape, place))
     }
 
-    fn shape_here(&mut self, shape: ShapeId, place: Place) -> Result<Parts, ExpandError> {
-        if let Some(spans) = self.stated(shape, place)? {
-            return self.closed(shape, place, spans);
+    fn shape_here(&mut self, shape: ShapeId, place: &Place) -> Result<Parts, ExpandError> {
+        if let Some(known) = self.stated(shape, place)? {
+            return self.closed(shape, place, known);
+        }
+        if let Some(known) = self.copies(shape, place)? {
+            return self.closed(shape, place, known);
         }
         let found = self.formula(shape, place)?;
         match found {
-            Some(Found::Spans(spans)) => self.closed(shape, place, spans),
+            Some(Found::Known(known)) => self.closed(shape, place, known),
             Some(Found::Parts(parts)) if parts.open.is_empty() || self.is_free(shape) => Ok(parts),
             Some(Found::Parts(_)) | None => {
                 let value = self.value(shape, place)?;
-                let Place { point, scale, .. } = place;
+                let Place { point, scale, .. } = *place;
                 let (closed, around) = self.blended(shape, place)?.unwrap_or((Vec::new(), shape));
-                Ok(Parts { closed, open: vec![Open { shape, value, around, point, scale }] })
+                let open = vec![Open { shape, value, near: None, around, point, scale }];
+                Ok(Parts { closed, open })
             }
         }
     }
@@ -194,13 +235,15 @@ impl Pass<'_> {
     fn blended(
         &mut self,
         shape: ShapeId,
-        place: Place,
+        place: &Place,
     ) -> Result<Option<(Vec<Closed>, ShapeId)>, ExpandError> {
         let Shape { formula: root, dim, level, .. } = *self.graph.shape(shape);
-        if dim != Dim::Three || level > 0 || has_end(self.graph, self.bounds, shape) {
+        let is_own = level == 0 && place.is_of(level);
+        if dim != Dim::Three || !is_own || has_end(self.graph, self.bounds, shape) {
             return Ok(None);
         }
-        let mut formula = Formula { maps: Maps::new(level), place, known: FxHashMap::default() };
+        let mut formula =
+            Formula { maps: Maps::new(level), place: place.clone(), known: FxHashMap::default() };
         let (mut node, mut chain) = (root, Vec::new());
         let closed = loop {
             let Some(blend) = blend_at(self.graph, &mut self.blends, node) else { return Ok(None) };
@@ -238,6 +281,7 @@ impl Pass<'_> {
     ) -> Result<Option<Vec<Closed>>, ExpandError> {
         let Some(Parts { closed, open }) = self.sampled(formula, node)? else { return Ok(None) };
         let is_endless = open.is_empty()
+            && closed.iter().all(|part| part.known.reach.is_none())
             && !closed.iter().all(|part| has_end(self.graph, self.bounds, part.shape));
         Ok(is_endless.then_some(closed))
     }
@@ -245,35 +289,39 @@ impl Pass<'_> {
     fn closed(
         &mut self,
         shape: ShapeId,
-        place: Place,
-        spans: Vec<Span>,
+        place: &Place,
+        known: Known,
     ) -> Result<Parts, ExpandError> {
         let value = self.value(shape, place)?;
-        let Place { point, scale, .. } = place;
-        let closed = vec![Closed { shape, value, spans, point, scale }];
+        let Place { point, scale, .. } = *place;
+        let closed = vec![Closed { shape, value, known, point, scale }];
         Ok(Parts { closed, open: Vec::new() })
     }
 
-    /// The sound field of a shape where it is sampled.
-    fn value(&mut self, shape: ShapeId, place: Place) -> Result<NodeId, ExpandError> {
+    /// The sound field of a shape where it is sampled; of what is built anew at each point no one asks it, and it is nothing.
+    fn value(&mut self, shape: ShapeId, place: &Place) -> Result<NodeId, ExpandError> {
+        if !place.outer.is_empty() {
+            return Ok(place.scale);
+        }
         let field = sound_field(self.graph, self.expander, self.qualities, shape, place.point)?;
         Ok(self.graph.mul(place.scale, field.distance))
     }
 
     /// The intervals that a shape states.
-    fn stated(&mut self, shape: ShapeId, place: Place) -> Result<Option<Vec<Span>>, ExpandError> {
-        let stated = self.graph.shape(shape).hits.clone();
-        if stated.is_empty() {
+    fn stated(&mut self, shape: ShapeId, place: &Place) -> Result<Option<Known>, ExpandError> {
+        let Shape { hits: stated, level, .. } = self.graph.shape(shape);
+        if stated.is_empty() || !place.is_of(*level) {
             return Ok(None);
         }
+        let (stated, ray) = (stated.clone(), place.points());
         let mut spans = Vec::with_capacity(stated.len());
         for [enter, exit] in stated {
-            let ray = [place.point, place.direction];
             let enter = self.expander.node(self.graph, enter, &ray)?;
             let exit = self.expander.node(self.graph, exit, &ray)?;
             spans.push([enter, exit]);
         }
-        Ok(Some(scaled(self.graph, &spans, place.scale)))
+        let spans = scaled(self.graph, &spans, place.scale);
+        Ok(Some(Known { spans, reach: None }))
     }
 
     /// Whether the parts of a union may be marched apart: nothing is stated that only holds of the whole.
@@ -283,12 +331,13 @@ impl Pass<'_> {
     }
 
     /// What a shape's formula is made of; `None` if that is not known.
-    fn formula(&mut self, shape: ShapeId, place: Place) -> Result<Option<Found>, ExpandError> {
+    fn formula(&mut self, shape: ShapeId, place: &Place) -> Result<Option<Found>, ExpandError> {
         let Shape { formula: root, dim, level, .. } = *self.graph.shape(shape);
-        if dim != Dim::Three || level > 0 {
+        if dim != Dim::Three || !place.is_of(level) {
             return Ok(None);
         }
-        let mut formula = Formula { maps: Maps::new(level), place, known: FxHashMap::default() };
+        let mut formula =
+            Formula { maps: Maps::new(level), place: place.clone(), known: FxHashMap::default() };
         let (mut parts, mut others) = (Parts::default(), Vec::new());
         let (mut seen, mut pending) = (FxHashSet::default(), vec![root]);
         while let Some(node) = pending.pop() {
@@ -300,8 +349,8 @@ impl Pass<'_> {
             } else if let Some(found) = self.sampled(&mut formula, node)? {
                 parts.closed.extend(found.closed);
                 parts.open.extend(found.open);
-            } else if let Some(spans) = self.spans(&mut formula, node, false)? {
-                others.extend(spans);
+            } else if let Some(known) = self.spans(&mut formula, node, false)? {
+                others.push(known);
             } else {
                 return Ok(None);
             }
@@ -309,8 +358,8 @@ impl Pass<'_> {
         if others.is_empty() {
             return Ok(Some(Found::Parts(parts)));
         }
-        others.extend(parts.closed.into_iter().flat_map(|part| part.spans));
-        Ok(parts.open.is_empty().then_some(Found::Spans(others)))
+        others.extend(parts.closed.into_iter().map(|part| part.known));
+        Ok(parts.open.is_empty().then(|| Found::Known(joined(self.graph, others))))
     }
 
     /// Where a ray is inside a node of a formula, or inside its complement, in few intervals.
@@ -319,14 +368,14 @@ impl Pass<'_> {
         formula: &mut Formula,
         node: NodeId,
         negated: bool,
-    ) -> Result<Option<Vec<Span>>, ExpandError> {
+    ) -> Result<Option<Known>, ExpandError> {
         if let Some(known) = formula.known.get(&(node, negated)) {
             return Ok(known.clone());
         }
         let spans = stacker::maybe_grow(64 * 1024, 1024 * 1024, || {
             self.spans_here(formula, node, negated)
         })?;
-        let spans = spans.filter(|spans| spans.len() <= MOST);
+        let spans = spans.filter(Known::is_short);
         formula.known.insert((node, negated), spans.clone());
         Ok(spans)
     }
@@ -336,26 +385,26 @@ impl Pass<'_> {
         formula: &mut Formula,
         node: NodeId,
         negated: bool,
-    ) -> Result<Option<Vec<Span>>, ExpandError> {
+    ) -> Result<Option<Known>, ExpandError> {
         let (a, b, is_union) = match form::form(self.graph, node, &mut formula.maps) {
             Form::Least(a, b) => (a, b, !negated),
             Form::Greatest(a, b) => (a, b, negated),
             Form::Negative(a) => return self.spans(formula, a, !negated),
             Form::Sampled(..) | Form::Scaled(..) => {
                 let parts = self.sampled(formula, node)?.filter(|parts| parts.open.is_empty());
-                let spans = parts.map(|parts| parts.closed.into_iter().flat_map(|part| part.spans));
-                let Some(spans) = spans.map(Iterator::collect::<Vec<_>>) else { return Ok(None) };
-                return Ok(if negated { complement(self.graph, &spans) } else { Some(spans) });
+                let Some(parts) = parts else { return Ok(None) };
+                let known = parts.closed.into_iter().map(|part| part.known).collect();
+                let known = joined(self.graph, known);
+                return Ok(if negated { complement(self.graph, &known) } else { Some(known) });
             }
             Form::Chosen(..) | Form::Whole => return Ok(None),
         };
-        let Some(mut a) = self.spans(formula, a, negated)? else { return Ok(None) };
+        let Some(a) = self.spans(formula, a, negated)? else { return Ok(None) };
         let Some(b) = self.spans(formula, b, negated)? else { return Ok(None) };
         if !is_union {
             return Ok(intersection(self.graph, &a, &b));
         }
-        a.extend(b);
-        Ok(Some(a))
+        Ok(Some(joined(self.graph, vec![a, b])))
     }
 
     /// What a sample of a child at a rigid map of the point, or a scaled one, is made of; `None` for anything else.
@@ -378,22 +427,24 @@ impl Pass<'_> {
             | Form::Whole => return Ok(None),
         };
         // One that is built inside this formula sees this point too, not only the one where it is sampled.
-        if self.graph.shape(child).level > 0 {
+        let level = usize::from(self.graph.shape(child).level);
+        if level > place.outer.len() {
             return Ok(None);
         }
-        let own_direction = self.graph.point(1, Dim::Three);
+        let own_direction = self.graph.point(maps.level() + 1, Dim::Three);
         let direction = maps.direction(self.graph, q, own_direction);
-        let ray = [place.point, place.direction];
+        let points = place.points();
         let mut inner = Place {
-            point: self.expander.node(self.graph, q, &ray)?,
-            direction: self.expander.node(self.graph, direction, &ray)?,
+            outer: place.outer[..level].to_vec(),
+            point: self.expander.node(self.graph, q, &points)?,
+            direction: self.expander.node(self.graph, direction, &points)?,
             scale: place.scale,
         };
         if let Some(factor) = factor {
-            let factor = self.expander.node(self.graph, factor, &ray)?;
+            let factor = self.expander.node(self.graph, factor, &points)?;
             inner.direction = self.graph.mul(inner.direction, factor);
             inner.scale = self.graph.mul(place.scale, factor);
         }
-        self.shape(child, inner).map(Some)
+        self.shape(child, &inner).map(Some)
     }
 }

@@ -59,6 +59,8 @@ pub enum Rule {
     Similarity,
     /// A floor in a blend is nothing else where all else is farther away than the blend reaches.
     Reach,
+    /// What is not sampled at a place is no nearer to it than the formula says.
+    Copies,
 }
 
 #[cfg(feature = "faults")]

@@ -14,7 +14,7 @@ use crate::lipschitz::Reason;
 use crate::quality::{Qualities, Sides, shapes_below};
 use crate::roll::{Rolled, alike, roll, visits, within};
 use crate::sound::{Uncertified, sound_field};
-use crate::spans::first;
+use crate::spans::{Known, first, joined};
 use crate::uneven::{Uneven, inexact_outside, uneven};
 
 /// A scene ready for code generation, and what was found on the way.
@@ -87,6 +87,8 @@ fn leave_the_eye(settings: &Settings) -> bool {
 
 /// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
 const MOST_CLIPPED: usize = 256;
+/// What is left to march is known near a place by no more intervals than this: each costs as much as a distance.
+const MOST_COPIES: usize = 64;
 /// Of no more operands than this each has a box of its own.
 const MOST_BOXES: usize = 16;
 
@@ -253,9 +255,13 @@ fn flatten(
     if !program.visits.is_empty() && leave_the_eye(&program.settings) {
         program.within = within(graph, &mut bounds, root);
     }
+    if rolls {
+        // One round's copies would be all rounds'.
+        apart.open.iter_mut().for_each(|part| part.near = None);
+    }
     let asked = asked_of_rays(graph, &mut expander, &mut bounds, &apart)?;
     program.rays = rays(&apart, &fields, asked);
-    let Rays { hits, marched, clip, .. } = program.rays;
+    let Rays { hits, marched, clip, copies, .. } = program.rays;
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
         rolled,
@@ -264,7 +270,7 @@ fn flatten(
         distance: cost(graph, &[distance]),
         gradient: cost(graph, program.gradient.as_slice()),
         ray: cost(graph, &asked),
-        marched: cost(graph, marched.as_slice()),
+        marched: cost(graph, copies.or(marched).as_slice()),
         closed: apart.closed.iter().map(|part| part.shape).collect(),
         open: apart.open.iter().map(|part| part.shape).collect(),
         shapes: shape_reports(graph, &qualities, root, &field.divided),
@@ -279,16 +285,18 @@ fn flatten(
 struct Asked {
     hits: Option<NodeId>,
     clip: Option<NodeId>,
+    copies: Option<NodeId>,
 }
 
-/// The first hit of what is closed, and the way through the bounds of what is left.
+/// The first hit of what is closed, the way through the bounds of what is left, and what of that is known near a place.
 fn asked_of_rays(
     graph: &mut Graph,
     expander: &mut Expander,
     bounds: &mut Bounds,
     apart: &Parts,
 ) -> Result<Asked, ExpandError> {
-    let spans: Vec<_> = apart.closed.iter().flat_map(|part| part.spans.iter().copied()).collect();
+    let spans: Vec<_> =
+        apart.closed.iter().flat_map(|part| part.known.spans.iter().copied()).collect();
     let mut roots = Vec::new();
     if !spans.is_empty() {
         roots.push(first(graph, &spans));
@@ -300,9 +308,21 @@ fn asked_of_rays(
     if let Some(ends) = ways.and_then(|ways| through(graph, &ways)) {
         roots.push(graph.compose(&ends));
     }
+    let clips = roots.len();
+    roots.extend(near(graph, &apart.open));
     let folded = fold_transforms(graph, &roots).roots;
-    let (hits, clip) = folded.split_at(hits);
-    Ok(Asked { hits: hits.first().copied(), clip: clip.first().copied() })
+    let [hits, clip, copies] = [&folded[..hits], &folded[hits..clips], &folded[clips..]];
+    let [hits, clip, copies] = [hits, clip, copies].map(|root| root.first().copied());
+    Ok(Asked { hits, clip, copies })
+}
+
+/// Where a ray first meets what is left, and how far that is known from the ray's origin; `None` where that is not known of all.
+fn near(graph: &mut Graph, open: &[Open]) -> Option<NodeId> {
+    let known = open.iter().map(|part| part.near.clone()).collect::<Option<Vec<Known>>>()?;
+    let known = joined(graph, known);
+    let reach = known.reach.filter(|_| known.spans.len() <= MOST_COPIES)?;
+    let met = first(graph, &known.spans);
+    Some(graph.compose(&[met, reach]))
 }
 
 /// Corners of boxes that hold what is left to march.
@@ -328,13 +348,14 @@ fn boxes(
 }
 
 /// The functions of rays, from the fields of the whole, of what is closed and of what is left, as far as there are such.
-fn rays(apart: &Parts, fields: &[NodeId], Asked { hits, clip }: Asked) -> Rays {
+fn rays(apart: &Parts, fields: &[NodeId], asked: Asked) -> Rays {
+    let Asked { hits, clip, copies } = asked;
     let (whole, parts) = (fields.first().copied(), fields.get(1..).unwrap_or_default());
     match (apart.closed.is_empty(), apart.open.is_empty()) {
-        (true, _) => Rays { hits, closed: None, marched: whole, clip },
+        (true, _) => Rays { hits, closed: None, marched: whole, clip, copies },
         (false, is_all) => {
             let marched = parts.get(1).copied().filter(|_| !is_all);
-            Rays { hits, closed: parts.first().copied(), marched, clip }
+            Rays { hits, closed: parts.first().copied(), marched, clip, copies }
         }
     }
 }

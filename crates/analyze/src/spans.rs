@@ -7,13 +7,51 @@
 use sdfc_graph::{Binary, FAR, Graph, NodeId};
 
 /// Most intervals of an intersection or a complement.
-pub(crate) const MOST: usize = 8;
+const MOST: usize = 8;
 
 /// Enter and exit, scalars.
 pub(crate) type Span = [NodeId; 2];
 
+/// Where a ray is inside a solid.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Known {
+    pub(crate) spans: Vec<Span>,
+    /// That is known so far from the ray's origin; `None`: everywhere.
+    pub(crate) reach: Option<NodeId>,
+}
+
+impl Known {
+    /// Whether it takes no more intervals than one may have of what is made of others.
+    pub(crate) fn is_short(&self) -> bool {
+        self.spans.len() <= MOST
+    }
+}
+
+/// How far two things are known both.
+fn nearer(graph: &mut Graph, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(graph.min(a, b)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// Where a ray is inside any of some solids.
+pub(crate) fn joined(graph: &mut Graph, all: Vec<Known>) -> Known {
+    let mut whole = Known::default();
+    for Known { spans, reach } in all {
+        whole.spans.extend(spans);
+        whole.reach = nearer(graph, whole.reach, reach);
+    }
+    whole
+}
+
 /// Where a ray is inside both; `None` where that takes too many intervals.
-pub(crate) fn intersection(graph: &mut Graph, a: &[Span], b: &[Span]) -> Option<Vec<Span>> {
+pub(crate) fn intersection(graph: &mut Graph, a: &Known, b: &Known) -> Option<Known> {
+    let spans = both(graph, &a.spans, &b.spans)?;
+    Some(Known { spans, reach: nearer(graph, a.reach, b.reach) })
+}
+
+fn both(graph: &mut Graph, a: &[Span], b: &[Span]) -> Option<Vec<Span>> {
     if a.len() * b.len() > MOST {
         return None;
     }
@@ -27,13 +65,13 @@ pub(crate) fn intersection(graph: &mut Graph, a: &[Span], b: &[Span]) -> Option<
 }
 
 /// Where a ray is not inside; `None` where that takes too many intervals.
-pub(crate) fn complement(graph: &mut Graph, spans: &[Span]) -> Option<Vec<Span>> {
+pub(crate) fn complement(graph: &mut Graph, known: &Known) -> Option<Known> {
     let [before, after] = [-FAR, FAR].map(|end| graph.number(end));
     let mut outside = vec![[before, after]];
-    for &[enter, exit] in spans {
-        outside = intersection(graph, &outside, &[[before, enter], [exit, after]])?;
+    for &[enter, exit] in &known.spans {
+        outside = both(graph, &outside, &[[before, enter], [exit, after]])?;
     }
-    Some(outside)
+    Some(Known { spans: outside, reach: known.reach })
 }
 
 /// Intervals measured in units that are `factor` long.

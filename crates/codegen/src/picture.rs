@@ -256,7 +256,8 @@ impl<'p> Picture<'p> {
         features.culled = culled && is_culled(program, method);
         features.posed = form == Form::Posed;
         let mut fillings = ahead(program, features);
-        if !features.closed || features.occlusion {
+        let steps = features.steps() && !features.closed;
+        if steps || features.occlusion {
             fillings.push(Filling::of_point(Some(Role::Distance), stubs::FIELD, distance));
         }
         if method.gradient.is_none() {
@@ -366,13 +367,13 @@ impl Filling {
 
 /// What fills the stubs of `rays.wgsl` that are called.
 pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
-    if !features.closed && !features.clipped {
+    if !features.closed && !features.clipped && !features.copies {
         return Vec::new();
     }
-    let Rays { hits, closed, marched, clip } = program.rays;
+    let Rays { hits, closed, marched, clip, copies } = program.rays;
     let closed = closed.filter(|_| features.soft_shadows);
-    let marched = marched.filter(|_| features.closed);
-    let of_ray = [(stubs::HITS, hits), (stubs::CLIP, clip)].into_iter();
+    let marched = marched.filter(|_| features.closed && features.steps());
+    let of_ray = [(stubs::HITS, hits), (stubs::CLIP, clip), (stubs::COPIES, copies)].into_iter();
     let of_point = [(stubs::CLOSED, closed), (stubs::MARCHED, marched)].into_iter();
     of_ray
         .filter_map(|(stub, root)| Some(Filling::of_ray(stub, root?)))
@@ -415,11 +416,12 @@ pub(crate) fn skeleton(
 
 /// What of a scene's rays is known before they are marched, for a method that asks for it.
 pub(crate) fn ray_features(program: &Program, looks_ahead: bool) -> Features {
-    let Rays { hits, closed: _, marched, clip } = program.rays;
+    let Rays { hits, closed: _, marched, clip, copies } = program.rays;
     Features {
         closed: looks_ahead && hits.is_some(),
         marched: !looks_ahead || hits.is_none() || marched.is_some(),
         clipped: looks_ahead && clip.is_some(),
+        copies: looks_ahead && copies.is_some(),
         ..Features::default()
     }
 }

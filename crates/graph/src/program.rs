@@ -17,6 +17,9 @@ pub struct Rays {
     /// Of a ray: a vector of where it enters and leaves a box around what is left to march, the first above
     /// the second where it misses the box. `None`: there is no box.
     pub clip: Option<NodeId>,
+    /// Of a ray: a vector of where it is first inside of what is sampled at its origin, [`crate::FAR`] for nowhere, and of how far
+    /// from the origin nothing else is left to march. `None`: that is not known of all that is left.
+    pub copies: Option<NodeId>,
 }
 
 /// A loop of which rays visit only the rounds that can matter to them.
@@ -94,9 +97,9 @@ impl Program {
     /// Everything that a shader of the program computes at its points.
     pub fn roots(&self) -> Vec<NodeId> {
         // Taken apart so that a new function does not compile until it is thought of here.
-        let Rays { hits, closed, marched, clip } = self.rays;
+        let Rays { hits, closed, marched, clip, copies } = self.rays;
         let fields = [self.distance, self.gradient, self.range, self.slope_range];
-        let rays = [hits, closed, marched, clip];
+        let rays = [hits, closed, marched, clip, copies];
         let material = self.material.into_iter().flatten();
         let visits = self.visits.iter().map(|visit| visit.ends);
         fields.into_iter().chain(rays).flatten().chain(material).chain(visits).collect()

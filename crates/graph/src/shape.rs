@@ -47,6 +47,9 @@ pub struct Contract {
     pub is_continued: bool,
     /// Lowest and highest point; `lo > hi` nowhere, infinities allowed.
     pub bounds: Option<[NodeId; 2]>,
+    /// Whether the formula is the least of samples, each by itself or cut by its own bounds, and of a value than which nothing that
+    /// is not sampled there is nearer.
+    pub copies: bool,
 }
 
 /// Where an instance's material comes from. Fields are in the order of `MaterialField::ALL`.

@@ -179,6 +179,8 @@ pub struct ShapeDef {
     pub material: Option<Expr>,
     /// `hits e`.
     pub hits: Option<Hits>,
+    /// `copies`.
+    pub copies: bool,
     /// The formula: a number.
     pub body: Expr,
     /// Documentation lines.

@@ -191,6 +191,8 @@ pub struct Features {
     pub marched: bool,
     /// That lies in a box.
     pub clipped: bool,
+    /// All of that is met in closed form, as far as it is sampled at a place.
+    pub copies: bool,
     /// Some light casts a shadow.
     pub shadows: bool,
     /// Some light's shadow is soft.
@@ -225,8 +227,13 @@ impl Features {
         self.culled && (self.shadows || self.reflections || self.occlusion)
     }
 
+    /// Whether some rays step by the distance.
+    pub fn steps(self) -> bool {
+        self.soft_shadows || !self.copies
+    }
+
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 19] {
+    pub fn overrides(self) -> [(&'static str, bool); 20] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -234,6 +241,7 @@ impl Features {
             closed,
             marched,
             clipped,
+            copies,
             shadows,
             soft_shadows,
             lamps,
@@ -252,6 +260,7 @@ impl Features {
             ("CLOSED", closed),
             ("MARCHED", marched),
             ("CLIPPED", clipped),
+            ("COPIES", copies),
             ("LOOKS_AHEAD", closed || clipped),
             ("ANY_MARCHED", marched || soft_shadows),
             ("SHADOWS", shadows),
@@ -439,6 +448,9 @@ pub mod stubs {
     /// `fn clip(origin: vec3f, direction: vec3f) -> vec2f`, where a ray passes a box around what is marched, where
     /// [`super::Features::clipped`] is set.
     pub const CLIP: &str = "clip";
+    /// `fn copies(origin: vec3f, direction: vec3f) -> vec2f`, where a ray is first inside of what is sampled at its origin, and how far
+    /// from there nothing else is marched, where [`super::Features::copies`] is set.
+    pub const COPIES: &str = "copies";
     /// `fn field_range(a: vec3f, b: vec3f) -> vec2f`, the least and the greatest of `field` on the stretch from a to b.
     pub const RANGE: &str = "field_range";
     /// `fn field_slope_range(a: vec3f, b: vec3f, direction: vec3f) -> vec2f`, the least and the greatest slope of `field` on

@@ -16,11 +16,9 @@ struct Bound {
     size: [u32; 2],
     /// Most of a picture's pixels that the oracle may leave undecided, as a share.
     undecided: f64,
-    /// Evaluations per pixel, as a part of those of `sphere-cone`, where the scene has a ground plane.
-    evaluations: f64,
 }
 
-const CERTIFIED: Bound = Bound { size: [96, 54], undecided: 1e-3, evaluations: 0.5 };
+const CERTIFIED: Bound = Bound { size: [96, 54], undecided: 1e-3 };
 
 /// Error of normals that 99 of 100 pixels of smooth surfaces keep, in degrees.
 const NORMAL: f64 = 1e-3;
@@ -28,22 +26,17 @@ const NORMAL: f64 = 1e-3;
 /// Error in depth that 99 of 100 pixels keep, in widths of a pixel: of scenes of a few leaves, and of more.
 const DEPTH: [f64; 2] = [0.05, 0.1];
 const FEW_LEAVES: usize = 30;
+/// Most evaluations per pixel, as a part of those of `sphere-cone`, where the scene has a ground plane.
+const EVALUATIONS: f64 = 0.5;
 /// What a ground plane is called in a scene.
 const GROUND: &str = "plane(";
 
 /// Scenes of which less can be promised, and why.
-const EXCEPTIONS: &[(&str, &str, Bound)] = &[
-    (
-        "examples/mandelbulb",
-        "its field is an estimate without a constant, and intervals over its rounds prove misses alone",
-        Bound { size: [8, 5], undecided: 0.4, ..CERTIFIED },
-    ),
-    (
-        "examples/pebbles",
-        "its rays end among pebbles, not on the plane, and a step there is no longer than a cell",
-        Bound { evaluations: 0.9, ..CERTIFIED },
-    ),
-];
+const EXCEPTIONS: &[(&str, &str, Bound)] = &[(
+    "examples/mandelbulb",
+    "its field is an estimate without a constant, and intervals over its rounds prove misses alone",
+    Bound { size: [8, 5], undecided: 0.4 },
+)];
 
 fn main() {
     let without_gpu = testing::without_gpu();
@@ -65,7 +58,7 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     if !scene.is_certified() && exception.is_none() {
         return Err("the scene is not certified, and not on the list of those that are not".into());
     }
-    let Bound { size, undecided, evaluations } = exception.map_or(&CERTIFIED, |(.., bound)| bound);
+    let Bound { size, undecided } = exception.map_or(&CERTIFIED, |(.., bound)| bound);
     let pixels = f64::from(size[0] * size[1]);
     let gpu = Gpu::new()?;
     let has_ground = text.lines().any(|line| line.starts_with(GROUND));
@@ -92,7 +85,7 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     }
     if let Some(cone) = chart.methods.get(1) {
         let part = row.evals_per_pixel.mean / cone.evals_per_pixel.mean;
-        if part > *evaluations || row.depth_px.p99 > cone.depth_px.p99 {
+        if part > EVALUATIONS || row.depth_px.p99 > cone.depth_px.p99 {
             return Err(format!("{part:.2} of the evaluations of `sphere-cone`").into());
         }
     }

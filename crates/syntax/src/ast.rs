@@ -172,6 +172,8 @@ pub enum ClauseKind {
     Material(Expr),
     /// `hits e`
     Hits(Expr),
+    /// `copies`
+    Copies,
     /// `require condition, "message"`; the message unescaped.
     Require(Expr, Name),
 }

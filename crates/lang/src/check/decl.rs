@@ -72,6 +72,7 @@ struct Clauses {
     bounds: Option<Expr>,
     material: Option<Expr>,
     hits: Option<Hits>,
+    copies: bool,
 }
 
 impl<'a> Checker<'a> {
@@ -205,6 +206,7 @@ impl<'a> Checker<'a> {
                     bounds: None,
                     material: None,
                     hits: None,
+                    copies: false,
                     body,
                     docs,
                 });
@@ -323,7 +325,8 @@ impl<'a> Checker<'a> {
         let ty = formula.ty.clone();
         let body = std::mem::replace(&mut self.body, outer);
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
-        let Clauses { requires, promises, lipschitz, everywhere, bounds, material, hits } = clauses;
+        let Clauses { requires, promises, lipschitz, everywhere, bounds, material, hits, copies } =
+            clauses;
         match signature.target {
             Target::Fn(FnId(id)) => {
                 if let Some(function) = self.program.functions.get_mut(id as usize) {
@@ -345,6 +348,7 @@ impl<'a> Checker<'a> {
                     shape.bounds = bounds;
                     shape.material = material;
                     shape.hits = hits;
+                    shape.copies = copies;
                     shape.body = formula;
                 }
             }
@@ -448,6 +452,7 @@ impl<'a> Checker<'a> {
                     let hits = self.check_hits(decl.kind, e);
                     clauses.hits.replace(hits).is_some()
                 }
+                ClauseKind::Copies => std::mem::replace(&mut clauses.copies, true),
                 ClauseKind::Require(condition, message) => {
                     clauses.requires.push(self.check_require(condition, message, clause.span));
                     false
@@ -499,6 +504,7 @@ fn belongs_to_functions(clause: &ClauseKind) -> bool {
         | ClauseKind::Bound(..)
         | ClauseKind::Bounds(_)
         | ClauseKind::Material(_)
-        | ClauseKind::Hits(_) => false,
+        | ClauseKind::Hits(_)
+        | ClauseKind::Copies => false,
     }
 }

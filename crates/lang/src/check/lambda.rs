@@ -114,7 +114,8 @@ impl<'a> Checker<'a> {
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
                 | ClauseKind::Material(_)
-                | ClauseKind::Hits(_) => {} // reported by the parser
+                | ClauseKind::Hits(_)
+                | ClauseKind::Copies => {} // reported by the parser
             }
         }
         (lipschitz, requires)
@@ -169,7 +170,8 @@ impl<'a> Names<'a> {
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
                 | ClauseKind::Material(_)
-                | ClauseKind::Hits(_) => {}
+                | ClauseKind::Hits(_)
+                | ClauseKind::Copies => {}
             }
         }
     }

@@ -25,14 +25,14 @@ pub(super) struct Unasked<'p> {
 }
 
 impl<'p> Elaborator<'p> {
-    /// Lets an instance wait until it is known how many there are. Of a shape that is built anew at each point, or in
-    /// each round of a loop, nothing is asked.
+    /// Lets an instance wait until it is known how many there are. Of a shape that is built in each round of a loop nothing is
+    /// asked.
     pub(super) fn may_be_hit(&mut self, id: ShapeDefId, shape: ShapeId, env: Env<'p>) {
         let definition = self.program.shapes.get(id.0 as usize);
         let Some(stated) = definition.and_then(|definition| definition.hits.as_ref()) else {
             return;
         };
-        if self.graph.shape(shape).level > 0 || self.loop_depth > 0 {
+        if self.loop_depth > 0 {
             return;
         }
         let waiting = self.waiting.entry(id).or_insert_with(|| Some(Vec::new()));
@@ -48,16 +48,23 @@ impl<'p> Elaborator<'p> {
             let Unasked { shape, stated, mut env, frames } = instance;
             let outer = std::mem::replace(&mut self.frames, frames);
             // What is wrong has been said.
-            if let Ok(hits) = self.hits(&mut env, stated) {
+            let level = self.graph.shape(shape).level;
+            if let Ok(hits) = self.hits(&mut env, stated, level) {
                 self.graph.set_hits(shape, hits);
             }
             self.frames = outer;
         }
     }
 
-    /// The intervals of a ray whose origin is the point of level 0 and whose direction is that of level 1.
-    fn hits(&mut self, env: &mut Env<'p>, stated: &'p Hits) -> Outcome<Vec<[NodeId; 2]>> {
-        let [origin, direction] = [0, 1].map(|level| self.graph.point(level, Dim::Three));
+    /// The intervals of a ray whose origin is the point of a level and whose direction is that of the next.
+    fn hits(
+        &mut self,
+        env: &mut Env<'p>,
+        stated: &'p Hits,
+        level: u16,
+    ) -> Outcome<Vec<[NodeId; 2]>> {
+        let [origin, direction] =
+            [level, level + 1].map(|level| self.graph.point(level, Dim::Three));
         env.set(stated.origin.0 as usize, Value::Node(origin));
         env.set(stated.direction.0 as usize, Value::Node(direction));
         let span = stated.value.span;

@@ -211,6 +211,7 @@ impl<'p> Elaborator<'p> {
             contract.is_local = self.asked_bounds && !definition.everywhere;
             contract.is_continued = contract.is_local && steep;
         }
+        contract.copies = definition.copies;
         if let Some(stated) = &definition.bounds {
             let Value::Range(lo, hi) = self.eval(env, stated)? else {
                 return Err(Poison);

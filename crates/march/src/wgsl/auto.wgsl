@@ -25,14 +25,44 @@ fn trace(ray: Ray) -> Trace {
         found = Trace(0.0, MISS, 0u);
         if ANY_MARCHED {
             if ahead.start <= ahead.end {
-                found = march(moved(ray, ahead.start), ahead.end - ahead.start);
+                if COPIES {
+                    found = among_copies(moved(ray, ahead.start), ahead.end - ahead.start);
+                } else {
+                    found = march(moved(ray, ahead.start), ahead.end - ahead.start);
+                }
             }
         }
         found = met_in_all(ray, ahead, found);
     } else {
-        found = march(ray, ray.t_max);
+        if COPIES {
+            found = among_copies(ray, ray.t_max);
+        } else {
+            found = march(ray, ray.t_max);
+        }
     }
     return found;
+}
+
+// Copies are met in closed form, a few at a time: those that are sampled at a place, as far from there as there are no others.
+fn among_copies(ray: Ray, end: f32) -> Trace {
+    if SOFT_SHADOWS {
+        // How narrowly a ray passes is known from the distance alone.
+        if watched {
+            return march(ray, end);
+        }
+    }
+    var t = 0.0;
+    for (var step = 0u; step < PATIENCE * ray.steps; step++) {
+        let sampled = t + copies(ray_point(ray, t), ray.direction);
+        if sampled.x <= min(sampled.y, end) {
+            return Trace(sampled.x, HIT, step + 1u);
+        }
+        if !(sampled.y <= end) {
+            return Trace(sampled.y, MISS, step + 1u);
+        }
+        t = max(sampled.y, t + rounding(ray, t));
+    }
+    return Trace(t, CAPPED, PATIENCE * ray.steps);
 }
 
 fn march(ray: Ray, end: f32) -> Trace {

@@ -5,6 +5,8 @@
 override CLOSED: bool;
 override MARCHED: bool;
 override CLIPPED: bool;
+// All of that is met in closed form, as far as it is sampled at a place.
+override COPIES: bool;
 // Either of the first and the last; some rays are marched, be it to see how narrowly they pass.
 override LOOKS_AHEAD: bool;
 override ANY_MARCHED: bool;

@@ -19,3 +19,9 @@ fn marched(p: vec3f) -> f32 {
 fn clip(origin: vec3f, direction: vec3f) -> vec2f {
     return vec2f();
 }
+
+// Where a ray is first inside of what is sampled at its origin, FAR where it never is; and how far from the origin nothing else
+// is marched.
+fn copies(origin: vec3f, direction: vec3f) -> vec2f {
+    return vec2f();
+}

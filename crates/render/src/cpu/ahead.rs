@@ -14,6 +14,8 @@ pub(super) struct AheadTapes {
     has_clip: bool,
     /// The field of what is left to march; `None`: nothing is.
     marched: Option<Tape>,
+    /// As of the program's rays.
+    copies: Option<Tape>,
 }
 
 impl AheadTapes {
@@ -22,13 +24,14 @@ impl AheadTapes {
         let Program { graph, rays, distance, .. } = program;
         let marched = if rays.hits.is_some() { rays.marched } else { *distance };
         let asked: Vec<_> = rays.hits.into_iter().chain(rays.clip).collect();
-        if asked.is_empty() {
+        if asked.is_empty() && rays.copies.is_none() {
             return Ok(None);
         }
+        let copies = rays.copies.map(|copies| Tape::of_rays(graph, &[copies])).transpose()?;
         let (has_hits, has_clip) = (rays.hits.is_some(), rays.clip.is_some());
         let asked = Tape::of_rays(graph, &asked)?;
         let marched = marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
-        Ok(Some(Self { asked, has_hits, has_clip, marched }))
+        Ok(Some(Self { asked, has_hits, has_clip, marched, copies }))
     }
 
     pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> AheadBatch<'_, T> {
@@ -37,6 +40,7 @@ impl AheadTapes {
             has_hits: self.has_hits,
             has_clip: self.has_clip,
             marched: self.marched.as_ref().map(|tape| tape.prepare(frame)),
+            copies: self.copies.as_ref().map(|tape| tape.prepare(frame)),
         }
     }
 }
@@ -48,6 +52,7 @@ pub(super) struct AheadBatch<'t, T> {
     has_hits: bool,
     has_clip: bool,
     pub(super) marched: Option<Batch<'t, T>>,
+    pub(super) copies: Option<Batch<'t, T>>,
 }
 
 /// What is known of a ray.

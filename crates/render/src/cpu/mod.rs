@@ -34,7 +34,7 @@ use crate::{
 use ahead::{Ahead, AheadBatch, AheadTapes};
 use shade::{Paint, Surface};
 use surroundings::{Lamp, behind, through_fog, unshaded};
-use trace::{Batch, Limits, Method, Ray, Trace, trace, values_at};
+use trace::{Batch, Limits, Method, Ray, Trace, trace, trace_among_copies, values_at};
 
 /// Pixels that one thread takes at a time.
 const GROUP: usize = 512;
@@ -296,8 +296,15 @@ impl<T: Real> Wave<'_, T> {
             None => rays.iter().map(Ahead::nothing).collect(),
         };
         let rays: Vec<_> = rays.iter().copied().zip(known).collect();
-        let marched = self.ahead.as_mut().filter(|_| !watched).and_then(|a| a.marched.as_mut());
         let limits = Limits { watched, ..self.limits };
+        let ahead = self.ahead.as_mut().filter(|_| !watched);
+        let marched = match ahead {
+            Some(AheadBatch { copies: Some(copies), .. }) => {
+                return trace_among_copies(copies, &rays, &limits);
+            }
+            Some(AheadBatch { marched, .. }) => marched.as_mut(),
+            None => None,
+        };
         trace(marched.unwrap_or(&mut self.field), self.range.as_mut(), &rays, &limits)
     }
 

@@ -1,5 +1,6 @@
 //! Marching rays on the CPU, several at a time.
 
+mod copies;
 mod interval;
 
 use std::ops::{Add, Mul, Sub};
@@ -33,6 +34,8 @@ pub trait Real:
 
 impl Real for f32 {}
 impl Real for f64 {}
+
+pub(super) use copies::trace_among_copies;
 
 /// The ray methods that the CPU has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,6 +169,14 @@ pub(super) struct Trace<T> {
     pub(super) clearance: T,
 }
 
+impl<T: Real> Trace<T> {
+    /// Of a ray of which nothing is known.
+    fn lost() -> Self {
+        let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
+        Self { t, status: MISS, evaluations: 0, clearance }
+    }
+}
+
 /// A ray on its way.
 #[derive(Clone, Copy)]
 struct Walk<T> {
@@ -219,13 +230,13 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn ends(&self, t: T, status: u32) -> Option<Trace<T>> {
+    fn ends(&self, t: T, status: u32) -> Trace<T> {
         let evaluations = self.evaluations + self.ahead.evaluations;
-        Some(Trace { t, status, evaluations, clearance: self.clearance })
+        Trace { t, status, evaluations, clearance: self.clearance }
     }
 
     /// How a ray ends that has met nothing on its march; a place that is no number stays one.
-    fn unmet(&self) -> Option<Trace<T>> {
+    fn unmet(&self) -> Trace<T> {
         let t_max = self.whole.t_max;
         match self.ahead.hit(&self.whole) {
             Some(met) if self.t > self.end => self.ends(met, HIT),
@@ -251,19 +262,19 @@ impl<T: Real> Walk<T> {
             Method::Auto => self.auto(distance, limits),
             Method::Interval => match range {
                 Some(range) => self.interval(distance, limits, range),
-                None => return self.ends(self.ahead.start + self.t, CAPPED),
+                None => return Some(self.ends(self.ahead.start + self.t, CAPPED)),
             },
         };
         match turn {
-            Turn::Hit(t) => return self.ends(self.ahead.start + t, HIT),
+            Turn::Hit(t) => return Some(self.ends(self.ahead.start + t, HIT)),
             Turn::Onward(t) => self.t = t,
         }
         // A place that is no number ends the ray too.
         let within = self.inside.is_some() || self.t <= self.end;
         if !within {
-            self.unmet()
+            Some(self.unmet())
         } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
-            self.ends(self.ahead.start + self.t, CAPPED)
+            Some(self.ends(self.ahead.start + self.t, CAPPED))
         } else {
             None
         }
@@ -383,13 +394,11 @@ pub(super) fn trace<T: Real>(
     rays: &[(Ray<T>, Ahead<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
-    let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
-    let lost = Trace { t, status: MISS, evaluations: 0, clearance };
-    let mut traces = vec![lost; rays.len()];
+    let mut traces = vec![Trace::lost(); rays.len()];
     let walks = rays.iter().map(|&(ray, ahead)| Walk::new(ray, ahead)).enumerate();
     let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.ahead.leads_on());
     for (index, walk) in ended {
-        traces[index] = walk.unmet().unwrap_or(lost);
+        traces[index] = walk.unmet();
     }
     let mut waiting = onward.into_iter();
     let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());

@@ -117,6 +117,7 @@ fn clause<'a>(source: &mut Source<'a>, tree: &Clause) -> Doc<'a> {
         ClauseKind::Bounds(value) | ClauseKind::Material(value) | ClauseKind::Hits(value) => {
             docs.extend([text(" "), expr(source, value)]);
         }
+        ClauseKind::Copies => {}
         ClauseKind::Require(condition, _) => {
             docs.extend([text(" "), expr(source, condition), source.take()]);
             docs.push(indent(vec![line(" "), source.take()]));

@@ -9,7 +9,8 @@ use crate::ast::{
 use crate::token::TokenKind;
 
 /// The words that clauses start with.
-const CLAUSES: [&str; 7] = ["exact", "bound", "lipschitz", "bounds", "material", "require", "hits"];
+const CLAUSES: [&str; 8] =
+    ["exact", "bound", "lipschitz", "bounds", "material", "require", "hits", "copies"];
 
 impl Parser<'_> {
     /// `(parameters) [-> type] clauses`
@@ -54,7 +55,8 @@ impl Parser<'_> {
             return self
                 .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
         }
-        let help = "the clauses are exact, bound, lipschitz, bounds, material, hits and require";
+        let help =
+            "the clauses are exact, bound, lipschitz, bounds, material, hits, copies and require";
         if self.kind() == TokenKind::Name && !self.at_new_item() {
             let word = self.slice(self.span());
             let message = format!("expected `=` or a clause, found `{word}`");
@@ -127,6 +129,7 @@ impl Parser<'_> {
             "bounds" => ClauseKind::Bounds(self.expr()?),
             "material" => ClauseKind::Material(self.expr()?),
             "hits" => ClauseKind::Hits(self.expr()?),
+            "copies" => ClauseKind::Copies,
             _ => self.requirement()?,
         };
         Ok(Clause { kind, span: self.since(start) })

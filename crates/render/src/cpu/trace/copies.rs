@@ -1,0 +1,65 @@
+//! Copies met in closed form, as `auto` does in the shader: those that are sampled at a place, as far from there as there are no others.
+
+use sdfc_graph::eval::Packet;
+
+use super::super::ahead::Ahead;
+use super::{Batch, CAPPED, HIT, LANES, Limits, Ray, Real, Trace, Walk, packed};
+
+/// Takes all rays to their ends; the result has their order.
+pub(in super::super) fn trace_among_copies<T: Real>(
+    copies: &mut Batch<'_, T>,
+    rays: &[(Ray<T>, Ahead<T>)],
+    limits: &Limits<T>,
+) -> Vec<Trace<T>> {
+    let mut traces = vec![Trace::lost(); rays.len()];
+    for (group, traces) in rays.chunks(LANES).zip(traces.chunks_mut(LANES)) {
+        let mut walks: Vec<Option<Walk<T>>> = Vec::with_capacity(LANES);
+        for (&(ray, ahead), trace) in group.iter().zip(traces.iter_mut()) {
+            let walk = Walk::new(ray, ahead);
+            let leads_on = walk.ahead.leads_on();
+            if !leads_on {
+                *trace = walk.unmet();
+            }
+            walks.push(leads_on.then_some(walk));
+        }
+        let mut ends = [[[T::constant(0.0); 3]; LANES]; 2];
+        while walks.iter().any(Option::is_some) {
+            for (lane, walk) in walks.iter().enumerate() {
+                if let Some(walk) = walk {
+                    (ends[0][lane], ends[1][lane]) = (walk.ray.at(walk.t), walk.ray.direction);
+                }
+            }
+            let sampled = copies.eval_ray(packed(&ends[0]), packed(&ends[1]));
+            let [Packet(met), Packet(reach), ..] = sampled[0];
+            for (lane, place) in walks.iter_mut().enumerate() {
+                let Some(walk) = place else { continue };
+                if let Some(ended) = walk.step_over([met[lane], reach[lane]], limits) {
+                    traces[lane] = ended;
+                    *place = None;
+                }
+            }
+        }
+    }
+    traces
+}
+
+impl<T: Real> Walk<T> {
+    /// Takes where the ray meets what is sampled here and how far that is all there is, from here.
+    fn step_over(&mut self, [met, reach]: [T; 2], limits: &Limits<T>) -> Option<Trace<T>> {
+        self.evaluations += 1;
+        let [met, reach] = [met, reach].map(|way| self.t + way);
+        if met <= reach && met <= self.end {
+            return Some(self.ends(self.ahead.start + met, HIT));
+        }
+        let within = reach <= self.end;
+        let rounding = self.ray.rounding(self.t);
+        self.t = if within { reach.max(self.t + rounding) } else { reach };
+        if !within {
+            Some(self.unmet())
+        } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
+            Some(self.ends(self.ahead.start + self.t, CAPPED))
+        } else {
+            None
+        }
+    }
+}
