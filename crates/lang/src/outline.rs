@@ -162,7 +162,8 @@ fn turn_corners(pieces: &mut [Piece]) {
         let following = Some(index + 1).filter(|at| *at < starts.len()).filter(near);
         let Some(next) = following.or_else(|| (0..starts.len()).find(near)) else { continue };
         let (from, to) = (leaving(&pieces[index].curve), arriving(&pieces[next].curve));
-        let turn = (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+        let turn =
+            libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
         if turn.abs() > SMOOTH {
             pieces[index].corners[1] = turn.signum();
             pieces[next].corners[0] = turn.signum();

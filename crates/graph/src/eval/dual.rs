@@ -85,46 +85,46 @@ impl Number for Dual {
         self.chain(value, -0.5 * value / self.value)
     }
     fn exp(self) -> Self {
-        let value = self.value.exp();
+        let value = libm::exp(self.value);
         self.chain(value, value)
     }
     fn exp2(self) -> Self {
-        let value = self.value.exp2();
+        let value = libm::exp2(self.value);
         self.chain(value, value * std::f64::consts::LN_2)
     }
     fn log(self) -> Self {
-        self.chain(self.value.ln(), 1.0 / self.value)
+        self.chain(libm::log(self.value), 1.0 / self.value)
     }
     fn log2(self) -> Self {
-        self.chain(self.value.log2(), std::f64::consts::LOG2_E / self.value)
+        self.chain(libm::log2(self.value), std::f64::consts::LOG2_E / self.value)
     }
     fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
+        self.chain(libm::sin(self.value), libm::cos(self.value))
     }
     fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
+        self.chain(libm::cos(self.value), -libm::sin(self.value))
     }
     fn tan(self) -> Self {
-        let value = self.value.tan();
+        let value = libm::tan(self.value);
         self.chain(value, 1.0 + value * value)
     }
     fn asin(self) -> Self {
-        self.chain(self.value.asin(), (1.0 - self.value * self.value).inverse_sqrt())
+        self.chain(libm::asin(self.value), (1.0 - self.value * self.value).inverse_sqrt())
     }
     fn acos(self) -> Self {
-        self.chain(self.value.acos(), -(1.0 - self.value * self.value).inverse_sqrt())
+        self.chain(libm::acos(self.value), -(1.0 - self.value * self.value).inverse_sqrt())
     }
     fn atan(self) -> Self {
-        self.chain(self.value.atan(), 1.0 / (1.0 + self.value * self.value))
+        self.chain(libm::atan(self.value), 1.0 / (1.0 + self.value * self.value))
     }
     fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
+        self.chain(libm::sinh(self.value), libm::cosh(self.value))
     }
     fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
+        self.chain(libm::cosh(self.value), libm::sinh(self.value))
     }
     fn tanh(self) -> Self {
-        let value = self.value.tanh();
+        let value = libm::tanh(self.value);
         self.chain(value, 1.0 - value * value)
     }
     fn not(self) -> Self {
@@ -154,13 +154,13 @@ impl Number for Dual {
         let value = self.value.pow(y.value);
         let by_base = y.value * self.value.pow(y.value - 1.0);
         // x^y ln x tends to 0 with x for the positive powers that are defined there.
-        let by_power = if self.value == 0.0 { 0.0 } else { value * self.value.ln() };
+        let by_power = if self.value == 0.0 { 0.0 } else { value * libm::log(self.value) };
         self.chain2(y, value, [by_base, by_power])
     }
     fn atan2(self, x: Self) -> Self {
         let norm = self.value * self.value + x.value * x.value;
         let slopes = if norm == 0.0 { [0.0; 2] } else { [x.value / norm, -self.value / norm] };
-        self.chain2(x, self.value.atan2(x.value), slopes)
+        self.chain2(x, libm::atan2(self.value, x.value), slopes)
     }
     fn step(self, x: Self) -> Self {
         Self::flat(self.value.step(x.value))

@@ -9,7 +9,7 @@ use super::Number;
 use super::hash::hash;
 
 macro_rules! float {
-    ($float:ident) => {
+    ($float:ident, pow: $pow:path, atan2: $atan2:path, $($name:ident: $unary:path),* $(,)?) => {
         impl Number for $float {
             #[inline]
             fn constant(value: f64) -> Self {
@@ -62,58 +62,12 @@ macro_rules! float {
             fn inverse_sqrt(self) -> Self {
                 1.0 / self.sqrt()
             }
-            #[inline]
-            fn exp(self) -> Self {
-                self.exp()
-            }
-            #[inline]
-            fn exp2(self) -> Self {
-                self.exp2()
-            }
-            #[inline]
-            fn log(self) -> Self {
-                self.ln()
-            }
-            #[inline]
-            fn log2(self) -> Self {
-                self.log2()
-            }
-            #[inline]
-            fn sin(self) -> Self {
-                self.sin()
-            }
-            #[inline]
-            fn cos(self) -> Self {
-                self.cos()
-            }
-            #[inline]
-            fn tan(self) -> Self {
-                self.tan()
-            }
-            #[inline]
-            fn asin(self) -> Self {
-                self.asin()
-            }
-            #[inline]
-            fn acos(self) -> Self {
-                self.acos()
-            }
-            #[inline]
-            fn atan(self) -> Self {
-                self.atan()
-            }
-            #[inline]
-            fn sinh(self) -> Self {
-                self.sinh()
-            }
-            #[inline]
-            fn cosh(self) -> Self {
-                self.cosh()
-            }
-            #[inline]
-            fn tanh(self) -> Self {
-                self.tanh()
-            }
+            $(
+                #[inline]
+                fn $name(self) -> Self {
+                    $unary(self)
+                }
+            )*
             #[inline]
             fn not(self) -> Self {
                 1.0 - self
@@ -145,11 +99,11 @@ macro_rules! float {
             }
             #[inline]
             fn pow(self, y: Self) -> Self {
-                if self < 0.0 { Self::NAN } else { (self + 0.0).powf(y) }
+                if self < 0.0 { Self::NAN } else { $pow(self + 0.0, y) }
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
-                (self + 0.0).atan2(x + 0.0) // makes -0 into 0
+                $atan2(self + 0.0, x + 0.0) // makes -0 into 0
             }
             #[inline]
             fn step(self, x: Self) -> Self {
@@ -218,8 +172,45 @@ macro_rules! float {
     };
 }
 
-float!(f32);
-float!(f64);
+float!(
+    f32,
+    pow: f32::powf,
+    atan2: f32::atan2,
+    exp: f32::exp,
+    exp2: f32::exp2,
+    log: f32::ln,
+    log2: f32::log2,
+    sin: f32::sin,
+    cos: f32::cos,
+    tan: f32::tan,
+    asin: f32::asin,
+    acos: f32::acos,
+    atan: f32::atan,
+    sinh: f32::sinh,
+    cosh: f32::cosh,
+    tanh: f32::tanh,
+);
+
+// The functions of a system's own library differ in the last bit from those of others. Constants are folded and bounds are found by
+// these, so that a scene is the same text wherever it is compiled.
+float!(
+    f64,
+    pow: libm::pow,
+    atan2: libm::atan2,
+    exp: libm::exp,
+    exp2: libm::exp2,
+    log: libm::log,
+    log2: libm::log2,
+    sin: libm::sin,
+    cos: libm::cos,
+    tan: libm::tan,
+    asin: libm::asin,
+    acos: libm::acos,
+    atan: libm::atan,
+    sinh: libm::sinh,
+    cosh: libm::cosh,
+    tanh: libm::tanh,
+);
 
 /// 1 or 0.
 #[inline]

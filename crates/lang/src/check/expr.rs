@@ -213,7 +213,7 @@ fn number(value: f64, unit: Option<Unit>, whole: bool, span: Span) -> Expr {
 fn linear(bytes: [u8; 4]) -> [f64; 4] {
     let decode = |byte: u8| {
         let value = f64::from(byte) / 255.0;
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
     };
     let [r, g, b, a] = bytes;
     [decode(r), decode(g), decode(b), f64::from(a) / 255.0]

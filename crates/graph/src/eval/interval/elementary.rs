@@ -32,11 +32,11 @@ impl Interval {
     }
 
     pub(super) fn sine(self) -> Self {
-        self.wave(f64::sin, FRAC_PI_2, -FRAC_PI_2)
+        self.wave(libm::sin, FRAC_PI_2, -FRAC_PI_2)
     }
 
     pub(super) fn cosine(self) -> Self {
-        self.wave(f64::cos, 0.0, PI)
+        self.wave(libm::cos, 0.0, PI)
     }
 
     /// A function of period 2π that falls from 1 at `crest` to -1 at `trough`.
@@ -48,7 +48,7 @@ impl Interval {
     }
 
     pub(super) fn tangent(self) -> Self {
-        if self.meets(FRAC_PI_2, PI) { Self::ENTIRE } else { self.increasing(f64::tan) }
+        if self.meets(FRAC_PI_2, PI) { Self::ENTIRE } else { self.increasing(libm::tan) }
     }
 
     /// Whether some `place + k * period` may lie in it.
@@ -66,7 +66,7 @@ impl Interval {
         if self.lo > 1.0 || self.hi < -1.0 {
             return Self::ENTIRE;
         }
-        self.clipped(-1.0, 1.0).increasing(f64::asin)
+        self.clipped(-1.0, 1.0).increasing(libm::asin)
     }
 
     pub(super) fn arc_cosine(self) -> Self {
@@ -74,7 +74,7 @@ impl Interval {
             return Self::ENTIRE;
         }
         let Self { lo, hi } = self.clipped(-1.0, 1.0);
-        Self { lo: below(hi.acos()).max(0.0), hi: above(lo.acos()) }
+        Self { lo: below(libm::acos(hi)).max(0.0), hi: above(libm::acos(lo)) }
     }
 
     /// Monotonic in the base and in the exponent apart, so the extremes are at corners.
@@ -83,8 +83,12 @@ impl Interval {
             return Self::ENTIRE;
         }
         let base = Self { lo: self.lo.max(0.0) + 0.0, hi: self.hi + 0.0 }; // no negative zero
-        let corners =
-            [base.lo.powf(y.lo), base.lo.powf(y.hi), base.hi.powf(y.lo), base.hi.powf(y.hi)];
+        let corners = [
+            libm::pow(base.lo, y.lo),
+            libm::pow(base.lo, y.hi),
+            libm::pow(base.hi, y.lo),
+            libm::pow(base.hi, y.hi),
+        ];
         let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
         let hi = corners.into_iter().fold(0.0, f64::max);
         Self { lo, hi }.widened().clipped(0.0, f64::INFINITY)
@@ -96,8 +100,12 @@ impl Interval {
         if self.contains(0.0) && x.lo <= 0.0 {
             return Self { lo: below(-PI), hi: above(PI) };
         }
-        let corners =
-            [self.lo.atan2(x.lo), self.lo.atan2(x.hi), self.hi.atan2(x.lo), self.hi.atan2(x.hi)];
+        let corners = [
+            libm::atan2(self.lo, x.lo),
+            libm::atan2(self.lo, x.hi),
+            libm::atan2(self.hi, x.lo),
+            libm::atan2(self.hi, x.hi),
+        ];
         let lo = corners.into_iter().fold(f64::INFINITY, f64::min);
         let hi = corners.into_iter().fold(f64::NEG_INFINITY, f64::max);
         Self { lo, hi }.widened()
@@ -105,8 +113,8 @@ impl Interval {
 
     /// `atan2(y, x)` for negative x and a y around 0: of a y that is not above 0, and of one that is not below.
     pub(super) fn angles_at_cut(y: Self, x: Self) -> [Self; 2] {
-        let below = Self { lo: -PI, hi: if y.lo < 0.0 { y.lo.atan2(x.hi) } else { -PI } };
-        let above = Self { lo: if y.hi > 0.0 { y.hi.atan2(x.hi) } else { PI }, hi: PI };
+        let below = Self { lo: -PI, hi: if y.lo < 0.0 { libm::atan2(y.lo, x.hi) } else { -PI } };
+        let above = Self { lo: if y.hi > 0.0 { libm::atan2(y.hi, x.hi) } else { PI }, hi: PI };
         [below.widened(), above.widened()]
     }
 }

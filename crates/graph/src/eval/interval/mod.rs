@@ -160,16 +160,16 @@ impl Number for Interval {
         self.inverse_root()
     }
     fn exp(self) -> Self {
-        self.increasing(f64::exp).clipped(0.0, f64::INFINITY)
+        self.increasing(libm::exp).clipped(0.0, f64::INFINITY)
     }
     fn exp2(self) -> Self {
-        self.increasing(f64::exp2).clipped(0.0, f64::INFINITY)
+        self.increasing(libm::exp2).clipped(0.0, f64::INFINITY)
     }
     fn log(self) -> Self {
-        self.logarithm(f64::ln)
+        self.logarithm(libm::log)
     }
     fn log2(self) -> Self {
-        self.logarithm(f64::log2)
+        self.logarithm(libm::log2)
     }
     fn sin(self) -> Self {
         self.sine()
@@ -187,16 +187,16 @@ impl Number for Interval {
         self.arc_cosine()
     }
     fn atan(self) -> Self {
-        self.increasing(f64::atan)
+        self.increasing(libm::atan)
     }
     fn sinh(self) -> Self {
-        self.increasing(f64::sinh)
+        self.increasing(libm::sinh)
     }
     fn cosh(self) -> Self {
-        Number::abs(self).increasing(f64::cosh)
+        Number::abs(self).increasing(libm::cosh)
     }
     fn tanh(self) -> Self {
-        self.increasing(f64::tanh).clipped(-1.0, 1.0)
+        self.increasing(libm::tanh).clipped(-1.0, 1.0)
     }
     fn not(self) -> Self {
         Self { lo: 1.0 - self.hi, hi: 1.0 - self.lo }
