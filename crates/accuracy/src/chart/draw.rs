@@ -1,6 +1,7 @@
 //! The chart as a picture: operations per pixel to the right, error in depth upwards, both by powers of
 //! ten. A method is a line through its settings; a ring instead of a disc says that pixels are wrong.
 
+use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -70,6 +71,30 @@ pub(super) fn themed(
     Ok(text)
 }
 
+/// A plane of powers of ten to the right and upwards.
+type Plane<'a, B> = ChartContext<'a, B, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+
+/// The axes of a plane, and what they say.
+pub(super) fn mesh<B: DrawingBackend>(
+    plane: &mut Plane<'_, B>,
+    theme: &Theme,
+    [x, y]: [&str; 2],
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    let label = |size| ("sans-serif", size).into_font().color(&theme.ink);
+    plane
+        .configure_mesh()
+        .x_desc(x)
+        .y_desc(y)
+        .axis_style(theme.ink)
+        .bold_line_style(theme.faint)
+        .light_line_style(TRANSPARENT)
+        .label_style(label(13))
+        .axis_desc_style(label(14))
+        .x_label_formatter(&|value| plain(*value))
+        .y_label_formatter(&|value| plain(*value))
+        .draw()
+}
+
 pub(super) fn draw<B: DrawingBackend>(
     chart: &Chart,
     root: &DrawingArea<B, plotters::coord::Shift>,
@@ -85,18 +110,11 @@ pub(super) fn draw<B: DrawingBackend>(
         .y_label_area_size(72)
         .build_cartesian_2d((costs[0]..costs[1]).log_scale(), (errors[0]..errors[1]).log_scale())?;
     let label = |size| ("sans-serif", size).into_font().color(&theme.ink);
-    plane
-        .configure_mesh()
-        .x_desc("operations of the field's formula per pixel")
-        .y_desc("error in depth, 99th of 100 pixels, in widths of a pixel")
-        .axis_style(theme.ink)
-        .bold_line_style(theme.faint)
-        .light_line_style(TRANSPARENT)
-        .label_style(label(13))
-        .axis_desc_style(label(14))
-        .x_label_formatter(&|value| plain(*value))
-        .y_label_formatter(&|value| plain(*value))
-        .draw()?;
+    let names_of_axes = [
+        "operations of the field's formula per pixel",
+        "error in depth, 99th of 100 pixels, in widths of a pixel",
+    ];
+    mesh(&mut plane, theme, names_of_axes)?;
 
     let front = chart.front();
     let line = front.iter().map(|row| place(row));
@@ -220,6 +238,6 @@ fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
 }
 
 /// 0.001, 20, 3000: as few digits as the axis needs.
-pub(super) fn plain(value: f64) -> String {
+fn plain(value: f64) -> String {
     if value >= 1.0 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) }
 }

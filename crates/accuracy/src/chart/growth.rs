@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::draw::{DrawError, Font, plain, themed};
+use super::draw::{DrawError, Font, mesh, themed};
 
 const SIZE: (u32, u32) = (760, 460);
 /// Part of a span that is left free beside what is drawn.
@@ -57,18 +57,7 @@ pub fn growth_svg(growth: &Growth, font: Font) -> Result<String, DrawError> {
                 (leaves[0]..leaves[1]).log_scale(),
                 (costs[0]..costs[1]).log_scale(),
             )?;
-        plane
-            .configure_mesh()
-            .x_desc("leaves")
-            .y_desc(&growth.cost)
-            .axis_style(theme.ink)
-            .bold_line_style(theme.faint)
-            .light_line_style(TRANSPARENT)
-            .label_style(label(13))
-            .axis_desc_style(label(14))
-            .x_label_formatter(&|value| plain(*value))
-            .y_label_formatter(&|value| plain(*value))
-            .draw()?;
+        mesh(&mut plane, theme, ["leaves", &growth.cost])?;
         plane
             .draw_series(LineSeries::new(ends, theme.soft.stroke_width(1)))?
             .label("square root")

@@ -270,7 +270,11 @@ impl<T: Real> Walk<T> {
             Turn::Onward(t) => self.t = t,
         }
         // A place that is no number ends the ray too.
-        let within = self.inside.is_some() || self.t <= self.end;
+        self.ended(self.inside.is_some() || self.t <= self.end, limits)
+    }
+
+    /// What has become of a ray that has met nothing yet, if it is not `within` its way or has run out of steps.
+    fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<T>> {
         if !within {
             Some(self.unmet())
         } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {

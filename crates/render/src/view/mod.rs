@@ -288,7 +288,7 @@ impl View {
         let occlusion = self.occlusion.unwrap_or(ViewOcclusion { radius: 0.0, strength: 0.0 });
         ViewBlock {
             eye: single(self.eye),
-            pixel_radius: (spread - radius) as f32,
+            pixel_radius: (radius + spread) as f32,
             right: single(self.right),
             t_max: self.t_max as f32,
             up: single(self.up),

@@ -3,7 +3,7 @@
 use sdfc_graph::eval::Packet;
 
 use super::super::ahead::Ahead;
-use super::{Batch, CAPPED, HIT, LANES, Limits, Ray, Real, Trace, Walk, packed};
+use super::{Batch, HIT, LANES, Limits, Ray, Real, Trace, Walk, packed};
 
 /// Takes all rays to their ends; the result has their order.
 pub(in super::super) fn trace_among_copies<T: Real>(
@@ -54,12 +54,6 @@ impl<T: Real> Walk<T> {
         let within = reach <= self.end;
         let rounding = self.ray.rounding(self.t);
         self.t = if within { reach.max(self.t + rounding) } else { reach };
-        if !within {
-            Some(self.unmet())
-        } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
-            Some(self.ends(self.ahead.start + self.t, CAPPED))
-        } else {
-            None
-        }
+        self.ended(within, limits)
     }
 }
