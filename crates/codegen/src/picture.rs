@@ -2,7 +2,7 @@
 
 use naga::{Function, Module, ResourceBinding, UniqueArena};
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Lens, LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where};
+use sdfc_graph::{LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where};
 use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
 
 use crate::culling::{Visits, culling};
@@ -34,18 +34,18 @@ pub(crate) const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3
 /// has no distance or no gradient; others where its nodes cannot be lowered.
 pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
-    link_picture(program, Form::Compute, method)
+    link_picture(program, Form::Compute, method, None)
 }
 
-/// As [`render_module`], for views from elsewhere than the scene's camera: whether their rays are parallel is not known
-/// before.
+/// As [`render_module`], for views from elsewhere than the scene's camera, by rays that are parallel or not whatever those of
+/// that camera are.
 ///
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn posed_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+pub fn posed_module(program: &Program, method_name: &str, parallel: bool) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
-    link_picture(program, Form::Posed, method)
+    link_picture(program, Form::Compute, method, Some(parallel))
 }
 
 /// As [`render_module`], with the unit normals of what rays from the eye meet for colours, and no other rays: what
@@ -58,7 +58,7 @@ pub fn normals_module(program: &Program, method: &Method) -> Result<Shader, Erro
     let Settings { camera, march, .. } = program.settings.clone();
     let settings = Settings { camera, march, ..Settings::default() };
     let unlit = Program { material: None, settings, ..program.clone() };
-    link_picture(&unlit, Form::Normals, method)
+    link_picture(&unlit, Form::Normals, method, None)
 }
 
 /// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an
@@ -96,7 +96,7 @@ fn measured(
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let distance = match field {
-        FieldSource::Scene => return link_picture(program, Form::Compute, method),
+        FieldSource::Scene => return link_picture(program, Form::Compute, method, None),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
         FieldSource::Units | FieldSource::Tape => None,
     };
@@ -192,7 +192,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
         Stage::Fragment if options.rows_up => Form::FragmentUp,
         Stage::Fragment => Form::Fragment,
     };
-    let mut picture = Picture::skeleton(program, form, method, &[], false)?;
+    let mut picture = Picture::skeleton(program, form, method, None, &[], false)?;
     let place = |offset| ResourceBinding {
         group: options.group,
         binding: options.binding.saturating_add(offset),
@@ -214,8 +214,14 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
     picture.finish()
 }
 
-fn link_picture(program: &Program, form: Form, method: &Method) -> Result<Shader, Error> {
-    let mut picture = Picture::skeleton(program, form, method, &[], true)?;
+/// `parallel` is as of [`Picture::skeleton`].
+fn link_picture(
+    program: &Program,
+    form: Form,
+    method: &Method,
+    parallel: Option<bool>,
+) -> Result<Shader, Error> {
+    let mut picture = Picture::skeleton(program, form, method, parallel, &[], true)?;
     let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
@@ -242,11 +248,12 @@ pub(crate) struct Picture<'p> {
 
 impl<'p> Picture<'p> {
     /// The files of `march`, without calls to these functions and what else the scene has no need of. It may be `culled` if
-    /// what calls it runs the other shader first.
+    /// what calls it runs the other shader first. Rays are `parallel` as the scene's camera says, if nothing else does.
     pub(crate) fn skeleton(
         program: &'p Program,
         form: Form,
         method: &Method,
+        parallel: Option<bool>,
         unused: &[&str],
         culled: bool,
     ) -> Result<Self, Error> {
@@ -254,7 +261,7 @@ impl<'p> Picture<'p> {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let mut features = features(program, method.looks_ahead);
         features.culled = culled && is_culled(program, method);
-        features.posed = form == Form::Posed;
+        features.parallel = parallel.unwrap_or(features.parallel);
         let mut fillings = ahead(program, features);
         let steps = features.steps() && !features.closed;
         if steps || features.occlusion {
@@ -436,7 +443,7 @@ fn features(program: &Program, looks_ahead: bool) -> Features {
         sky: settings.sky.is_some(),
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
-        parallel: matches!(settings.camera.map(|camera| camera.lens), Some(Lens::Height(_))),
+        parallel: settings.is_parallel(),
         ..ray_features(program, looks_ahead)
     };
     for light in &settings.lights {

@@ -30,7 +30,7 @@ pub fn shadertoy_module(
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let mut picture =
-        Picture::skeleton(program, Form::Shadertoy, method, &unused_loads(program), false)?;
+        Picture::skeleton(program, Form::Shadertoy, method, None, &unused_loads(program), false)?;
     picture.module.entry_points.clear();
 
     let camera = program.settings.camera.as_ref().map(camera_nodes);

@@ -64,6 +64,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Whether rays from the eye are parallel.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.camera.map(|camera| camera.lens), Some(Lens::Height(_)))
+    }
+
     /// All nodes that the settings are made of.
     pub fn nodes(&self) -> Vec<NodeId> {
         // Taken apart so that a new setting does not compile until it is thought of here.

@@ -213,8 +213,6 @@ pub struct Features {
     pub fog_color: bool,
     /// Rays from the eye are parallel.
     pub parallel: bool,
-    /// The view says whether they are, whatever the scene's camera is.
-    pub posed: bool,
     /// Rays from the eye visit only those rounds of loops that can matter to them.
     pub culled: bool,
     /// A pixel's evaluations are not those of the field, but of operands of its loops: all rounds that were visited.
@@ -233,7 +231,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 20] {
+    pub fn overrides(self) -> [(&'static str, bool); 19] {
         // Taken apart so that a new feature does not compile until it is thought of here. Materials have a file
         // of their own.
         let Self {
@@ -252,7 +250,6 @@ impl Features {
             fog,
             fog_color,
             parallel,
-            posed,
             culled,
             counted,
         } = self;
@@ -273,7 +270,6 @@ impl Features {
             ("FOG", fog),
             ("FOG_COLOR", fog_color),
             ("PARALLEL", parallel),
-            ("POSED", posed),
             ("CULLED", culled),
             ("ROAMING", self.roaming()),
             ("COUNTED", counted),
@@ -324,8 +320,6 @@ pub enum Form {
     /// A compute stage, one invocation for each pixel of a tile, into a buffer.
     #[default]
     Compute,
-    /// As [`Form::Compute`], from wherever the view says, also by parallel rays of a scene whose camera has others.
-    Posed,
     /// As [`Form::Compute`], with the normals of what rays from the eye meet for colours, and no other rays.
     Normals,
     /// A triangle over the target and a fragment stage, the target's first row topmost.
@@ -343,7 +337,7 @@ impl Form {
         const COMPUTE: &str = include_str!("wgsl/compute.wgsl");
         const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
         match self {
-            Self::Compute | Self::Posed => &[PICTURE, BUFFER, COMPUTE],
+            Self::Compute => &[PICTURE, BUFFER, COMPUTE],
             Self::Normals => &[include_str!("wgsl/normals.wgsl"), BUFFER, COMPUTE],
             Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],

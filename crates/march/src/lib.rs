@@ -86,7 +86,7 @@ pub struct LightBlock {
 pub struct ViewBlock {
     /// Where rays start.
     pub eye: [f32; 3],
-    /// Half the width of a pixel at distance 1; of parallel rays half its width everywhere, below 0.
+    /// Half the width of a pixel at distance 1; of parallel rays, everywhere.
     pub pixel_radius: f32,
     /// Half the width of the picture at distance 1, as a vector.
     pub right: [f32; 3],

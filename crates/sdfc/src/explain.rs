@@ -70,7 +70,6 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         fog,
         fog_color: _,
         parallel,
-        posed: _,
         culled,
         counted: _,
     } = features;

@@ -117,8 +117,8 @@ impl Scene {
         };
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
-                let is_posed = options.pose.is_some();
-                let (engine, compile) = self.pipeline(&gpu, &program, &method, is_posed)?;
+                let parallel = options.pose.map(|pose| pose.parallel);
+                let (engine, compile) = self.pipeline(&gpu, &program, &method, parallel)?;
                 (engine, compile, None)
             }
             Err(note) => {
@@ -152,11 +152,13 @@ impl Scene {
         gpu: &Gpu,
         program: &Program,
         method: &str,
-        is_posed: bool,
+        parallel: Option<bool>,
     ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
-        let link = if is_posed { posed_module } else { render_module };
-        let shader = link(program, method)?;
+        let shader = match parallel {
+            Some(parallel) => posed_module(program, method, parallel)?,
+            None => render_module(program, method)?,
+        };
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;

@@ -84,8 +84,8 @@ pub struct Engines {
 }
 
 impl Engines {
-    /// What draws a scene on a device, and with which method. `begins` is asked before a pipeline is made, which may take a
-    /// while; `None` where it says no.
+    /// What draws a scene on a device, by rays that are parallel or not, and with which method. `begins` is asked before a
+    /// pipeline is made, which may take a while; `None` where it says no.
     ///
     /// # Errors
     ///
@@ -94,12 +94,14 @@ impl Engines {
         &mut self,
         scene: &Scene,
         wanted: &str,
+        parallel: bool,
         stages: &mut Stages,
         begins: impl FnOnce() -> bool,
     ) -> Result<Option<Prepared>, Error> {
         let start = Instant::now();
         let marched = scene.marched(wanted);
-        let shader = posed_module(&marched.program, &marched.method).map_err(Error::Codegen)?;
+        let shader = posed_module(&marched.program, &marched.method, parallel);
+        let shader = shader.map_err(Error::Codegen)?;
         let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
         stages.lower = milliseconds_since(start);
         if let Some(running) = self.running.as_mut().filter(|running| running.text == text) {

@@ -350,7 +350,7 @@ impl Court {
         let scene = &case.model.scene;
         // `auto` is shown under its own name also where it is another method.
         let marched = scene.marched(method.name);
-        let shader = posed_module(&marched.program, &marched.method)?;
+        let shader = posed_module(&marched.program, &marched.method, case.pose.parallel)?;
         let pipeline = Pipeline::new(gpu, shader, marched.program.uniforms.len())?;
         let uniforms = uniform_values(&marched.program, &case.frame);
         for part in method.charted {

@@ -46,6 +46,8 @@ pub struct Model {
     pub engine: Engine,
     /// The method that it is drawn with.
     pub method: String,
+    /// Whether it is drawn by parallel rays.
+    pub parallel: bool,
     /// The program with what the method asks for, where it is not that of the scene.
     pub enclosed: Option<Program>,
     /// Its field on the CPU.

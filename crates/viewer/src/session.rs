@@ -183,7 +183,7 @@ impl Session {
 
     /// Shows another scene in its place.
     pub fn open_other(&mut self, path: PathBuf) {
-        self.build = Build { path, method: None, ..self.build.clone() };
+        self.build = Build { path, method: None, parallel: None, ..self.build.clone() };
         (self.orbit, self.model, self.picture, self.asked) = (None, None, None, None);
         (self.knobs, self.clock) = (Knobs::default(), Clock::default());
         (self.findings, self.trouble, self.no_picture) = (Findings::default(), None, None);
@@ -263,6 +263,12 @@ impl Session {
         self.size = size;
         self.follow();
         let (Some(model), Some(orbit)) = (&self.model, &self.orbit) else { return };
+        let parallel = orbit.is_parallel();
+        if model.parallel != parallel {
+            // What is shown stays until there is a shader for these rays.
+            self.set_build(|build| build.parallel = Some(parallel));
+            return;
+        }
         let request = Request {
             model: Arc::clone(model),
             frame: self.values(model),

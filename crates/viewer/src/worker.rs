@@ -39,6 +39,8 @@ pub struct Build {
     pub method: Option<String>,
     /// Whether numbers in the scene move without a recompile.
     pub live: bool,
+    /// Whether rays are parallel; `None` as those of the scene's camera.
+    pub parallel: Option<bool>,
     /// Whether the processor draws although there may be an adapter.
     pub on_cpu: bool,
     /// Counts how often all has been begun anew, after a device was lost.
@@ -48,8 +50,8 @@ pub struct Build {
 impl Build {
     /// Of a file, all else left to the scene and the machine.
     pub fn of(path: impl Into<PathBuf>) -> Self {
-        let (path, method) = (path.into(), None);
-        Self { path, method, live: true, on_cpu: false, renewed: 0 }
+        let (path, method, parallel) = (path.into(), None, None);
+        Self { path, method, live: true, parallel, on_cpu: false, renewed: 0 }
     }
 }
 
@@ -268,11 +270,13 @@ impl<T: FnMut(News)> Shop<T> {
                 let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
                 let (text, pipelines) = (document.text, self.engines.pipelines);
                 let (serial, content) = (self.serial, self.content);
+                let parallel = rays(build, &scene);
                 let model = Model {
                     scene,
                     text,
                     engine,
                     method,
+                    parallel,
                     enclosed,
                     probe,
                     shapes,
@@ -319,8 +323,13 @@ impl<T: FnMut(News)> Shop<T> {
             }
             goes_on
         };
-        engines.on_device(scene, wanted, stages, begins)
+        engines.on_device(scene, wanted, rays(build, scene), stages, begins)
     }
+}
+
+/// Whether rays are parallel.
+fn rays(build: &Build, scene: &Scene) -> bool {
+    build.parallel.unwrap_or_else(|| scene.program().settings.is_parallel())
 }
 
 fn is_rolled(scene: &Scene) -> bool {

@@ -27,8 +27,6 @@ override FOG: bool;
 override FOG_COLOR: bool;
 // Rays from the eye are parallel.
 override PARALLEL: bool;
-// The view says so, whatever the scene's camera is: where `pixel_radius` is below 0.
-override POSED: bool;
 // Rays from the eye visit only those rounds of loops that can matter to them.
 override CULLED: bool;
 // There are others then.

@@ -61,16 +61,9 @@ fn ray_through(pixels: vec2f) -> Ray {
     let place = 2.0 * pixels / vec2f(view.size) - 1.0;
     let aside = place.x * view.right - place.y * view.up;
     var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.tolerance, view.steps);
-    if POSED {
-        let parallel = select(0.0, 1.0, view.pixel_radius < 0.0);
-        let radius = abs(view.pixel_radius);
-        ray.origin += parallel * aside;
-        ray.direction = normalize(view.forward + (1.0 - parallel) * aside);
-        ray.radius = parallel * radius;
-        ray.spread = (1.0 - parallel) * radius;
-    } else if PARALLEL {
+    if PARALLEL {
         ray.origin += aside;
-        ray.radius = abs(view.pixel_radius);
+        ray.radius = view.pixel_radius;
     } else {
         ray.direction = normalize(view.forward + aside);
         ray.spread = view.pixel_radius;
