@@ -3,10 +3,11 @@
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, Name};
 
-use super::call::{Callee, Given, Value, count, is_lambda};
-use super::coerce::Role;
+use super::advice::{signature, too_many};
+use super::call::{Callee, Given, Value, is_lambda};
+use super::coerce::{Role, mismatch};
 use super::decl::Slot;
-use super::types::{self, show};
+use super::types;
 use super::written::written;
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
@@ -22,6 +23,8 @@ impl<'a> Checker<'a> {
         given: Vec<Given<'a>>,
     ) -> Vec<Option<Expr>> {
         let bound = self.bind(callee, slots, given);
+        let free: Vec<&Slot> =
+            slots.iter().zip(&bound).filter(|(_, given)| given.is_empty()).map(|it| it.0).collect();
         slots
             .iter()
             .enumerate()
@@ -32,7 +35,12 @@ impl<'a> Checker<'a> {
                     return Some(self.variadic(&slots[at..], given, role, callee.span));
                 }
                 let given = given.pop()?;
-                Some(self.one_argument(given, &slot.ty, role))
+                Some(match given.value {
+                    Value::Expr(e) if given.name.is_none() && is_literal(e) => {
+                        self.literal(e, &slot.ty, role, &free)
+                    }
+                    _ => self.one_argument(given, &slot.ty, role),
+                })
             })
             .collect()
     }
@@ -46,7 +54,13 @@ impl<'a> Checker<'a> {
     ) -> Vec<Vec<Given<'a>>> {
         let mut bound: Vec<Vec<Given>> = vec![Vec::new(); slots.len()];
         let (mut next, mut named, mut excess) = (0, false, Vec::new());
-        for given in given {
+        for mut given in given {
+            if given.name.is_none()
+                && let Some(found) = self.parameter_for_value(callee, slots, &given)
+            {
+                self.report(found);
+                given = Given::done(poison(given.span));
+            }
             let place = match given.name {
                 None if named => {
                     let message = "positional arguments come before named ones";
@@ -93,7 +107,11 @@ impl<'a> Checker<'a> {
             let near = nearest(&name.text, slots.iter().map(|slot| slot.name));
             let found = match near {
                 Some(near) => found.help(format!("did you mean `{near}`?")),
-                None => found.help(signature(callee.name, slots)),
+                None => self.elsewhere(
+                    callee.name,
+                    &name.text,
+                    found.help(signature(callee.name, slots)),
+                ),
             };
             self.report(found);
             return None;
@@ -106,6 +124,26 @@ impl<'a> Checker<'a> {
             return None;
         }
         Some(place)
+    }
+
+    /// A literal without a name. Where it does not fit, but one of the `free` parameters, that is said.
+    fn literal(&mut self, e: &'a ast::Expr, want: &Type, role: Role, free: &[&Slot<'a>]) -> Expr {
+        let value = self.infer(e);
+        let value = match self.try_coerce(value, want) {
+            Ok(value) => return value,
+            Err(value) => value,
+        };
+        let found = mismatch(&value, want, role);
+        let fits = |slot: &&&Slot| {
+            types::same_value(&value.ty, &slot.ty)
+                || (value.ty == Type::Int && slot.ty == Type::Number)
+        };
+        let found = match free.iter().find(fits) {
+            Some(slot) => found.help(format!("or name it: {}: {}", slot.name, written(e))),
+            None => found,
+        };
+        self.report(found);
+        poison(e.span)
     }
 
     fn report_missing(&mut self, callee: Callee, slots: &[Slot<'a>], bound: &[Vec<Given<'a>>]) {
@@ -201,35 +239,13 @@ impl<'a> Checker<'a> {
     }
 }
 
+/// Whether an expression is a number, colour, text or truth value, as it is written.
+fn is_literal(e: &ast::Expr) -> bool {
+    use ast::ExprKind::{Bool, Color, Number, Text};
+    matches!(e.kind, Number { .. } | Color(_) | Text(_) | Bool(_))
+}
+
 /// Whether a value that is no `want` fits a later parameter, which only its name can reach.
 fn meant_for(ty: &Type, later: &Slot, want: &Type) -> bool {
     !types::poisoned(ty) && !types::same_value(ty, want) && types::same_value(ty, &later.ty)
-}
-
-fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
-    let message = match slots.len() {
-        0 => format!("`{}` takes no arguments", callee.name),
-        n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
-    };
-    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
-}
-
-/// How to call it: `capsule(a: vec3, b: vec3, r: number = 0.5)`
-fn signature(name: &str, slots: &[Slot]) -> String {
-    let slots: Vec<String> = slots
-        .iter()
-        .map(|slot| {
-            let ty = match &slot.ty {
-                Type::List(of) if slot.variadic => format!("{}...", show(of)),
-                ty => show(ty),
-            };
-            let default = match slot.default {
-                Some(default) => format!(" = {}", written(default)),
-                None if slot.optional => " = ...".to_owned(),
-                None => String::new(),
-            };
-            format!("{}: {ty}{default}", slot.name)
-        })
-        .collect();
-    format!("{name}({})", slots.join(", "))
 }

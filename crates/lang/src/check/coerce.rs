@@ -16,6 +16,8 @@ pub(super) enum Role<'r> {
     Positional(usize),
     /// What a declaration gives.
     Result(&'r str),
+    /// The distance that a declared shape is at.
+    Formula(&'r str),
     /// What a lambda gives.
     LambdaResult,
     /// Something with a name of its own: `the condition`.
@@ -29,6 +31,7 @@ impl Role<'_> {
             Self::Argument(callee, parameter) => format!("{callee}'s `{parameter}`"),
             Self::Positional(at) => format!("argument {at} of this function"),
             Self::Result(name) => format!("the result of `{name}`"),
+            Self::Formula(name) => format!("the formula of `{name}`"),
             Self::LambdaResult => "the result of this function".into(),
             Self::The(what) => what.into(),
         }
@@ -186,7 +189,7 @@ pub(super) fn has_no_need_of_a_unit(value: &Expr) -> bool {
 }
 
 /// What to say of a value that does not fit.
-fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
+pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
     let subject = role.subject();
     // A value may stand for a constant function: then what that function gives is wanted.
     let want = match (&value.ty, want) {
@@ -209,7 +212,12 @@ fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
         _ => {
             let message =
                 format!("{subject} is {}; this is {}", describe(want), describe(&value.ty));
-            let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
+            let mut found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
+            if let (Role::Formula(name), Type::Shape(_)) = (role, &value.ty) {
+                found = found.help(format!(
+                    "what is made of shapes is declared by `fn`: fn {name}(...) = ..."
+                ));
+            }
             match way_out(&value.ty, want) {
                 Some(help) => found.help(help),
                 None => found,

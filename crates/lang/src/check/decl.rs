@@ -379,8 +379,8 @@ impl<'a> Checker<'a> {
             _ => None,
         });
         clauses.material = written.next().map(|e| self.check_material(e));
-        let what = format!("the formula of `{}`", signature.name);
-        let body = self.check_expr(&decl.body, &Type::Number, Role::The(&what));
+        let role = Role::Formula(signature.name);
+        let body = self.check_expr(&decl.body, &Type::Number, role);
         self.body.leave(mark);
         body
     }

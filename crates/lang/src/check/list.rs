@@ -53,7 +53,9 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         let role = match role {
             Role::Argument(..) | Role::Positional(_) => role,
-            Role::Result(_) | Role::LambdaResult | Role::The(_) => Role::The("this element"),
+            Role::Result(_) | Role::Formula(_) | Role::LambdaResult | Role::The(_) => {
+                Role::The("this element")
+            }
         };
         let elements: Vec<Element> =
             elements.iter().map(|element| self.element(element, Some((want, role))).0).collect();

@@ -15,6 +15,7 @@
     reason = "the rule for all other types and forms is an error message, also for new ones"
 )]
 
+mod advice;
 mod arguments;
 mod block;
 mod body;

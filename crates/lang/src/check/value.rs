@@ -7,7 +7,7 @@ use super::body::Body;
 use super::call::{Callee, Given};
 use super::coerce::Role;
 use super::decl::Target;
-use super::kernel::Builtin;
+use super::kernel::{self, Builtin};
 use super::names::Found;
 use super::order::Node;
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, State, poison, types};
@@ -50,9 +50,10 @@ impl<'a> Checker<'a> {
             Found::Let(index) => self.let_value(*index, span),
             Found::Param(index) => self.param_value(*index, span),
             Found::Decls(decls) => self.function_value(decls, name, span),
-            Found::Builtin(builtin) => match constant(*builtin) {
-                Some((kind, ty)) => Expr { kind, ty, span },
-                None => self.no_single_type(name, span),
+            Found::Builtin(builtin) => match (constant(*builtin), builtin) {
+                (Some((kind, ty)), _) => Expr { kind, ty, span },
+                (None, Builtin::Math(_)) => self.no_single_type(name, span),
+                (None, _) => self.not_called(name, span),
             },
             Found::Setting(_) => {
                 self.misplaced_setting(name, span);
@@ -130,6 +131,17 @@ impl<'a> Checker<'a> {
         self.report(Diagnostic::error(Code::TYPE_MISMATCH, span, message).help(format!(
             "call it, or say what it takes: fn(a: number, b: number) = {name}(a, b)"
         )));
+        poison(span)
+    }
+
+    /// A function of the kernel that only a call makes a value of.
+    fn not_called(&mut self, name: &str, span: Span) -> Expr {
+        let message = format!("`{name}` stands for nothing without its arguments");
+        let found = Diagnostic::error(Code::TYPE_MISMATCH, span, message);
+        self.report(match kernel::ROWS.iter().find(|row| row.name == name) {
+            Some(row) => found.help(format!("call it: {}", row.example)),
+            None => found,
+        });
         poison(span)
     }
 

@@ -262,7 +262,7 @@ impl Parser<'_> {
             self.skip_to(start, stops)?;
             return Ok(None);
         };
-        let value = match self.equals(&format!("`=` and a value for `{}`", name.text)) {
+        let value = match self.equals(&name.text) {
             Ok(()) => self.expr_or_skip(stops)?,
             Err(Failed) => {
                 let at = self.span();
@@ -272,8 +272,9 @@ impl Parser<'_> {
         Ok(Some(Let { name, value, span: self.since(start) }))
     }
 
-    /// `=`, with advice on what is likely to stand in its place.
-    pub(super) fn equals(&mut self, what: &str) -> Parsed<()> {
+    /// `=` after a `let` and a name, with advice on what is likely to stand in its place.
+    fn equals(&mut self, name: &str) -> Parsed<()> {
+        let what = &format!("`=` and a value for `{name}`");
         match self.kind() {
             TokenKind::Eq => {
                 self.bump();
@@ -283,6 +284,13 @@ impl Parser<'_> {
                 self.expected_with(what, &["a `let` takes its type from its value"])
             }
             TokenKind::EqEq => self.expected_with(what, &["`==` compares; `=` gives a value"]),
+            TokenKind::OpenParen => {
+                let declared = format!(
+                    "what takes arguments is declared by `fn`: fn {name}(size: length) = ..."
+                );
+                let formula = "a formula in the point `p` by `solid`, `region` or `shape`";
+                self.expected_with(what, &[&declared, formula])
+            }
             _ => self.expected(what),
         }
     }

@@ -1,0 +1,111 @@
+//! What is said of arguments that find no parameter.
+
+use sdfc_diagnostics::{Code, Diagnostic, Span};
+use sdfc_syntax::ast::{self, DeclKind};
+
+use super::call::{Callee, Given, Value, count};
+use super::decl::Slot;
+use super::names::{Entry, Found, is_private};
+use super::types::show;
+use super::written::written;
+use super::{Checker, DeclIndex};
+use crate::hir::Type;
+
+impl<'a> Checker<'a> {
+    /// Where else what was meant by a name for an argument may be: called on the shape, or in a shape of a longer name.
+    pub(super) fn elsewhere(&mut self, callee: &str, name: &str, found: Diagnostic) -> Diagnostic {
+        let makes_shape = match self.look_up(callee) {
+            Some(Found::Decls(decls)) => {
+                decls.iter().any(|decl| self.decls[decl.0].ast.kind != DeclKind::Fn)
+            }
+            _ => false,
+        };
+        if !makes_shape {
+            return found;
+        }
+        if self.library_decls(name).iter().any(|decl| self.takes_shape(*decl)) {
+            return found.help(format!("`{name}` is called on a shape: {callee}(...).{name}(...)"));
+        }
+        let mut kin: Vec<&str> = Vec::new();
+        for other in self.library.keys().filter(|other| *other != &callee && other.contains(callee))
+        {
+            let has = |decl: &DeclIndex| {
+                self.decls[decl.0].ast.signature.parms.iter().any(|parm| parm.name.text == name)
+            };
+            if !is_private(other) && self.library_decls(other).iter().any(has) {
+                kin.push(other);
+            }
+        }
+        kin.sort_unstable();
+        match &kin[..] {
+            [] => found,
+            [one] => found.help(format!("`{one}` has one")),
+            [one, other, ..] => found.help(format!("`{one}` and `{other}` have one")),
+        }
+    }
+
+    fn library_decls(&self, name: &str) -> &[DeclIndex] {
+        match self.library.get(name) {
+            Some(Entry::Decls(decls)) => decls,
+            Some(Entry::Let(_) | Entry::Param(_)) | None => &[],
+        }
+    }
+
+    /// Whether the first parameter is a shape, so that it is called on one.
+    fn takes_shape(&self, decl: DeclIndex) -> bool {
+        let first = self.decls[decl.0].ast.signature.parms.first();
+        matches!(
+            first.and_then(|parm| parm.ty.as_ref()).map(|ty| &ty.kind),
+            Some(ast::TypeExprKind::Named(word)) if matches!(&word[..], "solid" | "region" | "shape")
+        )
+    }
+
+    /// The name of a parameter where its value belongs: `mirror(x)`, and nothing else is called `x`.
+    pub(super) fn parameter_for_value(
+        &mut self,
+        callee: Callee,
+        slots: &[Slot<'a>],
+        given: &Given<'a>,
+    ) -> Option<Diagnostic> {
+        let Value::Expr(ast::Expr { kind: ast::ExprKind::Name(name), span }) = given.value else {
+            return None;
+        };
+        let slot = slots.iter().find(|slot| slot.name == name)?;
+        if name == "p" || self.look_up(name).is_some() {
+            return None;
+        }
+        let value = if slot.ty == Type::Bool { "true" } else { "..." };
+        let message = format!("`{name}` has no value here; it is a parameter of `{}`", callee.name);
+        let found = Diagnostic::error(Code::UNKNOWN_NAME, *span, message);
+        let found = found.help(format!("give it one: {name}: {value}"));
+        Some(found.help(format!("or name a value so, above this line: let {name} = ...")))
+    }
+}
+
+pub(super) fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
+    let message = match slots.len() {
+        0 => format!("`{}` takes no arguments", callee.name),
+        n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
+    };
+    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
+}
+
+/// How to call it: `capsule(a: vec3, b: vec3, r: number = 0.5)`
+pub(super) fn signature(name: &str, slots: &[Slot]) -> String {
+    let slots: Vec<String> = slots
+        .iter()
+        .map(|slot| {
+            let ty = match &slot.ty {
+                Type::List(of) if slot.variadic => format!("{}...", show(of)),
+                ty => show(ty),
+            };
+            let default = match slot.default {
+                Some(default) => format!(" = {}", written(default)),
+                None if slot.optional => " = ...".to_owned(),
+                None => String::new(),
+            };
+            format!("{}: {ty}{default}", slot.name)
+        })
+        .collect();
+    format!("{name}({})", slots.join(", "))
+}
