@@ -43,6 +43,7 @@ pub mod reference;
 pub mod settings;
 pub mod slots;
 mod spelling;
+mod synonyms;
 
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 

@@ -7,7 +7,7 @@ use crate::check::kernel::ROWS;
 use crate::check::types::{WORDS, show};
 use crate::library::{self, Entry};
 use crate::settings::{self, SettingRow};
-use crate::spelling::nearest;
+use crate::spelling;
 
 /// All entries, topic by topic.
 pub fn entries() -> Vec<Entry> {
@@ -55,7 +55,7 @@ fn setting(row: &SettingRow) -> Entry {
     }
 }
 
-/// The name that was probably meant.
-pub fn near<'e>(entries: &'e [Entry], name: &str) -> Option<&'e str> {
-    nearest(name, entries.iter().map(|entry| entry.name.as_str()))
+/// What to say of a name that nothing has: "did you mean `sphere`?"
+pub fn meant(entries: &[Entry], name: &str) -> Option<String> {
+    spelling::meant(name, entries.iter().map(|entry| entry.name.as_str()))
 }

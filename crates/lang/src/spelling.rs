@@ -1,4 +1,17 @@
-//! What was probably meant by a misspelt name.
+//! What was probably meant by a name that nothing has.
+
+use crate::synonyms;
+
+/// What to say of a name that is none of these, if it is one of them in another spelling, has a name of its own here, or is
+/// near to one.
+pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    let names: Vec<&str> = names.collect();
+    let ask = |name: &str| format!("did you mean `{name}`?");
+    synonyms::respelt(name, &names)
+        .map(ask)
+        .or_else(|| synonyms::here(name).map(|here| format!("that is `{here}` here")))
+        .or_else(|| nearest(name, names.into_iter()).map(ask))
+}
 
 /// The name that is fewest edits away, if that is near enough to be a slip of the pen;
 /// among equals the first in alphabetical order.

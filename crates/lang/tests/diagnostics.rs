@@ -33,6 +33,7 @@ fn names() {
         "solid a(r: length) = length(p) - r\nregion a(r: length) = length(p) - r\na(1)",
         "fn f(a, a) = a\nsphere(f(1, 2))",
         "sphere(1).smooooth(2).tralate(x: 1)",
+        "cube(1)\nsphere(PI)\nsdRoundCone(1)\nsmin(sphere(1), box(1), 0.1)\nsphere(1).move(x: 1).color(red)\nlight()\nfn f(x: float) = x",
     ]));
 }
 
@@ -47,6 +48,7 @@ fn calls() {
         "torus(majr: 1)",
         "box([1, 1, 1], round: 0.1)\nsphere(1, color: #f00)\ncone(h: 1, r1: 1)\nbox(r: 0.1)\ncamera(eye: [1, 2, 3], translate: 1)",
         "solid arm(a: angle) = capsule([0, 0, 0], [0, 1, 0]).rotate(z: a)\narm(20deg)",
+        "translate([1, 2, 3])\nbox(1).rotate([0, 45, 0])",
         "sphere(1).mirror(x)\nsphere(r)\nsphere(1).translate(x: y)",
         "sphere(1)\nsun(shadow: soft)\nsphere(min)\nambient(0.3)\nsun(#fff)\nsun(1)\nsphere(#f00)",
         "sphere(for i in 0..3: i)",

@@ -61,8 +61,8 @@ fn every_setting_is_there_with_its_parameters() {
 #[test]
 fn a_misspelt_name_has_a_near_one() {
     let entries = reference::entries();
-    assert_eq!(reference::near(&entries, "spere"), Some("sphere"));
-    assert_eq!(reference::near(&entries, "smoothstp"), Some("smoothstep"));
-    assert_eq!(reference::near(&entries, "camra"), Some("camera"));
-    assert_eq!(reference::near(&entries, "teapot"), None);
+    assert_eq!(reference::meant(&entries, "spere").as_deref(), Some("did you mean `sphere`?"));
+    assert_eq!(reference::meant(&entries, "cube").as_deref(), Some("that is `box` here"));
+    assert_eq!(reference::meant(&entries, "Camera").as_deref(), Some("did you mean `camera`?"));
+    assert_eq!(reference::meant(&entries, "teapot"), None);
 }

@@ -107,11 +107,13 @@ fn find<'e>(entries: &'e [Entry], name: &str, console: &Console) -> Result<Found
     if !full.is_empty() || !listed.is_empty() {
         return Ok(Found { full, listed });
     }
-    let near = reference::near(entries, name);
-    let meant = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-    let missing = format!("nothing is called `{name}`{meant}");
+    let meant = reference::meant(entries, name);
+    let missing = match &meant {
+        Some(meant) => format!("nothing is called `{name}`; {meant}"),
+        None => format!("nothing is called `{name}`"),
+    };
     let listed = those(&|entry| mentions(entry, name));
-    if near.is_some() || listed.is_empty() {
+    if listed.is_empty() {
         return Err(Failure::Call(missing));
     }
     console.note(&format!("{missing}; these mention it:"));

@@ -212,16 +212,8 @@ pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
         _ => {
             let message =
                 format!("{subject} is {}; this is {}", describe(want), describe(&value.ty));
-            let mut found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
-            if let (Role::Formula(name), Type::Shape(_)) = (role, &value.ty) {
-                found = found.help(format!(
-                    "what is made of shapes is declared by `fn`: fn {name}(...) = ..."
-                ));
-            }
-            match way_out(&value.ty, want) {
-                Some(help) => found.help(help),
-                None => found,
-            }
+            let found = Diagnostic::error(Code::TYPE_MISMATCH, value.span, message);
+            ways_out(&value.ty, want, role).into_iter().fold(found, Diagnostic::help)
         }
     }
 }
@@ -265,10 +257,27 @@ fn literal(value: &Expr) -> Option<f64> {
     }
 }
 
+/// How to come by what is wanted, best first.
+fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
+    match (role, have, want, way_out(have, want)) {
+        (Role::Formula(name), Type::Shape(_), _, sampled) => {
+            let made = format!("what is made of shapes is declared by `fn`: fn {name}(...) = ...");
+            std::iter::once(made).chain(sampled).collect()
+        }
+        (Role::Argument(callee, _), _, Type::Shape(_), None) => {
+            vec![format!("a shape comes first: {callee}(a, ...) or a.{callee}(...)")]
+        }
+        (_, _, _, way) => way.into_iter().collect(),
+    }
+}
+
 /// How to turn one type into another where the language does not.
 fn way_out(have: &Type, want: &Type) -> Option<String> {
     match (have, want) {
         (Type::Number | Type::Angle, Type::Int) => Some("round(x) or floor(x) make it whole".into()),
+        (Type::Vec(_) | Type::List(_), Type::Angle) => Some(
+            "each axis has a parameter of its own: rotate(x: 10deg, y: 45deg)".into(),
+        ),
         (Type::Number | Type::Int, Type::Fn(..)) if *want == types::blend() => {
             Some("a blend of that width: smooth(0.1)".into())
         }

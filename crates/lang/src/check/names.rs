@@ -10,7 +10,7 @@ use super::body::LocalIndex;
 use super::kernel::{self, Builtin};
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
 use crate::settings::SettingRow;
-use crate::spelling::nearest;
+use crate::spelling::meant;
 
 /// What a name at top level of a file means there.
 #[derive(Clone, Debug)]
@@ -234,13 +234,13 @@ impl<'a> Checker<'a> {
             (Some(later), _) => found
                 .note_at(later, "it is known only after this line")
                 .help("move that line above this one"),
-            (None, Some(near)) => found.help(format!("did you mean `{near}`?")),
+            (None, Some(meant)) => found.help(meant),
             (None, None) => found,
         };
         self.report(found);
     }
 
-    /// The visible name nearest to one that nothing has.
+    /// What to say of a name that nothing has.
     fn suggestion(&self, name: &str) -> Option<String> {
         let module = &self.modules[self.body.module];
         let file = module.names.iter().filter(|(_, entry)| self.is_visible(entry));
@@ -252,7 +252,7 @@ impl<'a> Checker<'a> {
             .chain(self.library.keys().copied())
             .chain(kernel::ROWS.iter().map(|row| row.name))
             .chain(self.settings.iter().map(|row: &SettingRow| row.name));
-        nearest(name, names).map(str::to_owned)
+        meant(name, names)
     }
 }
 

@@ -6,7 +6,7 @@ use sdfc_syntax::ast::{DeclKind, Signature, TypeExpr, TypeExprKind};
 
 use super::{Checker, poison};
 use crate::hir::{Expr, Type};
-use crate::spelling::nearest;
+use crate::spelling::meant;
 
 /// A word that names a type, and what it is for.
 pub(crate) struct Word {
@@ -348,8 +348,8 @@ impl Checker<'_> {
     fn unknown_word(&mut self, word: &str, ty: &TypeExpr) -> Type {
         let found =
             Diagnostic::error(Code::UNKNOWN_NAME, ty.span, format!("there is no type `{word}`"));
-        let found = match nearest(word, WORDS.iter().map(|word| word.name)) {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
+        let found = match meant(word, WORDS.iter().map(|word| word.name)) {
+            Some(meant) => found.help(meant),
             None => {
                 let words: Vec<&str> = WORDS.iter().map(|word| word.name).collect();
                 found.help(format!("types are {}, [T], fn(A) -> R", words.join(", ")))

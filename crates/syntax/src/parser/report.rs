@@ -94,17 +94,42 @@ impl Parser<'_> {
         }
         let message = "expected an operator or the end of the line";
         let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
-        let help = match self.kind() {
-            TokenKind::Comma => Some("commas separate arguments and elements of lists"),
-            kind if kind.declares() => Some("start a new line, or separate the two with `;`"),
-            kind => self.operator_hint().or_else(|| {
-                kind.starts_primary().then_some("join solids with `|`, or start a new line")
-            }),
+        let help = match (self.kind(), self.operator_hint()) {
+            (TokenKind::Comma, _) => {
+                vec!["commas separate arguments and elements of lists".to_owned()]
+            }
+            (kind, _) if kind.declares() => {
+                vec!["start a new line, or separate the two with `;`".to_owned()]
+            }
+            (_, Some(hint)) => vec![hint.to_owned()],
+            (kind, None) => {
+                let join = || "join solids with `|`, or start a new line".to_owned();
+                self.brackets_hint().into_iter().chain(kind.starts_primary().then(join)).collect()
+            }
         };
-        self.report(match help {
-            Some(help) => found.help(help),
-            None => found,
-        });
+        self.report(help.into_iter().fold(found, Diagnostic::help));
+    }
+
+    /// How a call is written, for a name with something behind it: `sphere 1`, `union() { ... }`.
+    fn brackets_hint(&self) -> Option<String> {
+        let previous = self.previous()?;
+        let text = self.slice(previous.span(self.file));
+        match (previous.kind, self.kind()) {
+            (TokenKind::Name, TokenKind::Name) => {
+                let word = self.slice(self.span());
+                Some(format!(
+                    "arguments stand in brackets, {text}({word}); `let {word} = ...` names a value"
+                ))
+            }
+            (
+                TokenKind::Name,
+                TokenKind::Number | TokenKind::OpenBracket | TokenKind::OpenBrace,
+            ) => Some(format!("arguments stand in brackets: {text}(...)")),
+            (TokenKind::CloseParen, TokenKind::OpenBrace) => {
+                Some("shapes are arguments, too: union(a, b)".to_owned())
+            }
+            _ => None,
+        }
     }
 
     /// What to write for something that other languages have as an operator.

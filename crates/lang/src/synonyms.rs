@@ -1,0 +1,182 @@
+//! What has another name elsewhere: in Quilez's articles, GLSL, OpenSCAD, Curv, Bauble, CSS.
+
+/// What to write here, and for which names: of several words in lower case, without what joins them.
+const ROWS: &[(&str, &str)] = &[
+    // Shapes.
+    ("sphere", "ball orb"),
+    ("box", "cube cuboid block brick"),
+    ("rounded_box", "roundbox rbox roundedcube roundcube"),
+    ("mitred_box", "boxsharp"),
+    ("capsule", "pill stick line verticalcapsule"),
+    ("torus", "donut doughnut"),
+    ("cylinder", "rod"),
+    ("capped_cone", "frustum truncatedcone"),
+    ("pyramid", "squarepyramid"),
+    ("plane", "ground halfspace floorplane"),
+    ("ellipsoid", "spheroid"),
+    ("circle", "disc disk"),
+    ("rect", "rectangle square box2 box2d"),
+    ("regular_polygon", "ngon hexagon pentagon octagon"),
+    ("triangle", "equilateraltriangle"),
+    ("quadratic_bezier", "bezier"),
+    ("heightfield", "terrain heightmap"),
+    ("menger", "mengersponge sponge"),
+    ("schwarz_p", "schwarz primitive"),
+    ("text", "label letters glyphs"),
+    // Operators.
+    ("union", "add merge combine join unite together opu"),
+    ("difference", "subtract subtraction cut minus ops"),
+    ("intersection", "intersect common opi"),
+    (
+        "union(a, b, blend: smooth(0.1))",
+        "smin smoothunion smoothmin unionsmooth blob metaballs polysmin",
+    ),
+    ("difference(a, b, blend: smooth(0.1))", "smoothdifference smoothsubtraction smoothsubtract"),
+    ("intersection(a, b, blend: smooth(0.1))", "smax smoothintersection smoothmax smoothintersect"),
+    ("union(a, b, blend: fillet(0.1))", "unionround roundunion"),
+    ("union(a, b, blend: chamfer(0.1))", "unionchamfer chamferunion"),
+    ("union(a, b, blend: stairs(0.1, 4))", "unionstairs stairsunion"),
+    ("translate", "move shift moved"),
+    ("rotate", "rotatex rotatey rotatez rotation"),
+    ("scale", "resize zoom"),
+    ("mirror", "reflect flip symmetric symx symmetry"),
+    ("repeat", "tile mod1 mod2 mod3 domainrepetition rep infarray"),
+    ("limited_repeat", "array replim repeatlimited replimited limitedrepetition gridcopies"),
+    ("polar_repeat", "radial modpolar circulararray polararray repeatpolar rotcopies"),
+    ("extrude", "linearextrude extrusion prism"),
+    ("revolve", "rotateextrude revolution lathe"),
+    ("shell", "hollow"),
+    ("round", "rounded rounding"),
+    ("offset", "dilate inset grow"),
+    ("displace", "displacement bump"),
+    ("morph", "tween"),
+    ("invert", "complement inverse"),
+    ("twist", "twirl"),
+    ("bend", "cheapbend"),
+    ("slice", "section projection"),
+    // Mathematics.
+    ("mix", "lerp interpolate"),
+    ("fract", "frac"),
+    ("inverseSqrt", "rsqrt invsqrt"),
+    ("length", "magnitude norm mag"),
+    ("a % b", "mod fmod modulo"),
+    ("x * 1deg", "radians degtorad"),
+    ("x / 1deg", "degrees radtodeg"),
+    ("hash", "random rand rnd"),
+    ("gradient_noise", "noise perlin perlinnoise"),
+    ("voronoi", "worley cellular"),
+    ("time", "itime seconds clock"),
+    ("if c { a } else { b }", "select ternary cond where"),
+    ("[for x in list: f(x)]", "map listcomprehension"),
+    ("len", "count numelements"),
+    ("iterate", "fold reduce loop while"),
+    // Words that begin a line.
+    ("fn name(x) = ...", "function def func lambda module"),
+    ("let name = ...", "var const local define"),
+    ("param name = 1 in 0..2", "slider uniform knob parametric"),
+    ("import name from \"file.sdf\"", "include use require"),
+    // Settings and materials.
+    ("sun", "light directionallight dirlight directional"),
+    ("point_light", "lamp bulb"),
+    ("spot_light", "spot"),
+    ("ambient", "ambientlight"),
+    ("background", "backdrop bg bgcolor"),
+    ("camera", "view eye viewpoint"),
+    ("color", "colour tint albedo diffuse"),
+    ("material", "mat pbr"),
+    ("emission", "glow emissive"),
+    ("metallic", "metal metalness"),
+    ("checker", "checkerboard chequer"),
+    // Types.
+    ("number", "float double real f32 scalar"),
+    ("bool", "boolean"),
+    ("int", "integer i32"),
+    // Colours of CSS.
+    ("#ff0000", "red"),
+    ("#00ff00", "lime"),
+    ("#008000", "green"),
+    ("#0000ff", "blue"),
+    ("#ffff00", "yellow"),
+    ("#00ffff", "cyan aqua"),
+    ("#ff00ff", "magenta fuchsia"),
+    ("#ffffff", "white"),
+    ("#000000", "black"),
+    ("#808080", "gray grey"),
+    ("#c0c0c0", "silver"),
+    ("#ffa500", "orange"),
+    ("#800080", "purple"),
+    ("#a52a2a", "brown"),
+    ("#ffc0cb", "pink"),
+    ("#000080", "navy"),
+    ("#008080", "teal"),
+    ("#ffd700", "gold"),
+];
+
+/// What is written here for what has this name elsewhere.
+pub fn here(name: &str) -> Option<&'static str> {
+    let name = plain(name);
+    // Quilez's functions: sdSphere, opTwist.
+    let bare = name.strip_prefix("sdf").or(name.strip_prefix("sd")).or(name.strip_prefix("op"));
+    [Some(&name[..]), bare].into_iter().flatten().find_map(|name| {
+        let row = ROWS.iter().find(|(_, others)| others.split(' ').any(|other| other == name));
+        row.map(|(here, _)| *here)
+    })
+}
+
+/// The name among these that is the same but for capitals, underscores and the prefixes of Quilez's functions.
+/// Of several the first in alphabetical order.
+pub fn respelt<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
+    let name = plain(name);
+    let bare = name.strip_prefix("sd").or(name.strip_prefix("op"));
+    let same = |other: &&str| {
+        let other = plain(other);
+        other == name || Some(&other[..]) == bare
+    };
+    names.iter().copied().filter(same).min()
+}
+
+fn plain(name: &str) -> String {
+    name.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference;
+
+    #[test]
+    fn every_row_begins_with_something_that_there_is() {
+        let entries = reference::entries();
+        let known = ["a", "x", "if", "[for", "fn", "let", "param", "import"];
+        for (here, _) in ROWS.iter().filter(|(here, _)| !here.starts_with('#')) {
+            let first = here.split([' ', '(']).next().unwrap_or_default();
+            assert!(known.contains(&first) || entries.iter().any(|e| e.name == first), "{here}");
+        }
+    }
+
+    #[test]
+    fn no_name_is_of_the_language_or_stands_twice() {
+        let entries = reference::entries();
+        let mut all: Vec<&str> = ROWS.iter().flat_map(|(_, others)| others.split(' ')).collect();
+        for name in &all {
+            assert_eq!(plain(name), *name);
+            assert!(entries.iter().all(|entry| plain(&entry.name) != *name), "{name}");
+        }
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn names_of_other_tools_are_known() {
+        assert_eq!(here("cube"), Some("box"));
+        assert_eq!(here("opSmoothUnion"), Some("union(a, b, blend: smooth(0.1))"));
+        assert_eq!(here("linear_extrude"), Some("extrude"));
+        assert_eq!(here("teapot"), None);
+        let names = ["round_cone", "pi", "twist"];
+        assert_eq!(respelt("sdRoundCone", &names), Some("round_cone"));
+        assert_eq!(respelt("PI", &names), Some("pi"));
+        assert_eq!(respelt("opTwist", &names), Some("twist"));
+    }
+}
