@@ -21,6 +21,7 @@ mod affine;
 mod clip;
 mod closed;
 mod components;
+mod copies;
 mod cost;
 mod fault;
 mod folds;
@@ -37,13 +38,17 @@ mod spans;
 mod uneven;
 mod within;
 
+pub use copies::{Idle, idle_copies};
 pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
 pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, Writing, prepare, prepare_about};
 pub use quality::{Promise, Qualities, Quality, Sides};
-pub use refute::{Clause, ParamEnd, RayFault, Refuted, refute, refute_hits};
+pub use refute::{
+    ClaimFault, Clause, CopiesFault, ParamEnd, RayFault, Refuted, refute, refute_claim,
+    refute_copies, refute_hits,
+};
 pub use roll::Rolled;
 pub use sound::Uncertified;
 pub use uneven::Uneven;

@@ -6,12 +6,16 @@
 //! surface as near, refutes `exact`; two points refute a constant, one refutes bounds. A clause is held to what it says:
 //! given children that keep the same promise.
 
+mod claims;
+mod copies;
 mod probe;
 mod rays;
 
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Bounds, Dim, Graph, Param, Scene, ShapeId};
 
+pub use self::claims::{ClaimFault, refute_claim};
+pub use self::copies::{CopiesFault, refute_copies};
 use self::probe::Probe;
 pub use self::rays::{RayFault, refute_hits};
 use crate::quality::{Promise, Qualities, Stated};
@@ -59,6 +63,8 @@ pub enum Clause {
     Bounds,
     /// `hits`.
     Hits(RayFault),
+    /// `copies`.
+    Copies(CopiesFault),
 }
 
 /// Where the params stand in their ranges.
@@ -82,7 +88,8 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
     for &shape in shapes.iter().filter(|&&shape| scene.graph.shape(shape).level == 0) {
         let stated =
             Qualities::of_scene(&mut graph, shape, &scene.params).stated(&mut graph, shape);
-        if let Some(refuted) = refuted_hits(scene, shape) {
+        let refuted = refuted_hits(scene, shape).or_else(|| refuted_copies(scene, shape));
+        if let Some(refuted) = refuted {
             found.push(refuted);
             continue;
         }
@@ -106,6 +113,15 @@ fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Refuted> {
         let fault = refute_hits::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
         let (at, field) = (fault.at().to_vec(), fault.field);
         Some(Refuted { shape, clause: Clause::Hits(fault), at, field, params })
+    })
+}
+
+/// A ball in which there is something else than what is sampled in its middle.
+fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Refuted> {
+    frames(&scene.params).into_iter().find_map(|(params, frame)| {
+        let fault = refute_copies(scene, shape, &frame, 1.0)?;
+        let (at, field) = (fault.to.to_vec(), fault.field);
+        Some(Refuted { shape, clause: Clause::Copies(fault), at, field, params })
     })
 }
 

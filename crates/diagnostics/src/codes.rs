@@ -164,7 +164,7 @@ codes! {
         "write letters that the font has, or name a font file that has them";
 
     PROMISE_BROKEN "E0502" "A promise that sampling refutes"
-        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."
+        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, `hits` against the field along rays, `copies` against balls about points; and `lipschitz` of its functions against pairs of points where they are called; with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."
         "state what holds, or drop the clause";
 
     NOT_EXACT "W0601" "An operator that wants an exact distance has only a bound"
@@ -182,6 +182,9 @@ codes! {
     SOFT_SHADOW "W0605" "Soft shadows of a field that is not the distance"
         "A soft shadow is made of the distances by which rays to the lamp pass what throws it. Where the field is less than the distance, edges are wider and darker than `soft(...)` says; where nothing is known of the field they may be anything. The note says where the field stops being the distance: a smooth blend, an intersection, a shape bent or stretched. Outside a hard union of exact shapes the field is the distance."
         "`shadow: hard` needs no distances; or leave it if it looks right";
+    IDLE_CLAUSE "W0606" "A clause `copies` that does nothing"
+        "`auto` meets copies in closed form where the formula is a minimum of samples and of values without samples: each sample at a map of p that is rigid while `round`, `floor` and `sign` keep their values, by itself or cut by a box, and one value at least that says how near others are. A minimum under an `if` that a param decides is none."
+        "bring the formula into that form, or drop the clause";
 }
 
 #[cfg(test)]

@@ -179,8 +179,8 @@ pub struct ShapeDef {
     pub material: Option<Expr>,
     /// `hits e`.
     pub hits: Option<Hits>,
-    /// `copies`.
-    pub copies: bool,
+    /// Where `copies` stands.
+    pub copies: Option<Span>,
     /// The formula: a number.
     pub body: Expr,
     /// Documentation lines.

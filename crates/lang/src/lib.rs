@@ -48,7 +48,7 @@ mod synonyms;
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 
 pub use check::{check, check_library, check_with_imports};
-pub use elab::{Declared, DeclaredPromise, Elaborated, Site};
+pub use elab::{Claimed, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
 
 /// Parses, checks and elaborates a scene. The library's files are added to `sources`, since

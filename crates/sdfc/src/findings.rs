@@ -1,10 +1,14 @@
 //! What the analyses find, told at the scene's own text.
 
+use std::collections::BTreeMap;
+
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_analyze::{Clause, ParamEnd, Refuted, Report, refute};
-use sdfc_diagnostics::{Code, Diagnostic, Sources};
-use sdfc_graph::ShapeId;
-use sdfc_lang::{Declared, Elaborated, Site};
+use sdfc_analyze::{
+    Clause, CopiesFault, Idle, ParamEnd, Refuted, Report, idle_copies, refute, refute_claim,
+};
+use sdfc_diagnostics::{Code, Diagnostic, Sources, Span};
+use sdfc_graph::{Graph, ShapeId};
+use sdfc_lang::{Claimed, Declared, Elaborated, Site};
 
 /// Instances of one declaration whose clauses are sampled.
 const SAMPLED: usize = 8;
@@ -43,7 +47,37 @@ pub(crate) fn warnings(
         }
     }
     found.extend(soft_shadows(elaborated, report, &places, sources));
+    found.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
     found
+}
+
+/// A clause `copies` that is of no use to any instance (W0606).
+fn idle(elaborated: &Elaborated, declared: &Declared) -> Option<Diagnostic> {
+    let span = declared.copies?;
+    let mut graph = elaborated.scene.graph.clone();
+    let instances: Vec<ShapeId> = instances(&graph, declared).collect();
+    let mut reason = None;
+    for shape in instances {
+        reason = Some(idle_copies(&mut graph, shape)?);
+    }
+    let reason = match reason? {
+        Idle::Other => {
+            "something in its formula's minimum is neither one sample nor a value without samples"
+        }
+        Idle::Bent => "a sample is not at a rigid map of p between jumps",
+        Idle::NoSample => "its formula's minimum has no sample",
+        Idle::NoLimit => {
+            "no value in its formula's minimum says how near others than its samples are"
+        }
+    };
+    let message = format!("`copies` does nothing here: {reason}");
+    let help = "the formula is `min(sample, ..., value)`; it is marched as without the clause";
+    Some(Diagnostic::warning(Code::IDLE_CLAUSE, span, message).help(help))
+}
+
+/// The scene's instances of a declaration.
+fn instances<'g>(graph: &'g Graph, declared: &'g Declared) -> impl Iterator<Item = ShapeId> + 'g {
+    graph.shape_ids().filter(|&id| graph.shape(id).definition == declared.definition)
 }
 
 /// Soft shadows of a field that is not the distance outside (W0605).
@@ -77,27 +111,53 @@ pub(crate) fn refutations(elaborated: &Elaborated) -> Vec<Diagnostic> {
     let graph = &elaborated.scene.graph;
     let mut found = Vec::new();
     for declared in &elaborated.declared {
-        let is_instance = |&id: &ShapeId| graph.shape(id).definition == declared.definition;
-        let instances: Vec<ShapeId> = graph.shape_ids().filter(is_instance).take(SAMPLED).collect();
+        let instances: Vec<ShapeId> = instances(graph, declared).take(SAMPLED).collect();
         if let Some(refuted) = refute(&elaborated.scene, &instances).first()
             && let Some(mut error) = refutation(declared, refuted)
         {
-            match refuted.params {
-                ParamEnd::Default => {}
-                ParamEnd::Low => {
-                    error = error.note("with all params at the low ends of their ranges")
-                }
-                ParamEnd::High => {
-                    error = error.note("with all params at the high ends of their ranges");
-                }
-            }
+            error = with_params(error, refuted.params);
             if let Some(site) = places.of(refuted.shape) {
                 error = error.note_at(site.span, format!("in this `{}`", site.name));
             }
             found.push(error);
         }
     }
+    found.extend(claims(elaborated));
     found
+}
+
+/// What functions state that sampling refutes, at most once for each function.
+fn claims(elaborated: &Elaborated) -> Vec<Diagnostic> {
+    let mut calls: BTreeMap<Span, Vec<&Claimed>> = BTreeMap::new();
+    for claimed in &elaborated.claims {
+        calls.entry(claimed.span).or_default().push(claimed);
+    }
+    let refuted = calls.into_iter().filter_map(|(span, calls)| {
+        let fault = calls.into_iter().take(SAMPLED).find_map(|Claimed { value, claim, .. }| {
+            refute_claim(&elaborated.scene, *value, claim)
+        })?;
+        let message = format!(
+            "this states `lipschitz {}`, but between p = {} and {} the result changes {} times as much as any \
+             argument",
+            number(fault.constant),
+            point(&fault.from),
+            point(&fault.to),
+            number(fault.slope)
+        );
+        let help = "state the most that the result changes where each argument changes by at most 1, or drop the \
+                    clause";
+        let error = Diagnostic::error(Code::PROMISE_BROKEN, span, message).help(help);
+        Some(with_params(error, fault.params))
+    });
+    refuted.collect()
+}
+
+fn with_params(error: Diagnostic, params: ParamEnd) -> Diagnostic {
+    match params {
+        ParamEnd::Default => error,
+        ParamEnd::Low => error.note("with all params at the low ends of their ranges"),
+        ParamEnd::High => error.note("with all params at the high ends of their ranges"),
+    }
 }
 
 fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
@@ -147,6 +207,24 @@ fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
             );
             let help = "the intervals hold all of the ray that is inside, and begin and end where the field is 0";
             Some(error(declared.hits?, message).help(help))
+        }
+        Clause::Copies(CopiesFault { from, reach, to, .. }) => {
+            let [middle, there] = [from, to].map(|place| point(place));
+            let message = if from == to {
+                format!(
+                    "this states `copies`, but at p = {there} the field is {field}, and none of its samples is \
+                     below 0 there"
+                )
+            } else {
+                format!(
+                    "this states `copies`, by which within {} of p = {middle} there is nothing but what is sampled \
+                     there, but at {there}, which is nearer, the field is {field}",
+                    number(*reach)
+                )
+            };
+            let help = "what has no samples in the minimum ends before the nearest copy that is not sampled, and \
+                        is not a part of the shape itself";
+            Some(error(declared.copies?, message).help(help))
         }
         Clause::Bounds => {
             let message = format!(

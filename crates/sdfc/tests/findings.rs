@@ -114,3 +114,29 @@ fn a_soft_shadow_wants_distances_outside() {
     let said = check("scene.sdf", &text, &NoFiles).diagnostics_text(false);
     assert!(said.contains("not the distance since `union` at line 3"), "{said}");
 }
+
+#[test]
+fn copies_that_are_of_no_use_are_told() {
+    let row = |head: &str, formula: &str| {
+        format!(
+            "solid row(a: solid)\n  copies\n  = {{\n    let t = p.x - round(p.x)\n    {formula}\n  }}\n{head}row(sphere(0.3))"
+        )
+    };
+    let told = |text: &str| {
+        let found = codes(text).into_iter().filter(|(code, _)| *code != "W0602");
+        found.collect::<Vec<_>>()
+    };
+    assert_eq!(told(&row("", "min(a([t, p.y, p.z]), 0.7 - abs(t))")), []);
+    let idle = [
+        "a([t, p.y, p.z])",
+        "min(a([t, 0.5 * p.y, p.z]), 0.7 - abs(t))",
+        "min(a([t, p.y, p.z]) - 0.1, 0.6 - abs(t))",
+        "min(length([t, p.y, p.z]) - 0.2, 0.7 - abs(t))",
+    ];
+    for formula in idle {
+        let found = told(&row("", formula));
+        assert!(found.contains(&("W0606", 2)), "{formula}: {found:?}");
+    }
+    let flat = "region row(a: region)\n  copies\n  = min(a(p), 9)\nrow(circle(1)).extrude(1)";
+    assert_eq!(codes(flat), [("E0210", 2)]);
+}

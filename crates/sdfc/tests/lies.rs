@@ -76,9 +76,39 @@ fn an_even_wall_of_a_field_that_is_no_distance() {
 #[test]
 fn a_function_that_understates_its_slope() {
     let text = "fn steep(t) lipschitz 1 = if t > 0 { 4 * t } else { t }\nsolid a() = steep(length(p) - 0.5)\na()";
-    let Compiled { scene, diagnostics, .. } = compile("lie.sdf", text);
-    let caught = diagnostics.iter().any(|found| found.code.0 == "E0502");
-    assert!(caught || misses(&scene.expect("compiles")), "neither told nor seen");
+    told(text, "E0502", "1");
+    let text = "fn steps(t) lipschitz 1.5 = floor(5 * t) / 5\nsolid a() = max(length(p.xz) - 1, steps(p.y))\na()";
+    told(text, "E0502", "1.5");
+    // Only at an end of a param's range.
+    let text = "param k = 1 in 0..3\nfn steep(t) lipschitz 1 = k * t\nsolid a() = -steep(0.5 - length(p))\na()";
+    told(text, "E0502", "1");
+    // A blend of one's own, and a function without a name.
+    let text = "fn ridge(k: length) -> blend = fn(a, b) lipschitz 1 = min(a, b) + 2 * max(k - abs(a - b), 0)\n\
+                union(sphere(0.5), box(0.8), blend: ridge(0.1))";
+    told(text, "E0502", "1");
+}
+
+#[test]
+fn copies_that_reach_farther_than_is_said() {
+    let row = |limit: &str| {
+        format!(
+            "solid row(a: solid)\n  copies\n  = {{\n    let t = p.x - round(p.x)\n    \
+             min(a([t, p.y, p.z]), {limit})\n  }}\nrow(sphere(0.3)) & box([9, 2, 2])"
+        )
+    };
+    let copies = |text: &str| {
+        findings(text).into_iter().filter(|(_, place, _)| place == "copies").collect::<Vec<_>>()
+    };
+    assert_eq!(copies(&row("0.7 - abs(t)")), []);
+    told(&row("0.75 - abs(t)"), "E0502", "copies");
+    // The limit is no part of the shape.
+    told(&row("p.y"), "E0502", "copies");
+    // What cuts a copy is not its box.
+    told(
+        &row("0.7 - abs(t)").replace("a([t, p.y, p.z])", "max(a([t, p.y, p.z]), p.y)"),
+        "E0502",
+        "copies",
+    );
 }
 
 /// A spike far thinner than samples lie apart: nothing but the rays that meet it can tell.

@@ -72,7 +72,7 @@ struct Clauses {
     bounds: Option<Expr>,
     material: Option<Expr>,
     hits: Option<Hits>,
-    copies: bool,
+    copies: Option<Span>,
 }
 
 impl<'a> Checker<'a> {
@@ -206,7 +206,7 @@ impl<'a> Checker<'a> {
                     bounds: None,
                     material: None,
                     hits: None,
-                    copies: false,
+                    copies: None,
                     body,
                     docs,
                 });
@@ -398,8 +398,7 @@ impl<'a> Checker<'a> {
     /// `hits e`: an interval `[enter, exit]`, or a list of such, in terms of the ray's origin `o` and direction `d`.
     fn check_hits(&mut self, kind: DeclKind, e: &'a ast::Expr) -> Hits {
         if kind != DeclKind::Solid {
-            let message = "`hits` speaks of rays in space, so only a solid can state it";
-            self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, e.span, message));
+            self.report_rays("hits", e.span);
         }
         let mark = self.body.enter();
         let space = types::point(Dim::Three);
@@ -415,6 +414,12 @@ impl<'a> Checker<'a> {
         };
         self.body.leave(mark);
         Hits { origin, direction, value }
+    }
+
+    /// A clause of what is no solid.
+    fn report_rays(&mut self, clause: &str, span: Span) {
+        let message = format!("`{clause}` speaks of rays in space, so only a solid can state it");
+        self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, span, message));
     }
 
     fn check_clauses(&mut self, decl: &'a ast::Decl) -> Clauses {
@@ -452,7 +457,12 @@ impl<'a> Checker<'a> {
                     let hits = self.check_hits(decl.kind, e);
                     clauses.hits.replace(hits).is_some()
                 }
-                ClauseKind::Copies => std::mem::replace(&mut clauses.copies, true),
+                ClauseKind::Copies => {
+                    if decl.kind != DeclKind::Solid {
+                        self.report_rays("copies", clause.span);
+                    }
+                    clauses.copies.replace(clause.span).is_some()
+                }
                 ClauseKind::Require(condition, message) => {
                     clauses.requires.push(self.check_require(condition, message, clause.span));
                     false

@@ -5,7 +5,7 @@ use sdfc_graph::{Claim, NodeId, Stage};
 
 use super::report::{Frame, show_lanes, show_number};
 use super::value::{Closure, Code, Value};
-use super::{Elaborator, Env, MAX_RECURSION, Outcome};
+use super::{Claimed, Elaborator, Env, MAX_RECURSION, Outcome};
 use crate::hir::{Expr, FnId, Lambda, Parameter, Require};
 
 /// An argument as the caller wrote it: its value, and its place if it has one.
@@ -148,6 +148,10 @@ impl<'p> Elaborator<'p> {
         };
         if known && self.graph.stage(*value) == Stage::Point && !varying.contains(value) {
             let claim = Claim { arguments: varying, lipschitz: constant };
+            if !self.program.library.contains(&stated.span.file) {
+                let claimed = Claimed { span: stated.span, value: *value, claim: claim.clone() };
+                self.claims.push(claimed);
+            }
             self.graph.claim(*value, claim);
         }
         Ok(())

@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
-use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
+use sdfc_graph::{Bounds, Claim, Graph, NodeId, Scene, ShapeId};
 
 use crate::font::Fonts;
 use crate::hir;
@@ -68,8 +68,21 @@ pub struct Elaborated {
     pub slots: Vec<crate::slots::Slot>,
     /// The shapes that the scene and what it imports declare, with the places of their clauses.
     pub declared: Vec<Declared>,
+    /// What functions of the scene's own state of their results, by call.
+    pub claims: Vec<Claimed>,
     /// Where the scene asks for soft shadows.
     pub soft_shadows: Vec<Span>,
+}
+
+/// The result of a call of a function that states a constant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claimed {
+    /// Where the constant is stated.
+    pub span: Span,
+    /// The result.
+    pub value: NodeId,
+    /// What is stated of it.
+    pub claim: Claim,
 }
 
 /// A declared shape and where its clauses stand.
@@ -85,6 +98,8 @@ pub struct Declared {
     pub bounds: Option<Span>,
     /// Where it states where rays are inside.
     pub hits: Option<Span>,
+    /// Where it states that what it does not sample is no nearer than it says.
+    pub copies: Option<Span>,
 }
 
 /// `exact` or `bound`, and where it stands.
@@ -133,10 +148,9 @@ pub(crate) fn elaborate_with(
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let declared = shape::declared(program, &elaborator.definitions);
-    let soft_shadows = elaborator.soft_shadows;
-    let elaborated =
-        Elaborated { scene, sites: elaborator.sites, slots: Vec::new(), declared, soft_shadows };
-    ((!failed).then_some(elaborated), elaborator.diagnostics, elaborator.offer)
+    let Elaborator { soft_shadows, sites, claims, diagnostics, offer, .. } = elaborator;
+    let elaborated = Elaborated { scene, sites, slots: Vec::new(), declared, claims, soft_shadows };
+    ((!failed).then_some(elaborated), diagnostics, offer)
 }
 
 /// An error was reported; what depends on the value stays silent.
@@ -185,6 +199,7 @@ struct Elaborator<'p> {
     /// Made when the first bounds are asked for.
     bounds: Option<Bounds>,
     sites: Vec<Site>,
+    claims: Vec<Claimed>,
     /// Where the scene asks for soft shadows.
     soft_shadows: Vec<Span>,
     seen_sites: FxHashSet<(ShapeId, Span)>,
@@ -225,6 +240,7 @@ impl<'p> Elaborator<'p> {
             closures: FxHashMap::default(),
             bounds: None,
             sites: Vec::new(),
+            claims: Vec::new(),
             soft_shadows: Vec::new(),
             seen_sites: FxHashSet::default(),
             frames: Vec::new(),

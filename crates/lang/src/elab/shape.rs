@@ -45,6 +45,7 @@ pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared
         lipschitz: shape.lipschitz.as_ref().map(|stated| stated.span),
         bounds: shape.bounds.as_ref().map(|stated| stated.span),
         hits: shape.hits.as_ref().map(|stated| stated.value.span),
+        copies: shape.copies,
     })
     .collect()
 }
@@ -211,7 +212,7 @@ impl<'p> Elaborator<'p> {
             contract.is_local = self.asked_bounds && !definition.everywhere;
             contract.is_continued = contract.is_local && steep;
         }
-        contract.copies = definition.copies;
+        contract.copies = definition.copies.is_some();
         if let Some(stated) = &definition.bounds {
             let Value::Range(lo, hi) = self.eval(env, stated)? else {
                 return Err(Poison);

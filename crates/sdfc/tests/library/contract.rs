@@ -133,8 +133,15 @@ fn one(
     if let Some(fault) = rays::fault(scene, id) {
         return Err(told(fault));
     }
+    if let Some(fault) = rays::copies_fault(scene, id, 1.0) {
+        return Err(told(fault));
+    }
     if !is_of(scene, entry, id) {
         return Ok(());
+    }
+    if scene.graph.shape(id).contract.copies {
+        let caught = outcome.mutants.entry(rays::FARTHER.to_owned()).or_default();
+        *caught |= rays::copies_fault(scene, id, 1.25).is_some();
     }
     if outcome.scenes == 0 {
         outcome.sides = derived.sides.map(|promise| promise.to_string());
