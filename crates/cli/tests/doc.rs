@@ -65,7 +65,10 @@ fn a_misspelt_name_is_told_with_a_near_one() {
 fn a_word_that_is_no_name_is_searched_for() {
     let output = run(&folder(&[]), "doc hollow");
     assert_eq!(output.status.code(), Some(0));
-    assert!(said(&output).contains("nothing is called `hollow`; that is `shell` here; these mention it:"));
+    assert!(
+        said(&output)
+            .contains("nothing is called `hollow`; that is `shell` here; these mention it:")
+    );
     assert!(String::from_utf8(output.stdout).unwrap().contains("  shell "));
 }
 

@@ -163,7 +163,10 @@ impl Parser<'_> {
             true => self.expr_or_skip(&[TokenKind::In, TokenKind::Semicolon])?,
             false => {
                 let what = format!("`=` and a default for `{}`", name.text);
-                let _reported: Parsed<()> = self.expected(&what);
+                let _reported: Parsed<()> = self.expected_with(
+                    &what,
+                    &["param r = 1 in 0..2; without `in`, any value is allowed"],
+                );
                 let at = self.span();
                 self.skip_to(at, &[TokenKind::In, TokenKind::Semicolon])?
             }

@@ -70,7 +70,10 @@ impl Parser<'_> {
         };
         let place = if before.is_empty() { String::new() } else { format!(" after `{before}`") };
         let help: &[&str] = match self.kind() {
-            TokenKind::For => &["`for` stands in a list or among arguments: [for i in 0..3: i]"],
+            TokenKind::For => &[
+                "`for` stands in a list or among arguments: [for i in 0..3: i]",
+                "of shapes: union(for i in 0..3: sphere(0.2).translate(x: i))",
+            ],
             TokenKind::Let if !self.next().first => {
                 &["`let` stands at top level, or in a block: { let a = 1; a + 1 }"]
             }

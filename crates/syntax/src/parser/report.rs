@@ -138,7 +138,9 @@ impl Parser<'_> {
             (TokenKind::Name, "and") => Some("write `&&`"),
             (TokenKind::Name, "or") => Some("write `||`"),
             (TokenKind::Name, "not") => Some("write `!`"),
-            (TokenKind::Ellipsis, _) => Some("a range is written with two dots: `0..1`"),
+            (TokenKind::Name, "to" | "until") | (TokenKind::Ellipsis, _) => {
+                Some("a range is written with two dots: `0..1`")
+            }
             (TokenKind::Eq, _) => Some("equality is written `==`; `let a = 1` names a value"),
             (TokenKind::Else, _) => Some("`else` follows the `}` of an `if`"),
             _ => None,
