@@ -11,9 +11,12 @@ use crate::{
 
 /// Most rounds of a loop that the lists of one tile of eight by eight pixels hold together; where more can matter, all are visited.
 const CAPACITY: u32 = 512;
+/// Most rounds that are kept while the lists of a tile are made, and what is kept of one: see `prune.wgsl`.
+const MOST_KEPT: u32 = 1024;
+const KEPT_WORDS: u32 = 2;
 /// What a tile's record begins with, and for how many slices of its rays it has room, see `visit_layout.wgsl`.
 const RECORD_HEAD: u32 = 3;
-const MOST_SLICES: u32 = 8;
+const MOST_SLICES: u32 = 16;
 /// Most bytes of lists, and of marks, for the tiles that are drawn at once.
 const MOST_BYTES: u64 = 64 << 20;
 /// Binding of the lists of constants, of the lists of rounds, and of the marks that these are made from.
@@ -21,17 +24,17 @@ const TABLE: u32 = 3;
 pub(crate) const VISITS: u32 = 4;
 const MARKS: u32 = 5;
 const LEVEL: u32 = 6;
-/// Levels of tiles, each four by four of the one below, and the lowest a workgroup's pixels.
-const LEVELS: u32 = 3;
+/// Levels of tiles, each two by two of the one below, and the lowest a workgroup's pixels. All above the lowest have marks.
+const LEVELS: u32 = 5;
 /// A uniform is as large as a vector at least, for all backends.
 const LEVEL_BYTES: u64 = 16;
-const WIDER: u32 = 4;
+const WIDER: u32 = 2;
 const TALLY: u32 = 7;
 /// Words of the tally before the least operands, and where it counts operands that were evaluated.
 const TALLY_HEAD: usize = 2;
 pub(crate) const EVALUATED: u64 = 1;
 /// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
-const HEAD: u32 = 6;
+const HEAD: u32 = 7;
 /// Groups of cells, to an axis and in all.
 const GROUP_SIDE: u32 = 8;
 pub(crate) const GROUPS: u32 = GROUP_SIDE * GROUP_SIDE * GROUP_SIDE;
@@ -92,7 +95,7 @@ pub(crate) struct Visits {
 impl Visits {
     /// Whether they do for so many columns and rows of tiles.
     pub(crate) fn fit(&self, tiles: [u32; 2]) -> bool {
-        lowest(self.tiles) >= lowest(tiles) && on_all_levels(self.tiles) >= on_all_levels(tiles)
+        lowest(self.tiles) >= lowest(tiles) && with_marks(self.tiles) >= with_marks(tiles)
     }
 
     /// Nothing was evaluated yet.
@@ -110,8 +113,9 @@ fn each_level(tiles: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     (0..LEVELS).map(move |level| tiles.map(|count| count.div_ceil(WIDER.pow(level))))
 }
 
-fn on_all_levels(tiles: [u32; 2]) -> u64 {
-    each_level(tiles).map(lowest).sum()
+/// How many tiles have marks.
+fn with_marks(tiles: [u32; 2]) -> u64 {
+    each_level(tiles).skip(1).map(lowest).sum()
 }
 
 impl Culling {
@@ -167,7 +171,9 @@ impl Culling {
         let bytes = 4 * (first + lowest(tiles) * u64::from(stride(&self.rounds)));
         let lists = buffer(gpu, "visits", bytes, Usage::STORAGE | Usage::COPY_DST);
         let groups = if has_cells { u64::from(GROUPS) } else { 0 };
-        let marks = on_all_levels(tiles).max(groups) * mark_bytes(&self.rounds);
+        let kept = lowest(tiles) * kept_bytes(&self.rounds);
+        let tile_marks = with_marks(tiles) * mark_bytes(&self.rounds) + kept;
+        let marks = tile_marks.max(groups * mark_bytes(&self.rounds));
         let marks = buffer(gpu, "marks", marks, Usage::STORAGE);
         let tally_bytes = 4 * tally(&self.rounds, has_cells).len() as u64;
         let tally_usage = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
@@ -223,25 +229,27 @@ impl Culling {
     pub(crate) fn run(&self, pass: &mut wgpu::ComputePass<'_>, visits: &Visits, tiles: [u32; 2]) {
         let loops = self.rounds.len() as u32;
         let levels: Vec<_> = each_level(tiles).zip(&visits.bind_groups).collect();
+        let Some((&(lowest_tiles, list_group), wide)) = levels.split_first() else { return };
         pass.set_pipeline(&self.mark);
-        for (tiles, bind_group) in levels.into_iter().rev() {
+        for &(tiles, bind_group) in wide.iter().rev() {
             pass.set_bind_group(0, bind_group, &[]);
             let groups = most_words(&self.rounds).div_ceil(LANES);
             pass.dispatch_workgroups(groups, lowest(tiles) as u32, loops);
         }
         pass.set_pipeline(&self.list);
-        pass.dispatch_workgroups((lowest(tiles) as u32).div_ceil(LANES), 1, 1);
+        pass.set_bind_group(0, list_group, &[]);
+        pass.dispatch_workgroups((lowest(lowest_tiles) as u32).div_ceil(LANES), 1, 1);
     }
 
     /// Most pixels of a tile of the picture for which there is room.
     pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
         let bytes = MOST_BYTES.min(limits.max_storage_buffer_binding_size);
         let first = first_record(&self.rounds, self.cells.is_some());
-        let left = bytes.saturating_sub(4 * first);
-        // A level has no more tiles than the one below.
-        let marks = u64::from(LEVELS) * mark_bytes(&self.rounds);
-        let tile = marks.max(4 * u64::from(stride(&self.rounds)));
-        let tiles = (left / tile).min(u64::from(limits.max_compute_workgroups_per_dimension));
+        let listed = bytes.saturating_sub(4 * first) / (4 * u64::from(stride(&self.rounds)));
+        let [ahead, each] = tile_mark_bytes(&self.rounds);
+        let marked = bytes.saturating_sub(ahead) / each;
+        let most = u64::from(limits.max_compute_workgroups_per_dimension);
+        let tiles = listed.min(marked).min(most);
         tiles as u32 * WORKGROUP * WORKGROUP
     }
 }
@@ -251,7 +259,7 @@ pub(crate) fn fits(gpu: &Gpu, rounds: &[u32], has_cells: bool) -> Result<(), Ren
     let what = "lists of what can matter to a tile of the picture";
     let words = first_record(rounds, has_cells) + u64::from(stride(rounds));
     gpu.has_storage(what, 4 * words)?;
-    gpu.has_storage(what, u64::from(LEVELS) * mark_bytes(rounds))?;
+    gpu.has_storage(what, tile_mark_bytes(rounds).iter().sum())?;
     gpu.has_workgroups(what, u64::from(most_words(rounds).div_ceil(LANES)))
 }
 
@@ -260,7 +268,8 @@ pub(crate) fn fits(gpu: &Gpu, rounds: &[u32], has_cells: bool) -> Result<(), Ren
 fn head(rounds: &[u32], joined: Option<&[bool]>, within: Option<[DVec3; 2]>) -> Vec<u32> {
     let loops = rounds.len() as u32;
     let (about, end) = (about_cells(rounds), first_record(rounds, joined.is_some()) as u32);
-    let mut head = vec![end, stride(rounds), CAPACITY, most_words(rounds), loops, about];
+    let kept = most_kept(rounds);
+    let mut head = vec![end, stride(rounds), CAPACITY, most_words(rounds), loops, about, kept];
     let mut first = HEAD + 2 * loops;
     for &rounds in rounds {
         head.extend([rounds, first]);
@@ -334,6 +343,21 @@ fn mark_bytes(rounds: &[u32]) -> u64 {
     4 * rounds.len() as u64 * u64::from(most_words(rounds))
 }
 
+/// Most rounds that are kept of a tile.
+fn most_kept(rounds: &[u32]) -> u32 {
+    rounds.iter().sum::<u32>().min(MOST_KEPT)
+}
+
+fn kept_bytes(rounds: &[u32]) -> u64 {
+    4 * u64::from(KEPT_WORDS * most_kept(rounds))
+}
+
+/// Most bytes of marks and of what is kept: in any case, and for each tile. Each level has half the tiles of the one below at most, or one.
+fn tile_mark_bytes(rounds: &[u32]) -> [u64; 2] {
+    let marks = mark_bytes(rounds);
+    [u64::from(LEVELS) * marks, marks + kept_bytes(rounds)]
+}
+
 /// The corner of the first cell and how many there are to a unit of length, then the corners of the box.
 fn grid([lo, hi]: [DVec3; 2], to_axis: u32) -> [DVec3; 4] {
     let margin = DVec3::splat(BOX_MARGIN * lo.abs().max(hi.abs()).max_element().max(1e-20));
@@ -403,6 +427,7 @@ mod tests {
             assert_eq!(at("CAPACITY"), CAPACITY);
             assert_eq!(at("MOST_WORDS"), 2);
             assert_eq!(at("LOOPS"), 2);
+            assert_eq!(at("MOST_KEPT"), 90);
             assert!(is_round(&head, 0) && is_round(&head, 1));
             (at("FIRST_RECORD"), at("CELLS") as usize, head)
         };
@@ -416,7 +441,8 @@ mod tests {
         let [loops, side, records, outside, lists, end] =
             [0, 1, 2, 3, 4, 5].map(|i| head[cells + i]);
         assert_eq!((loops, side, records as usize, end), (2, GROUP[0], head.len(), first));
-        assert_eq!(head[outside as usize..][..4], [0, head[7], 50, head[9]]);
+        let [_, first_of_all, _, second_of_all] = [0, 1, 2, 3].map(|i| head[HEAD as usize + i]);
+        assert_eq!(head[outside as usize..][..4], [0, first_of_all, 50, second_of_all]);
         assert_eq!(lists, records + 5 * cell_count(&rounds));
         let last = format!("three_at(place + {}u)", ABOUT_CELLS - 3);
         assert!(sdfc_march::prune_source().contains(&last));

@@ -236,7 +236,7 @@ fn missing_rounds_show() -> Result<(), Failed> {
 fn broken_lists_show() -> Result<(), Failed> {
     let (plain, sunny) = (hard() + OUTSIDE, format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard()));
     let mutants = [
-        ("WIDER_BITS", 1, &plain),
+        ("WIDER_BITS", 2, &plain),
         ("NEAR", 2, &plain),
         ("SLICE_LENGTH", 1, &plain),
         ("GROUP_SIDE", 4, &sunny),

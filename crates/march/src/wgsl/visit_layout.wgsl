@@ -1,6 +1,6 @@
 // Where lists of rounds are in `visits`. It begins with where the first tile's record is, how far apart these are, how many rounds
-// of a loop a tile's lists hold together, how many words of 32 rounds the longest loop has, how many loops there are, and where what
-// tells of the cells stands. A record tells how many slices the tile's rays are cut into, where the second would begin if the first had their length, and that length; then for
+// of a loop a tile's lists hold together, how many words of 32 rounds the longest loop has, how many loops there are, where what
+// tells of the cells stands, and how many rounds are kept while a tile's lists are made. A record tells how many slices the tile's rays are cut into, where the second would begin if the first had their length, and that length; then for
 // each slice and loop how many rounds are to be visited, and where their numbers stand, in ascending order.
 
 const FIRST_RECORD: u32 = 0;
@@ -9,14 +9,15 @@ const CAPACITY: u32 = 2;
 const MOST_WORDS: u32 = 3;
 const LOOPS: u32 = 4;
 const CELLS: u32 = 5;
+const MOST_KEPT: u32 = 6;
 // What stands in a record for a slice, by which all rounds are visited.
-const WHOLE: u32 = 6;
+const WHOLE: u32 = 7;
 
 const SLICE_COUNT: u32 = 0;
 const NEAR: u32 = 1;
 const SLICE_LENGTH: u32 = 2;
 const FIRST_SLICE: u32 = 3;
-const MOST_SLICES: u32 = 8;
+const MOST_SLICES: u32 = 16;
 
 // The sides of a tile, which has lists of its own: a workgroup's.
 const TILE: u32 = 8;

@@ -443,7 +443,9 @@ impl<'a> Heat<'a> {
         }
         let shader = counted_module(program, &self.options.method)?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
-        let frame = counted.draw(&pipeline, &self.view, uniforms, &RenderOptions::default())?;
+        // In one piece: lists of parts of a picture repeat what is asked for wide tiles.
+        let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
+        let frame = counted.draw(&pipeline, &self.view, uniforms, &options)?;
         counted.drawn -= 1;
         let visited = EvaluationCounts::of(&frame.image).mean;
         let before = frame.evaluated_before as f64 / frame.image.pixels().len() as f64;
