@@ -163,6 +163,11 @@ impl Pipeline {
         self.milliseconds
     }
 
+    /// Whether its rays visit only those parts of the scene that can matter to them.
+    pub fn leaves_out(&self) -> bool {
+        self.culling.is_some()
+    }
+
     /// The device that it was made for.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu

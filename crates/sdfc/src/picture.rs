@@ -7,9 +7,9 @@ use sdfc_codegen::{posed_module, render_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
-    AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, OnProgress, Pipeline, Pose,
-    Progress, RenderError, RenderOptions, Stats, View, Why, milliseconds_since, sample_places,
-    uniform_values,
+    AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
+    OnProgress, Pipeline, Pose, Progress, RenderError, RenderOptions, Stats, View, Why,
+    milliseconds_since, sample_places, uniform_values,
 };
 
 use crate::{Error, Marched, Scene};
@@ -230,7 +230,13 @@ impl Painter<'_> {
         let frame_ms = FrameTimes::of(&spent, frame.clock).ok_or(Error::NothingDrawn)?;
         let adapter = self.adapter();
         let mut stats = Stats::new(&frame, frame_ms, adapter, &self.method, self.compile.clone());
-        stats.set_leaves(scene.report.leaves);
+        match &self.engine {
+            Engine::Gpu(pipeline) if pipeline.leaves_out() => {
+                let why = "rays visit the parts that can matter to them, which `sdfc bench` counts";
+                stats.leaf_evals_per_pixel = LeafEvaluations::unknown(why);
+            }
+            Engine::Gpu(_) | Engine::Cpu(_) => stats.set_leaves(scene.report.leaves),
+        }
         stats.why.extend(self.why.clone().map(|why| ("method", why)));
         let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));

@@ -10,7 +10,7 @@ use sdfc::graph::{Program, Type};
 use sdfc::render::{
     Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
-use sdfc::{FrameValues, Scene, Writing, compile, unwatched};
+use sdfc::{FrameValues, PictureOptions, Scene, Writing, compile, unwatched};
 
 const SIZE: [u32; 2] = [160, 96];
 /// How many parts, few enough for a driver that ends all loops after 65,535 turns.
@@ -104,6 +104,8 @@ fn main() {
     trials.push(broken.with_ignored_flag(without_gpu));
     let counted = Trial::test("what is visited is counted", visited_rounds_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
+    let told = Trial::test("leaves are told where all are evaluated", leaves_are_told);
+    trials.push(told.with_ignored_flag(without_gpu));
     let kept = Trial::test("lists of cells are kept until something moves", cells_are_kept);
     trials.push(kept.with_ignored_flag(without_gpu));
     let small = Trial::test("an adapter that is too small is told by its limit", limits_are_named);
@@ -285,6 +287,21 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
         return Err(format!("{few_rounds} and {before} before of {all_rounds}").into());
     }
     Ok(())
+}
+
+/// `interval` visits all parts, `sphere` does not and has no count of them.
+fn leaves_are_told() -> Result<(), Failed> {
+    let scene = scene(&(hard() + OUTSIDE));
+    let told = |method: &str| -> Result<Option<f64>, Failed> {
+        let method = Some(method.to_owned());
+        let options = PictureOptions { size: [16, 16], method, ..PictureOptions::default() };
+        let drawn = scene.render(&options, &mut unwatched)?;
+        Ok(drawn.stats.leaf_evals_per_pixel.mean)
+    };
+    match (told("interval")?, told("sphere")?) {
+        (Some(_), None) => Ok(()),
+        told => Err(format!("{told:?}").into()),
+    }
 }
 
 /// A second frame finds nothing for the cells, whatever the eye does; one with another param does, and is the picture of that param.
