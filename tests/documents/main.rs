@@ -4,6 +4,7 @@
 //! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
 //! - ```` ```sdf E0304 ```` is a scene with that code and no other.
 //! - A row of a table with the head `| expression | gives |` holds two expressions of one value.
+//! - Charts show what is said of them (`charts.rs`).
 //! - In the tutorial a picture right behind a block shows what that block draws.
 //!
 //! The pages of `docs/reference` and `docs/errors` have tests of their own.
@@ -15,6 +16,7 @@
     reason = "a test fails by panicking"
 )]
 
+mod charts;
 mod pictures;
 #[path = "../shared/same_picture.rs"]
 mod same_picture;
