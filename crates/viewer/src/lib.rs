@@ -22,6 +22,7 @@
 pub mod app;
 pub mod clerk;
 pub mod clock;
+pub mod comparing;
 pub mod document;
 pub mod engine;
 pub mod examples;
@@ -40,6 +41,7 @@ pub mod orbit;
 pub mod painter;
 pub mod probe;
 pub mod session;
+mod shop;
 pub mod views;
 pub mod watch;
 pub mod worker;

@@ -6,11 +6,14 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use sdfc_viewer::app::NoWindow;
 use sdfc_viewer::examples::EXAMPLES;
 use sdfc_viewer::memory::examples_folder;
 
 const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
     Shows the scene in FILE in a window and follows its text as it is edited; without FILE, an example.";
+const LOST: &str = "error: the window's device was lost while it was drawn, as all are when a driver is renewed\n\
+    help: open the scene again: camera and params are kept";
 const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL (Mesa's software \
     drivers do: Debian's mesa-vulkan-drivers or libgl1-mesa-dri); `sdfc render --backend cpu` needs neither";
 /// The example that is shown where no file is named: it has something to drag.
@@ -70,11 +73,9 @@ fn example() -> ExitCode {
 #[allow(clippy::print_stderr, reason = "a program says what it has to say")]
 fn window(path: &Path) -> ExitCode {
     match sdfc_viewer::app::run(path) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: no window: {error}");
-            eprintln!("help: {NO_WINDOW}");
-            ExitCode::from(3)
-        }
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(NoWindow::Refused(why)) => eprintln!("error: no window: {why}\nhelp: {NO_WINDOW}"),
+        Err(NoWindow::Lost) => eprintln!("{LOST}"),
     }
+    ExitCode::from(3)
 }

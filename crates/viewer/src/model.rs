@@ -39,7 +39,7 @@ pub struct Stages {
 #[derive(Debug)]
 pub struct Model {
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// Its own text.
     pub text: String,
     /// What draws it.
@@ -51,9 +51,9 @@ pub struct Model {
     /// The program with what the method asks for, where it is not that of the scene.
     pub enclosed: Option<Program>,
     /// Its field on the CPU.
-    pub probe: Probe,
+    pub probe: Arc<Probe>,
     /// Its shapes by name.
-    pub shapes: Shapes,
+    pub shapes: Arc<Shapes>,
     /// Whether the picture depends on time or frame.
     pub moves: bool,
     /// When its text was read.

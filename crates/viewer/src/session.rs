@@ -10,9 +10,10 @@ use sdfc::render::Pose;
 
 use crate::clerk::{Clerk, Errand, Outcome};
 use crate::clock::Clock;
+use crate::comparing::Comparing;
 use crate::document;
 use crate::findings::{Finding, Findings};
-use crate::judge::{Case, Judge, Judged, Judgement};
+use crate::judge::Case;
 use crate::knobs::Knobs;
 use crate::look::Look;
 use crate::mode::{Mode, Slice};
@@ -41,8 +42,6 @@ pub struct Session {
     painted: Receiver<Painted>,
     clerk: Clerk,
     outcomes: Receiver<Outcome>,
-    judge: Judge,
-    judged: Receiver<Judged>,
     watch: Watch,
     /// The order that a change on disk repeats.
     standing: Arc<Mutex<Build>>,
@@ -82,14 +81,8 @@ pub struct Session {
     pub pictures: u64,
     /// What came of what was to be written, to be told once.
     pub remarks: Vec<String>,
-    /// How far off a picture was.
-    pub judgement: Option<Box<Judgement>>,
-    /// Why that of the last one is not known.
-    pub unjudged: Option<String>,
-    /// Whether each picture is compared with the oracle once it rests.
-    pub judges: bool,
-    /// The last one that was to be.
-    tried: Option<Case>,
+    /// What is shown held against the oracle.
+    pub comparing: Comparing,
     asked: Option<Request>,
     size: [u32; 2],
     /// Devices that were lost since the last picture.
@@ -113,8 +106,7 @@ impl Session {
         let (sender, outcomes) = channel();
         let woken = Arc::clone(&wake);
         let clerk = Clerk::new(sender, move || woken())?;
-        let (sender, judged) = channel();
-        let judge = Judge::new(sender, move || wake())?;
+        let comparing = Comparing::new(move || wake())?;
         let standing = Arc::new(Mutex::new(build.clone()));
         let (orders, repeated) = (worker.orders(), Arc::clone(&standing));
         let watch = Watch::new(move || orders.put(lock(&repeated).clone()));
@@ -126,8 +118,6 @@ impl Session {
             painted,
             clerk,
             outcomes,
-            judge,
-            judged,
             watch,
             standing,
             orbit: None,
@@ -148,10 +138,7 @@ impl Session {
             picture: None,
             pictures: 0,
             remarks: Vec::new(),
-            judgement: None,
-            unjudged: None,
-            judges: false,
-            tried: None,
+            comparing,
             asked: None,
             size: [16, 9],
             lost: 0,
@@ -188,8 +175,7 @@ impl Session {
         (self.knobs, self.clock) = (Knobs::default(), Clock::default());
         (self.findings, self.trouble, self.no_picture) = (Findings::default(), None, None);
         (self.follows, self.tolerance) = (true, 1.0);
-        self.stop_comparing();
-        (self.judgement, self.unjudged) = (None, None);
+        self.comparing.forget();
         self.watch_own_folder();
         self.order();
     }
@@ -241,17 +227,7 @@ impl Session {
             self.remarks.push(outcome.unwrap_or_else(|why| why));
             changed = true;
         }
-        while let Ok(judged) = self.judged.try_recv() {
-            match judged {
-                Judged::Judgement(judgement) => {
-                    (self.judgement, self.unjudged) = (Some(judgement), None);
-                }
-                Judged::Failed(why) => self.unjudged = Some(why),
-                Judged::Cancelled => {}
-            }
-            changed = true;
-        }
-        changed
+        changed | self.comparing.poll()
     }
 
     /// Asks for a picture of this size, unless it is what was asked for last. `moving`: the next is likely
@@ -262,24 +238,24 @@ impl Session {
         }
         self.size = size;
         self.follow();
-        let (Some(model), Some(orbit)) = (&self.model, &self.orbit) else { return };
+        let (Some(model), Some(mut orbit)) = (self.model.clone(), self.orbit) else { return };
         let parallel = orbit.is_parallel();
         if model.parallel != parallel {
-            // What is shown stays until there is a shader for these rays.
+            // Until there is a shader for these rays, the others move on.
             self.set_build(|build| build.parallel = Some(parallel));
-            return;
+            orbit.set_parallel(model.parallel);
         }
         let request = Request {
-            model: Arc::clone(model),
-            frame: self.values(model),
+            frame: self.values(&model),
             pose: orbit.pose(),
             size,
             mode: self.mode,
             slice: self.slice,
             moving,
             refine: self.refine,
-            samples: self.samples(model),
+            samples: self.samples(&model),
             tolerance: self.tolerance,
+            model,
         };
         if self.asked.as_ref().is_some_and(|asked| asked.is(&request)) {
             self.compare_what_rests();
@@ -297,27 +273,15 @@ impl Session {
 
     /// Has what is shown compared with the oracle, or all methods.
     pub fn compare(&mut self, all: bool) {
-        let Some(case) = self.case(all) else { return };
-        self.unjudged = None;
-        self.tried = Some(case.clone());
-        self.judge.ask(case);
-    }
-
-    /// Gives up comparing.
-    pub fn stop_comparing(&mut self) {
-        self.judge.cancel();
-        (self.judges, self.tried) = (false, None);
-    }
-
-    /// The part that is done of what is being compared.
-    pub fn comparing(&self) -> Option<(f32, &'static str)> {
-        self.judge.progress()
+        if let Some(case) = self.case(all) {
+            self.comparing.ask(case);
+        }
     }
 
     /// Whether the figures are those of what is asked for.
     pub fn judgement_is_of_this(&self) -> bool {
         let now = self.case(false);
-        self.judgement.as_ref().zip(now).is_some_and(|(it, now)| it.case.draws_as(&now))
+        self.comparing.judgement.as_ref().zip(now).is_some_and(|(it, now)| it.case.draws_as(&now))
     }
 
     /// After drawing, so that both do not share the processor.
@@ -326,13 +290,11 @@ impl Session {
             let asked = self.asked.as_ref();
             picture.finished && asked.is_some_and(|asked| asked.is(&picture.request))
         };
-        if !self.judges || !self.picture.as_deref().is_some_and(rests) {
-            return;
-        }
-        let now = self.case(false);
-        let known = self.tried.as_ref().zip(now).is_some_and(|(it, now)| it.draws_as(&now));
-        if !known {
-            self.compare(false);
+        if self.comparing.at_rest
+            && self.picture.as_deref().is_some_and(rests)
+            && let Some(case) = self.case(false)
+        {
+            self.comparing.ask_once(case);
         }
     }
 

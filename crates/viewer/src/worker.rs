@@ -1,34 +1,17 @@
 //! The thread that turns the newest text into something that can be drawn.
 //!
-//! Only the newest order counts: what comes in while one is being worked on replaces what is waiting.
-//! A text that does not compile gives findings and leaves the last model standing. Numbers of the scene are
-//! elaborated as params, so that a changed number gives the same shader with other values: then the running
-//! pipeline is taken over. Where many parts of a scene are loops, numbers stay what they are: they lie in lists, and the
-//! running pipeline is given others.
+//! Only the newest order counts: what comes in while one is being worked on replaces what is waiting. What comes of an
+//! order is in `shop`.
 
 use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
-use std::time::Instant;
 
-use sdfc::lang::Options;
-use sdfc::{Compiled, Error, FrameValues, Scene};
-
-use crate::document::{Document, Imports};
-use crate::engine::{Engines, Prepared, on_cpu};
 use crate::findings::Findings;
-use crate::identity::Shapes;
 use crate::mailbox::{Attendant, Mailbox};
-use crate::model::{Model, Stages, reads_time};
-use crate::probe::Probe;
-
-/// A scene of at most so many nodes is written out, so that its numbers move, also where loops would cost less, see
-/// `docs/scale.md`.
-const MOST_INLINE: usize = 2000;
-/// A text whose pipeline is not made because a newer one waits: so often in a row at most.
-const MOST_SKIPPED: u32 = 3;
+use crate::model::Model;
+use crate::shop::Shop;
 
 /// How a scene is built.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,7 +84,7 @@ impl Worker {
         };
         let begin = |orders| {
             let mut shop = Shop::new(orders, tell);
-            move |build| shop.guarded(&build)
+            move |build| shop.serve(&build)
         };
         Attendant::start("worker", begin).map(Self)
     }
@@ -116,224 +99,6 @@ impl Worker {
     pub fn orders(&self) -> Arc<Mailbox<Build>> {
         Arc::clone(self.0.mailbox())
     }
-}
-
-/// An order, and the texts that it met.
-struct Met {
-    build: Build,
-    text: String,
-    imports: Imports,
-}
-
-impl Met {
-    /// Whether this order meets the same texts, and makes the same scene of them.
-    fn reads(&self, build: &Build, document: &Document) -> bool {
-        (&self.build.path, self.build.live) == (&build.path, build.live)
-            && self.text == document.text
-            && self.imports.are_as_read()
-    }
-}
-
-/// What the thread keeps between orders.
-struct Shop<T> {
-    orders: Arc<Mailbox<Build>>,
-    tell: T,
-    /// The last order, and the texts that it met.
-    last: Option<Met>,
-    engines: Engines,
-    serial: u64,
-    content: u64,
-    skipped: u32,
-    /// Whether parts of the last scene became loops.
-    rolls: bool,
-}
-
-impl<T: FnMut(News)> Shop<T> {
-    fn new(orders: Arc<Mailbox<Build>>, tell: T) -> Self {
-        Self {
-            orders,
-            tell,
-            last: None,
-            engines: Engines::default(),
-            serial: 0,
-            content: 0,
-            skipped: 0,
-            rolls: false,
-        }
-    }
-
-    /// A fault of the compiler must not take the window's thread with it.
-    fn guarded(&mut self, build: &Build) {
-        let result = catch_unwind(AssertUnwindSafe(|| self.build(build)));
-        if result.is_err() {
-            self.last = None;
-            let what = "the compiler failed on this text; please report it with the scene";
-            (self.tell)(News::Failed(what.to_owned()));
-        }
-    }
-
-    fn build(&mut self, build: &Build) {
-        let begun = Instant::now();
-        let document = match Document::read(&build.path) {
-            Ok(document) => document,
-            Err(error) => {
-                self.last = None;
-                return (self.tell)(News::Unreadable(error.to_string()));
-            }
-        };
-        let reads_same = self.last.as_ref().is_some_and(|last| last.reads(build, &document));
-        if reads_same && self.last.as_ref().is_some_and(|last| last.build == *build) {
-            return;
-        }
-        self.content += u64::from(!reads_same);
-        if self.last.as_ref().is_some_and(|last| last.build.renewed != build.renewed) {
-            self.engines.forget_devices();
-        }
-        let imports = Imports::of(&build.path);
-        let mut compiled = self.compiled(build, &document, &imports);
-        let scene = compiled.scene.take();
-        let shapes = scene.as_ref().map(|scene| Shapes::new(scene, &compiled.sources));
-        let findings = self.findings(&document, &imports, compiled, scene.is_some());
-        let folders = imports.folders();
-        self.last = Some(Met { build: build.clone(), text: document.text.clone(), imports });
-        match scene {
-            None => (self.tell)(News::Compiled { findings, folders, draws: false }),
-            Some(scene) if !scene.draws() => {
-                (self.tell)(News::Compiled { findings, folders, draws: false });
-                (self.tell)(News::Empty);
-            }
-            Some(scene) => {
-                (self.tell)(News::Compiled { findings, folders, draws: true });
-                self.ready(build, begun, document, scene, shapes.unwrap_or_default());
-            }
-        }
-    }
-
-    /// With numbers as params, unless the scene's parts become loops without: parts that differ in params are none that
-    /// are alike.
-    fn compiled(&mut self, build: &Build, document: &Document, imports: &Imports) -> Compiled {
-        let compile =
-            |slots| sdfc::compile_with(&document.name, &document.text, imports, Options { slots });
-        if build.live && !self.rolls {
-            let moving = compile(true);
-            let may_roll = |scene: &Scene| scene.program().graph.len() > MOST_INLINE;
-            if !moving.scene.as_ref().is_some_and(may_roll) {
-                return moving;
-            }
-            let fixed = compile(false);
-            self.rolls = fixed.scene.as_ref().is_some_and(is_rolled);
-            return if self.rolls { fixed } else { moving };
-        }
-        let fixed = compile(false);
-        // A text with errors says nothing of it.
-        self.rolls &= fixed.scene.as_ref().is_none_or(is_rolled);
-        if build.live && !self.rolls { compile(true) } else { fixed }
-    }
-
-    /// What the terminal says: of the text as it stands, not of one whose numbers are params.
-    fn findings(
-        &self,
-        document: &Document,
-        imports: &Imports,
-        compiled: Compiled,
-        compiles: bool,
-    ) -> Findings {
-        if !compiles || compiled.diagnostics.is_empty() {
-            return Findings::of(&compiled);
-        }
-        Findings::of(&sdfc::compile_with_imports(&document.name, &document.text, imports))
-    }
-
-    fn ready(
-        &mut self,
-        build: &Build,
-        begun: Instant,
-        document: Document,
-        scene: Scene,
-        shapes: Shapes,
-    ) {
-        let times = scene.times();
-        let mut stages = Stages { front: times.front, analyze: times.analyze, ..Stages::default() };
-        // Derived when first asked for, which is not to be where input is heard.
-        scene.bounds_at(&FrameValues::defaults(scene.params()));
-        let had_devices = self.engines.has_devices();
-        let mut made = self.engine(build, &scene, &mut stages);
-        if had_devices && made.as_ref().is_err_and(Error::is_machine) {
-            // A device that was lost while nothing was drawn on it.
-            self.engines.forget_devices();
-            made = self.engine(build, &scene, &mut stages);
-        }
-        match made {
-            Ok(Some(Prepared { engine, method, enclosed, note })) => {
-                self.skipped = 0;
-                self.serial += 1;
-                let (probe, moves) = (Probe::new(scene.drawn()), reads_time(&scene));
-                let (text, pipelines) = (document.text, self.engines.pipelines);
-                let (serial, content) = (self.serial, self.content);
-                let parallel = rays(build, &scene);
-                let model = Model {
-                    scene,
-                    text,
-                    engine,
-                    method,
-                    parallel,
-                    enclosed,
-                    probe,
-                    shapes,
-                    moves,
-                    begun,
-                    stages,
-                    pipelines,
-                    serial,
-                    content,
-                    renewed: build.renewed,
-                    note,
-                };
-                (self.tell)(News::Ready(Arc::new(model)));
-            }
-            Ok(None) => {
-                // A newer order waits; whatever it finds, this text has not been shown.
-                self.last = None;
-                self.skipped += 1;
-            }
-            Err(error) => {
-                self.last = None;
-                self.engines.forget_devices();
-                (self.tell)(News::Failed(error.to_string()));
-            }
-        }
-    }
-
-    /// What draws the scene; `None` where a newer order makes it pointless.
-    fn engine(
-        &mut self,
-        build: &Build,
-        scene: &Scene,
-        stages: &mut Stages,
-    ) -> Result<Option<Prepared>, Error> {
-        let wanted = build.method.as_deref().unwrap_or(scene.method());
-        if build.on_cpu {
-            return on_cpu(scene, wanted, None).map(Some);
-        }
-        let Self { engines, orders, skipped, tell, .. } = self;
-        let begins = || {
-            let goes_on = !orders.calls() || *skipped >= MOST_SKIPPED;
-            if goes_on {
-                tell(News::Builds);
-            }
-            goes_on
-        };
-        engines.on_device(scene, wanted, rays(build, scene), stages, begins)
-    }
-}
-
-/// Whether rays are parallel.
-fn rays(build: &Build, scene: &Scene) -> bool {
-    build.parallel.unwrap_or_else(|| scene.program().settings.is_parallel())
-}
-
-fn is_rolled(scene: &Scene) -> bool {
-    !scene.report().rolled.is_empty()
 }
 
 #[cfg(test)]
@@ -415,6 +180,41 @@ pub(crate) mod tests {
         worker.order(on_cpu(&path));
         assert_eq!(findings(&news).errors(), 0);
         assert!(matches!(news.recv_timeout(PATIENCE).unwrap(), News::Empty));
+    }
+
+    /// Text that is broken, that draws nothing, or that is gone.
+    #[test]
+    fn what_is_shown_is_drawn_otherwise_although_the_text_gives_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        let (worker, news) = worker();
+        std::fs::write(&path, "sphere(1)\n").unwrap();
+        worker.order(on_cpu(&path));
+        let shown = ready(&news);
+        assert!(!shown.parallel);
+        let mut parallel = false;
+        for text in [Some("spere(1)\n"), Some("let a = 1\n"), None] {
+            match text {
+                Some(text) => std::fs::write(&path, text).unwrap(),
+                None => std::fs::remove_file(&path).unwrap(),
+            }
+            parallel = !parallel;
+            worker.order(Build { parallel: Some(parallel), ..on_cpu(&path) });
+            let told = news.recv_timeout(PATIENCE).unwrap();
+            assert_eq!(matches!(told, News::Unreadable(_)), text.is_none(), "{told:?}");
+            if text.is_some_and(|text| text.starts_with("let")) {
+                assert!(matches!(news.recv_timeout(PATIENCE).unwrap(), News::Empty));
+            }
+            let model = told::ready(&news);
+            assert_eq!((model.parallel, model.text.as_str()), (parallel, "sphere(1)\n"));
+            assert_eq!(model.content, shown.content);
+        }
+        // Of another file nothing has been shown.
+        worker.order(on_cpu(&folder.path().join("b.sdf")));
+        assert!(matches!(news.recv_timeout(PATIENCE).unwrap(), News::Unreadable(_)));
+        std::fs::write(&path, "sphere(2)\n").unwrap();
+        worker.order(on_cpu(&path));
+        assert_eq!(ready(&news).text, "sphere(2)\n");
     }
 
     #[test]

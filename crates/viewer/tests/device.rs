@@ -160,6 +160,16 @@ fn broken() -> Result<(), Failed> {
     // The last good scene still moves.
     fixture.session.move_camera(|orbit| orbit.turn(0.1, 0.0));
     fixture.until(|session| session.pictures > pictures)?;
+    // Its rays become parallel, and a device is lost.
+    fixture.session.move_camera(|orbit| orbit.set_parallel(true));
+    fixture.until(|it| it.picture.as_ref().is_some_and(|it| it.finished && it.view.parallel))?;
+    expect(fixture.session.findings.errors() == 1, "the text is broken and that is not told")?;
+    let model = fixture.model()?;
+    let Engine::Gpu(pipeline) = &model.engine else { return Err("no device".into()) };
+    testing::lose(pipeline.gpu());
+    let pictures = fixture.session.pictures;
+    fixture.session.move_camera(|orbit| orbit.turn(0.1, 0.0));
+    fixture.until(|session| session.pictures > pictures)?;
     std::fs::remove_file(&fixture.path)?;
     fixture.until(|session| session.trouble.is_some())?;
     fixture.write(&ball("0.5"))?;
@@ -293,9 +303,9 @@ fn compared() -> Result<(), Failed> {
     let mut fixture = Fixture::new(blend)?;
     fixture.finish()?;
     fixture.session.compare(true);
-    fixture.until(|session| session.comparing().is_none())?;
+    fixture.until(|session| session.comparing.progress().is_none())?;
     fixture.session.poll();
-    let judgement = fixture.session.judgement.as_ref().ok_or("there are no figures")?;
+    let judgement = fixture.session.comparing.judgement.as_ref().ok_or("there are no figures")?;
     expect(judgement.finished && judgement.refused.is_empty(), &format!("{judgement:?}"))?;
     let settings: usize = METHODS.iter().map(|method| method.charted.len()).sum();
     expect(judgement.all.len() == settings, &format!("{} figures", judgement.all.len()))?;

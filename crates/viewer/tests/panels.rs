@@ -209,7 +209,7 @@ fn the_picture_is_compared_with_the_oracle() {
     fixture.until(|harness| harness.query_by_label("Compare").is_some());
     let session = fixture.harness.state_mut().session();
     assert!(session.judgement_is_of_this());
-    assert_eq!(session.judgement.as_ref().unwrap().shown.failed(), 0);
+    assert_eq!(session.comparing.judgement.as_ref().unwrap().shown.failed(), 0);
     fixture.click("Top");
     assert!(fixture.has("of another picture than this"));
     // Compared anew of its own accord.

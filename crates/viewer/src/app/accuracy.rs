@@ -17,11 +17,11 @@ const REACH: f32 = 9.0;
 /// The section of the panel.
 pub fn show(ui: &mut Ui, session: &mut Session) {
     orders(ui, session);
-    if let Some(why) = &session.unjudged {
+    if let Some(why) = &session.comparing.unjudged {
         ui.label(RichText::new(why).small().color(style::of(ui).warning));
     }
-    let Some(judgement) = session.judgement.clone() else {
-        if session.unjudged.is_none() && session.comparing().is_none() {
+    let Some(judgement) = session.comparing.judgement.clone() else {
+        if session.comparing.unjudged.is_none() && session.comparing.progress().is_none() {
             let text = "How many pixels are wrong, and by how much: proven ray by ray.";
             ui.label(RichText::new(text).small().color(style::of(ui).weak));
         }
@@ -42,12 +42,12 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
 }
 
 fn orders(ui: &mut Ui, session: &mut Session) {
-    if let Some((part, what)) = session.comparing() {
+    if let Some((part, what)) = session.comparing.progress() {
         ui.horizontal(|ui| {
             let bar = egui::ProgressBar::new(part).desired_width(ui.available_width() - 64.0);
             ui.add(bar.text(RichText::new(what).small()).desired_height(18.0));
             if ui.button("Cancel").on_hover_text("Give it up.").clicked() {
-                session.stop_comparing();
+                session.comparing.stop();
             }
         });
         return;
@@ -69,7 +69,7 @@ fn orders(ui: &mut Ui, session: &mut Session) {
             session.compare(true);
         }
         let text = "Compare each picture as soon as it is finished.";
-        ui.checkbox(&mut session.judges, "at rest").on_hover_text(text);
+        ui.checkbox(&mut session.comparing.at_rest, "at rest").on_hover_text(text);
     });
 }
 

@@ -28,7 +28,7 @@ use canvas::Canvas;
 use leave::Leaving;
 use save::Save;
 use shell::Monitor;
-pub use shell::{LOSE_WINDOW, run};
+pub use shell::{LOSE_WINDOW, NoWindow, run};
 
 /// So long a remark stays in the status line.
 const REMARK: Duration = Duration::from_secs(4);

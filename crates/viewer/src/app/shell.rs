@@ -33,28 +33,39 @@ pub const LOSE_WINDOW: &str = "SDFC_LOSE_WINDOW_AFTER";
 /// The app, once the first window is there.
 type Shared = Rc<RefCell<Option<App>>>;
 
+/// Why there is no window, or none any more.
+#[derive(Debug)]
+pub enum NoWindow {
+    /// None could be opened; why, in one line.
+    Refused(String),
+    /// Its device was lost while it was drawn. What there is to remember is kept.
+    Lost,
+}
+
 /// Opens a window on a scene, and stays until it is closed.
 ///
 /// # Errors
 ///
-/// Why there is no window, in one line.
-pub fn run(path: &Path) -> Result<(), String> {
+/// Why there is none.
+pub fn run(path: &Path) -> Result<(), NoWindow> {
     let app = Shared::default();
     let mut refusals = Vec::new();
     for renderer in RENDERERS {
         match windows(path, renderer, &app) {
             Ok(()) => return Ok(()),
-            Err(Refusal { why, is_final: true }) => return Err(why),
-            Err(Refusal { why, is_final: false }) => refusals.push(why),
+            Err(Refusal::Final(why)) => return Err(why),
+            Err(Refusal::OfRenderer(why)) => refusals.push(why),
         }
     }
-    Err(refusals.join("; "))
+    Err(NoWindow::Refused(refusals.join("; ")))
 }
 
-/// Why a renderer shows no window, and whether others need not be asked.
-struct Refusal {
-    why: String,
-    is_final: bool,
+/// Why a renderer shows no window.
+enum Refusal {
+    /// Another may serve.
+    OfRenderer(String),
+    /// None need be asked.
+    Final(NoWindow),
 }
 
 /// One window after the other, until one is closed.
@@ -65,22 +76,20 @@ fn windows(path: &Path, renderer: eframe::Renderer, app: &Shared) -> Result<(), 
         match ended {
             Ok(_) if events.has_lost_device() => {}
             Ok(ended) => {
-                return ended.map_err(|error| Refusal {
-                    is_final: !is_of_renderer(&error),
-                    why: error.to_string(),
+                return ended.map_err(|error| match is_of_renderer(&error) {
+                    true => Refusal::OfRenderer(error.to_string()),
+                    false => Refusal::Final(NoWindow::Refused(error.to_string())),
                 });
             }
             // egui's own, where the device gives it no buffers: the event loop cannot be used again.
             Err(_) if events.has_lost_device() => {
                 app.borrow_mut().as_mut().into_iter().for_each(App::leave);
-                let why = "its device was lost while it was drawn".to_owned();
-                return Err(Refusal { why, is_final: true });
+                return Err(Refusal::Final(NoWindow::Lost));
             }
             Err(panic) => resume_unwind(panic),
         }
     }
-    let why = format!("the window's device was lost {MOST_LOSSES} times");
-    Err(Refusal { why, is_final: false })
+    Err(Refusal::OfRenderer(format!("the window's device was lost {MOST_LOSSES} times")))
 }
 
 /// Whether another renderer may serve.

@@ -4,6 +4,7 @@
 //! Needs `Xvfb`, `xdotool` and `import`, and an adapter that serves a window; the tests are reported as
 //! ignored where a program is missing, unless `SDFC_REQUIRE_GPU` is set.
 
+mod drag;
 mod screen;
 
 use std::process::{ExitCode, Stdio};
@@ -26,13 +27,14 @@ fn main() -> ExitCode {
     let missing: Vec<&str> =
         ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
-    let trials: [(&str, Test); 13] = [
+    let trials: [(&str, Test); 14] = [
         ("an_edit_is_seen_and_broken_text_keeps_the_picture", edits),
         ("the_camera_follows_the_pointer", camera),
         ("a_file_that_goes_and_comes_back_is_seen", comes_back),
         ("files_of_other_systems_and_empty_ones_are_seen", other_texts),
         ("a_slider_moves_the_scene_and_keys_choose_views", slider),
         ("without_a_scene_an_example_is_shown_and_saved_as_a_picture", example),
+        ("a_file_that_is_let_go_over_the_window_is_shown", dropped),
         ("any_size_is_survived_and_a_hidden_window_shows_the_newest_text", sizes),
         ("closed_by_the_window_manager_it_remembers", closing),
         ("a_window_whose_device_is_lost_is_replaced_by_another", lost),
@@ -154,6 +156,17 @@ fn example(display: Display) -> Result<(), Failed> {
     expect(image::image_dimensions(&file)? == (1920, 1080), "it has another size")
 }
 
+fn dropped(display: Display) -> Result<(), Failed> {
+    let scene = Scene::new(BALL)?;
+    let window = Window::open(&display, &scene)?;
+    window.settled(|picture| is_red(picture, PLACE))?;
+    let other = scene.path.with_file_name("other.sdf");
+    std::fs::write(&other, BALL.replace("#d94f30", "#30d94f"))?;
+    window.drop_file(&other)?;
+    window.settled(|picture| is_green(picture, PLACE))?;
+    window.input(&["search", "--name", "other.sdf"])
+}
+
 /// Whether what is shown has more than one colour.
 fn has_a_picture(picture: &image::RgbImage) -> bool {
     let [columns, rows] = PICTURE;
@@ -243,7 +256,9 @@ fn lost_midway(display: Display) -> Result<(), Failed> {
         window.input(&["mousemove", &(PLACE[0] + step % 30).to_string(), "370"])?;
         std::thread::sleep(Duration::from_millis(20));
     };
-    expect(status.code() == Some(3), &format!("{status}"))?;
+    let said = window.said()?;
+    expect(status.code() == Some(3), &format!("{status}: {said}"))?;
+    expect(said.contains("help: open the scene again") && !said.contains("no window"), &said)?;
     let memory = std::fs::read_to_string(scene.own().join("sdfc/view.json"))?;
     expect(memory.contains("scene.sdf") && memory.contains("\"eye\""), &memory)
 }

@@ -8,8 +8,10 @@ use image::RgbImage;
 use libtest_mimic::Failed;
 use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask, Window as XWindow};
 
+use crate::drag::drop_file;
+
 /// Long enough for a busy machine and a software adapter; reached only where a test fails.
-const PATIENCE: Duration = Duration::from_secs(120);
+pub const PATIENCE: Duration = Duration::from_secs(120);
 pub const SIZE: [u32; 2] = [1000, 640];
 /// Columns and rows of the window that show nothing but the picture.
 pub const PICTURE: [std::ops::Range<u32>; 2] = [40..680, 120..500];
@@ -151,7 +153,7 @@ impl<'a> Window<'a> {
         program: &mut Command,
         title: &'static str,
     ) -> Result<Self, Failed> {
-        let viewer = program.stderr(Stdio::null()).spawn()?;
+        let viewer = program.stderr(Stdio::piped()).spawn()?;
         let window = Self { viewer, display };
         window.arrange(title)?;
         Ok(window)
@@ -190,13 +192,22 @@ impl<'a> Window<'a> {
             Ok(connection.intern_atom(false, name.as_bytes())?.reply()?.atom)
         };
         let (protocols, delete) = (atom("WM_PROTOCOLS")?, atom("WM_DELETE_WINDOW")?);
-        let output = self.output(&["search", "--name", "sdfc$"])?;
-        let window: XWindow = String::from_utf8_lossy(&output.stdout).trim().parse()?;
+        let window = self.id()?;
         let event = ClientMessageEvent::new(32, window, protocols, [delete, 0, 0, 0, 0]);
         connection.send_event(false, window, EventMask::NO_EVENT, event)?.check()?;
         // An answer, so that the display has seen all of it.
         connection.get_input_focus()?.reply()?;
         Ok(())
+    }
+
+    /// Lets a file go over it, dragged from elsewhere.
+    pub fn drop_file(&self, file: &Path) -> Result<(), Failed> {
+        drop_file(&self.display.name, self.id()?, SIZE.map(|side| side / 2), file)
+    }
+
+    fn id(&self) -> Result<XWindow, Failed> {
+        let output = self.output(&["search", "--name", "sdfc$"])?;
+        Ok(String::from_utf8_lossy(&output.stdout).trim().parse()?)
     }
 
     /// Hundredths of a second that the processor has spent on it; 0 where the system does not say.
@@ -211,6 +222,11 @@ impl<'a> Window<'a> {
     /// How it ended, if it has.
     pub fn status(&mut self) -> Result<Option<ExitStatus>, Failed> {
         Ok(self.viewer.try_wait()?)
+    }
+
+    /// What it has said, once it has ended.
+    pub fn said(&mut self) -> Result<String, Failed> {
+        Ok(self.viewer.stderr.take().map(std::io::read_to_string).transpose()?.unwrap_or_default())
     }
 
     /// How it ended, once it has.
