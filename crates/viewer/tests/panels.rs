@@ -248,6 +248,29 @@ fn every_widget_explains_itself() {
 }
 
 #[test]
+fn escape_closes_what_is_open_before_it_stops_refining() {
+    let mut fixture = Fixture::new();
+    let refines = |fixture: &mut Fixture| fixture.harness.state_mut().session().refine;
+    let escape = |fixture: &mut Fixture| {
+        fixture.harness.key_press(Key::Escape);
+        fixture.harness.run_steps(3);
+    };
+    fixture.click("scene.sdf");
+    assert!(fixture.has("Examples"));
+    escape(&mut fixture);
+    assert!(!fixture.has("Examples") && refines(&mut fixture));
+    fixture.move_a_number();
+    fixture.request_close();
+    escape(&mut fixture);
+    assert!(!fixture.has("A moved number is not in the file") && refines(&mut fixture));
+    fixture.click("Save");
+    escape(&mut fixture);
+    assert!(refines(&mut fixture));
+    escape(&mut fixture);
+    assert!(!refines(&mut fixture));
+}
+
+#[test]
 fn another_monitor_is_told() {
     let mut fixture = Fixture::new();
     for (width, scale) in [(1920.0, 1.0), (3840.0, 2.0)] {

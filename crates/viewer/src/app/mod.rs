@@ -274,7 +274,9 @@ impl App {
         if ctx.input(|input| input.key_pressed(Key::Questionmark)) || pressed(Key::F1) {
             self.shows.help = !self.shows.help;
         }
-        if pressed(Key::Escape) {
+        // What is open over the window is closed by it, and nothing else is meant.
+        let over = ctx.any_popup_open() || ctx.memory(|memory| memory.top_modal_layer().is_some());
+        if pressed(Key::Escape) && !over {
             if self.shows.help || self.shows.save {
                 (self.shows.help, self.shows.save) = (false, false);
             } else {
