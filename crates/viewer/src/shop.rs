@@ -72,6 +72,8 @@ pub struct Shop<T> {
     skipped: u32,
     /// Whether parts of the last scene became loops.
     rolls: bool,
+    /// Of the last scene of which that was found not to be so: its nodes and its numbers.
+    inlined: Option<[usize; 2]>,
 }
 
 impl<T: FnMut(News)> Shop<T> {
@@ -88,6 +90,7 @@ impl<T: FnMut(News)> Shop<T> {
             contents: 0,
             skipped: 0,
             rolls: false,
+            inlined: None,
         }
     }
 
@@ -169,18 +172,21 @@ impl<T: FnMut(News)> Shop<T> {
     }
 
     /// With numbers as params, unless the scene's parts become loops without: parts that differ in params are none that
-    /// are alike.
+    /// are alike. That costs a second compilation, which is spared where nodes and numbers are as many as when it found none:
+    /// other numbers hardly make parts alike.
     fn compiled(&mut self, build: &Build, document: &Document, imports: &Imports) -> Compiled {
         let compile =
             |slots| sdfc::compile_with(&document.name, &document.text, imports, Options { slots });
         if build.live && !self.rolls {
             let moving = compile(true);
-            let may_roll = |scene: &Scene| scene.program().graph.len() > MOST_INLINE;
-            if !moving.scene.as_ref().is_some_and(may_roll) {
+            let extent = |scene: &Scene| [scene.program().graph.len(), scene.slots().len()];
+            let extent = moving.scene.as_ref().map(extent);
+            if extent.is_none_or(|[nodes, _]| nodes <= MOST_INLINE) || extent == self.inlined {
                 return moving;
             }
             let fixed = compile(false);
             self.rolls = fixed.scene.as_ref().is_some_and(is_rolled);
+            self.inlined = extent.filter(|_| !self.rolls);
             return if self.rolls { fixed } else { moving };
         }
         let fixed = compile(false);

@@ -275,7 +275,8 @@ impl App {
             self.shows.help = !self.shows.help;
         }
         // What is open over the window is closed by it, and nothing else is meant.
-        let over = ctx.any_popup_open() || ctx.memory(|memory| memory.top_modal_layer().is_some());
+        let over = egui::Popup::is_any_open(ctx)
+            || ctx.memory(|memory| memory.top_modal_layer().is_some());
         if pressed(Key::Escape) && !over {
             if self.shows.help || self.shows.save {
                 (self.shows.help, self.shows.save) = (false, false);
