@@ -165,18 +165,31 @@ fn entry(cone: Cone, which: u32, round: f32) -> f32 {
     return t;
 }
 
-// Where it ceases to matter, looked for from the end of rays back to where it begins to.
-fn exit(cone: Cone, which: u32, round: f32, start: f32) -> f32 {
-    var t = view.t_max;
-    for (var step = 0u; step < MOST_STEPS && t > start; step++) {
-        let free = free_at(cone, which, round, t);
-        if free < 0.0 {
-            break;
+// Where it begins to, and where it ceases to, which is looked for from the end of rays back. One call of `free_at`: drivers inline it
+// wherever it is called.
+fn stretch(cone: Cone, which: u32, round: f32) -> vec2f {
+    var ends = vec2f(0.0, view.t_max);
+    var is_back = false;
+    var steps = 0u;
+    while steps < MOST_STEPS && ends.x < ends.y {
+        let free = free_at(cone, which, round, select(ends.x, ends.y, is_back));
+        steps++;
+        if !is_back && free >= 0.0 {
+            ends.x += free / (1.0 + cone.spread);
         }
         // Nearer to the eye the cone is no wider.
-        t -= free;
+        if is_back && free >= 0.0 {
+            ends.y -= free;
+        }
+        if free < 0.0 || steps == MOST_STEPS {
+            if is_back {
+                break;
+            }
+            is_back = true;
+            steps = 0u;
+        }
     }
-    return max(t, start);
+    return vec2f(ends.x, max(ends.x, ends.y));
 }
 
 // Where the marks of a tile are: those of level 1 come first.
@@ -221,8 +234,8 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
 // A stretch of rays in one word, as parts of their length: no less than it is.
 const PARTS: f32 = 65535.0;
 
-fn word_of_stretch(start: f32, end: f32) -> u32 {
-    let ends = PARTS / view.t_max * vec2f(start, end);
+fn word_of_stretch(own: vec2f) -> u32 {
+    let ends = PARTS / view.t_max * own;
     return u32(clamp(floor(ends.x), 0.0, PARTS)) | (u32(clamp(ceil(ends.y), 0.0, PARTS)) << 16u);
 }
 
@@ -260,15 +273,14 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
             while bits != 0u {
                 let round = 32u * word + firstTrailingBit(bits);
                 bits &= bits - 1u;
-                let start = entry(cone, which, f32(round));
-                if start <= view.t_max {
+                let own = stretch(cone, which, f32(round));
+                if own.x <= view.t_max {
                     if count < most_kept {
-                        let end = exit(cone, which, f32(round), start);
                         marks[kept + 2u * count] = round;
-                        marks[kept + 2u * count + 1u] = word_of_stretch(start, end);
+                        marks[kept + 2u * count + 1u] = word_of_stretch(own);
                     }
-                    near = min(near, start);
-                    far = max(far, start);
+                    near = min(near, own.x);
+                    far = max(far, own.x);
                     count++;
                 }
             }
