@@ -96,6 +96,9 @@ codes! {
     MISPLACED_CLAUSE "E0210" "A clause, default or result type that does not belong here"
         "`exact`, `bound`, `bounds` and `material` are for shapes; `fn` and lambdas have only `lipschitz` and `require`. Each clause but `exact`, `bound` and `require` stands once."
         "remove it here";
+    CLOCK "E0211" "A param that has the clock's name"
+        "Pages, players and programs hand a scene its clock by the names `time` and `frame`, as they set a param by its own. A scene uses both without declaring them."
+        "use the clock as it is, without `param`, or choose another name";
 
     REGION_FOR_SOLID "E0301" "A region (2D) where a solid (3D) is wanted"
         "Regions become solids by `.extrude(h)` or `.revolve()`."

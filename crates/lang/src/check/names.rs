@@ -92,6 +92,9 @@ impl<'a> Checker<'a> {
                     self.add_name(module, &item.name, Entry::Let(index));
                 }
                 Item::Param(item) => {
+                    if path == Some("") {
+                        self.refuse_clock(&item.name);
+                    }
                     let index = ParamIndex(self.params.len());
                     self.params.push(super::ParamInfo::new(item, module));
                     self.add_name(module, &item.name, Entry::Param(index));
@@ -137,6 +140,17 @@ impl<'a> Checker<'a> {
                 .note_at(first, "first declared here")
                 .help("rename one; only a solid and a region whose first parameters are a solid and a region may share a name"),
         );
+    }
+
+    /// Hosts hand a scene its clock by the names `time` and `frame`, and its own params by theirs. Params of imported
+    /// files have those of their files before them.
+    fn refuse_clock(&mut self, name: &ast::Name) {
+        if !matches!(kernel::builtin(&name.text), Some(Builtin::Time | Builtin::Frame)) {
+            return;
+        }
+        let message = format!("`{}` is the clock's name: no param can have it", name.text);
+        let help = format!("use `{}` as it is, without `param`, or choose another name", name.text);
+        self.report(Diagnostic::error(Code::CLOCK, name.span, message).help(help));
     }
 
     /// Where the name of an entry was declared.
