@@ -3,8 +3,11 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use sdfc::{check, lang::NoFiles};
-use sdfc_diagnostics::{ALL_CODES, CodeInfo};
+use sdfc::{Compiled, check, lang::NoFiles};
+use sdfc_diagnostics::{ALL_CODES, CodeInfo, Note};
+
+/// What the scenes are called.
+const SCENE: &str = "scene.sdf";
 
 /// What a page shows of a line that is longer.
 const WIDEST: usize = 160;
@@ -14,7 +17,7 @@ pub struct Example {
     pub code: &'static CodeInfo,
     pub wrong: String,
     pub mended: String,
-    /// What is said of the wrong scene, on a page, and its codes.
+    /// What is said of the wrong scene, on a page, less the library's lines, and its codes.
     pub said: String,
     pub codes: Vec<&'static str>,
     /// What is said of the mended scene.
@@ -37,8 +40,9 @@ impl Example {
         let (wrong, mended) = text
             .split_once("\n----\n")
             .unwrap_or_else(|| panic!("{}: four dashes part wrong from mended", path.display()));
-        let compiled = |text| check("scene.sdf", &expanded(text), &NoFiles);
-        let found = compiled(wrong);
+        let compiled = |text| check(SCENE, &expanded(text), &NoFiles);
+        let mut found = compiled(wrong);
+        leave_out_the_library(&mut found);
         let said = found.diagnostics_text(false);
         let lines: Vec<String> = said.trim_end().lines().map(shortened).collect();
         Self {
@@ -57,6 +61,15 @@ impl Example {
         let (count, part) = mark.split_once(" * ")?;
         let line_end = if part.contains("\\n") { ", `\\n` being the end of a line" } else { "" };
         Some(format!("`{{{{{mark}}}}}` stands for `{part}`, {count} times{line_end}."))
+    }
+}
+
+/// Places in the library move with every line that is written above them: a page would change with each.
+fn leave_out_the_library(found: &mut Compiled) {
+    let sources = &found.sources;
+    let in_library = |note: &Note| note.span.is_some_and(|at| sources.name(at.file) != SCENE);
+    for diagnostic in &mut found.diagnostics {
+        diagnostic.notes.retain(|note| !in_library(note));
     }
 }
 
