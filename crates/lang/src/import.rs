@@ -63,17 +63,19 @@ struct Open {
 }
 
 /// Reads and parses all files that a scene imports, each once, those first that others need.
-/// What cannot be followed is reported, as is everything wrong with how the files are written.
+/// What cannot be followed is reported, as is everything wrong with how the files are written. `sources` has them by the
+/// names that the scene would have in their place: beside `parts/lamp.sdf`, `bulb.sdf` is `parts/bulb.sdf`.
 pub fn load(
     sources: &mut Sources,
-    scene: &ast::File,
+    (scene, tree): (FileId, &ast::File),
     resolver: &dyn Resolver,
 ) -> (Vec<Imported>, Vec<Diagnostic>) {
+    let folder = folder_of(sources.name(scene)).to_owned();
     let mut found = Vec::new();
     let mut loaded: Vec<Imported> = Vec::new();
     let mut known: FxHashMap<String, Option<usize>> = FxHashMap::default();
     let mut done = Vec::new();
-    let mut open = vec![Open { at: None, path: String::new(), imports: imports(scene) }];
+    let mut open = vec![Open { at: None, path: String::new(), imports: imports(tree) }];
     while let Some(file) = open.last_mut() {
         let Some((written, span)) = file.imports.pop() else {
             done.extend(file.at);
@@ -106,7 +108,7 @@ pub fn load(
                 continue;
             }
         };
-        let id = sources.add(path.as_str(), text);
+        let id = sources.add(format!("{folder}{path}"), text);
         let (tree, of_parser) = sdfc_syntax::parse(sources, id);
         let whole = !has_errors(&of_parser);
         found.extend(of_parser);
@@ -118,6 +120,12 @@ pub fn load(
     let mut places: Vec<Option<Imported>> = loaded.into_iter().map(Some).collect();
     let ordered = done.into_iter().filter_map(|at| places[at].take()).collect();
     (ordered, found)
+}
+
+/// The folder in a name that is a path, with the separator at its end; empty in another.
+fn folder_of(name: &str) -> &str {
+    let end = name.rfind(std::path::is_separator).map_or(0, |last| last + 1);
+    &name[..end]
 }
 
 /// What a file imports, last first.

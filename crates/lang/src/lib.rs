@@ -89,7 +89,7 @@ pub fn front_with(
     }
     // The library comes before the imports, so that its places are the same in every scene.
     let library = library::add_to(sources);
-    let (imports, of_imports) = import::load(sources, &scene, resolver);
+    let (imports, of_imports) = import::load(sources, (file, &scene), resolver);
     found.extend(of_imports);
     let (program, of_check) = reach::check(sources, &library, &imports, (file, &scene));
     let parsed = !has_errors(&found);

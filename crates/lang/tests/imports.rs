@@ -29,7 +29,7 @@ fn check(scene: &str, files: &[(&'static str, &str)]) -> (Program, String) {
     let mut sources = library.sources.clone();
     let file = sources.add("scene.sdf", scene);
     let (tree, mut found) = parse(&sources, file);
-    let (imports, of_imports) = load(&mut sources, &tree, &folder(files));
+    let (imports, of_imports) = load(&mut sources, (file, &tree), &folder(files));
     found.extend(of_imports);
     let (program, of_check) = check_with_imports(&library.files, &imports, (file, &tree));
     found.extend(of_check);
@@ -57,6 +57,13 @@ gear(rim + tooth(depth))",
     assert_eq!(rendered, "");
     verify(&program);
     insta::assert_snapshot!(print(&program));
+}
+
+#[test]
+fn a_param_of_another_file_may_have_the_clock_s_name() {
+    let clock = "param time = 1 in 0..2\nsolid ball() = length(p) - time\n";
+    let (_, rendered) = check("import ball from \"clock.sdf\"\nball()", &[("clock.sdf", clock)]);
+    assert_eq!(rendered, "");
 }
 
 #[test]
