@@ -5,7 +5,7 @@
 mod support;
 
 use sdfc_graph::eval::{FrameValues, Tape};
-use sdfc_graph::{Dim, Expander, MaterialField};
+use sdfc_graph::{Dim, Expander, MaterialField, MaterialRule};
 use support::elaborated;
 
 const RED: [f64; 3] = [1.0, 0.0, 0.0];
@@ -31,6 +31,17 @@ fn unpainted() -> [f64; 3] {
 #[test]
 fn a_material_of_which_nothing_is_said_looks_unpainted() {
     assert_eq!(color("sphere(1).paint(material())", [1.0, 0.0, 0.0]), unpainted());
+}
+
+#[test]
+fn how_materials_mix_is_told_only_where_something_is_painted() {
+    let is_told = |text: &str| {
+        let scene = elaborated(text).scene;
+        let root = scene.graph.shape(scene.root.expect("the scene draws something"));
+        root.material != MaterialRule::Shares(root.formula)
+    };
+    assert!(is_told("intersection(box(1).color(#f00), sphere(0.6))"));
+    assert!(!is_told("intersection(box(1), sphere(0.6))"));
 }
 
 #[test]

@@ -195,6 +195,8 @@ struct Elaborator<'p> {
     globals: Vec<Option<Value<'p>>>,
     /// Names of definitions in the graph: unique where files declare the same name.
     definitions: Vec<String>,
+    /// Whether any shape states a material. Without one nobody asks how materials mix.
+    paints: bool,
     closures: FxHashMap<ClosureKey, u32>,
     /// Made when the first bounds are asked for.
     bounds: Option<Bounds>,
@@ -237,6 +239,7 @@ impl<'p> Elaborator<'p> {
             params: Vec::new(),
             globals: vec![None; program.globals.len()],
             definitions: shape::definition_names(program),
+            paints: shape::paints(program),
             closures: FxHashMap::default(),
             bounds: None,
             sites: Vec::new(),

@@ -50,6 +50,12 @@ pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared
     .collect()
 }
 
+/// Whether any shape of the program states a material; one that states shares alone mixes those of others.
+pub(super) fn paints(program: &hir::Program) -> bool {
+    let mut stated = program.shapes.iter().filter_map(|shape| shape.material.as_ref());
+    stated.any(|material| material.ty == hir::Type::Material)
+}
+
 impl<'p> Elaborator<'p> {
     /// The instance that a call of a shape's definition makes.
     pub(super) fn build(
@@ -179,7 +185,7 @@ impl<'p> Elaborator<'p> {
         definition: &'p ShapeDef,
         formula: NodeId,
     ) -> Outcome<MaterialRule> {
-        let Some(stated) = &definition.material else {
+        let Some(stated) = definition.material.as_ref().filter(|_| self.paints) else {
             return Ok(MaterialRule::Shares(formula));
         };
         match self.eval(env, stated)? {
