@@ -283,6 +283,15 @@ fn explain_says_what_was_modelled() {
         assert!(explained.get(key).is_some(), "{key}");
     }
     assert!(text(&run(&folder, &["explain", "scene.sdf"]).stdout).contains("leaves"));
+    // Steps by a bound need no constant; that of a twist by a param follows it.
+    let constant = |scene: &[u8]| {
+        let output = run_with(folder.path(), &["explain", "-"], scene);
+        let page = text(&output.stdout);
+        let row = page.lines().last().unwrap().split("  ").filter(|cell| !cell.is_empty());
+        row.map(str::trim).nth(4).unwrap().to_owned()
+    };
+    assert_eq!(constant(b"ellipsoid_fast([1, 0.5, 0.4])\n"), "none");
+    assert_eq!(constant(b"param k = 30deg in 0deg..60deg\nbox(1).twist(rate: k)\n"), "per frame");
 }
 
 #[test]
@@ -325,6 +334,10 @@ fn imports_are_files_beside_the_scene() {
     let name = folder.path().file_name().unwrap().to_str().unwrap();
     let output = run_with(&above, &["check", &format!("{name}/main.sdf")], b"");
     assert_eq!(status(&output), 0, "{}", text(&output.stderr));
+    std::fs::write(folder.path().join("parts/knob.sdf"), "let knob = spere(0.2)\n").unwrap();
+    let output = run_with(&above, &["check", &format!("{name}/main.sdf")], b"");
+    let said = text(&output.stderr);
+    assert!(said.contains(&format!("{name}/parts/knob.sdf:1:")), "{said}");
     let missing =
         run_with(folder.path(), &["check", "-"], b"import knob from \"none.sdf\"\nknob\n");
     assert_eq!(status(&missing), 1);

@@ -136,6 +136,8 @@ pub struct QualityRow {
     pub inside: String,
     /// Its Lipschitz constant; null where it follows a param or is not known.
     pub lipschitz: Option<f64>,
+    /// Whether the constant follows a param.
+    pub lipschitz_per_frame: bool,
     /// The operation at which its field may jump; null where it has a constant.
     pub jump: Option<&'static str>,
     /// How far an operator may carry the surface: where all distances that it joins exceed this, nothing of it is. Null for a shape
@@ -185,10 +187,12 @@ impl std::fmt::Display for Explanation {
             )?;
         }
         for row in &self.quality {
-            let constant = row.lipschitz.map_or_else(
-                || if row.certified { "per frame".to_owned() } else { "unknown".to_owned() },
-                short,
-            );
+            let constant = match row.lipschitz {
+                Some(value) => short(value),
+                None if row.lipschitz_per_frame => "per frame".to_owned(),
+                None if row.certified => "none".to_owned(),
+                None => "unknown".to_owned(),
+            };
             write!(
                 f,
                 "{:>6}  {:<16}  {:<7}  {:<7}  {constant:<9}  {:<5}  {:<7}  {}",

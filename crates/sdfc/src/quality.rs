@@ -72,6 +72,7 @@ impl Scene {
             outside: shape.sides.outside.to_string(),
             inside: shape.sides.inside.to_string(),
             lipschitz,
+            lipschitz_per_frame: shape.lipschitz == Lipschitz::PerFrame,
             jump: shape.jump,
             blend_margin: None,
             bounds: Bounds::default(),
