@@ -2,6 +2,8 @@
 #![allow(missing_docs)]
 
 mod common;
+#[path = "../../../tests/shared/scenes.rs"]
+mod scenes;
 
 use common::verify::verify;
 use common::{Library, printed};
@@ -24,28 +26,14 @@ fn a_scene_reaches_only_what_it_needs() {
     assert_eq!(names, ["union", "sphere"]);
 }
 
-/// The scenes of the repository; later ones may warn, none may be wrong.
 #[test]
 fn all_example_scenes_check() {
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
     let library = Library::new();
-    let mut folders = vec![std::path::PathBuf::from(examples)];
-    let mut seen = 0;
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).expect("the examples") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "sdf") {
-                let text = std::fs::read_to_string(&path).expect("a scene");
-                let (program, found, rendered) = library.check(&text);
-                assert!(found.is_empty(), "{}\n{rendered}", path.display());
-                verify(&program);
-                seen += 1;
-            }
-        }
+    for (name, text) in scenes::scene_files().expect("the examples") {
+        let (program, found, rendered) = library.check(&text);
+        assert!(found.is_empty(), "{name}\n{rendered}");
+        verify(&program);
     }
-    assert!(seen > 10);
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::examples::scene_files;
+use common::scenes::scene_files;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
@@ -36,9 +36,9 @@ const EVALUATIONS: f64 = 0.5;
 
 /// Scenes that take more, and why.
 const DEARER: &[(&str, &str, f64)] = &[
-    ("examples/terrain", "hills of noise: nothing has a closed form, and every ray grazes it", 0.8),
-    ("examples/thirty", "one chain of blends without a floor: nothing has a closed form", 0.8),
-    ("examples/pawn", "the board is a rounded box, cheaper to march than in closed form", 0.55),
+    ("terrain.sdf", "hills of noise: nothing has a closed form, and every ray grazes it", 0.8),
+    ("bench/thirty.sdf", "one chain of blends without a floor: nothing has a closed form", 0.8),
+    ("pawn.sdf", "the board is a rounded box, cheaper to march than in closed form", 0.55),
 ];
 
 /// A scene of hundreds of leaves, which no example has. Drivers take long for its shaders, so `auto` is drawn alone.
@@ -46,7 +46,7 @@ const MANY: &str = "three hundred leaves";
 
 /// Scenes of which less can be promised, and why.
 const EXCEPTIONS: &[(&str, &str, Bound)] = &[(
-    "examples/mandelbulb",
+    "mandelbulb.sdf",
     "its field is an estimate without a constant, and intervals over its rounds prove misses alone",
     Bound { size: [8, 5], undecided: 0.4 },
 )];
@@ -57,7 +57,7 @@ fn main() {
         let title = name.clone();
         Trial::test(title, move || auto_is_right(&name, &text)).with_ignored_flag(without_gpu)
     };
-    let mut files = scene_files();
+    let mut files = scene_files().expect("the examples can be read");
     files.push((MANY.to_owned(), many()));
     let listed = EXCEPTIONS.iter().map(|it| it.0).chain(DEARER.iter().map(|it| it.0));
     for listed in listed {

@@ -3,4 +3,5 @@
 #![allow(dead_code, reason = "each binary uses a part")]
 
 pub mod agree;
-pub mod examples;
+#[path = "../../../../tests/shared/scenes.rs"]
+pub mod scenes;
