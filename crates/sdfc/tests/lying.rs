@@ -1,5 +1,5 @@
-//! Fields that exceed the distance, or jump: `interval`, and `auto` by it, find what the oracle finds where steps as long
-//! as the field lead through.
+//! Fields that exceed the distance, or jump: where that is known, `interval`, and `auto` by it, find what the oracle finds though
+//! steps as long as the field lead through; where a scene hides it from the compiler, the chart's figures show it.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -9,7 +9,7 @@ use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
-use sdfc::{ChartOptions, OracleOptions, unwatched};
+use sdfc::{ChartOptions, OracleOptions, Scene, unwatched};
 
 const SIZE: [u32; 2] = [96, 54];
 /// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
@@ -44,6 +44,23 @@ const SCENES: [(&str, &str); 3] = [
     ),
 ];
 
+/// Scenes that are certified by what they state, which is not true.
+const LIES: [(&str, &str); 2] = [
+    (
+        "a function that understates its slope",
+        "fn steep(t) lipschitz 1 = if t > 0 { 4 * t } else { t }
+         solid a() = steep(length(p) - 0.5)
+         a()",
+    ),
+    (
+        "a spike far thinner than samples lie apart",
+        "solid a() lipschitz 1 bounds -1..1 =
+           if abs(p.x) < 0.002 { 30 * (length(p) - 0.5) } else { length(p) - 0.5 }
+         a()
+         camera(eye: [0, 0, 3], target: 0, fov: 1deg)",
+    ),
+];
+
 fn main() {
     let without_gpu = testing::without_gpu();
     let mut trials = Vec::new();
@@ -53,6 +70,10 @@ fn main() {
         let same = move || agree::devices(&agree::scene(name, text)?).map(drop);
         trials.push(Trial::test(format!("same/{name}"), same).with_ignored_flag(without_gpu));
     }
+    for (name, text) in LIES {
+        let seen = move || chart_shows(name, text);
+        trials.push(Trial::test(format!("seen/{name}"), seen).with_ignored_flag(without_gpu));
+    }
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -61,12 +82,8 @@ fn proven_is_right(name: &str, text: &str) -> Result<(), Failed> {
     if scene.is_certified() || scene.marched_by("auto") != "interval" {
         return Err("the scene is not one that `auto` leaves to `interval`".into());
     }
-    let methods = ["sphere", "interval", "auto"].map(str::to_owned).to_vec();
-    let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
-    let options = ChartOptions { size: SIZE, methods, ..once };
-    let chart =
-        scene.chart(name, &Gpu::new()?, &options, OracleOptions::default(), &mut unwatched)?;
-    let [sphere, proven @ ..] = &chart.methods[..] else { return Err("no rows".into()) };
+    let rows = rows(&scene, name, &["sphere", "interval", "auto"])?;
+    let [sphere, proven @ ..] = &rows[..] else { return Err("no rows".into()) };
     if sphere.missed == 0 {
         return Err("steps as long as the field miss nothing: the scene tests nothing".into());
     }
@@ -80,4 +97,27 @@ fn proven_is_right(name: &str, text: &str) -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// Steps as long as the field lead through the surface, which the chart of a scene that counts as certified tells.
+fn chart_shows(name: &str, text: &str) -> Result<(), Failed> {
+    let scene = agree::scene(name, text)?;
+    if !scene.is_certified() {
+        return Err("the compiler knows that it lies".into());
+    }
+    let rows = rows(&scene, name, &["sphere"])?;
+    let [Row { missed, false_hits, depth_px, .. }] = &rows[..] else { return Err("no row".into()) };
+    if missed + false_hits == 0 && depth_px.p99 <= 1.0 {
+        return Err("`sphere` draws it right".into());
+    }
+    Ok(())
+}
+
+/// The rows of these methods on the scene's chart.
+fn rows(scene: &Scene, name: &str, methods: &[&str]) -> Result<Vec<Row>, Failed> {
+    let methods = methods.iter().copied().map(str::to_owned).collect();
+    let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
+    let options = ChartOptions { size: SIZE, methods, ..once };
+    let oracle = OracleOptions::default();
+    Ok(scene.chart(name, &Gpu::new()?, &options, oracle, &mut unwatched)?.methods)
 }
