@@ -11,7 +11,7 @@ use sdfc_graph::{Camera, Program};
 use crate::Scene;
 
 /// A scene is drawn about a place of its own if what is seen is so many times nearer to the eye than the origin.
-const FAR: f64 = 64.0;
+const TIMES_NEARER: f64 = 64.0;
 
 impl Scene {
     /// The program that pictures are drawn by.
@@ -42,7 +42,7 @@ impl Scene {
         };
         let farthest = place.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let known = place.iter().all(|x| x.is_finite()) && reach.is_finite();
-        (known && farthest > FAR * reach).then_some(place)
+        (known && farthest > TIMES_NEARER * reach).then_some(place)
     }
 }
 
