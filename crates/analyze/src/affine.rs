@@ -7,65 +7,11 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square, reachable,
+    Binary, Coefficient, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square,
+    reachable,
 };
 
-/// A coefficient, known before the point is. Numbers stay out of the arena: most are only steps to others.
-#[derive(Clone, Copy, Debug)]
-enum Coefficient {
-    Number(f64),
-    Node(NodeId),
-}
-
-const ZERO: Coefficient = Coefficient::Number(0.0);
-const ONE: Coefficient = Coefficient::Number(1.0);
-
-impl Coefficient {
-    fn of(graph: &Graph, node: NodeId) -> Self {
-        graph.as_number(node).map_or(Self::Node(node), Self::Number)
-    }
-
-    fn node(self, graph: &mut Graph) -> NodeId {
-        match self {
-            Self::Number(value) => graph.number(value),
-            Self::Node(node) => node,
-        }
-    }
-
-    /// What `of_nodes` makes of two coefficients, which is `of_numbers` of two numbers where that is finite.
-    fn join(
-        graph: &mut Graph,
-        (a, b): (Self, Self),
-        of_numbers: fn(f64, f64) -> f64,
-        of_nodes: fn(&mut Graph, NodeId, NodeId) -> NodeId,
-    ) -> Self {
-        if let (Self::Number(x), Self::Number(y)) = (a, b) {
-            let value = of_numbers(x, y);
-            if value.is_finite() {
-                return Self::Number(value);
-            }
-        }
-        let (a, b) = (a.node(graph), b.node(graph));
-        let joined = of_nodes(graph, a, b);
-        Self::of(graph, joined)
-    }
-
-    fn plus(self, graph: &mut Graph, other: Self) -> Self {
-        Self::join(graph, (self, other), |x, y| x + y, Graph::add)
-    }
-
-    fn minus(self, graph: &mut Graph, other: Self) -> Self {
-        Self::join(graph, (self, other), |x, y| x - y, Graph::sub)
-    }
-
-    fn times(self, graph: &mut Graph, other: Self) -> Self {
-        Self::join(graph, (self, other), |x, y| x * y, Graph::mul)
-    }
-
-    fn over(self, graph: &mut Graph, other: Self) -> Self {
-        Self::join(graph, (self, other), |x, y| x / y, Graph::div)
-    }
-}
+const ZERO: Coefficient = Coefficient::ZERO;
 
 /// One lane: the coefficients of x, y, z.
 type Row = [Coefficient; 3];
@@ -96,15 +42,12 @@ impl Linear {
         let mut rows = self.rows().iter().enumerate();
         self.lanes == 3
             && rows.all(|(lane, row)| {
-                row.iter().enumerate().all(|(i, coefficient)| {
-                    matches!(coefficient, Coefficient::Number(value) if *value == unit(lane, i))
-                })
+                row.iter().enumerate().all(|(i, coefficient)| coefficient.is(unit(lane, i)))
             })
     }
 
     fn is_zero(&self) -> bool {
-        let is_zero = |c: &Coefficient| matches!(c, Coefficient::Number(value) if *value == 0.0);
-        self.rows().iter().flatten().all(is_zero)
+        self.rows().iter().flatten().all(|coefficient| coefficient.is(0.0))
     }
 
     /// Each row's coefficients changed.
@@ -162,7 +105,7 @@ pub(crate) fn linear_part(
     };
     match graph.node(node) {
         Node::Point(at, _) if at == level => Some(Linear::new(width, |lane| {
-            std::array::from_fn(|i| if i == lane { ONE } else { ZERO })
+            std::array::from_fn(|i| if i == lane { Coefficient::ONE } else { ZERO })
         })),
         Node::Unary(Unary::Neg, a) => {
             let minus = Coefficient::Number(-1.0);
@@ -190,7 +133,7 @@ pub(crate) fn linear_part(
             )
         }
         Node::Binary(Binary::Div, a, b) if is_fixed(graph, b, level) => {
-            let factors = lanes_of(graph, b).map(|divisor| ONE.over(graph, divisor));
+            let factors = lanes_of(graph, b).map(|divisor| Coefficient::ONE.over(graph, divisor));
             Some(of(graph, a)?.map(|lane, coefficient| coefficient.times(graph, factors[lane])))
         }
         Node::Binary(Binary::Dot, a, b) => {
@@ -292,11 +235,7 @@ pub(crate) fn stretch(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
 }
 
 fn constant_rows(linear: &Linear) -> Option<Vec<[f64; 3]>> {
-    let number = |coefficient: Coefficient| match coefficient {
-        Coefficient::Number(value) => Some(value),
-        Coefficient::Node(_) => None,
-    };
-    let row_of = |row: &Row| Some([number(row[0])?, number(row[1])?, number(row[2])?]);
+    let row_of = |&[x, y, z]: &Row| Some([x.number()?, y.number()?, z.number()?]);
     linear.rows().iter().map(row_of).collect()
 }
 

@@ -45,6 +45,7 @@
 mod blend;
 mod bounds;
 mod build;
+mod coefficient;
 mod continuation;
 mod derive;
 mod dump;
@@ -67,6 +68,7 @@ mod walk;
 
 pub use blend::{Blend, Blends, blend_at, rebuilt};
 pub use bounds::{Bounds, bounds};
+pub use coefficient::Coefficient;
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};
 pub use enclose::{enclosure, slope_enclosure};

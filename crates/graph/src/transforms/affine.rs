@@ -1,59 +1,7 @@
 //! Affine forms: a matrix over up to three numbers, and an offset.
 
+use crate::Coefficient::{self, Number};
 use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
-
-/// A coefficient that is known before the points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Coefficient {
-    Number(f64),
-    Frame(NodeId),
-}
-
-use Coefficient::{Frame, Number};
-
-impl Coefficient {
-    fn of(graph: &Graph, id: NodeId) -> Self {
-        graph.as_number(id).map_or(Frame(id), Number)
-    }
-
-    pub(super) fn node(self, graph: &mut Graph) -> NodeId {
-        match self {
-            Number(value) => graph.number(value),
-            Frame(id) => id,
-        }
-    }
-
-    pub(super) fn is(self, value: f64) -> bool {
-        self == Number(value)
-    }
-
-    fn add(self, graph: &mut Graph, other: Self) -> Self {
-        match (self, other) {
-            (Number(x), Number(y)) => Number(x + y),
-            (x, y) if y.is(0.0) => x,
-            (x, y) if x.is(0.0) => y,
-            (x, y) => {
-                let (x, y) = (x.node(graph), y.node(graph));
-                let result = graph.add(x, y);
-                Self::of(graph, result)
-            }
-        }
-    }
-
-    fn mul(self, graph: &mut Graph, other: Self) -> Self {
-        match (self, other) {
-            (Number(x), Number(y)) => Number(x * y),
-            (x, y) if x.is(0.0) || y.is(0.0) => Number(0.0),
-            (x, y) if y.is(1.0) => x,
-            (x, y) if x.is(1.0) => y,
-            (x, y) => {
-                let (x, y) = (x.node(graph), y.node(graph));
-                let result = graph.mul(x, y);
-                Self::of(graph, result)
-            }
-        }
-    }
-}
 
 /// `matrix · base + offset` of one component.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +11,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    const ZERO: Self = Self { factors: [Number(0.0); 3], offset: Number(0.0) };
+    const ZERO: Self = Self { factors: [Coefficient::ZERO; 3], offset: Coefficient::ZERO };
 
     fn low(offset: Coefficient) -> Self {
         Self { offset, ..Self::ZERO }
@@ -72,14 +20,14 @@ impl Row {
     fn add(self, graph: &mut Graph, other: Self) -> Self {
         let mut factors = self.factors;
         for (factor, other) in factors.iter_mut().zip(other.factors) {
-            *factor = factor.add(graph, other);
+            *factor = factor.plus(graph, other);
         }
-        Self { factors, offset: self.offset.add(graph, other.offset) }
+        Self { factors, offset: self.offset.plus(graph, other.offset) }
     }
 
     fn scaled(self, graph: &mut Graph, by: Coefficient) -> Self {
-        let factors = self.factors.map(|factor| factor.mul(graph, by));
-        Self { factors, offset: self.offset.mul(graph, by) }
+        let factors = self.factors.map(|factor| factor.times(graph, by));
+        Self { factors, offset: self.offset.times(graph, by) }
     }
 }
 
@@ -113,7 +61,7 @@ pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
         let atom = Some(graph.component(id, lane as u8));
         let place = atoms.iter().position(|&known| known == atom || known.is_none())?;
         atoms[place] = atom;
-        row.factors[place] = Number(1.0);
+        row.factors[place] = Coefficient::ONE;
     }
     Some(Affine { atoms, width, rows })
 }
@@ -272,10 +220,7 @@ impl Affine {
     pub(super) fn snapped(mut self) -> Self {
         const ROUNDING: f64 = 1e-12;
         let factors = || self.rows[..self.width].iter().flat_map(|row| row.factors);
-        let size = |factor: Coefficient| match factor {
-            Number(value) => value.abs(),
-            Frame(_) => 1.0,
-        };
+        let size = |factor: Coefficient| factor.number().map_or(1.0, f64::abs);
         let largest = factors().map(size).fold(0.0, f64::max);
         for factor in self.rows.iter_mut().flat_map(|row| &mut row.factors) {
             if let Number(value) = factor {

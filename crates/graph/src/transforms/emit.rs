@@ -1,8 +1,8 @@
 //! The cheapest way to compute an affine form.
 
-use super::affine::{Affine, Coefficient, Row};
+use super::affine::{Affine, Row};
 use super::cone::TRANSFORM_COST;
-use crate::{Graph, NodeId};
+use crate::{Coefficient, Graph, NodeId};
 
 /// How a form is computed, and how many operations on single numbers that takes.
 pub(super) struct Plan {
