@@ -3,9 +3,10 @@
 //! # What
 //!
 //! [`Qualities`] tells of every shape what its field promises outside and inside, and how fast it can
-//! change. [`prepare`] uses that to divide what must be divided, expands the scene to flat math over one
-//! point, folds its transforms, derives gradient and materials, and lists the uniform slots. [`refute`]
-//! holds what shapes state against samples.
+//! change. [`prepare`] uses that to divide what must be divided, parts what rays meet in closed form from what they
+//! march to, expands both to flat math over one point, folds its transforms, makes loops of many alike parts where that
+//! costs less, derives gradient and materials, and lists the uniform slots. [`refute`] holds what shapes state against
+//! samples.
 //!
 //! # How
 //!
@@ -31,19 +32,21 @@ mod lipschitz;
 mod maps;
 mod prepare;
 mod quality;
+mod rays;
 mod refute;
 mod roll;
 mod sound;
 mod spans;
 mod uneven;
 mod within;
+mod writing;
 
 pub use copies::{Idle, idle_copies};
 pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
 pub use lipschitz::{Constant, Reason};
-pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, Writing, prepare, prepare_about};
+pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_about};
 pub use quality::{Promise, Qualities, Quality, Sides};
 pub use refute::{
     ClaimFault, Clause, CopiesFault, ParamEnd, RayFault, Refuted, refute, refute_claim,
@@ -52,3 +55,4 @@ pub use refute::{
 pub use roll::Rolled;
 pub use sound::Uncertified;
 pub use uneven::Uneven;
+pub use writing::Writing;

@@ -1,0 +1,85 @@
+//! Whether a field is written out, or as loops over what is alike in it.
+
+use sdfc_graph::{Graph, NodeId, Settings, Shadow, fold_transforms};
+
+use crate::cost::cost;
+use crate::roll::{roll, visits};
+
+/// How a field of many parts is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Writing {
+    /// As costs less: [`Writing::Rolled`] where the field takes more operations than [`Report::most_inline`](crate::Report::most_inline) says.
+    #[default]
+    Auto,
+    /// All that there is, one operation after the other.
+    Inline,
+    /// Parts that are equal up to constants as loops over lists, where there are such.
+    Rolled,
+}
+
+/// More operations of a field take longer to compile and to evaluate than loops that visit what matters: of a scene all of whose rays come
+/// from the eye, of one whose rays to lamps and mirrored rays go by lists for cells, and of one with soft shadows, which visit all rounds.
+const MOST_INLINE: [usize; 3] = [425, 1200, 4500];
+/// So many more for each loop, which is compiled too, and entered at each place.
+const MORE_FOR_A_LOOP: [usize; 3] = [125, 250, 0];
+/// The same where loops visit all rounds.
+const MOST_WITHOUT_LISTS: usize = 4500;
+
+/// How many operations a field may take that is written out though so many loops with lists could stand in its place.
+fn most_inline(settings: &Settings, loops: usize) -> usize {
+    if loops == 0 {
+        return MOST_WITHOUT_LISTS;
+    }
+    let kind = if settings.lights.iter().any(|light| matches!(light.shadow, Shadow::Soft(_))) {
+        2
+    } else {
+        usize::from(leave_the_eye(settings))
+    };
+    MOST_INLINE[kind] + loops * MORE_FOR_A_LOOP[kind]
+}
+
+impl Writing {
+    /// Whether a field is written as loops, and up to how many operations it is not of its own accord. `steepest` is as for
+    /// [`visits`].
+    pub(crate) fn rolls(
+        self,
+        graph: &Graph,
+        distance: NodeId,
+        settings: &Settings,
+        steepest: Option<f64>,
+    ) -> (bool, usize) {
+        let (pays, most_inline) = loops_pay(graph, distance, settings, steepest);
+        let rolls = match self {
+            Self::Auto => pays,
+            Self::Inline => false,
+            Self::Rolled => true,
+        };
+        (rolls, most_inline)
+    }
+}
+
+/// Whether loops cost less, and up to how many operations they do not.
+fn loops_pay(
+    graph: &Graph,
+    distance: NodeId,
+    settings: &Settings,
+    steepest: Option<f64>,
+) -> (bool, usize) {
+    let operations = cost(graph, &[distance]).operations;
+    let least = most_inline(settings, 1);
+    if operations <= least || operations > MOST_WITHOUT_LISTS {
+        return (operations > least, least);
+    }
+    let mut trial = graph.clone();
+    let folded = fold_transforms(&mut trial, &[distance]).roots;
+    let rolled = roll(&mut trial, &folded).0;
+    let most = most_inline(settings, visits(&mut trial, &rolled, steepest).len());
+    (operations > most, most)
+}
+
+/// Whether the field is asked for elsewhere than on rays from the eye.
+pub(crate) fn leave_the_eye(settings: &Settings) -> bool {
+    let shaded = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
+    let mirrored = settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
+    shaded || mirrored || settings.occlusion.is_some()
+}
