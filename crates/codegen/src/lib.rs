@@ -31,13 +31,13 @@
 //! ```
 //!
 //! How it works: nodes are lowered in the order of their ids to expressions of naga's arena, one
-//! function for each root, without control flow. No text is assembled: names and statements are
-//! data, and naga writes them. A picture's files are parsed, calls to stubs that the scene has no
+//! function for each root; loops of the graph are loops there, and there is no other control flow. No text is assembled:
+//! names and statements are data, and naga writes them. A picture's files are parsed, calls to stubs that the scene has no
 //! need of are dropped with all that only they reached, then the rest is filled and validated.
 //!
 //! Limits: constants and results are 32-bit floats; numbers beyond them are an [`Error`]. Operations
-//! on constants alone are refused, for the graph folds those. A field is inlined whole at each
-//! call, so drivers take long over thousands of leaves.
+//! on constants alone are refused, for the graph folds those. What the graph does not hold as a loop is written out, so
+//! drivers take long over thousands of leaves that are not alike.
 
 mod culling;
 mod error;

@@ -149,10 +149,7 @@ impl Scene {
             let uniforms = uniform_values(&program, &frame);
             let sampler = self.sampler(gpu, method)?;
             for part in parts(method) {
-                let view = match method.knob {
-                    Some(knob) => view.with_knob(knob, part * view.knob(knob)),
-                    None => view.clone(),
-                };
+                let view = view.with_part(method.knob, part);
                 let frame_ms = self.timed(&pipeline, &view, &uniforms, options.repetitions)?;
                 let samples = sampler.samples(&view, &frame)?;
                 let metrics = compare(&oracle, &frame, &truth, &samples);
