@@ -8,7 +8,8 @@ use common::{each_node_in_shader, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{
-    Dim, FrameInput, Graph, NodeId, Stage, Type, dump, enclosure, reachable, slope_enclosure,
+    Dim, FrameInput, Graph, NodeId, Stage, Ternary, Type, Unary, dump, enclosure, reachable,
+    slope_enclosure,
 };
 
 /// Places of a stretch that are looked at, its ends among them.
@@ -134,27 +135,57 @@ proptest! {
         let roots: Vec<NodeId> =
             graph.ids().filter(|&id| varies(&graph, id)).collect();
         for &root in roots.iter().rev().take(6) {
-            let Some(values) = values(&graph, root, stretch, param) else { continue };
-            let Some(Bounds { value: [lo, hi], slope }) = bounds(&mut graph, root, stretch, param)
-            else { continue };
-            for value in singles(&graph, root, stretch, param) {
-                let value = f64::from(value);
-                prop_assert!(
-                    value.is_nan() || (lo <= value && value <= hi),
-                    "{value} is not in {lo}..{hi}, the bounds of:\n{}", dump(&graph, &[("it", root)])
-                );
-            }
-            let step = 1.0 / (PLACES - 1) as f64;
-            for pair in values.windows(2) {
-                let rounding = pair[0].rounding.max(pair[1].rounding);
-                let rise = pair[1].value - pair[0].value;
-                let [least, most] = slope.map(|end| end * step);
-                prop_assert!(
-                    least - rounding <= rise && rise <= most + rounding,
-                    "{rise} is not in {step} times {slope:?}, the bounds of the slope of:\n{}",
-                    dump(&graph, &[("it", root)])
-                );
-            }
+            holds(&mut graph, root, stretch, param)?;
         }
+    }
+}
+
+/// Whether the bounds of a root's value and slope along a stretch hold what is sampled there.
+fn holds(
+    graph: &mut Graph,
+    root: NodeId,
+    stretch: [[f64; 3]; 2],
+    param: f64,
+) -> Result<(), TestCaseError> {
+    let Some(values) = values(graph, root, stretch, param) else { return Ok(()) };
+    let Some(bounds) = bounds(graph, root, stretch, param) else { return Ok(()) };
+    let Bounds { value: [lo, hi], slope } = bounds;
+    for value in singles(graph, root, stretch, param) {
+        let value = f64::from(value);
+        prop_assert!(
+            value.is_nan() || (lo <= value && value <= hi),
+            "{value} is not in {lo}..{hi}, the bounds of:\n{}",
+            dump(graph, &[("it", root)])
+        );
+    }
+    let step = 1.0 / (PLACES - 1) as f64;
+    for pair in values.windows(2) {
+        let rounding = pair[0].rounding.max(pair[1].rounding);
+        let rise = pair[1].value - pair[0].value;
+        let [least, most] = slope.map(|end| end * step);
+        prop_assert!(
+            least - rounding <= rise && rise <= most + rounding,
+            "{rise} is not in {step} times {slope:?}, the bounds of the slope of:\n{}",
+            dump(graph, &[("it", root)])
+        );
+    }
+    Ok(())
+}
+
+/// What is known per frame is a number of f32 in the field: bounds must not know it better.
+#[test]
+fn bounds_know_numbers_of_a_frame_as_the_field_does() {
+    let mut graph = Graph::new();
+    let point = graph.point(0, Dim::Three);
+    let z = graph.component(point, 2);
+    let param = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let near_one = graph.unary(Unary::Tanh, param);
+    let mixed = graph.ternary(Ternary::Mix, z, near_one, near_one);
+    let [lower, upper] = [999.9, 1000.0].map(|edge| graph.number(edge));
+    let far = graph.add(z, upper);
+    let steep = graph.ternary(Ternary::Smoothstep, lower, upper, far);
+    for root in [mixed, steep] {
+        let stretch = [[0.0; 3], [0.0, 0.0, -0.255_615_234_375]];
+        holds(&mut graph, root, stretch, 2.993_918).expect("bounds that hold");
     }
 }

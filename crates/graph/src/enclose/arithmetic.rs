@@ -50,6 +50,31 @@ impl Enclosing<'_> {
         self.sum(x, y)
     }
 
+    /// The difference of two values of the field that is none of the field's own. Of what is known per frame the field has both rounded
+    /// to f32 before they meet, this has the difference rounded once: where they nearly cancel that matters.
+    pub(super) fn difference_of_rounded(&mut self, x: Extent, y: Extent) -> Extent {
+        let difference = self.difference(x, y);
+        let (Extent::Fixed(x), Extent::Fixed(y), Extent::Fixed(node)) = (x, y, difference) else {
+            return difference;
+        };
+        if [x, y, node].into_iter().all(|it| self.is_single(it)) {
+            return difference;
+        }
+        let (x, y) = (self.graph.abs(x), self.graph.abs(y));
+        let size = self.graph.add(x, y);
+        let margin = self.scaled(size, ROUNDING);
+        self.grown(Span::new(node, node), margin).into()
+    }
+
+    /// Whether a node is a constant that f32 has.
+    fn is_single(&self, node: NodeId) -> bool {
+        let lanes = |value: crate::Const| {
+            let width = value.ty().width();
+            value.lanes()[..width].iter().all(|&lane| f64::from(lane as f32) == lane)
+        };
+        self.graph.as_const(node).is_some_and(lanes)
+    }
+
     /// Of two equal types, lane by lane.
     pub(super) fn product(&mut self, x: Extent, y: Extent) -> Extent {
         match (x, y) {

@@ -331,7 +331,7 @@ impl Enclosing<'_> {
 
     /// How far two edges are apart: what may be 0 is told as what spans it, so that it divides like that.
     pub(super) fn width_between(&mut self, low: Extent, high: Extent) -> Extent {
-        let width = self.difference(high, low);
+        let width = self.difference_of_rounded(high, low);
         if let Extent::Fixed(node) = width {
             let apart = |value: crate::Const| {
                 value.lanes()[..value.ty().width()].iter().all(|&lane| lane != 0.0)

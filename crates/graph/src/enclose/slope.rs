@@ -186,7 +186,7 @@ impl Enclosing<'_> {
                 let first = x.slope.map(|slope| self.product(slope, rest));
                 let second = y.slope.map(|slope| self.product(slope, z.value));
                 let third = z.slope.map(|slope| {
-                    let way = self.difference(y.value, x.value);
+                    let way = self.difference_of_rounded(y.value, x.value);
                     self.product(slope, way)
                 });
                 let moved = self.total(first, second);
@@ -254,7 +254,7 @@ impl Enclosing<'_> {
 
     pub(super) fn one_minus(&mut self, x: Extent) -> Extent {
         let one = self.number(x, 1.0);
-        self.difference(one, x)
+        self.difference_of_rounded(one, x)
     }
 
     fn absolute_slope(&mut self, x: Extent, slope: Extent) -> Extent {
