@@ -73,6 +73,8 @@ pub fn front_with_imports(
 pub struct Options {
     /// Numbers written in the scene become params, see [`slots`].
     pub slots: bool,
+    /// Of a scene that has more numbers than can be params those around this byte of its text are; the first, if none is given.
+    pub near: Option<u32>,
 }
 
 /// As [`front_with_imports`], with options.
@@ -100,7 +102,7 @@ pub fn front_with(
     }
     let fonts = font::Fonts::new(resolver);
     let (elaborated, of_elaboration) = if options.slots {
-        slots::elaborate(&program, &fonts, sources, file)
+        slots::elaborate(&program, &fonts, sources, file, options.near)
     } else {
         elab::elaborate(&program, &fonts)
     };

@@ -42,6 +42,7 @@ pub(crate) fn elaborate(
     fonts: &Fonts<'_>,
     sources: &Sources,
     file: FileId,
+    near: Option<u32>,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let plain = elab::elaborate(program, fonts);
     if plain.0.is_none() {
@@ -50,7 +51,8 @@ pub(crate) fn elaborate(
     let mut known = Known::default();
     for _ in 0..MAX_ROUNDS {
         let mut moving = program.clone();
-        let slots = Offering::new(sources, file, &known).make(&mut moving);
+        let chosen = near.and_then(|near| around(near, program, sources, file, &known));
+        let slots = Offering { chosen, ..Offering::new(sources, file, &known) }.make(&mut moving);
         if slots.is_empty() {
             return plain;
         }
@@ -75,19 +77,54 @@ pub(crate) fn elaborate(
     plain
 }
 
+/// Of the literals in the order of the text as many as can move, with the one nearest to a byte in their middle; `None` where
+/// all can.
+fn around(
+    near: u32,
+    program: &Program,
+    sources: &Sources,
+    file: FileId,
+    known: &Known,
+) -> Option<BTreeSet<Span>> {
+    let all = Offering { most: usize::MAX, ..Offering::new(sources, file, known) };
+    let mut all: Vec<Span> = all.make(&mut program.clone()).iter().map(|slot| slot.span).collect();
+    if all.len() <= MAX_SLOTS {
+        return None;
+    }
+    all.sort_unstable();
+    let middle = all.partition_point(|span| span.end < near);
+    let first = middle.saturating_sub(MAX_SLOTS / 2).min(all.len() - MAX_SLOTS);
+    Some(all[first..first + MAX_SLOTS].iter().copied().collect())
+}
+
 /// Puts params in the places of literals.
 struct Offering<'a> {
     sources: &'a Sources,
     file: FileId,
     known: &'a Known,
+    /// The literals to choose from; all, if nothing is said.
+    chosen: Option<BTreeSet<Span>>,
+    most: usize,
     params: Vec<hir::Param>,
     slots: Vec<Slot>,
+    /// The param of each literal so far.
+    places: BTreeMap<Span, ParamId>,
     first: usize,
 }
 
 impl<'a> Offering<'a> {
     fn new(sources: &'a Sources, file: FileId, known: &'a Known) -> Self {
-        Self { sources, file, known, params: Vec::new(), slots: Vec::new(), first: 0 }
+        Self {
+            sources,
+            file,
+            known,
+            chosen: None,
+            most: MAX_SLOTS,
+            params: Vec::new(),
+            slots: Vec::new(),
+            places: BTreeMap::new(),
+            first: 0,
+        }
     }
 
     fn make(mut self, program: &mut Program) -> Vec<Slot> {
@@ -188,12 +225,16 @@ impl<'a> Offering<'a> {
     /// The param for a literal; `None` if it must stay. `pi` and its like are names, not literals.
     fn offer(&mut self, span: Span, value: f64, ty: &hir::Type) -> Option<ParamId> {
         let written = self.sources.slice(span).starts_with(|c: char| c.is_ascii_digit());
-        if !written || self.known.decisive.contains(&span) || self.slots.len() == MAX_SLOTS {
+        if !written || self.known.decisive.contains(&span) {
             return None;
         }
-        let again = self.slots.iter().find(|slot| slot.span == span);
-        if let Some(slot) = again {
-            return Some(ParamId(slot.param as u32));
+        if let Some(again) = self.places.get(&span) {
+            return Some(*again);
+        }
+        if self.slots.len() == self.most
+            || self.chosen.as_ref().is_some_and(|it| !it.contains(&span))
+        {
+            return None;
         }
         let param = self.first + self.slots.len();
         let number = |value| Expr { kind: ExprKind::Number(value), ty: hir::Type::Number, span };
@@ -214,6 +255,7 @@ impl<'a> Offering<'a> {
             docs: vec![self.sources.slice(span).to_owned()],
         });
         self.slots.push(Slot { span, value, param });
+        self.places.insert(span, ParamId(param as u32));
         Some(ParamId(param as u32))
     }
 }

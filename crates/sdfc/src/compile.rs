@@ -201,7 +201,7 @@ pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> 
 /// ```
 /// use sdfc::lang::{NoFiles, Options};
 ///
-/// let options = Options { slots: true };
+/// let options = Options { slots: true, ..Options::default() };
 /// let compiled = sdfc::compile_with("ball.sdf", "sphere(0.5)", &NoFiles, options);
 /// let scene = compiled.scene.expect("no errors");
 /// let [slot] = scene.slots() else { panic!("one number is written") };

@@ -12,7 +12,8 @@ use sdfc::{
 };
 
 fn slotted(text: &str) -> (Compiled, Scene) {
-    let mut compiled = compile_with("a.sdf", text, &NoFiles, Options { slots: true });
+    let mut compiled =
+        compile_with("a.sdf", text, &NoFiles, Options { slots: true, ..Options::default() });
     let scene = compiled.scene.take();
     let scene = scene.unwrap_or_else(|| panic!("{}", compiled.diagnostics_text(false)));
     (compiled, scene)
@@ -95,4 +96,24 @@ fn numbers_that_decide_what_is_built_stay() {
     // What a range limits moves alone, not within a formula.
     assert_eq!(offered("sphere(0.5 / 2)\n"), none);
     assert_eq!(offered("sphere(pi)\n"), none);
+}
+
+#[test]
+fn of_more_numbers_than_can_move_those_near_a_place_do() {
+    let rows = (0..600).map(|i| format!("  + 0.00{i} * sin(p.x)\n"));
+    let text = format!("solid waves() = p.y\n{}waves()\n", rows.collect::<String>());
+    let lines = |near| {
+        let options = Options { slots: true, near };
+        let compiled = compile_with("a.sdf", &text, &NoFiles, options);
+        let scene = compiled.scene.unwrap();
+        let line = |at: u32| text[..at as usize].lines().count();
+        let lines: Vec<usize> = scene.slots().iter().map(|slot| line(slot.span.start)).collect();
+        assert_eq!(lines.len(), sdfc::lang::slots::MAX_SLOTS);
+        [*lines.iter().min().unwrap(), *lines.iter().max().unwrap()]
+    };
+    assert_eq!(lines(None), [2, 513]);
+    assert_eq!(lines(Some(0)), [2, 513]);
+    assert_eq!(lines(Some(text.len() as u32)), [90, 601]);
+    let middle = text.find("0.00300 ").unwrap() as u32;
+    assert_eq!(lines(Some(middle)), [46, 557]);
 }

@@ -24,6 +24,7 @@ pub mod clerk;
 pub mod clock;
 pub mod comparing;
 pub mod document;
+pub mod edit;
 pub mod engine;
 pub mod examples;
 pub mod findings;

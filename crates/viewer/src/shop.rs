@@ -11,9 +11,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sdfc::lang::Options;
+use sdfc::lang::slots::Slot;
 use sdfc::{Compiled, Error, FrameValues, Scene};
 
 use crate::document::{Document, Imports};
+use crate::edit::Edit;
 use crate::engine::{Engines, Prepared, on_cpu};
 use crate::findings::Findings;
 use crate::identity::Shapes;
@@ -49,6 +51,8 @@ impl Met {
 struct Content {
     scene: Arc<Scene>,
     text: String,
+    /// Around which byte of the text numbers move, of a scene that has more than can.
+    near: Option<u32>,
     shapes: Arc<Shapes>,
     probe: Arc<Probe>,
     moves: bool,
@@ -131,7 +135,8 @@ impl<T: FnMut(News)> Shop<T> {
         }
         self.contents += u64::from(!reads_same);
         let imports = Imports::of(&build.path);
-        let mut compiled = self.compiled(build, &document, &imports);
+        let near = self.near(build, &document.text);
+        let mut compiled = self.compiled(build, &document, &imports, near);
         let scene = compiled.scene.take();
         let shapes = scene.as_ref().map(|scene| Shapes::new(scene, &compiled.sources));
         let findings = self.findings(&document, &imports, compiled, scene.is_some());
@@ -150,6 +155,7 @@ impl<T: FnMut(News)> Shop<T> {
                 scene.bounds_at(&FrameValues::defaults(scene.params()));
                 let content = Content {
                     text: document.text,
+                    near,
                     shapes: Arc::new(shapes.unwrap_or_default()),
                     probe: Arc::new(Probe::new(scene.drawn())),
                     moves: reads_time(&scene),
@@ -171,12 +177,32 @@ impl<T: FnMut(News)> Shop<T> {
         }
     }
 
+    /// Around which byte of a text numbers are to move: where they do in what is shown, as long as what was edited is one of them,
+    /// else around the edit. So the first edit of a number beyond those that move takes a new shader, and the next ones do not.
+    fn near(&self, build: &Build, text: &str) -> Option<u32> {
+        let (_, shown) = self.shown.as_ref().filter(|(by, _)| by.path == build.path)?;
+        let edit = Edit::between(&shown.text, text);
+        let moves = |slot: &Slot| slot.span.start <= edit.old_end && edit.start <= slot.span.end;
+        if edit.is_empty() || shown.scene.slots().iter().any(moves) {
+            return shown.near.map(|near| edit.moved(near));
+        }
+        Some(edit.start)
+    }
+
     /// With numbers as params, unless the scene's parts become loops without: parts that differ in params are none that
     /// are alike. That costs a second compilation, which is spared where nodes and numbers are as many as when it found none:
     /// other numbers hardly make parts alike.
-    fn compiled(&mut self, build: &Build, document: &Document, imports: &Imports) -> Compiled {
-        let compile =
-            |slots| sdfc::compile_with(&document.name, &document.text, imports, Options { slots });
+    fn compiled(
+        &mut self,
+        build: &Build,
+        document: &Document,
+        imports: &Imports,
+        near: Option<u32>,
+    ) -> Compiled {
+        let compile = |slots| {
+            let options = Options { slots, near };
+            sdfc::compile_with(&document.name, &document.text, imports, options)
+        };
         if build.live && !self.rolls {
             let moving = compile(true);
             let extent = |scene: &Scene| [scene.program().graph.len(), scene.slots().len()];
@@ -246,7 +272,7 @@ impl<T: FnMut(News)> Shop<T> {
     }
 
     fn model(&self, build: &Build, content: &Content, prepared: Prepared, stages: Stages) -> Model {
-        let Content { scene, text, shapes, probe, moves, begun, number } = content.clone();
+        let Content { scene, text, shapes, probe, moves, begun, number, .. } = content.clone();
         let Prepared { engine, method, enclosed, note } = prepared;
         Model {
             parallel: rays(build, &scene),

@@ -237,6 +237,31 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn of_more_numbers_than_can_move_those_around_the_last_edit_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sdf");
+        let (worker, news) = worker();
+        let terms: String =
+            (0..400).map(|i| format!("\n    + 0.00{i} * sin(1.{i} * p.x)")).collect();
+        let moving = |last: &str| {
+            let text = format!("solid waves() = p.y{terms}\n    + {last} * cos(p.z)\nwaves()\n");
+            std::fs::write(&path, &text).unwrap();
+            worker.order(on_cpu(&path));
+            let model = ready(&news);
+            let lines: Vec<usize> = (model.literals())
+                .map(|(slot, _)| text[..slot.span.start as usize].lines().count())
+                .collect();
+            assert_eq!(lines.len(), sdfc::lang::slots::MAX_SLOTS);
+            lines.into_iter().fold([usize::MAX, 0], |[lo, hi], at| [lo.min(at), hi.max(at)])
+        };
+        assert_eq!(moving("0.5")[0], 2);
+        let after = moving("0.25");
+        assert!(after[0] > 2 && after[1] == 402, "{after:?}");
+        // One of them, in a text that has become longer.
+        assert_eq!(moving("0.1255"), after);
+    }
+
+    #[test]
     fn another_method_draws_the_same_content() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.sdf");

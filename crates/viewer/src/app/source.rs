@@ -44,7 +44,7 @@ pub fn orders(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Ve
         let what = match moved {
             0 if model.literals().next().is_none() => "no number to drag".to_owned(),
             0 if model.scene.slots().len() == MAX_SLOTS => {
-                format!("drag one of the first {MAX_SLOTS} numbers")
+                format!("drag one of {MAX_SLOTS} numbers")
             }
             0 => "drag a number".to_owned(),
             1 => "1 number moved".to_owned(),
@@ -53,7 +53,8 @@ pub fn orders(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Ve
         let color = if moved > 0 { style::of(ui).accent } else { style::of(ui).weak };
         let help = format!(
             "Numbers that decide what is built stay as they are, and so do those of a scene whose many parts are \
-             loops, and all beyond the first {MAX_SLOTS}: change them in the file, which may take a new shader."
+             loops. Of more than {MAX_SLOTS} those move that stand around the last edit: change another in the file, \
+             which takes a new shader once."
         );
         ui.label(RichText::new(what).small().color(color)).on_hover_text(help);
         let order = |ui: &mut Ui, name: &str, help: &str| {
