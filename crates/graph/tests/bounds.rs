@@ -302,6 +302,18 @@ fn a_smooth_union_swells_by_a_quarter_of_its_width() {
 }
 
 #[test]
+fn a_copy_lies_just_where_what_was_searched_does() {
+    let mut scene = Scene::default();
+    let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));
+    let blend = scene.smooth_union([brick, ball], 0.4);
+    let found = scene.corners(blend, &[]);
+    let copy = scene.moved(blend, [0.3, 0.0, -7.0]);
+    // A search of its own, among other numbers, would end elsewhere.
+    let expected = found.map(|[x, y, z]| [x + 0.3, y, z - 7.0]);
+    assert_eq!(scene.corners(copy, &[]), expected);
+}
+
+#[test]
 fn a_smooth_difference_stays_near_its_first() {
     let mut scene = Scene::default();
     let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));

@@ -137,6 +137,17 @@ impl Deriver<'_> {
         }
     }
 
+    /// Whether each axis of the image follows one axis of the point.
+    pub(super) fn is_along_axes(&self, rows: &Forms, dim: Dim) -> bool {
+        let is_one = |row: &Option<Form>| row.is_some_and(|form| self.steep(form).count() == 1);
+        rows[..dim.point_type().width()].iter().all(is_one)
+    }
+
+    /// The axes along which a form changes.
+    fn steep(&self, form: Form) -> impl Iterator<Item = usize> {
+        (0..3).filter(move |&axis| !self.graph.is_number(form.slopes[axis], 0.0))
+    }
+
     /// A box that holds every p whose image lies in the target. Rows of one slope bound one axis each; a
     /// square map of more is turned back whole if it is rigid or constant.
     pub(super) fn preimage(&mut self, target: Zone, rows: &Forms, from: Dim, to: Dim) -> Zone {
@@ -150,8 +161,7 @@ impl Deriver<'_> {
                 continue;
             };
             let moved = self.shifted(ends, form.offset);
-            let steep = |&axis: &usize| !self.graph.is_number(form.slopes[axis], 0.0);
-            let axes: Vec<usize> = (0..3).filter(steep).collect();
+            let axes: Vec<usize> = self.steep(form).collect();
             if let [axis] = axes[..] {
                 let ends = self.divided(moved, form.slopes[axis]);
                 zone.axes[axis] = self.graph.common_ends(zone.axes[axis], ends);

@@ -23,8 +23,8 @@ pub(super) struct Question {
 }
 
 /// Room for one step of the recursion, and what the stack grows by where there is less.
-const RED_ZONE: usize = 128 * 1024;
-const STACK_STEP: usize = 4 * 1024 * 1024;
+pub(super) const RED_ZONE: usize = 128 * 1024;
+pub(super) const STACK_STEP: usize = 4 * 1024 * 1024;
 
 impl Deriver<'_> {
     /// A box that holds the points where a shape's field is not above the limit.

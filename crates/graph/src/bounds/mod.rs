@@ -20,11 +20,12 @@ mod zone;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use self::level_set::Question;
+use self::level_set::{Question, RED_ZONE, STACK_STEP};
 use self::zone::Zone;
 use crate::eval::{FrameValues, Interval, Number, Tape, direct};
 use crate::{
-    Blends, Dim, Expander, Graph, Node, NodeId, Param, ParamKind, ShapeId, Stage, reachable_where,
+    Blends, Dim, Expander, Graph, Node, NodeId, Param, ParamKind, Shape, ShapeId, Stage,
+    reachable_where,
 };
 
 /// A closed box of a shape of more parts is not tightened: a search of 32 evaluations, all that it would be granted, hardly
@@ -43,6 +44,7 @@ pub struct Bounds {
 #[derive(Debug, Default)]
 struct Memo {
     shapes: FxHashMap<(ShapeId, NodeId), Zone>,
+    tightened: FxHashMap<ShapeId, Zone>,
     questions: FxHashMap<Question, Zone>,
     exact: FxHashMap<ShapeId, bool>,
     expander: Expander,
@@ -122,24 +124,60 @@ fn range_of(param: &Param) -> Interval {
 
 impl Deriver<'_> {
     fn corners(&mut self, shape: ShapeId) -> [NodeId; 2] {
-        let zero = self.graph.number(0.0);
-        let mut zone = self.shape_zone(shape, zero);
-        if !zone.tight {
-            let start = zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()]);
-            let width = self.graph.shape(shape).dim.point_type().width();
-            let is_closed = start[..width].iter().flatten().all(|end| end.is_finite());
-            if !(is_closed && self.is_large(shape)) {
-                let region = self.tightened(shape, start);
-                let found = Zone::of_numbers(self.graph, region);
-                zone = zone.overlap(self.graph, found);
-            }
-        }
+        let zone = self.tight_zone(shape);
         let axes = zone.axes.map(|[lo, hi]| {
             let (lowest, highest) = (self.range(lo).lo(), self.range(hi).hi());
             [self.per_frame(lo, lowest), self.per_frame(hi, highest)]
         });
         let dim = self.graph.shape(shape).dim;
         [0, 1].map(|side| self.vector(dim, axes.map(|ends| ends[side])))
+    }
+
+    /// Where a shape's field is not above 0, tightened if a rule gave something away.
+    fn tight_zone(&mut self, shape: ShapeId) -> Zone {
+        if let Some(&known) = self.memo.tightened.get(&shape) {
+            return known;
+        }
+        let zone = match self.moved(shape) {
+            Some(zone) => zone,
+            None => self.tightened(shape),
+        };
+        self.memo.tightened.insert(shape, zone);
+        zone
+    }
+
+    fn tightened(&mut self, shape: ShapeId) -> Zone {
+        let zero = self.graph.number(0.0);
+        let zone = self.shape_zone(shape, zero);
+        if zone.tight {
+            return zone;
+        }
+        let start = zone.axes.map(|[lo, hi]| [self.range(lo).lo(), self.range(hi).hi()]);
+        let width = self.graph.shape(shape).dim.point_type().width();
+        let is_closed = start[..width].iter().flatten().all(|end| end.is_finite());
+        if is_closed && self.is_large(shape) {
+            return zone;
+        }
+        let region = self.searched_within(shape, start);
+        let found = Zone::of_numbers(self.graph, region);
+        zone.overlap(self.graph, found)
+    }
+
+    /// Where a shape lies that is another one, moved or scaled along the axes if at all: where that one does. Copies, and what only
+    /// paints, take no search of their own.
+    fn moved(&mut self, shape: ShapeId) -> Option<Zone> {
+        let Shape { formula, level, dim, contract, .. } = *self.graph.shape(shape);
+        let (child, at) = self.graph.as_sample(formula)?;
+        let to = self.graph.shape(child).dim;
+        if contract.bounds.is_some() || dim != to {
+            return None;
+        }
+        let rows = self.affine(at, level);
+        if !self.is_along_axes(&rows, dim) {
+            return None;
+        }
+        let zone = stacker::maybe_grow(RED_ZONE, STACK_STEP, || self.tight_zone(child));
+        Some(self.preimage(zone, &rows, dim, to))
     }
 
     /// Whether the shape has so many parts that a search could not afford the evaluations to tighten its box.

@@ -190,7 +190,7 @@ impl Deriver<'_> {
     }
 
     /// A shape's bounds found by search, within a box that holds it.
-    pub(super) fn tightened(&mut self, id: ShapeId, start: Region) -> Region {
+    pub(super) fn searched_within(&mut self, id: ShapeId, start: Region) -> Region {
         let (level, dim) = (self.graph.shape(id).level, self.graph.shape(id).dim);
         let points = self.points(level, dim);
         let (own, outer) = (points[usize::from(level)], &points[..usize::from(level)]);

@@ -15,8 +15,12 @@ const PER_SLAB: [usize; 3] = [16, 48, 160];
 const NEAREST: i32 = -6;
 const FARTHEST: i32 = 40;
 
-/// Faces are moved in steps down to this fraction of the box.
-const RESOLUTION: f64 = 1.0 / 1024.0;
+/// Faces are moved in steps of more than this fraction of the box, as often as it goes, and at last by each of these.
+const RESOLUTION: f64 = 1.0 / 256.0;
+const FINER: [f64; 2] = [1.0 / 256.0, 1.0 / 512.0];
+
+/// A round that takes away less of every side than this part is the last: rays would not tell what the next finds.
+const WORTH_ANOTHER: f64 = 1.0 / 128.0;
 
 /// A box in numbers, lower and upper end by axis; `lo > hi`: nowhere.
 pub(super) type Region = [[f64; 2]; 3];
@@ -60,12 +64,22 @@ impl Search {
                 work.close(axis, Side::Lower);
             }
         }
-        for per_slab in PER_SLAB {
+        for (round, per_slab) in PER_SLAB.into_iter().enumerate() {
+            let before = work.region;
             work.per_slab = per_slab;
             for axis in 0..self.width {
                 work.shave(axis, Side::Upper);
                 work.shave(axis, Side::Lower);
             }
+            // The first has few evaluations for each slab: that it moves nothing says little.
+            if round > 0 && !has_shrunk(before, work.region) {
+                break;
+            }
+        }
+        work.per_slab = PER_SLAB[0];
+        for axis in 0..self.width {
+            work.polish(axis, Side::Upper);
+            work.polish(axis, Side::Lower);
         }
         work.region
     }
@@ -117,34 +131,49 @@ impl Work<'_> {
 
     /// Moves a face inwards over slabs that are empty.
     fn shave(&mut self, axis: usize, side: Side) {
+        let mut step = self.size(axis, side) / 2.0;
+        while self.budget > 0 && step > self.size(axis, side) * RESOLUTION {
+            if !self.cuts_off(axis, side, step) {
+                step /= 2.0;
+            }
+        }
+    }
+
+    /// Moves a face inwards by what is left of a step.
+    fn polish(&mut self, axis: usize, side: Side) {
+        for part in FINER {
+            let step = self.size(axis, side) * part;
+            if self.budget > 0 && step.is_finite() {
+                self.cuts_off(axis, side, step);
+            }
+        }
+    }
+
+    /// How long the box is along an axis; of one that is open on the other side, how far its face is away. Infinite where the face
+    /// is, which is not to be moved.
+    fn size(&self, axis: usize, side: Side) -> f64 {
         let [lo, hi] = self.region[axis];
         let face = match side {
             Side::Lower => lo,
             Side::Upper => hi,
         };
-        if !face.is_finite() {
-            return;
+        if face.is_finite() && (hi - lo).is_finite() { hi - lo } else { face.abs().max(1.0) }
+    }
+
+    /// Whether a slab so thick was empty; then the box has lost it.
+    fn cuts_off(&mut self, axis: usize, side: Side, step: f64) -> bool {
+        let [lo, hi] = self.region[axis];
+        let (slab, rest) = match side {
+            Side::Lower => ([lo, hi.min(lo + step)], [lo + step, hi]),
+            Side::Upper => ([lo.max(hi - step), hi], [lo, hi - step]),
+        };
+        let is_empty = self.is_empty(self.with(axis, slab));
+        if is_empty && rest[0] < rest[1] {
+            self.region[axis] = rest;
+        } else if is_empty {
+            self.region = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         }
-        let size = |width: f64| if width.is_finite() { width } else { face.abs().max(1.0) };
-        let mut step = size(hi - lo) / 2.0;
-        loop {
-            let [lo, hi] = self.region[axis];
-            if self.budget == 0 || step <= size(hi - lo) * RESOLUTION {
-                return;
-            }
-            let (slab, rest) = match side {
-                Side::Lower => ([lo, hi.min(lo + step)], [lo + step, hi]),
-                Side::Upper => ([lo.max(hi - step), hi], [lo, hi - step]),
-            };
-            if !self.is_empty(self.with(axis, slab)) {
-                step /= 2.0;
-            } else if rest[0] < rest[1] {
-                self.region[axis] = rest;
-            } else {
-                self.region = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-                return;
-            }
-        }
+        is_empty
     }
 
     fn with(&self, axis: usize, side: [f64; 2]) -> Region {
@@ -197,6 +226,13 @@ impl Work<'_> {
         (first[axis], second[axis]) = ([lo, middle], [middle, hi]);
         Some([first, second])
     }
+}
+
+/// Whether a side has lost a part that is worth another round.
+fn has_shrunk(before: Region, after: Region) -> bool {
+    let width = |[lo, hi]: [f64; 2]| hi - lo;
+    let mut sides = before.into_iter().zip(after);
+    sides.any(|(before, after)| width(after) < width(before) * (1.0 - WORTH_ANOTHER))
 }
 
 /// The middle of a side; of an open one some place in it.
