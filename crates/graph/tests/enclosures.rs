@@ -189,3 +189,21 @@ fn bounds_know_numbers_of_a_frame_as_the_field_does() {
         holds(&mut graph, root, stretch, 2.993_918).expect("bounds that hold");
     }
 }
+
+/// The arc sine is infinitely steep at 1, where its argument may stay.
+#[test]
+fn what_stays_where_a_function_is_endlessly_steep_has_no_slope() {
+    let mut graph = Graph::new();
+    let point = graph.point(0, Dim::Three);
+    let x = graph.component(point, 0);
+    let param = graph.frame_input(FrameInput::Param(0), Type::Scalar);
+    let lower = graph.unary(Unary::Trunc, param);
+    let upper = graph.mul(x, param);
+    let step = graph.ternary(Ternary::Smoothstep, lower, upper, upper);
+    let sign = graph.unary(Unary::Sign, step);
+    let stretch = [[1.0, 0.0, 0.0], [1.0, 0.0, -0.494_873_046_875]];
+    for steep in [Unary::Asin, Unary::Acos] {
+        let root = graph.unary(steep, sign);
+        holds(&mut graph, root, stretch, 1.551_904).expect("bounds that hold");
+    }
+}

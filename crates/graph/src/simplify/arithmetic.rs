@@ -243,7 +243,7 @@ impl Graph {
     fn mul_low(&mut self, x: NodeId, f: NodeId) -> Option<NodeId> {
         if let Some((x, g)) = self.as_scaled(x) {
             let factor = self.mul(g, f);
-            return Some(self.mul(x, factor));
+            return (!self.overflows(factor)).then(|| self.mul(x, factor));
         }
         if let Some((g, y)) = self.as_binary(Binary::Div, x).filter(|&(g, _)| self.is_low(g)) {
             let above = self.mul(g, f);
@@ -257,6 +257,9 @@ impl Graph {
             && let Some((y, c)) = self.as_scaled(y)
         {
             let (factor, offset) = (self.mul(c, f), self.mul(d, f));
+            if self.overflows(factor) || self.overflows(offset) {
+                return None;
+            }
             let product = self.mul(y, factor);
             return Some(self.add(product, offset));
         }
@@ -319,6 +322,13 @@ impl Graph {
         None
     }
 
+    /// Whether it is a constant that f32 takes for infinite: 0 times that is no number there, and 0 times its factors one by one is 0.
+    fn overflows(&self, id: NodeId) -> bool {
+        let beyond = |lane: &f64| lane.abs() > f64::from(f32::MAX);
+        self.as_const(id)
+            .is_some_and(|value| value.lanes()[..value.ty().width()].iter().any(beyond))
+    }
+
     /// `x * (1 / y)`
     fn mul_reciprocal(&mut self, x: NodeId, reciprocal: NodeId) -> Option<NodeId> {
         let (one, y) = self.as_binary(Binary::Div, reciprocal)?;
@@ -346,7 +356,8 @@ impl Graph {
         if self.is_low(b) && !self.is_low(a) {
             let one = self.one_like(b);
             let reciprocal = self.div(one, b);
-            return (!self.non_finite(reciprocal)).then(|| self.mul(a, reciprocal));
+            let fits = !self.non_finite(reciprocal) && !self.overflows(reciprocal);
+            return fits.then(|| self.mul(a, reciprocal));
         }
         None
     }
