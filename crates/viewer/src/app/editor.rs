@@ -27,7 +27,7 @@ pub fn open(editor: &str, path: &Path, place: [u32; 2]) -> Result<(), String> {
     let program = words.next().unwrap_or_default();
     let name = Path::new(program).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     if IN_TERMINAL.contains(&name.as_str()) {
-        return Err(format!("{name} needs a terminal"));
+        return Err(format!("{name} needs a terminal; $VISUAL may be another with a window"));
     }
     let mut command = Command::new(program);
     command.args(words).args(arguments(&name, path, place));
