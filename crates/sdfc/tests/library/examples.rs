@@ -188,7 +188,7 @@ pub fn trials() -> Vec<Trial> {
 
 /// The page on adding a shape shows one whose contract holds.
 fn documented() -> Result<(), libtest_mimic::Failed> {
-    let page = include_str!("../../../../docs/adding-a-shape.md");
+    let page = include_str!("../../../../docs/contributing/add-a-shape.md");
     let entry = page
         .split("```sdf")
         .nth(1)
