@@ -1,6 +1,6 @@
-// What the files that `sdfc compile --reflect` writes tell a page: what the buffers hold, and which knobs there are.
+// Uses the file that `sdfc compile --reflect` writes: fills the buffers, and makes the sliders.
 
-/// The text and the reflection of a scene, which `sdfc compile` wrote beside the page.
+/// Loads the shader and the reflection of a scene, which `sdfc compile` wrote beside the page.
 export async function compiled(file, described = "scene.json") {
   const [text, reflection] = await Promise.all(
     [file, described].map(async (name) => {
@@ -12,7 +12,7 @@ export async function compiled(file, described = "scene.json") {
   return [text, JSON.parse(reflection)];
 }
 
-/// What the buffer of camera, lights and limits holds for a picture of this size.
+/// Returns the content of the view buffer (camera, lights, limits) for a picture of this size.
 export function viewBytes(reflection, width, height) {
   if (reflection.view.length === 0) throw new Error("no picture: compile with --emit render");
   const bytes = new Uint32Array(reflection.view).buffer;
@@ -21,7 +21,7 @@ export function viewBytes(reflection, width, height) {
   const place = memberPlaces(reflection, "view");
   const vector = (name) => floats.subarray(place[name], place[name] + 3);
 
-  // `up` is half the picture's height at distance 1. Its half width follows from the new shape.
+  // `up` is half the height of the picture at distance 1, `right` half its width.
   const [right, up] = [vector("right"), vector("up")];
   const factor = ((Math.hypot(...up) / Math.hypot(...right)) * width) / height;
   right.set(right.map((lane) => lane * factor));
@@ -30,7 +30,8 @@ export function viewBytes(reflection, width, height) {
   return bytes;
 }
 
-/// Turns that camera about the vertical axis through `middle`, by an angle in radians.
+/// Turns the camera of such a buffer about the vertical axis through `middle`, by an angle in
+/// radians.
 export function turn(reflection, bytes, angle, middle = [0, 0, 0]) {
   const floats = new Float32Array(bytes);
   const place = memberPlaces(reflection, "view");
@@ -43,7 +44,8 @@ export function turn(reflection, bytes, angle, middle = [0, 0, 0]) {
   }
 }
 
-/// What the buffer of params holds. `values` has, by name, those that are not at their defaults.
+/// Returns the content of the params buffer. `values` has, by name, the params that are not at
+/// their defaults.
 export function paramBytes(reflection, values = {}) {
   const bytes = new ArrayBuffer(reflection.uniform?.size ?? 0);
   for (const { param, type, offset, default: standard } of reflection.params) {
@@ -54,11 +56,12 @@ export function paramBytes(reflection, values = {}) {
   return bytes;
 }
 
-// What moves by itself.
+// Params that change by themselves.
 const CLOCK = ["time", "frame"];
 
-/// Tells `changed` what `time`, in seconds, and `frame` are, before each picture of the screen, if the scene uses either. The page's
-/// address can stop it: `?time=1.5`. Gives what ends it.
+/// Calls `changed` with `time`, in seconds, and `frame` before each frame of the screen, if the
+/// scene uses either. `?time=1.5` in the address of the page stops the clock there. Returns a
+/// function that ends the clock.
 export function clock(reflection, changed) {
   if (!reflection.params.some(({ param }) => CLOCK.includes(param))) return () => {};
   const stopped = new URLSearchParams(location.search).get("time");
@@ -76,11 +79,12 @@ export function clock(reflection, changed) {
   return () => cancelAnimationFrame(waiting);
 }
 
-/// A knob for each param, in `parent`. `changed` is told the values of those that were moved.
-export function knobs(reflection, parent, changed) {
+/// Adds an input for each param to `parent`. Calls `changed` with the values of params that were
+/// changed.
+export function sliders(reflection, parent, changed) {
   const values = {};
   for (const row of reflection.params.filter(({ param }) => !CLOCK.includes(param))) {
-    const [input, read] = knob(row);
+    const [input, read] = slider(row);
     input.name = row.param;
     input.oninput = () => {
       values[row.param] = read();
@@ -92,8 +96,8 @@ export function knobs(reflection, parent, changed) {
   }
 }
 
-/// The element that sets a param, and what reads it.
-function knob({ type, min, max, choices, default: lanes }) {
+/// Returns the element that sets a param, and a function that reads it.
+function slider({ type, min, max, choices, default: lanes }) {
   const input = document.createElement(type === "choice" ? "select" : "input");
   if (type === "choice") {
     input.append(...choices.map((name, index) => new Option(name, index)));
@@ -116,11 +120,11 @@ function knob({ type, min, max, choices, default: lanes }) {
   return [input, () => Number(input.value)];
 }
 
-// Between linear light and the numbers of sRGB.
+// Conversions between linear light and sRGB.
 const encode = (light) => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
 const decode = (code) => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4);
 
-/// Members of the structure in the buffer of a role, as places in arrays of words of 4 bytes.
+/// Returns where the members of a buffer's structure are, as indices into arrays of 4-byte words.
 function memberPlaces(reflection, role) {
   const { type } = reflection.buffers.find((buffer) => buffer.role === role);
   const { members } = reflection.structs.find(({ name }) => name === type);

@@ -1,7 +1,9 @@
-/* Reads a scene, drops a ball of the given radius onto it from above, and prints where it comes to rest; then prints the
- * distance and its derivative at each point of standard input, "x y z" a line.
+/* Reads a scene, drops a ball of the given radius onto it from above, and prints where it comes to
+ * rest. Then prints the distance and its derivative at each point of standard input, one "x y z" on
+ * each line.
  *
- *   cc -I crates/capi examples/embed/c/field.c -L target/release -lsdfc_capi -Wl,-rpath,target/release -o field
+ *   cc -I crates/capi examples/embed/c/field.c -L target/release -lsdfc_capi \
+ *     -Wl,-rpath,target/release -o field
  *   ./field examples/embed/bowl.sdf 0.1 < points.txt
  */
 #include "sdfc.h"
@@ -28,7 +30,7 @@ static char *read_file(const char *path, size_t *length) {
     return text;
 }
 
-/* Gives a file that a scene imports, which is below the scene's folder: the path cannot lead out of it. */
+/* Hands over a file that a scene imports. The path is always below the scene's folder. */
 static int read_beside(void *scene_path, const char *path, sdfc_file *file) {
     const char *scene = scene_path;
     const char *slash = strrchr(scene, '/');
@@ -54,14 +56,14 @@ static sdfc_scene *read_scene(char *path) {
     }
     char *diagnostics = NULL;
     sdfc_scene *scene = sdfc_compile_with_files(path, text, length, read_beside, path, &diagnostics);
-    /* Warnings come with a scene, too; an empty array is "[]". */
+    /* A scene can have warnings too. Without diagnostics the array is "[]". */
     if (diagnostics && diagnostics[1] != ']') fprintf(stderr, "%s\n", diagnostics);
     sdfc_string_free(diagnostics);
     free(text);
     return scene;
 }
 
-/* Where a falling ball touches the surface: no step is longer than the distance. */
+/* Moves a ball down until it touches the surface. No step is longer than the distance. */
 static int drop(const sdfc_scene *scene, double radius, double ball[3]) {
     for (int step = 0; step < 1000; step++) {
         double distance;

@@ -1,7 +1,8 @@
-// Compiles the scene in the text area whenever it changes, and draws it. Served from the root of the repository.
+// Compiles the scene in the text area whenever it changes, and draws it. Serve it from the root of
+// the repository.
 
 import { load } from "../../../crates/web/npm/index.js";
-import { clock, knobs } from "../reflection.js";
+import { clock, sliders } from "../reflection.js";
 import { openDevice, picture } from "../webgpu/picture.js";
 
 const [canvas, editor, messages, form] = ["canvas", "textarea", "pre", "form"].map((name) =>
@@ -16,16 +17,16 @@ async function main() {
     const options = { emit: "render", stage: "fragment" };
     const { text, reflection, diagnostics } = compiler.compile(editor.value, options);
     messages.textContent = diagnostics.map(line).join("\n");
-    // A broken text keeps the last good picture.
+    // While the source has errors, the last good picture stays.
     if (text === null) return;
     endClock();
     const { setParams } = await picture(device, canvas, text, reflection);
     form.replaceChildren();
-    knobs(reflection, form, setParams);
+    sliders(reflection, form, setParams);
     endClock = clock(reflection, setParams);
   }
 
-  // One after the other, and of those that wait only the last.
+  // Edits are compiled one after the other. Of the edits that wait, only the last is compiled.
   let latest = 0;
   let work = show();
   editor.oninput = () => {

@@ -1,9 +1,9 @@
-// Marches the field in scene.glsl, which `sdfc compile --emit march --target glsl-es` wrote, in a three.js scene: the
-// same camera, light and depth buffer as the meshes there.
+// Marches the field in scene.glsl, which `sdfc compile --emit march --target glsl-es` wrote, in a
+// three.js scene: with the same camera, light and depth buffer as the meshes there.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { clock, compiled, knobs } from "../reflection.js";
+import { clock, compiled, sliders } from "../reflection.js";
 
 // The ray through each corner of a triangle that covers the picture.
 const VERTEX = `
@@ -14,8 +14,8 @@ void main() {
   ray = far.xyz / far.w - cameraPosition;
 }`;
 
-// A text has `sdf_material` where something is painted.
-const fragment = (isPainted) => `
+// The shader has `sdf_material` if something in the scene has a material.
+const fragment = (hasMaterial) => `
 uniform mat4 projectionMatrix;
 uniform vec3 sun;
 in vec3 ray;
@@ -27,14 +27,14 @@ void main() {
   vec3 p = cameraPosition + found.t * direction;
   vec3 normal = normalize(sdf_gradient(p).xyz);
   float light = 0.2 + 0.8 * max(dot(normal, sun), 0.0);
-  color = linearToOutputTexel(vec4(light * ${isPainted ? "sdf_material(p).color" : "vec3(0.5)"}, 1.0));
+  color = linearToOutputTexel(vec4(light * ${hasMaterial ? "sdf_material(p).color" : "vec3(0.5)"}, 1.0));
 
   // Depth as three.js has it, so that meshes and field hide each other.
   vec4 place = projectionMatrix * viewMatrix * vec4(p, 1.0);
   gl_FragDepth = 0.5 + 0.5 * place.z / place.w;
 }`;
 
-/// The text without what three.js writes itself: the version, and an entry point.
+/// Removes from the shader what three.js writes itself: the version, and the entry point.
 function functions(text) {
   return text.replace(/^#version.*/, "").replace("void main()", "void sdf_unused()");
 }
@@ -64,11 +64,11 @@ async function main() {
   const sun = new THREE.Vector3(1.5, 2, 0.2).normalize();
 
   const { groups, uniforms } = paramGroups(reflection);
-  const isPainted = reflection.functions.some(({ role }) => role === "material");
+  const hasMaterial = reflection.functions.some(({ role }) => role === "material");
   const material = new THREE.ShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: VERTEX,
-    fragmentShader: functions(text) + fragment(isPainted),
+    fragmentShader: functions(text) + fragment(hasMaterial),
     uniforms: { sun: { value: sun } },
     uniformsGroups: groups,
   });
@@ -91,14 +91,14 @@ async function main() {
   const draw = () => renderer.render(scene, camera);
   function setParams(values) {
     for (const [param, value] of Object.entries(values)) {
-      // The clock has `frame` also where the scene does not.
+      // The clock sets `frame` even if the scene does not use it.
       if (param in uniforms) {
         uniforms[param].value = Array.isArray(value) ? new THREE.Vector4(...value) : value;
       }
     }
     requestAnimationFrame(draw);
   }
-  knobs(reflection, document.querySelector("form"), setParams);
+  sliders(reflection, document.querySelector("form"), setParams);
   clock(reflection, setParams);
   const controls = new OrbitControls(camera, canvas);
   controls.target.set(0, 0, 0.2);

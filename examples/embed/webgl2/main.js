@@ -1,10 +1,11 @@
-// Draws the scene in scene.glsl, which `sdfc compile --emit render --target glsl-es` wrote, on a canvas. Where it uses `time` it moves.
+// Draws the scene in scene.glsl, which `sdfc compile --emit render --target glsl-es` wrote, on a
+// canvas. If the scene uses `time`, it moves.
 
-import { clock, compiled, knobs, paramBytes, turn, viewBytes } from "../reflection.js";
+import { clock, compiled, sliders, paramBytes, turn, viewBytes } from "../reflection.js";
 import { fullScreen } from "./program.js";
 
-// The shader gives linear light. A WebGL canvas takes numbers as they are, so they are encoded behind it, in a
-// second `main` that calls the first.
+// The shader returns linear light. A WebGL canvas shows numbers as they are, so a second `main`
+// calls the first one and encodes its result.
 function encoded(text) {
   const output = text.match(/ out vec4 (\w+);/)[1];
   return `${text.replace("void main()", "void draw_linear()")}
@@ -25,7 +26,8 @@ async function main() {
   const program = fullScreen(gl, encoded(text));
   gl.useProgram(program);
 
-  // The reflection lists every uniform block that the shader reads. WebGL knows them by their names.
+  // The reflection lists every uniform block that the shader reads. WebGL knows them by their
+  // names.
   const contents = {
     view: viewBytes(reflection, canvas.width, canvas.height),
     params: paramBytes(reflection),
@@ -49,21 +51,21 @@ async function main() {
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  // Once for all that changes before the next picture of the screen.
+  // Draws once for all changes before the next frame of the screen.
   let waits = false;
   function redraw() {
     if (!waits) requestAnimationFrame(draw);
     waits = true;
   }
 
-  // A param is a few bytes of a uniform: nothing is compiled again.
+  // A param is a few bytes of a uniform buffer. Changing one compiles nothing.
   const values = {};
   function setParams(some) {
     contents.params = paramBytes(reflection, Object.assign(values, some));
     fill("params");
     redraw();
   }
-  knobs(reflection, document.querySelector("form"), setParams);
+  sliders(reflection, document.querySelector("form"), setParams);
   clock(reflection, setParams);
   canvas.onpointermove = ({ buttons, movementX }) => {
     if (buttons === 0) return;

@@ -1,13 +1,14 @@
-// Draws the scene in scene.wgsl on the canvas, with a knob for each of its params. Where it uses `time` it moves.
+// Draws the scene in scene.wgsl on the canvas, with a slider for each of its params. If the scene
+// uses `time`, it moves.
 
-import { clock, compiled, knobs } from "../reflection.js";
+import { clock, compiled, sliders } from "../reflection.js";
 import { openDevice, picture } from "./picture.js";
 
 async function main() {
   const [text, reflection] = await compiled("scene.wgsl");
   const canvas = document.querySelector("canvas");
   const { setParams } = await picture(await openDevice(), canvas, text, reflection);
-  knobs(reflection, document.querySelector("form"), setParams);
+  sliders(reflection, document.querySelector("form"), setParams);
   clock(reflection, setParams);
 }
 

@@ -1,17 +1,17 @@
-// A compiled scene on a canvas, by WebGPU.
+// Draws a compiled scene on a canvas with WebGPU.
 
 import { paramBytes, turn, viewBytes } from "../reflection.js";
 
-/// A device of this browser.
+/// Opens a GPU device.
 export async function openDevice() {
   const adapter = await navigator.gpu?.requestAdapter();
   if (!adapter) throw new Error("this browser has no WebGPU here");
   return adapter.requestDevice();
 }
 
-/// Makes ready to draw what `sdfc compile --emit render --stage fragment` wrote, and draws it.
+/// Prepares the shader that `sdfc compile --emit render --stage fragment` wrote, and draws it.
 export async function picture(device, canvas, text, reflection) {
-  // The shader gives linear light. Through a view of an sRGB format the canvas is written encoded.
+  // The shader returns linear light. A view with an sRGB format encodes it for the canvas.
   const context = canvas.getContext("webgpu");
   const stored = navigator.gpu.getPreferredCanvasFormat();
   const format = `${stored}-srgb`;
@@ -58,7 +58,8 @@ export async function picture(device, canvas, text, reflection) {
     device.queue.submit([encoder.finish()]);
   }
 
-  // A param is a few bytes of a uniform: nothing is compiled again. Those that are not named keep their values.
+  // A param is a few bytes of a uniform buffer. Changing one compiles nothing. Params that are not
+  // named keep their values.
   const values = {};
   function setParams(some) {
     Object.assign(values, some);
@@ -66,7 +67,7 @@ export async function picture(device, canvas, text, reflection) {
     redraw();
   }
 
-  // Once for all that changes before the next picture of the screen.
+  // Draws once for all changes before the next frame of the screen.
   let waits = false;
   function redraw() {
     if (!waits) requestAnimationFrame(draw);

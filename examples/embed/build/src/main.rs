@@ -1,4 +1,4 @@
-//! Shows what the build script made of the scene: nothing of sdfc is left when the program runs.
+//! Shows what the build script made from the scene. The program contains no part of sdfc.
 
 mod bowl {
     include!(concat!(env!("OUT_DIR"), "/bowl.rs"));

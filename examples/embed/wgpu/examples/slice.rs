@@ -1,9 +1,9 @@
-//! Prints a slice through a scene: its distances are computed on the adapter, by a shader of this program.
+//! Prints a slice through a scene. A shader of this program computes the distances on the GPU.
 
 use sdfc::bind::Bindings;
 use sdfc::{Code, Scene, ShaderOptions, wgpu};
 
-/// A ball and a block, blended.
+/// The source of the scene: a ball and a block, blended.
 pub const SCENE: &str =
     "param r = 0.6 in 0.1..1\nunion(sphere(r), box(0.8).translate(x: 0.9), blend: smooth(0.3))";
 const SHADER: &str = "
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Distances in 24 rows of 64, with a ball of this radius.
+/// Returns 24 rows of 64 distances, for a ball of this radius.
 pub fn slice(r: f64) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&Default::default()))?;
@@ -35,7 +35,7 @@ pub fn slice(r: f64) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
         Bindings::new((&device, &queue), &scene, &written, wgpu::ShaderStages::COMPUTE)?;
     let Code::Text(text) = written.code else { return Err("WGSL is text".into()) };
 
-    // The program's own part: a pipeline that has the scene's layout beside its own.
+    // The program's own pipeline, with the scene's layout beside its own.
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl((text + SHADER).into()),
@@ -78,7 +78,7 @@ pub fn slice(r: f64) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: distances.as_entire_binding() }],
     });
 
-    // A frame: params move without a recompile.
+    // A frame. Changing a param recompiles nothing.
     field.set("r", r)?;
     field.upload(&queue);
     let mut encoder = device.create_command_encoder(&Default::default());

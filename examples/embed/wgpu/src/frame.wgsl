@@ -1,4 +1,5 @@
-// The program's own part of the shader: a camera, two rays into the scenes, Lambert's law. The scenes' functions stand before it.
+// The program's part of the shader: a camera, two rays into the scenes, Lambert's law. It follows
+// the functions of the scenes.
 
 struct Camera {
     eye: vec3f,
@@ -15,7 +16,7 @@ struct Camera {
 @group(0) @binding(0) var<uniform> camera: Camera;
 
 const GREY = vec3f(0.8);
-// Linear, as all light here.
+// Linear, like all light here.
 const BACKGROUND = vec3f(0.01, 0.0331, 0.0732);
 
 // A triangle over the whole target.
@@ -25,11 +26,11 @@ fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
 }
 
 @fragment
-fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    let part = 2.0 * place.xy / camera.size - 1.0;
-    let direction = normalize(camera.forward + part.x * camera.right - part.y * camera.up);
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let offset = 2.0 * position.xy / camera.size - 1.0;
+    let direction = normalize(camera.forward + offset.x * camera.right - offset.y * camera.up);
     let bowl = bowl_intersect(camera.eye, direction, 0.0, camera.far);
-    // What the bowl hides need not be looked for.
+    // The second ray ends where the bowl was hit.
     let end = select(camera.far, bowl.t, bowl.status == bowl_HIT);
     let ring = ring_intersect(camera.eye, direction, 0.0, end);
     var gradient: vec4f;

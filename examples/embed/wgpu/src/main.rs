@@ -6,7 +6,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "embed.png".to_owned());
     let (device, queue) = open()?;
     let mut renderer = Renderer::new(device, queue)?;
-    // Params move without a recompile.
+    // Changing a param recompiles nothing.
     renderer.scenes[0].set("wall", 0.12)?;
     renderer.scenes[1].frame_mut().time = 2.0;
 

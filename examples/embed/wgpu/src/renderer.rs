@@ -8,18 +8,18 @@ use sdfc::{Code, Emit, Scene, ShaderOptions};
 use crate::SCENES;
 use crate::target::{FORMAT, Target};
 
-/// Where the picture is taken from.
+/// A camera and a light.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// Where rays start.
+    /// The origin of the rays.
     pub eye: [f32; 3],
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture.
     pub target: [f32; 3],
     /// Vertical field of view in radians.
     pub fov: f32,
     /// Towards the sun, of any length.
     pub sun: [f32; 3],
-    /// Light from everywhere.
+    /// Ambient light.
     pub ambient: f32,
 }
 
@@ -39,11 +39,11 @@ pub struct Renderer {
 const CAMERA_BYTES: u64 = 96;
 
 impl Renderer {
-    /// Compiles the scenes, and the shader that they are part of.
+    /// Compiles the scenes, and the shader that contains them.
     ///
     /// # Errors
     ///
-    /// What is wrong with a scene.
+    /// The errors of a scene.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, Box<dyn Error>> {
         let mut text = String::new();
         let mut scenes = Vec::new();
@@ -78,11 +78,12 @@ impl Renderer {
         Ok(Self { device, queue, pipeline, camera, camera_group, scenes })
     }
 
-    /// Draws a picture: red, green, blue and alpha of each pixel in sRGB, row by row from the top.
+    /// Draws a picture. Returns red, green, blue and alpha of each pixel in sRGB, row by row from
+    /// the top.
     ///
     /// # Errors
     ///
-    /// The device was lost.
+    /// If the device was lost.
     pub fn draw(&self, size: [u32; 2], camera: &Camera) -> Result<Vec<u8>, Box<dyn Error>> {
         for scene in &self.scenes {
             scene.upload(&self.queue);
@@ -154,7 +155,7 @@ fn pipeline(
 }
 
 impl Default for Camera {
-    /// One that sees both scenes.
+    /// A camera that sees both scenes.
     fn default() -> Self {
         Self {
             eye: [2.2, 2.4, 3.0],
@@ -167,7 +168,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// As `frame.wgsl` lays it out.
+    /// The bytes in the layout of `frame.wgsl`.
     fn bytes(&self, [width, height]: [u32; 2]) -> Vec<u8> {
         let forward = unit(subtract(self.target, self.eye));
         let right = unit(cross(forward, [0.0, 1.0, 0.0]));

@@ -1,12 +1,12 @@
-//! A picture without a window.
+//! A render target without a window.
 
 use std::error::Error;
 
-/// Of the pixels.
+/// Format of the pixels.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const PIXEL_BYTES: u32 = 4;
 
-/// A texture that is drawn to and read back.
+/// A texture that is drawn to, and read back to the CPU.
 pub struct Target {
     size: [u32; 2],
     texture: wgpu::Texture,

@@ -1,4 +1,5 @@
-//! The program's picture against that of `sdfc render`, and the small program's distances against the processor's.
+//! Compares the program's picture with that of `sdfc render`, and the distances of `slice.rs` with
+//! those of the CPU.
 #![allow(missing_docs)]
 
 use embed_wgpu::{Camera, Renderer, SCENES, open};
@@ -11,9 +12,9 @@ use sdfc::{Backend, PictureOptions, Scene, unwatched};
 mod slice;
 
 const SIZE: [u32; 2] = [160, 120];
-/// Steps of 1/255.
+/// Largest difference of a channel, in steps of 1/255.
 const MOST: u8 = 1;
-/// Pixels in a thousand that may see past another edge.
+/// Pixels in a thousand that may differ more, at edges.
 const EDGES: usize = 5;
 
 fn main() {
@@ -35,7 +36,7 @@ fn same_picture() -> Result<(), Failed> {
     ring.frame_mut().time = 2.0;
     let drawn = renderer.draw(SIZE, &Camera::default())?;
 
-    // The camera and lights of `Camera::default`, as a scene has them.
+    // The camera and lights of `Camera::default`, in the language.
     let settings = "camera(eye: [2.2, 2.4, 3], target: [0, -0.2, 0], fov: 40deg)\n\
                     sun(direction: [1, 2, 1.5])\nambient(strength: 0.15)\n\
                     background(rgb(0.1, 0.2, 0.3))";
