@@ -3,7 +3,7 @@
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Ternary, Unary};
 
-use crate::lipschitz::{Constant, Reason};
+use crate::certify::lipschitz::{Constant, Reason};
 
 /// A broken rule of an operation gives this part of the constant.
 const PART: f64 = 0.125;

@@ -18,41 +18,28 @@
 //! the point has no such constant; then interval derivatives find one that holds within the shape's bounds. A shape
 //! of which neither tells one is uncertified unless it states one.
 
-mod affine;
-mod clip;
-mod closed;
-mod components;
-mod copies;
+mod analytic;
+mod certify;
 mod cost;
 mod fault;
-mod folds;
-mod form;
 mod leaves;
-mod lipschitz;
-mod maps;
 mod prepare;
-mod quality;
-mod rays;
 mod refute;
-mod roll;
-mod sound;
-mod spans;
-mod uneven;
-mod within;
-mod writing;
+mod reroll;
 
-pub use copies::{Idle, idle_copies};
+pub use analytic::copies::{CopiesObstacle, copies_obstacle};
+pub use certify::conservative::Uncertified;
+pub use certify::inexact::InexactOperator;
+pub use certify::lipschitz::{Constant, Reason};
+pub use certify::quality::{Promise, Qualities, Quality, Sides};
 pub use cost::{Cost, cost};
 #[cfg(feature = "faults")]
 pub use fault::Rule;
-pub use lipschitz::{Constant, Reason};
-pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_about};
-pub use quality::{Promise, Qualities, Quality, Sides};
-pub use refute::{
-    ClaimFault, Clause, CopiesFault, ParamEnd, RayFault, Refuted, refute, refute_claim,
-    refute_copies, refute_hits,
-};
-pub use roll::Rolled;
-pub use sound::Uncertified;
-pub use uneven::Uneven;
-pub use writing::Writing;
+pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_with};
+pub use refute::claims::{LipschitzViolation, refute_lipschitz};
+pub use refute::clauses::{Clause, Violation, refute};
+pub use refute::copies::{CopiesViolation, refute_copies};
+pub use refute::frames::ParamValues;
+pub use refute::rays::{RayViolation, refute_intersect};
+pub use reroll::rewrite::RerolledLoop;
+pub use reroll::strategy::LoopStrategy;

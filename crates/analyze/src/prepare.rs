@@ -6,16 +6,18 @@ use sdfc_graph::{
     fold_transforms, gradient, uniforms,
 };
 
-use crate::closed::{Parts, least, parts};
+use crate::analytic::queries::{asked_of_rays, rays};
+use crate::analytic::split::{Parts, least, parts};
+use crate::certify::conservative::{Uncertified, conservative_field};
+use crate::certify::inexact::{InexactOperator, inexact_operators, inexact_outside};
+use crate::certify::lipschitz::Reason;
+use crate::certify::quality::{Qualities, Sides, shapes_below};
 use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
-use crate::lipschitz::Reason;
-use crate::quality::{Qualities, Sides, shapes_below};
-use crate::rays::{asked_of_rays, rays};
-use crate::roll::{Rolled, alike, roll, visits, within};
-use crate::sound::{Uncertified, sound_field};
-use crate::uneven::{Uneven, inexact_outside, uneven};
-use crate::writing::{Writing, leave_the_eye};
+use crate::reroll::cullable::visits;
+use crate::reroll::marched_bounds::within;
+use crate::reroll::rewrite::{RerolledLoop, alike, reroll};
+use crate::reroll::strategy::{LoopStrategy, has_secondary_rays};
 
 /// A scene ready for code generation, and what was found on the way.
 #[derive(Clone, Debug)]
@@ -30,29 +32,29 @@ pub struct Prepared {
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// What became loops; empty where all is written out.
-    pub rolled: Vec<Rolled>,
+    pub loops: Vec<RerolledLoop>,
     /// Up to how many operations the field would have been written out.
-    pub most_inline: usize,
+    pub unrolled_limit: usize,
     /// Leaf shapes evaluated per field evaluation: childless instances at distinct points.
     pub leaves: usize,
     /// Cost of the distance alone.
-    pub distance: Cost,
+    pub distance_cost: Cost,
     /// Cost of the gradient, what it shares with the distance included.
-    pub gradient: Cost,
+    pub gradient_cost: Cost,
     /// Cost of what a ray is asked before it is marched.
-    pub ray: Cost,
+    pub ray_cost: Cost,
     /// Cost of the distance to what is left to march.
-    pub marched: Cost,
+    pub marched_cost: Cost,
     /// What rays meet without marching.
-    pub closed: Vec<ShapeId>,
+    pub analytic: Vec<ShapeId>,
     /// What is left to march.
-    pub open: Vec<ShapeId>,
+    pub marched: Vec<ShapeId>,
     /// Every shape of the scene, children before parents.
     pub shapes: Vec<ShapeReport>,
     /// Parts that no Lipschitz constant covers; empty for a certified scene.
     pub uncertified: Vec<Uncertified>,
     /// Operators that want an exact distance and have none.
-    pub uneven: Vec<Uneven>,
+    pub inexact_operators: Vec<InexactOperator>,
     /// Where the scene's field stops being the distance outside; `None` where it is that everywhere.
     pub inexact_outside: Option<ShapeId>,
 }
@@ -60,12 +62,12 @@ pub struct Report {
 impl Report {
     /// Operations that a ray takes on average, by a method that looks ahead or not, from the mean of evaluations, of which
     /// looking ahead is one.
-    pub fn operations(&self, evaluations: f64, looks_ahead: bool) -> f64 {
-        if looks_ahead && self.ray.operations > 0 {
+    pub fn operations_per_ray(&self, evaluations: f64, looks_ahead: bool) -> f64 {
+        if looks_ahead && self.ray_cost.operations > 0 {
             let steps = (evaluations - 1.0).max(0.0);
-            return self.ray.operations as f64 + steps * self.marched.operations as f64;
+            return self.ray_cost.operations as f64 + steps * self.marched_cost.operations as f64;
         }
-        evaluations * self.distance.operations as f64
+        evaluations * self.distance_cost.operations as f64
     }
 }
 
@@ -83,7 +85,7 @@ pub struct ShapeReport {
     /// The operation at which the field, or one that it samples, may jump; `None` where it has a constant, or nothing jumps.
     pub jump: Option<&'static str>,
     /// Whether it was found by interval derivatives, within the bounds.
-    pub found: bool,
+    pub from_interval_derivatives: bool,
 }
 
 /// A Lipschitz constant as people want to read it.
@@ -104,7 +106,7 @@ pub enum Lipschitz {
 ///
 /// When expansion passes the graph's node limit.
 pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
-    prepare_about(scene, [0.0; 3], Writing::Auto)
+    prepare_with(scene, [0.0; 3], LoopStrategy::Auto)
 }
 
 /// As [`prepare`], with the flat math's point counted from a place in the scene. Where a solid is moved to, less that
@@ -113,10 +115,10 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
 /// # Errors
 ///
 /// As [`prepare`].
-pub fn prepare_about(
+pub fn prepare_with(
     scene: &Scene,
     origin: [f64; 3],
-    writing: Writing,
+    writing: LoopStrategy,
 ) -> Result<Prepared, ExpandError> {
     let mut program = Program {
         origin,
@@ -137,7 +139,7 @@ fn flatten(
     program: &mut Program,
     root: ShapeId,
     painted: bool,
-    writing: Writing,
+    writing: LoopStrategy,
 ) -> Result<Report, ExpandError> {
     let params = program.params.clone();
     let graph = &mut program.graph;
@@ -146,12 +148,12 @@ fn flatten(
     let origin = graph.constant(Dim::Three.point_type(), &program.origin);
     let point = graph.add(own_point, origin);
     let qualities = Qualities::of_scene(graph, root, &params);
-    let field = sound_field(graph, &mut expander, &qualities, root, point)?;
+    let field = conservative_field(graph, &mut expander, &qualities, root, point)?;
     let leaves = count_leaves(graph, &mut expander, root, point)?;
     let mut bounds = Bounds::new(&params);
     let mut apart = parts(graph, &mut expander, &qualities, &mut bounds, root, point)?;
     let steepest = steepest(graph, &qualities, root).filter(|_| field.uncertified.is_empty());
-    let (rolls, most_inline) = writing.rolls(graph, field.distance, &program.settings, steepest);
+    let (rolls, unrolled_limit) = writing.rolls(graph, field.distance, &program.settings, steepest);
     if rolls {
         leave_lists_to_march(graph, &mut apart);
     }
@@ -163,13 +165,14 @@ fn flatten(
     let folded = fold_transforms(graph, &flat);
     program.names = folded.names(graph, &expander.names());
     let (fields, material) = folded.roots.split_at(count);
-    let (fields, rolled) = if rolls { roll(graph, fields) } else { (fields.to_vec(), Vec::new()) };
+    let (fields, rolled) =
+        if rolls { reroll(graph, fields) } else { (fields.to_vec(), Vec::new()) };
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, own_point));
     program.visits = visits(graph, &fields, steepest);
-    if !program.visits.is_empty() && leave_the_eye(&program.settings) {
+    if !program.visits.is_empty() && has_secondary_rays(&program.settings) {
         program.within = within(graph, &mut bounds, root);
     }
     let asked = asked_of_rays(graph, &mut expander, &mut bounds, &apart)?;
@@ -177,18 +180,18 @@ fn flatten(
     let Rays { hits, marched, clip, copies, .. } = program.rays;
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
-        rolled,
-        most_inline,
+        loops: rolled,
+        unrolled_limit,
         leaves,
-        distance: cost(graph, &[distance]),
-        gradient: cost(graph, program.gradient.as_slice()),
-        ray: cost(graph, &asked),
-        marched: cost(graph, copies.or(marched).as_slice()),
-        closed: apart.closed.iter().map(|part| part.shape).collect(),
-        open: apart.open.iter().map(|part| part.shape).collect(),
+        distance_cost: cost(graph, &[distance]),
+        gradient_cost: cost(graph, program.gradient.as_slice()),
+        ray_cost: cost(graph, &asked),
+        marched_cost: cost(graph, copies.or(marched).as_slice()),
+        analytic: apart.closed.iter().map(|part| part.shape).collect(),
+        marched: apart.open.iter().map(|part| part.shape).collect(),
         shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
-        uneven: uneven(graph, &qualities, root),
+        inexact_operators: inexact_operators(graph, &qualities, root),
         inexact_outside: inexact_outside(graph, &qualities, root),
     })
 }
@@ -243,9 +246,16 @@ fn shape_reports(
             Err(reason) => Lipschitz::Unknown(reason.to_string()),
         };
         let divided = divided.contains(&shape);
-        let found = quality.within.is_some();
+        let from_interval_derivatives = quality.within.is_some();
         let sides = quality.sides;
-        shapes.push(ShapeReport { shape, sides, lipschitz, divided, found, jump });
+        shapes.push(ShapeReport {
+            shape,
+            sides,
+            lipschitz,
+            divided,
+            from_interval_derivatives,
+            jump,
+        });
     }
     shapes
 }

@@ -300,12 +300,12 @@ pub enum Writing {
     Rolled,
 }
 
-impl From<Writing> for sdfc::Writing {
+impl From<Writing> for sdfc::LoopStrategy {
     fn from(writing: Writing) -> Self {
         match writing {
             Writing::Auto => Self::Auto,
-            Writing::Inline => Self::Inline,
-            Writing::Rolled => Self::Rolled,
+            Writing::Inline => Self::Unrolled,
+            Writing::Rolled => Self::Looped,
         }
     }
 }

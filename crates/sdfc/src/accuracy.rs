@@ -178,7 +178,7 @@ impl Scene {
         let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));
         let asked: Vec<NodeId> = asked.filter_map(|asked| asked.1).collect();
         if asked.is_empty() {
-            return self.report.operations(evaluations, method.looks_ahead);
+            return self.report.operations_per_ray(evaluations, method.looks_ahead);
         }
         let roots: Vec<NodeId> = program.distance.into_iter().chain(asked).collect();
         evaluations * cost(&program.graph, &roots).operations as f64

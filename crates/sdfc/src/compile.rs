@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use sdfc_analyze::{Report, Writing, prepare, prepare_about};
+use sdfc_analyze::{LoopStrategy, Report, prepare, prepare_with};
 use sdfc_codegen::Stopwatch;
 use sdfc_diagnostics::{
     Code, Diagnostic, FileId, Located, Sources, Span, has_errors, locate, render,
@@ -83,7 +83,7 @@ pub struct Scene {
     pub(crate) elaborated: Elaborated,
     pub(crate) program: Program,
     pub(crate) report: Report,
-    pub(crate) writing: Writing,
+    pub(crate) writing: LoopStrategy,
     /// The program about another place, if pictures are drawn by such; made when the first is.
     pub(crate) rebased: OnceLock<Option<Program>>,
     /// Derived when first asked for; a shader needs none.
@@ -161,9 +161,9 @@ impl Scene {
     /// # Errors
     ///
     /// [`Error::Expand`].
-    pub fn written(self, writing: Writing) -> Result<Self, Error> {
+    pub fn written(self, writing: LoopStrategy) -> Result<Self, Error> {
         let start = Stopwatch::start();
-        let prepared = prepare_about(&self.elaborated.scene, [0.0; 3], writing)?;
+        let prepared = prepare_with(&self.elaborated.scene, [0.0; 3], writing)?;
         let (program, report) = (prepared.program, prepared.report);
         let (rebased, tapes) = Default::default();
         let times = FrontTimes { analyze: start.milliseconds(), ..self.times };
@@ -284,7 +284,7 @@ fn finish(
                 elaborated,
                 program,
                 report,
-                writing: Writing::Auto,
+                writing: LoopStrategy::Auto,
                 rebased,
                 bounds,
                 intervals_end,

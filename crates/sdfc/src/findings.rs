@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_analyze::{
-    Clause, CopiesFault, Idle, ParamEnd, Refuted, Report, idle_copies, refute, refute_claim,
+    Clause, CopiesObstacle, CopiesViolation, ParamValues, Report, Violation, copies_obstacle,
+    refute, refute_lipschitz,
 };
 use sdfc_diagnostics::{Code, Diagnostic, Sources, Span};
 use sdfc_graph::{Graph, ShapeId};
@@ -32,7 +33,7 @@ pub(crate) fn warnings(
             found.push(warning.help(help));
         }
     }
-    for part in &report.uneven {
+    for part in &report.inexact_operators {
         let Some(site) = places.own(part.shape) else { continue };
         if seen.insert((Code::NOT_EXACT, site.span)) {
             let message = format!(
@@ -58,15 +59,15 @@ fn idle(elaborated: &Elaborated, declared: &Declared) -> Option<Diagnostic> {
     let instances: Vec<ShapeId> = instances(&graph, declared).collect();
     let mut reason = None;
     for shape in instances {
-        reason = Some(idle_copies(&mut graph, shape)?);
+        reason = Some(copies_obstacle(&mut graph, shape)?);
     }
     let reason = match reason? {
-        Idle::Other => {
+        CopiesObstacle::NotASample => {
             "something in its formula's minimum is neither one sample nor a value without samples"
         }
-        Idle::Bent => "a sample is not at a rigid map of p between jumps",
-        Idle::NoSample => "its formula's minimum has no sample",
-        Idle::NoLimit => {
+        CopiesObstacle::NotRigid => "a sample is not at a rigid map of p between jumps",
+        CopiesObstacle::NoSample => "its formula's minimum has no sample",
+        CopiesObstacle::NoLimit => {
             "no value in its formula's minimum says how near others than its samples are"
         }
     };
@@ -134,7 +135,7 @@ fn claims(elaborated: &Elaborated) -> Vec<Diagnostic> {
     }
     let refuted = calls.into_iter().filter_map(|(span, calls)| {
         let fault = calls.into_iter().take(SAMPLED).find_map(|Claimed { value, claim, .. }| {
-            refute_claim(&elaborated.scene, *value, claim)
+            refute_lipschitz(&elaborated.scene, *value, claim)
         })?;
         let message = format!(
             "this states `lipschitz {}`, but between p = {} and {} the result changes {} times as much as any \
@@ -152,15 +153,15 @@ fn claims(elaborated: &Elaborated) -> Vec<Diagnostic> {
     refuted.collect()
 }
 
-fn with_params(error: Diagnostic, params: ParamEnd) -> Diagnostic {
+fn with_params(error: Diagnostic, params: ParamValues) -> Diagnostic {
     match params {
-        ParamEnd::Default => error,
-        ParamEnd::Low => error.note("with all params at the low ends of their ranges"),
-        ParamEnd::High => error.note("with all params at the high ends of their ranges"),
+        ParamValues::Default => error,
+        ParamValues::Low => error.note("with all params at the low ends of their ranges"),
+        ParamValues::High => error.note("with all params at the high ends of their ranges"),
     }
 }
 
-fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
+fn refutation(declared: &Declared, refuted: &Violation) -> Option<Diagnostic> {
     let at = point(&refuted.at);
     let field = number(refuted.field);
     let error = |span, message| Diagnostic::error(Code::PROMISE_BROKEN, span, message);
@@ -194,7 +195,7 @@ fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
             let help = "state the largest slope within the bounds, or drop the clause";
             Some(error(declared.lipschitz?, message).help(help))
         }
-        Clause::Hits(fault) => {
+        Clause::Intersect(fault) => {
             let [origin, direction] = fault.ray.map(|vector| point(&vector));
             let said = match fault.inside {
                 Some(true) => "be inside",
@@ -208,7 +209,7 @@ fn refutation(declared: &Declared, refuted: &Refuted) -> Option<Diagnostic> {
             let help = "the intervals hold all of the ray that is inside, and begin and end where the field is 0";
             Some(error(declared.hits?, message).help(help))
         }
-        Clause::Copies(CopiesFault { from, reach, to, .. }) => {
+        Clause::Copies(CopiesViolation { from, reach, to, .. }) => {
             let [middle, there] = [from, to].map(|place| point(place));
             let message = if from == to {
                 format!(

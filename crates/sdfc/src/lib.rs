@@ -100,7 +100,7 @@ pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
 #[cfg(feature = "measure")]
 pub use sdfc_accuracy as accuracy_data;
 pub use sdfc_analyze as analyze;
-pub use sdfc_analyze::Writing;
+pub use sdfc_analyze::LoopStrategy;
 pub use sdfc_codegen as codegen;
 pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
 pub use sdfc_diagnostics as diagnostics;

@@ -4,7 +4,7 @@
 //! such scenes have a program whose point is counted from what the camera looks at, and eye and lamps are counted from
 //! there too, in f64. Texts for other engines, and all that asks for the field at a place, have the scene's own.
 
-use sdfc_analyze::prepare_about;
+use sdfc_analyze::prepare_with;
 use sdfc_graph::eval::evaluate_frame;
 use sdfc_graph::{Camera, Program};
 
@@ -18,7 +18,7 @@ impl Scene {
     pub fn drawn(&self) -> &Program {
         let rebased = self.rebased.get_or_init(|| {
             let origin = self.place_seen()?;
-            prepare_about(&self.elaborated.scene, origin, self.writing)
+            prepare_with(&self.elaborated.scene, origin, self.writing)
                 .ok()
                 .map(|prepared| prepared.program)
         });

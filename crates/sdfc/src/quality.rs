@@ -59,7 +59,7 @@ impl Scene {
                 Some("a bound, which needs no constant".to_owned())
             }
             (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
-            (_, None) if shape.found => {
+            (_, None) if shape.from_interval_derivatives => {
                 Some("found by interval derivatives, within its bounds".to_owned())
             }
             (_, None) if shape.divided => Some("divided by its constant".to_owned()),

@@ -81,17 +81,17 @@ impl Scene {
         let report = &self.report;
         Ok(Explanation {
             leaves: report.leaves,
-            nodes: report.distance.nodes,
-            ops_per_eval: report.distance.operations,
-            ops_per_gradient: report.gradient.operations,
-            ops_per_frame: report.distance.per_frame,
-            writing: if report.rolled.is_empty() { "inline" } else { "rolled" },
+            nodes: report.distance_cost.nodes,
+            ops_per_eval: report.distance_cost.operations,
+            ops_per_gradient: report.gradient_cost.operations,
+            ops_per_frame: report.distance_cost.per_frame,
+            writing: if report.loops.is_empty() { "inline" } else { "rolled" },
             writing_why: self.why_written(),
-            loops: report.rolled.iter().map(|rolled| rolled.operands).collect(),
-            closed: self.names(&report.closed),
-            marched: self.names(&report.open),
-            ops_per_ray: report.ray.operations,
-            ops_per_step: report.marched.operations,
+            loops: report.loops.iter().map(|rolled| rolled.operands).collect(),
+            closed: self.names(&report.analytic),
+            marched: self.names(&report.marched),
+            ops_per_ray: report.ray_cost.operations,
+            ops_per_step: report.marched_cost.operations,
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
             features: feature_names(features),
@@ -107,10 +107,10 @@ impl Scene {
 
     /// Why the field is written as it is, in one line.
     fn why_written(&self) -> String {
-        let rolled = &self.report.rolled;
-        let most = self.report.most_inline;
+        let rolled = &self.report.loops;
+        let most = self.report.unrolled_limit;
         if rolled.is_empty() {
-            return match self.report.distance.operations > most {
+            return match self.report.distance_cost.operations > most {
                 true => "few of its parts are alike".to_owned(),
                 false => format!("at most {most} operations"),
             };

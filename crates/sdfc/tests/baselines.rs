@@ -8,7 +8,9 @@ use sdfc::baseline::{Encoded, Inexpressible, tape, units};
 use sdfc::codegen::{FieldSource, measured_module};
 use sdfc::lang::{NoFiles, Options};
 use sdfc::render::{Gpu, Image, Pipeline, RenderOptions, View, compare, testing, uniform_values};
-use sdfc::{BenchOptions, FrameValues, Scene, Writing, compile, compile_with, suite, unwatched};
+use sdfc::{
+    BenchOptions, FrameValues, LoopStrategy, Scene, compile, compile_with, suite, unwatched,
+};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -101,7 +103,7 @@ fn scene(text: &str) -> Scene {
     let compiled = compile("test.sdf", &format!("{text}{view}"));
     let findings = compiled.diagnostics_text(false);
     // The tape holds no loops.
-    compiled.scene.expect(&findings).written(Writing::Inline).expect("few nodes")
+    compiled.scene.expect(&findings).written(LoopStrategy::Unrolled).expect("few nodes")
 }
 
 fn in_units(scene: &Scene) -> Result<Encoded, Inexpressible> {

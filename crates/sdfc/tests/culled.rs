@@ -10,7 +10,7 @@ use sdfc::graph::{Program, Type};
 use sdfc::render::{
     Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
-use sdfc::{FrameValues, PictureOptions, Scene, Writing, compile, unwatched};
+use sdfc::{FrameValues, LoopStrategy, PictureOptions, Scene, compile, unwatched};
 
 const SIZE: [u32; 2] = [160, 96];
 /// How many parts, few enough for a driver that ends all loops after 65,535 turns.
@@ -155,7 +155,7 @@ fn chain(blend: &str) -> String {
 fn scene(text: &str) -> Scene {
     let compiled = compile("culled.sdf", text);
     let findings = compiled.diagnostics_text(false);
-    compiled.scene.expect(&findings).written(Writing::Rolled).expect("few nodes")
+    compiled.scene.expect(&findings).written(LoopStrategy::Looped).expect("few nodes")
 }
 
 /// A picture by a program, in tiles that begin anywhere.

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use sdfc::graph::eval::{FrameValues, sample_field};
-use sdfc::{Scene, Writing};
+use sdfc::{LoopStrategy, Scene};
 
 /// How many parts.
 const PARTS: usize = 60;
@@ -45,7 +45,7 @@ fn chained(blend: &str) -> String {
     text + "  blend: " + blend + ")\n"
 }
 
-fn written(text: &str, writing: Writing) -> Scene {
+fn written(text: &str, writing: LoopStrategy) -> Scene {
     let compiled = sdfc::compile("rolled.sdf", text);
     assert_eq!(compiled.diagnostics_text(false), "");
     compiled.scene.expect("no errors").written(writing).expect("few nodes")
@@ -57,7 +57,8 @@ fn points() -> Vec<[f64; 3]> {
 }
 
 fn compare(text: &str) -> Scene {
-    let scenes = [Writing::Inline, Writing::Rolled].map(|writing| written(text, writing));
+    let scenes =
+        [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|writing| written(text, writing));
     let frame = FrameValues::defaults(scenes[0].params());
     let samples = scenes
         .each_ref()
@@ -70,7 +71,7 @@ fn compare(text: &str) -> Scene {
             assert!(off < 1e-9, "{point:?}: {:?} and {:?}", inline.gradient, rolled.gradient);
         }
     }
-    assert!(scenes[0].report().rolled.is_empty());
+    assert!(scenes[0].report().loops.is_empty());
     let [_, rolled] = scenes;
     rolled
 }
@@ -78,19 +79,19 @@ fn compare(text: &str) -> Scene {
 #[test]
 fn of_a_hard_union_each_kind_is_a_loop() {
     let rolled = compare(&scattered());
-    let mut loops = rolled.report().rolled.clone();
+    let mut loops = rolled.report().loops.clone();
     loops.sort_by_key(|found| found.operands);
     assert_eq!(loops.iter().map(|found| found.operands).collect::<Vec<_>>(), [20, 20, 20]);
     assert!(loops.iter().all(|found| !found.blended));
     // The floor is met in closed form; what is in loops is marched.
-    assert_eq!(rolled.report().closed.len(), 1);
+    assert_eq!(rolled.report().analytic.len(), 1);
 }
 
 #[test]
 fn of_a_blended_union_each_run_is_a_loop() {
     for blend in ["smooth(0.2)", "smooth_cubic(0.3)"] {
         let rolled = compare(&chained(blend));
-        let loops = &rolled.report().rolled;
+        let loops = &rolled.report().loops;
         // The first ball is where the first loop starts.
         let operands: Vec<usize> = loops.iter().map(|found| found.operands).collect();
         assert_eq!(operands, [PARTS / 2 - 1, PARTS / 2]);
@@ -105,12 +106,12 @@ fn params_stay_params() {
         chained("smooth(k)").replace("sphere(0.3)", "sphere(r)")
     );
     let rolled = compare(&text);
-    assert_eq!(rolled.report().rolled.len(), 2);
+    assert_eq!(rolled.report().loops.len(), 2);
 }
 
 #[test]
 fn blends_that_do_not_end_and_few_alike_parts_stay_written_out() {
     let rolled = compare(&chained("smooth_exp(0.1)"));
-    assert!(rolled.report().rolled.is_empty());
-    assert!(compare("sphere(1) | box(1.5)").report().rolled.is_empty());
+    assert!(rolled.report().loops.is_empty());
+    assert!(compare("sphere(1) | box(1.5)").report().loops.is_empty());
 }

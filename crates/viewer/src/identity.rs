@@ -62,7 +62,7 @@ impl Identity {
     /// Of the operands of the unions that the scene is, as far as those are nothing but the nearest of several.
     pub fn of_parts(scene: &Scene) -> Self {
         let report = scene.report();
-        Self::of(scene, report.closed.iter().chain(&report.open).copied().collect())
+        Self::of(scene, report.analytic.iter().chain(&report.marched).copied().collect())
     }
 
     fn of(scene: &Scene, mut shapes: Vec<ShapeId>) -> Self {

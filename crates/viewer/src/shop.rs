@@ -323,5 +323,5 @@ fn rays(build: &Build, scene: &Scene) -> bool {
 }
 
 fn is_rolled(scene: &Scene) -> bool {
-    !scene.report().rolled.is_empty()
+    !scene.report().loops.is_empty()
 }

@@ -132,7 +132,7 @@ fn many() -> Result<(), Failed> {
     let mut fixture = Fixture::new(&text)?;
     fixture.finish()?;
     let before = fixture.picture()?.counts.hit;
-    expect(!fixture.model()?.scene.report().rolled.is_empty(), "there are no loops")?;
+    expect(!fixture.model()?.scene.report().loops.is_empty(), "there are no loops")?;
     for ball in ["sphere(0.1190)", "sphere(0.1390)"] {
         let edited = text.replace(ball, "sphere(1.5)");
         fixture.write(&edited)?;

@@ -3,8 +3,8 @@
 use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Bounds, Claim, Dim, Expander, Graph, Node, NodeId, Scene, ShapeId, reachable};
 
-use super::probe::Random;
-use super::{ParamEnd, axes, frames};
+use crate::refute::frames::{ParamValues, axes, frames};
+use crate::refute::probe::Random;
 
 /// Pairs of points, in the bounds of each shape whose formula has the call.
 const PAIRS: usize = 2000;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// Two points between which a function's result changes by more than it states.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ClaimFault {
+pub struct LipschitzViolation {
     /// As stated.
     pub constant: f64,
     /// The change of the result, divided by the largest of an argument.
@@ -28,12 +28,12 @@ pub struct ClaimFault {
     /// The other.
     pub to: Vec<f64>,
     /// Where the params stand.
-    pub params: ParamEnd,
+    pub params: ParamValues,
 }
 
 /// Looks for two points that refute what is stated of a function's result, a node. Calls within loops and within what is built anew at
 /// each point are passed over.
-pub fn refute_claim(scene: &Scene, value: NodeId, claim: &Claim) -> Option<ClaimFault> {
+pub fn refute_lipschitz(scene: &Scene, value: NodeId, claim: &Claim) -> Option<LipschitzViolation> {
     let graph = &mut scene.graph.clone();
     if graph.levels(value) != 1 || graph.loops(value) > 0 {
         return None;
@@ -50,7 +50,7 @@ pub fn refute_claim(scene: &Scene, value: NodeId, claim: &Claim) -> Option<Claim
             let window = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);
             let mut pairs = Pairs::new(&tape, &frame, window, axes(dim));
             let (from, to, slope) = pairs.steeper(constant)?;
-            Some(ClaimFault { constant, slope, from, to, params })
+            Some(LipschitzViolation { constant, slope, from, to, params })
         })
     })
 }

@@ -6,8 +6,8 @@
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Scene, ShapeId};
 
-use super::probe::Random;
-use crate::copies::taken_apart;
+use crate::analytic::copies::taken_apart;
+use crate::refute::probe::Random;
 
 /// Points of which two balls are looked at, and one within the shape is looked at from places outside.
 const POINTS: usize = 2000;
@@ -22,7 +22,7 @@ const SLACK: f64 = 1e-6;
 
 /// A point within a ball that is not what is sampled in the ball's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CopiesFault {
+pub struct CopiesViolation {
     /// The middle, where the shape is sampled.
     pub from: [f64; 3],
     /// How far what is sampled there should be all there is.
@@ -40,7 +40,7 @@ pub fn refute_copies(
     shape: ShapeId,
     frame: &FrameValues,
     farther: f64,
-) -> Option<CopiesFault> {
+) -> Option<CopiesViolation> {
     let stated = scene.graph.shape(shape);
     if !stated.contract.copies || stated.dim != Dim::Three || stated.level > 0 {
         return None;
@@ -69,7 +69,7 @@ fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
 fn asked(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
     let copies = taken_apart(graph, shape).ok()?;
     let [p, way] = [0, 1].map(|level| graph.point(level, Dim::Three));
-    let sample = |copied: &crate::copies::Copied| {
+    let sample = |copied: &crate::analytic::copies::Copied| {
         let carried = copied.direction(graph, way);
         let there = graph.add(copied.at, carried);
         graph.sample(copied.child, there)
@@ -96,7 +96,7 @@ struct Sampler<'t> {
 
 impl Sampler<'_> {
     /// What is wrong about one point.
-    fn point(&mut self) -> Option<CopiesFault> {
+    fn point(&mut self) -> Option<CopiesViolation> {
         let (p, size) = self.somewhere();
         for share in [1.0 - 1e-9, self.random.next()] {
             let reach = self.reach(p).clamp(0.0, size);
@@ -137,7 +137,7 @@ impl Sampler<'_> {
         (normal, if p.iter().all(|x| x.is_finite()) { p } else { [0.0; 3] })
     }
 
-    fn fault(&mut self, from: [f64; 3], way: [f64; 3], size: f64) -> Option<CopiesFault> {
+    fn fault(&mut self, from: [f64; 3], way: [f64; 3], size: f64) -> Option<CopiesViolation> {
         let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
         let reach = self.reach(from);
         if length > reach.max(0.0) {
@@ -147,7 +147,7 @@ impl Sampler<'_> {
         let slack = SLACK * size;
         let is_other = field.min(sampled) < -slack && field.max(sampled) > slack;
         let to = [0, 1, 2].map(|axis| from[axis] + way[axis]);
-        is_other.then_some(CopiesFault { from, reach, to, field })
+        is_other.then_some(CopiesViolation { from, reach, to, field })
     }
 
     /// A point about the shape, and the size of what was looked at.

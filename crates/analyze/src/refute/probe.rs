@@ -3,8 +3,8 @@
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Dim, Expander, Graph, NodeId, ShapeId};
 
-use super::axes;
-use crate::quality::Promise;
+use crate::certify::quality::Promise;
+use crate::refute::frames::axes;
 
 /// Pairs for a constant, points for bounds and promises, points of the surface.
 const PAIRS: usize = 1500;

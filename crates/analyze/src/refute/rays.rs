@@ -7,7 +7,7 @@
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, NodeId, Scene, ShapeId};
 
-use super::probe::Random;
+use crate::refute::probe::Random;
 
 /// Rays of each shape.
 const RAYS: usize = 4000;
@@ -20,7 +20,7 @@ const REACH: f64 = 1.5;
 
 /// A ray along which the field is not what the intervals say.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RayFault {
+pub struct RayViolation {
     /// Where it starts, and its direction.
     pub ray: [[f64; 3]; 2],
     /// Where along it they differ.
@@ -31,7 +31,7 @@ pub struct RayFault {
     pub inside: Option<bool>,
 }
 
-impl RayFault {
+impl RayViolation {
     /// The place in space.
     pub fn at(&self) -> [f64; 3] {
         at(self.ray, self.t)
@@ -40,12 +40,12 @@ impl RayFault {
 
 /// Looks for a ray that refutes the intervals of a shape, computed in `N`, whose rounding in parts of what is computed
 /// with is `rounding`. `None` also for a shape that states none.
-pub fn refute_hits<N: Number + Into<f64>>(
+pub fn refute_intersect<N: Number + Into<f64>>(
     scene: &Scene,
     shape: ShapeId,
     frame: &FrameValues,
     rounding: f64,
-) -> Option<RayFault> {
+) -> Option<RayViolation> {
     let stated = scene.graph.shape(shape).hits.clone();
     if stated.is_empty() {
         return None;
@@ -87,7 +87,7 @@ struct Sampler<'t, N> {
 
 impl<N: Number + Into<f64>> Sampler<'_, N> {
     /// One ray; what is wrong with it.
-    fn ray(&mut self) -> Option<RayFault> {
+    fn ray(&mut self) -> Option<RayViolation> {
         let (target, direction) = (self.target(), self.direction());
         let back = match self.random.below(4) {
             0 => 0.0,
@@ -100,7 +100,7 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         let spans = self.spans([origin, direction]);
         // What rounding does to the origin, the direction and the place on the ray.
         let slack = |t: f64| self.rounding * (back + t.abs() + self.size);
-        let fault = |t, field, inside| RayFault { ray: [origin, direction], t, field, inside };
+        let fault = |t, field, inside| RayViolation { ray: [origin, direction], t, field, inside };
         for &t in spans.as_flattened().iter().filter(|t| t.abs() < 10.0 * (back + self.size)) {
             let within = |span: &[f64; 2]| span[0] + slack(t) < t && t < span[1] - slack(t);
             let field = self.exact.scalar(at([origin, direction], t));

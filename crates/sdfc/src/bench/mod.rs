@@ -5,7 +5,7 @@ mod suite;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use sdfc_analyze::{Writing, cost, prepare_about};
+use sdfc_analyze::{LoopStrategy, cost, prepare_with};
 use sdfc_codegen::{FieldSource, counted_module, measured_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
@@ -206,7 +206,7 @@ struct Heat<'a> {
     /// Its alike parts as loops, all rounds of which are visited, or those that matter; none: no parts are alike.
     rolled: Option<Program>,
     pruned: Option<Program>,
-    /// The variant that [`Writing::Auto`] is.
+    /// The variant that [`LoopStrategy::Auto`] is.
     auto: Kind,
 }
 
@@ -301,16 +301,16 @@ impl<'a> Heat<'a> {
         gpu: &'a Gpu,
         options: &'a BenchOptions,
     ) -> Result<Self, Error> {
-        let prepared = |writing| prepare_about(scene.graph(), [0.0; 3], writing);
-        let inline = prepared(Writing::Inline)?.program;
-        let found = prepared(Writing::Rolled)?;
-        let pruned = Some(found.program).filter(|_| !found.report.rolled.is_empty());
+        let prepared = |writing| prepare_with(scene.graph(), [0.0; 3], writing);
+        let inline = prepared(LoopStrategy::Unrolled)?.program;
+        let found = prepared(LoopStrategy::Looped)?;
+        let pruned = Some(found.program).filter(|_| !found.report.loops.is_empty());
         let rolled = pruned.clone().map(|program| Program { visits: Vec::new(), ..program });
         let pruned = pruned.filter(|program| !program.visits.is_empty());
         let frame = FrameValues::defaults(scene.params());
         let seen = pruned.as_ref().unwrap_or(&inline);
         let view = View::new(seen, &frame, scene.bounds_at(&frame), options.size)?;
-        let auto = match (scene.report().rolled.is_empty(), pruned.is_some()) {
+        let auto = match (scene.report().loops.is_empty(), pruned.is_some()) {
             (true, _) => Kind::Specialized,
             (false, true) => Kind::Pruned,
             (false, false) => Kind::Rolled,

@@ -6,26 +6,21 @@
 //! surface as near, refutes `exact`; two points refute a constant, one refutes bounds. A clause is held to what it says:
 //! given children that keep the same promise.
 
-mod claims;
-mod copies;
-mod probe;
-mod rays;
-
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{Bounds, Dim, Graph, Param, Scene, ShapeId};
+use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
 
-pub use self::claims::{ClaimFault, refute_claim};
-pub use self::copies::{CopiesFault, refute_copies};
-use self::probe::Probe;
-pub use self::rays::{RayFault, refute_hits};
-use crate::quality::{Promise, Qualities, Stated};
+use crate::certify::quality::{Promise, Qualities, Stated};
+use crate::refute::copies::{CopiesViolation, refute_copies};
+use crate::refute::frames::{ParamValues, frames};
+use crate::refute::probe::Probe;
+use crate::refute::rays::{RayViolation, refute_intersect};
 
 /// What intervals of rays may be off, in parts of the lengths that they are computed from.
 const RAY_ROUNDING: f64 = 1e-8;
 
 /// A clause that does not hold.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refuted {
+pub struct Violation {
     /// The instance.
     pub shape: ShapeId,
     /// Which clause.
@@ -35,7 +30,7 @@ pub struct Refuted {
     /// The field there.
     pub field: f64,
     /// Where the params stand.
-    pub params: ParamEnd,
+    pub params: ParamValues,
 }
 
 /// A refuted clause and what is the case instead.
@@ -62,26 +57,15 @@ pub enum Clause {
     /// `bounds`.
     Bounds,
     /// `hits`.
-    Hits(RayFault),
+    Intersect(RayViolation),
     /// `copies`.
-    Copies(CopiesFault),
-}
-
-/// Where the params stand in their ranges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ParamEnd {
-    /// As in the scene.
-    Default,
-    /// All at the low end.
-    Low,
-    /// All at the high end.
-    High,
+    Copies(CopiesViolation),
 }
 
 /// Looks for points at which clauses of the shapes fail; at most one is told of each shape. The budget is fixed: some
 /// ten thousand evaluations a shape. Shapes whose arguments depend on a point, and fields that do not
 /// expand, are passed over.
-pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
+pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
     let mut graph = scene.graph.clone();
     let mut bounds = Bounds::new(&scene.params);
     let mut found = Vec::new();
@@ -100,7 +84,13 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
         let refuted = frames(&scene.params).into_iter().find_map(|(params, frame)| {
             let probe = Probe::new(&mut graph, shape, corners, &frame)?;
             let fault = first_fault(&graph, &stated, probe, &frame)?;
-            Some(Refuted { shape, clause: fault.clause, at: fault.at, field: fault.field, params })
+            Some(Violation {
+                shape,
+                clause: fault.clause,
+                at: fault.at,
+                field: fault.field,
+                params,
+            })
         });
         found.extend(refuted);
     }
@@ -108,20 +98,20 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Refuted> {
 }
 
 /// A ray whose intervals do not hold.
-fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Refuted> {
+fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
-        let fault = refute_hits::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
+        let fault = refute_intersect::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
         let (at, field) = (fault.at().to_vec(), fault.field);
-        Some(Refuted { shape, clause: Clause::Hits(fault), at, field, params })
+        Some(Violation { shape, clause: Clause::Intersect(fault), at, field, params })
     })
 }
 
 /// A ball in which there is something else than what is sampled in its middle.
-fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Refuted> {
+fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
         let fault = refute_copies(scene, shape, &frame, 1.0)?;
         let (at, field) = (fault.to.to_vec(), fault.field);
-        Some(Refuted { shape, clause: Clause::Copies(fault), at, field, params })
+        Some(Violation { shape, clause: Clause::Copies(fault), at, field, params })
     })
 }
 
@@ -163,27 +153,4 @@ fn first_fault(
     let exact = promised[side] == Promise::Exact;
     let clause = Clause::Distance { exact, outside: side == 0, distance };
     Some(Fault { clause, at, field })
-}
-
-/// The frames at which a scene's clauses are tried.
-fn frames(params: &[Param]) -> Vec<(ParamEnd, FrameValues)> {
-    let at = |end: usize| {
-        let mut frame = FrameValues::defaults(params);
-        for (value, param) in frame.params.iter_mut().zip(params) {
-            if let Some(range) = param.range.filter(|range| range[end].is_finite()) {
-                value[0] = range[end];
-            }
-        }
-        frame
-    };
-    let mut frames = vec![(ParamEnd::Default, FrameValues::defaults(params))];
-    if params.iter().any(|param| param.range.is_some()) {
-        frames.extend([(ParamEnd::Low, at(0)), (ParamEnd::High, at(1))]);
-    }
-    frames
-}
-
-/// How many coordinates a point of the dimension has.
-fn axes(dim: Dim) -> usize {
-    dim.point_type().width()
 }

@@ -12,12 +12,10 @@
 
 use sdfc_graph::{Graph, Inert, Node, NodeId, Visit, reachable};
 
-use super::near::{Near, Path, near};
+use crate::reroll::active_range::{Near, Path, near};
 
 /// Loops that rays visit in part; more are visited whole.
 const MOST_LOOPS: usize = 8;
-/// Blends' widths from which on an operand does not matter to a surface.
-pub(super) const WIDTHS: f64 = 4.0;
 
 /// The loops that the roots are computed from and whose rounds can be left out, those of most rounds first. `steepest` is the most
 /// that their operands change by where the point moves by 1, if that is known.

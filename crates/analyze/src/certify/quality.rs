@@ -9,10 +9,10 @@ use sdfc_graph::{
     Binary, Contract, Graph, Node, NodeId, Param, ShapeId, SidePromise, Stage, Ternary, Unary,
 };
 
+use crate::certify::lipschitz::{Constant, Reason, Slopes};
+use crate::certify::local_slope::steepest_within;
+use crate::certify::maps::Maps;
 use crate::fault::Rule;
-use crate::lipschitz::{Constant, Reason, Slopes};
-use crate::maps::Maps;
-use crate::within::steepest_within;
 
 /// What |f| is on one side of the surface, from weak to strong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -257,7 +257,7 @@ impl Qualities {
         };
         match steepest_within(graph, shape, bounds, &self.params) {
             Some(slope) if slope.is_even() => (Ok(graph.number(slope.most)), false, Some(bounds)),
-            Some(_) => (Err(Reason::Uneven(what)), false, None),
+            Some(_) => (Err(Reason::SteepInPlaces(what)), false, None),
             None => (Err(Reason::Unbounded(what)), false, None),
         }
     }

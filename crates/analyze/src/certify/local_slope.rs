@@ -1,6 +1,6 @@
 //! How fast a formula can change within a box, by interval derivatives.
 //!
-//! For formulas that the rules of [`crate::lipschitz`] do not cover, such as products of coordinates. The gradient is evaluated over
+//! For formulas that the rules of [`crate::certify::lipschitz`] do not cover, such as products of coordinates. The gradient is evaluated over
 //! intervals; the box is cut where it may be longest, until what is left to gain is little. Params take
 //! part with their ranges, so the constant holds for every position of their sliders.
 

@@ -4,8 +4,8 @@
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};
 
-use crate::maps::Maps;
-use crate::quality::{is_one, scaled_sample};
+use crate::certify::maps::Maps;
+use crate::certify::quality::{is_one, scaled_sample};
 
 /// How a node of a formula passes its value on.
 pub(crate) enum Form {

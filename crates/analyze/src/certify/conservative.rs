@@ -10,10 +10,10 @@
 use rustc_hash::FxHashMap;
 use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, Stage};
 
+use crate::certify::descent::{Form, chain_below, form};
+use crate::certify::lipschitz::{Constant, Reason, Slopes};
+use crate::certify::quality::Qualities;
 use crate::fault::Rule;
-use crate::form::{self, Form};
-use crate::lipschitz::{Constant, Reason, Slopes};
-use crate::quality::Qualities;
 
 /// A part of the scene that no constant covers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub struct Uncertified {
 
 /// The sound field of a scene.
 #[derive(Clone, Debug)]
-pub(crate) struct SoundField {
+pub(crate) struct ConservativeField {
     /// The distance to march by.
     pub distance: NodeId,
     /// What no constant covers; empty for a certified scene.
@@ -36,17 +36,17 @@ pub(crate) struct SoundField {
 }
 
 /// The sound field of `root` at `point`.
-pub(crate) fn sound_field(
+pub(crate) fn conservative_field(
     graph: &mut Graph,
     expander: &mut Expander,
     qualities: &Qualities,
     root: ShapeId,
     point: NodeId,
-) -> Result<SoundField, ExpandError> {
+) -> Result<ConservativeField, ExpandError> {
     let (uncertified, divided) = (Vec::new(), Vec::new());
     let mut pass = Pass { graph, expander, qualities, uncertified, divided };
     let distance = pass.shape(root, &[], point)?;
-    Ok(SoundField { distance, uncertified: pass.uncertified, divided: pass.divided })
+    Ok(ConservativeField { distance, uncertified: pass.uncertified, divided: pass.divided })
 }
 
 struct Pass<'a> {
@@ -145,9 +145,9 @@ impl Pass<'_> {
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
         let mut sound: FxHashMap<NodeId, NodeId> = FxHashMap::default();
-        for node in form::chain_below(self.graph, formula, &mut slopes.maps) {
+        for node in chain_below(self.graph, formula, &mut slopes.maps) {
             let of = |id: NodeId| sound.get(&id).copied().unwrap_or(id);
-            let value = match form::form(self.graph, node, &mut slopes.maps) {
+            let value = match form(self.graph, node, &mut slopes.maps) {
                 Form::Whole => self.divided(shape, node, slopes, points)?,
                 Form::Least(a, b) => self.graph.min(of(a), of(b)),
                 Form::Greatest(a, b) => self.graph.max(of(a), of(b)),

@@ -3,12 +3,13 @@
 use sdfc_graph::{Graph, NodeId, Settings, Shadow, fold_transforms};
 
 use crate::cost::cost;
-use crate::roll::{roll, visits};
+use crate::reroll::cullable::visits;
+use crate::reroll::rewrite::reroll;
 
 /// How a field of many parts is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Writing {
-    /// As costs less: [`Writing::Rolled`] where the field takes more operations than [`Report::most_inline`](crate::Report::most_inline) says.
+pub enum LoopStrategy {
+    /// As costs less: [`LoopStrategy::Looped`] where the field takes more operations than [`Report::unrolled_limit`](crate::Report::unrolled_limit) says.
     #[default]
     Auto,
     /// All that there is, one operation after the other.
@@ -26,19 +27,19 @@ const MORE_FOR_A_LOOP: [usize; 3] = [125, 250, 0];
 const MOST_WITHOUT_LISTS: usize = 4500;
 
 /// How many operations a field may take that is written out though so many loops with lists could stand in its place.
-fn most_inline(settings: &Settings, loops: usize) -> usize {
+fn unrolled_limit(settings: &Settings, loops: usize) -> usize {
     if loops == 0 {
         return MOST_WITHOUT_LISTS;
     }
     let kind = if settings.lights.iter().any(|light| matches!(light.shadow, Shadow::Soft(_))) {
         2
     } else {
-        usize::from(leave_the_eye(settings))
+        usize::from(has_secondary_rays(settings))
     };
     MOST_INLINE[kind] + loops * MORE_FOR_A_LOOP[kind]
 }
 
-impl Writing {
+impl LoopStrategy {
     /// Whether a field is written as loops, and up to how many operations it is not of its own accord. `steepest` is as for
     /// [`visits`].
     pub(crate) fn rolls(
@@ -48,13 +49,13 @@ impl Writing {
         settings: &Settings,
         steepest: Option<f64>,
     ) -> (bool, usize) {
-        let (pays, most_inline) = loops_pay(graph, distance, settings, steepest);
+        let (pays, unrolled_limit) = loops_pay(graph, distance, settings, steepest);
         let rolls = match self {
             Self::Auto => pays,
             Self::Inline => false,
             Self::Rolled => true,
         };
-        (rolls, most_inline)
+        (rolls, unrolled_limit)
     }
 }
 
@@ -66,19 +67,19 @@ fn loops_pay(
     steepest: Option<f64>,
 ) -> (bool, usize) {
     let operations = cost(graph, &[distance]).operations;
-    let least = most_inline(settings, 1);
+    let least = unrolled_limit(settings, 1);
     if operations <= least || operations > MOST_WITHOUT_LISTS {
         return (operations > least, least);
     }
     let mut trial = graph.clone();
     let folded = fold_transforms(&mut trial, &[distance]).roots;
-    let rolled = roll(&mut trial, &folded).0;
-    let most = most_inline(settings, visits(&mut trial, &rolled, steepest).len());
+    let rolled = reroll(&mut trial, &folded).0;
+    let most = unrolled_limit(settings, visits(&mut trial, &rolled, steepest).len());
     (operations > most, most)
 }
 
 /// Whether the field is asked for elsewhere than on rays from the eye.
-pub(crate) fn leave_the_eye(settings: &Settings) -> bool {
+pub(crate) fn has_secondary_rays(settings: &Settings) -> bool {
     let shaded = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
     let mirrored = settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
     shaded || mirrored || settings.occlusion.is_some()

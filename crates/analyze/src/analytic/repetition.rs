@@ -6,10 +6,10 @@
 
 use sdfc_graph::{Dim, ExpandError, Shape, ShapeId};
 
-use super::{Parts, Pass, Place, least};
-use crate::copies::{Copied, taken_apart};
+use crate::analytic::copies::{Copied, taken_apart};
+use crate::analytic::intervals::{Known, joined};
+use crate::analytic::split::{Parts, Pass, Place, least};
 use crate::fault::Rule;
-use crate::spans::{Known, joined};
 
 impl Pass<'_> {
     /// Where a ray is inside of the copies that a shape samples at the ray's origin, and how far that is all there is.

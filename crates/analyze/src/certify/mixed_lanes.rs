@@ -3,7 +3,7 @@
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Unary};
 
-use crate::affine::{is_fixed, largest_singular_value};
+use crate::certify::affine::{is_fixed, largest_singular_value};
 
 /// Folds, one within the other, that are looked through.
 const MOST_FOLDS: usize = 64;

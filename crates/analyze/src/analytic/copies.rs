@@ -6,7 +6,7 @@
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Dim, Graph, Node, NodeId, Shape, ShapeId, reachable};
 
-use crate::affine::{Linear, applied, linear_between_jumps, similarity};
+use crate::certify::affine::{Linear, applied, linear_between_jumps, similarity};
 
 /// What such a formula is made of, in its own point.
 pub(crate) struct Copies {
@@ -32,7 +32,7 @@ impl Copied {
 
 /// Why a shape that says `copies` is not met by its copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Idle {
+pub enum CopiesObstacle {
     /// Something in its minimum samples shapes otherwise.
     Other,
     /// A sample is stretched, sheared or bent.
@@ -44,7 +44,7 @@ pub enum Idle {
 }
 
 /// Why the clause `copies` of a shape does nothing; `None` if it is of use, or not stated.
-pub fn idle_copies(graph: &mut Graph, shape: ShapeId) -> Option<Idle> {
+pub fn copies_obstacle(graph: &mut Graph, shape: ShapeId) -> Option<CopiesObstacle> {
     let Shape { contract, dim, .. } = graph.shape(shape);
     if !contract.copies || *dim != Dim::Three {
         return None;
@@ -53,7 +53,7 @@ pub fn idle_copies(graph: &mut Graph, shape: ShapeId) -> Option<Idle> {
 }
 
 /// The samples and limits of a shape's formula.
-pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, Idle> {
+pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, CopiesObstacle> {
     let Shape { formula, level, .. } = *graph.shape(shape);
     let mut copies = Copies { samples: Vec::new(), limits: Vec::new() };
     let (mut seen, mut pending) = (FxHashSet::default(), vec![formula]);
@@ -70,26 +70,26 @@ pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, I
         }
     }
     match (copies.samples.is_empty(), copies.limits.is_empty()) {
-        (true, _) => Err(Idle::NoSample),
-        (_, true) => Err(Idle::NoLimit),
+        (true, _) => Err(CopiesObstacle::NoSample),
+        (_, true) => Err(CopiesObstacle::NoLimit),
         (false, false) => Ok(copies),
     }
 }
 
 /// A sample by itself, or the one in a maximum with values without samples.
-fn copied(graph: &mut Graph, mut node: NodeId, level: u16) -> Result<Copied, Idle> {
+fn copied(graph: &mut Graph, mut node: NodeId, level: u16) -> Result<Copied, CopiesObstacle> {
     while let Node::Binary(Binary::Max, a, b) = graph.node(node) {
         node = match [a, b].map(|operand| has_samples(graph, operand)) {
             [true, false] => a,
             [false, true] => b,
-            [true, true] | [false, false] => return Err(Idle::Other),
+            [true, true] | [false, false] => return Err(CopiesObstacle::NotASample),
         };
     }
-    let (child, at) = graph.as_sample(node).ok_or(Idle::Other)?;
-    let linear = linear_between_jumps(graph, at, level).ok_or(Idle::Bent)?;
+    let (child, at) = graph.as_sample(node).ok_or(CopiesObstacle::NotASample)?;
+    let linear = linear_between_jumps(graph, at, level).ok_or(CopiesObstacle::NotRigid)?;
     let stretch = similarity(graph, &linear).and_then(|stretch| graph.as_number(stretch));
     if stretch != Some(1.0) {
-        return Err(Idle::Bent);
+        return Err(CopiesObstacle::NotRigid);
     }
     Ok(Copied { child, at, linear })
 }

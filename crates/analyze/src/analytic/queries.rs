@@ -2,9 +2,9 @@
 
 use sdfc_graph::{Bounds, Dim, ExpandError, Expander, Graph, NodeId, Rays, fold_transforms};
 
-use crate::clip::{clip, outermost, through};
-use crate::closed::{Open, Parts, around};
-use crate::spans::{Known, first, joined};
+use crate::analytic::boxes::{clip, outermost, through};
+use crate::analytic::intervals::{Known, first, joined};
+use crate::analytic::split::{Open, Parts, around};
 
 /// Rays are clipped to a box around no more operands than this: their bounds take longer to derive than the box saves.
 const MOST_CLIPPED: usize = 256;

@@ -5,11 +5,11 @@
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Unary};
 
-use crate::quality::{Promise, Qualities, Sides, shapes_below};
+use crate::certify::quality::{Promise, Qualities, Sides, shapes_below};
 
 /// An operator whose result is uneven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Uneven {
+pub struct InexactOperator {
     /// The operator's instance.
     pub shape: ShapeId,
     /// Where below it the field stops being the distance.
@@ -17,11 +17,15 @@ pub struct Uneven {
 }
 
 /// All such operators at and below `root`.
-pub(crate) fn uneven(graph: &Graph, qualities: &Qualities, root: ShapeId) -> Vec<Uneven> {
+pub(crate) fn inexact_operators(
+    graph: &Graph,
+    qualities: &Qualities,
+    root: ShapeId,
+) -> Vec<InexactOperator> {
     let shapes = shapes_below(graph, root).into_iter();
     let found = shapes.filter_map(|shape| {
         let cause = cause(graph, qualities, level_set(graph, qualities, shape)?)?;
-        Some(Uneven { shape, cause })
+        Some(InexactOperator { shape, cause })
     });
     found.collect()
 }

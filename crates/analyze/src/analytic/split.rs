@@ -8,10 +8,8 @@
 //! A floor in a smooth blend is nothing but a floor where all else is farther away than the blend reaches. So an operand without
 //! end is met in closed form there, and the blend as a whole is marched around the rest.
 //!
-//! Of copies without end only few are sampled at a place, and known in closed form as far from there as nothing else is (`copies.rs`).
+//! Of copies without end only few are sampled at a place, and known in closed form as far from there as nothing else is (`repetition.rs`).
 //! So what is made of them is left to march, and known there all the same.
-
-mod copies;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{
@@ -19,12 +17,12 @@ use sdfc_graph::{
     ShapeId, SidePromise, blend_at,
 };
 
+use crate::analytic::intervals::{Known, complement, intersection, joined, scaled};
+use crate::certify::conservative::conservative_field;
+use crate::certify::descent::{Form, form};
+use crate::certify::maps::Maps;
+use crate::certify::quality::Qualities;
 use crate::fault::Rule;
-use crate::form::{self, Form};
-use crate::maps::Maps;
-use crate::quality::Qualities;
-use crate::sound::sound_field;
-use crate::spans::{Known, complement, intersection, joined, scaled};
 
 /// A scene, taken apart.
 #[derive(Clone, Debug, Default)]
@@ -159,22 +157,22 @@ pub(crate) fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<Shap
 
 /// Where a shape is sampled, and the ray there. Lengths are multiplied by `scale` on the way back.
 #[derive(Clone, Debug)]
-struct Place {
+pub(super) struct Place {
     /// The points of the formulas around it, of copies that are built anew at each: all at the ray's origin.
-    outer: Vec<NodeId>,
-    point: NodeId,
-    direction: NodeId,
-    scale: NodeId,
+    pub(super) outer: Vec<NodeId>,
+    pub(super) point: NodeId,
+    pub(super) direction: NodeId,
+    pub(super) scale: NodeId,
 }
 
 impl Place {
     /// What points stand for in a formula there, and in the one of a ray.
-    fn points(&self) -> Vec<NodeId> {
+    pub(super) fn points(&self) -> Vec<NodeId> {
         [&self.outer[..], &[self.point, self.direction]].concat()
     }
 
     /// Whether a shape of that level sees these points around it.
-    fn is_of(&self, level: u16) -> bool {
+    pub(super) fn is_of(&self, level: u16) -> bool {
         usize::from(level) == self.outer.len()
     }
 }
@@ -195,16 +193,16 @@ struct Formula {
     known: FxHashMap<(NodeId, bool), Option<Known>>,
 }
 
-struct Pass<'a> {
-    graph: &'a mut Graph,
-    expander: &'a mut Expander,
+pub(super) struct Pass<'a> {
+    pub(super) graph: &'a mut Graph,
+    pub(super) expander: &'a mut Expander,
     qualities: &'a Qualities,
     bounds: &'a mut Bounds,
     blends: Blends,
 }
 
 impl Pass<'_> {
-    fn shape(&mut self, shape: ShapeId, place: &Place) -> Result<Parts, ExpandError> {
+    pub(super) fn shape(&mut self, shape: ShapeId, place: &Place) -> Result<Parts, ExpandError> {
         // Depth is the scene's nesting of shapes, which elaboration limits.
         stacker::maybe_grow(64 * 1024, 1024 * 1024, || self.shape_here(shape, place))
     }
@@ -303,7 +301,8 @@ impl Pass<'_> {
         if !place.outer.is_empty() {
             return Ok(place.scale);
         }
-        let field = sound_field(self.graph, self.expander, self.qualities, shape, place.point)?;
+        let field =
+            conservative_field(self.graph, self.expander, self.qualities, shape, place.point)?;
         Ok(self.graph.mul(place.scale, field.distance))
     }
 
@@ -344,7 +343,7 @@ impl Pass<'_> {
             if !seen.insert(node) {
                 continue;
             }
-            if let Form::Least(a, b) = form::form(self.graph, node, &mut formula.maps) {
+            if let Form::Least(a, b) = form(self.graph, node, &mut formula.maps) {
                 pending.extend([b, a]);
             } else if let Some(found) = self.sampled(&mut formula, node)? {
                 parts.closed.extend(found.closed);
@@ -386,7 +385,7 @@ impl Pass<'_> {
         node: NodeId,
         negated: bool,
     ) -> Result<Option<Known>, ExpandError> {
-        let (a, b, is_union) = match form::form(self.graph, node, &mut formula.maps) {
+        let (a, b, is_union) = match form(self.graph, node, &mut formula.maps) {
             Form::Least(a, b) => (a, b, !negated),
             Form::Greatest(a, b) => (a, b, negated),
             Form::Negative(a) => return self.spans(formula, a, !negated),
@@ -414,7 +413,7 @@ impl Pass<'_> {
         node: NodeId,
     ) -> Result<Option<Parts>, ExpandError> {
         let Formula { maps, place, .. } = formula;
-        let (child, q, factor) = match form::form(self.graph, node, maps) {
+        let (child, q, factor) = match form(self.graph, node, maps) {
             Form::Sampled(child, q) => (child, q, None),
             Form::Scaled(factor, child, q) if self.graph.range(factor).lo > 0.0 => {
                 (child, q, Some(factor))

@@ -9,11 +9,11 @@ use sdfc_graph::{
     reachable,
 };
 
-use crate::affine;
-use crate::components::Components;
+use crate::certify::affine;
+use crate::certify::components::Components;
+use crate::certify::maps::Maps;
+use crate::certify::mixed_lanes;
 use crate::fault;
-use crate::folds;
-use crate::maps::Maps;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub enum Reason {
     /// An operation whose slope depends on where it is taken.
     Unbounded(&'static str),
     /// An operation whose slope is, within the bounds, many times in places what it mostly is.
-    Uneven(&'static str),
+    SteepInPlaces(&'static str),
     /// A shape that is built anew at each point.
     Varying(String),
     /// A child without a constant.
@@ -47,7 +47,7 @@ impl std::fmt::Display for Reason {
                      `lipschitz`, or finite `bounds`"
                 )
             }
-            Self::Uneven(what) => {
+            Self::SteepInPlaces(what) => {
                 write!(
                     f,
                     "the slope of `{what}` is in places many times what it mostly is, so that dividing by the \
@@ -397,7 +397,7 @@ impl Slopes {
             return Ok(constants.into_iter().reduce(|x, y| graph.max(x, y)).unwrap_or(parts[0]));
         }
         let joined = hypotenuse(graph, &constants);
-        match folds::constant(graph, parts, self.maps.level()) {
+        match mixed_lanes::constant(graph, parts, self.maps.level()) {
             Some(together) => {
                 let together = graph.number(together);
                 Ok(graph.min(joined, together))

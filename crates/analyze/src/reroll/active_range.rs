@@ -4,7 +4,8 @@ use sdfc_graph::{
     Binary, Blends, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, blend_at, reachable,
 };
 
-use super::visits::WIDTHS;
+/// Blends' widths from which on an operand does not matter to a surface.
+pub(super) const WIDTHS: f64 = 4.0;
 
 /// What is between a node and the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Graph, NodeId, reachable_where};
 
-use crate::affine::{self, Linear};
+use crate::certify::affine::{self, Linear};
 use crate::fault::Rule;
 
 /// Linear parts of nodes that were asked for, and of what these are computed from.

@@ -7,27 +7,18 @@
 //!
 //! What is recognised are forms of math, not shapes: `chain` tells what a chain is, `template` what is equal up to constants.
 
-mod chain;
-mod near;
-mod template;
-mod visits;
-mod within;
-
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Blends, FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type, rebuilt};
 
-use chain::Chain;
-use template::{Skeletons, template};
-
-pub(crate) use visits::visits;
-pub(crate) use within::within;
+use crate::reroll::chain::{self, Chain};
+use crate::reroll::template::{Skeletons, template};
 
 /// Fewer operands of a kind stay written out.
-const FEWEST: usize = 16;
+pub(super) const FEWEST: usize = 16;
 
 /// What became a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rolled {
+pub struct RerolledLoop {
     /// How many operands it stands for.
     pub operands: usize,
     /// Whether they are blended, or else the least is taken.
@@ -35,7 +26,7 @@ pub struct Rolled {
 }
 
 /// The roots with all that is alike in loops, and what these are.
-pub(crate) fn roll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<Rolled>) {
+pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<RerolledLoop>) {
     let mut pass =
         Pass { graph, skeletons: Skeletons::default(), plans: IdMap::default(), found: Vec::new() };
     let visited = pass.discover(roots);
@@ -94,10 +85,10 @@ enum Part {
 
 impl Part {
     /// What it became, unless that was seen.
-    fn rolled(&self, seen: &mut IdSet) -> Option<Rolled> {
+    fn rolled(&self, seen: &mut IdSet) -> Option<RerolledLoop> {
         match *self {
             Self::Loop { next, operands, blended, .. } => {
-                seen.insert(next).then_some(Rolled { operands, blended })
+                seen.insert(next).then_some(RerolledLoop { operands, blended })
             }
             Self::Value(_) | Self::Step { .. } => None,
         }

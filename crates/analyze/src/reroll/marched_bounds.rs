@@ -3,10 +3,10 @@
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Bounds, Graph, Node, NodeId, ShapeId};
 
-use super::FEWEST;
-use super::chain::{Chain, least};
-use crate::closed::{self, has_end, unnamed};
-use crate::quality::shapes_below;
+use crate::analytic::split::{self, has_end, unnamed};
+use crate::certify::quality::shapes_below;
+use crate::reroll::chain::{Chain, least};
+use crate::reroll::rewrite::FEWEST;
 
 /// Corners of a box around all that a scene is the union of but floors and the like: shapes without bounds that are too few
 /// and too simple for a loop. `None` where there are no such; the scene's own bounds tell then.
@@ -28,7 +28,7 @@ pub(crate) fn within(graph: &mut Graph, bounds: &mut Bounds, root: ShapeId) -> O
         return None;
     }
     let children = rest.iter().filter_map(|&operand| sampled(graph, operand)).collect();
-    let formula = closed::least(graph, rest)?;
+    let formula = split::least(graph, rest)?;
     let shape = unnamed(graph, formula, children);
     Some(bounds.of(graph, shape))
 }

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Dim, Graph, Node, NodeId, Ternary, Unary};
 
-use crate::affine;
+use crate::certify::affine;
 use crate::fault::Rule;
 
 /// Components of the point as bits, lane by lane; none beyond a node's width.

@@ -1,0 +1,12 @@
+//! What each shape promises about its field, and the conservative field that rays march.
+
+pub(crate) mod affine;
+pub(crate) mod components;
+pub(crate) mod conservative;
+pub(crate) mod descent;
+pub(crate) mod inexact;
+pub(crate) mod lipschitz;
+pub(crate) mod local_slope;
+pub(crate) mod maps;
+pub(crate) mod mixed_lanes;
+pub(crate) mod quality;

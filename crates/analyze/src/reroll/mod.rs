@@ -1,0 +1,9 @@
+//! Many similar operands as loops over lists of their constants.
+
+pub(crate) mod active_range;
+pub(crate) mod chain;
+pub(crate) mod cullable;
+pub(crate) mod marched_bounds;
+pub(crate) mod rewrite;
+pub(crate) mod strategy;
+pub(crate) mod template;
