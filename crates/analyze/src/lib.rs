@@ -21,7 +21,6 @@
 mod analytic;
 mod certify;
 mod cost;
-mod fault;
 mod leaves;
 mod prepare;
 mod refute;
@@ -33,8 +32,6 @@ pub use certify::inexact::InexactOperator;
 pub use certify::lipschitz::{Constant, Reason};
 pub use certify::quality::{Promise, Qualities, Quality, Sides};
 pub use cost::{Cost, cost};
-#[cfg(feature = "faults")]
-pub use fault::Rule;
 pub use prepare::{Lipschitz, Prepared, Report, ShapeReport, prepare, prepare_with};
 pub use refute::claims::{LipschitzViolation, refute_lipschitz};
 pub use refute::clauses::{Clause, Violation, refute};

@@ -9,7 +9,6 @@ use sdfc_graph::{Dim, ExpandError, Shape, ShapeId};
 use crate::analytic::copies::{Copied, taken_apart};
 use crate::analytic::intervals::{Known, joined};
 use crate::analytic::split::{Parts, Pass, Place, least};
-use crate::fault::Rule;
 
 impl Pass<'_> {
     /// Where a ray is inside of the copies that a shape samples at the ray's origin, and how far that is all there is.
@@ -36,8 +35,6 @@ impl Pass<'_> {
             limits.push(self.expander.node(self.graph, limit, &place.points())?);
         }
         let Some(limit) = least(self.graph, limits) else { return Ok(None) };
-        let far = self.graph.number(if Rule::Copies.is_broken() { 8.0 } else { 1.0 });
-        let limit = self.graph.mul(far, limit);
         let reach = Some(self.graph.mul(place.scale, limit));
         known.push(Known { spans: Vec::new(), reach });
         Ok(Some(joined(self.graph, known)).filter(Known::is_short))

@@ -22,7 +22,6 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::descent::{Form, form};
 use crate::certify::maps::Maps;
 use crate::certify::quality::Qualities;
-use crate::fault::Rule;
 
 /// A scene, taken apart.
 #[derive(Clone, Debug, Default)]
@@ -263,7 +262,6 @@ impl Pass<'_> {
             // Nearer than the blend is wide and deep it may be something else.
             let Some(depth) = blend.depth(self.graph, node) else { return Ok(None) };
             let reach = self.graph.add(blend.width, depth);
-            let reach = if Rule::Reach.is_broken() { self.graph.number(0.0) } else { reach };
             beside.push(self.graph.sub(operand, reach));
         }
         let children = self.graph.shape(shape).children.clone();

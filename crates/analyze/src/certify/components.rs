@@ -4,7 +4,6 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Binary, Dim, Graph, Node, NodeId, Ternary, Unary};
 
 use crate::certify::affine;
-use crate::fault::Rule;
 
 /// Components of the point as bits, lane by lane; none beyond a node's width.
 type Seen = [u8; 4];
@@ -27,9 +26,6 @@ impl Components {
     pub(crate) fn are_apart(&self, nodes: &[NodeId]) -> bool {
         let seen =
             |node: &NodeId| self.0.get(node).unwrap_or(&ANY).iter().fold(0, |all, lane| all | lane);
-        if Rule::Apart.is_broken() {
-            return true;
-        }
         let counted: u32 = nodes.iter().map(|node| seen(node).count_ones()).sum();
         counted == nodes.iter().fold(0, |all, node| all | seen(node)).count_ones()
     }

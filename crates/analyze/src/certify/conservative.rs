@@ -13,7 +13,6 @@ use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, Stage};
 use crate::certify::descent::{Form, chain_below, form};
 use crate::certify::lipschitz::{Constant, Reason, Slopes};
 use crate::certify::quality::Qualities;
-use crate::fault::Rule;
 
 /// A part of the scene that no constant covers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -94,7 +93,7 @@ impl Pass<'_> {
         }
         let bounds = within.or(contract.lipschitz.and(contract.bounds));
         let value = match (constant, contract.lipschitz, bounds) {
-            (Ok(constant), _, Some(bounds)) if !everywhere && !Rule::Continuation.is_broken() => {
+            (Ok(constant), _, Some(bounds)) if !everywhere => {
                 self.drawn_into(shape, constant, bounds, &points)?
             }
             (constant, Some(_), _) => {
@@ -192,9 +191,6 @@ impl Pass<'_> {
 
     /// `value / max(constant, 1)`
     fn quotient(&mut self, shape: ShapeId, value: NodeId, constant: NodeId) -> NodeId {
-        if Rule::Division.is_broken() {
-            return value;
-        }
         let one = self.graph.number(1.0);
         let constant = self.graph.max(constant, one);
         if constant != one {
@@ -205,9 +201,7 @@ impl Pass<'_> {
 
     /// Tells if `node` rests on a child whose constant holds only within bounds.
     fn trust_children(&mut self, shape: ShapeId, node: NodeId) {
-        if let Some(child) = self.child_within_bounds(node)
-            && !Rule::Within.is_broken()
-        {
+        if let Some(child) = self.child_within_bounds(node) {
             let name = self.graph.shape(child).definition.clone();
             self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
         }

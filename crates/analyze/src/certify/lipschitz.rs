@@ -13,7 +13,6 @@ use crate::certify::affine;
 use crate::certify::components::Components;
 use crate::certify::maps::Maps;
 use crate::certify::mixed_lanes;
-use crate::fault;
 
 /// Why no constant could be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -129,7 +128,6 @@ impl Slopes {
             (None, _) => self.by_rule(graph, node, level, shapes),
         };
         let constant = self.with_claim(graph, node, constant);
-        let constant = fault::weakened(graph, node, stretch.is_some(), constant);
         self.constants.insert(node, constant);
     }
 

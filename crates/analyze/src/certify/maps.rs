@@ -4,7 +4,6 @@ use rustc_hash::FxHashMap;
 use sdfc_graph::{Graph, NodeId, reachable_where};
 
 use crate::certify::affine::{self, Linear};
-use crate::fault::Rule;
 
 /// Linear parts of nodes that were asked for, and of what these are computed from.
 pub(crate) struct Maps {
@@ -65,9 +64,6 @@ impl Maps {
     /// Whether the node shrinks all distances of the point by `factor`: one that then stretches a
     /// sampled distance by it gives a distance again.
     pub(crate) fn is_similarity(&mut self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {
-        if Rule::Similarity.is_broken() {
-            return true;
-        }
         let Some(linear) = self.linear(graph, q) else { return false };
         let Some(stretch) = affine::similarity(graph, linear) else { return false };
         let product = graph.mul(stretch, factor);

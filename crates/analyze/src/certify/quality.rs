@@ -12,7 +12,6 @@ use sdfc_graph::{
 use crate::certify::lipschitz::{Constant, Reason, Slopes};
 use crate::certify::local_slope::steepest_within;
 use crate::certify::maps::Maps;
-use crate::fault::Rule;
 
 /// What |f| is on one side of the surface, from weak to strong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -180,12 +179,10 @@ impl Qualities {
     /// What the clauses say of the two sides, given what the children are.
     fn stated_sides(&self, graph: &Graph, contract: &Contract, children: &[ShapeId]) -> Sides {
         let all_at_least = |promise: Promise| {
-            Rule::Premise.is_broken()
-                || children.iter().all(|child| {
-                    self.get(*child).is_some_and(|q| {
-                        q.sides.weaker(Sides::both(promise)) == Sides::both(promise)
-                    })
-                })
+            children.iter().all(|child| {
+                self.get(*child)
+                    .is_some_and(|q| q.sides.weaker(Sides::both(promise)) == Sides::both(promise))
+            })
         };
         let (exact, bound) = (all_at_least(Promise::Exact), all_at_least(Promise::Bound));
         stated_sides(graph, contract, exact, bound)
@@ -269,12 +266,6 @@ impl Qualities {
         constant: NodeId,
         children: &[ShapeId],
     ) -> Constant {
-        if Rule::Stated.is_broken() {
-            return Ok(graph.number(1.0));
-        }
-        if Rule::Children.is_broken() {
-            return Ok(constant);
-        }
         let mut largest = graph.number(1.0);
         for &child in children {
             let inner = self.child_constant(graph, child)?;
