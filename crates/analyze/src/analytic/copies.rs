@@ -34,9 +34,9 @@ impl Copied {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CopiesObstacle {
     /// Something in its minimum samples shapes otherwise.
-    Other,
+    NotASample,
     /// A sample is stretched, sheared or bent.
-    Bent,
+    NotRigid,
     /// Nothing is sampled.
     NoSample,
     /// Only samples stand there.

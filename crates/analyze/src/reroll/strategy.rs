@@ -13,9 +13,9 @@ pub enum LoopStrategy {
     #[default]
     Auto,
     /// All that there is, one operation after the other.
-    Inline,
+    Unrolled,
     /// Parts that are equal up to constants as loops over lists, where there are such.
-    Rolled,
+    Looped,
 }
 
 /// More operations of a field take longer to compile and to evaluate than loops that visit what matters: of a scene all of whose rays come
@@ -52,8 +52,8 @@ impl LoopStrategy {
         let (pays, unrolled_limit) = loops_pay(graph, distance, settings, steepest);
         let rolls = match self {
             Self::Auto => pays,
-            Self::Inline => false,
-            Self::Rolled => true,
+            Self::Unrolled => false,
+            Self::Looped => true,
         };
         (rolls, unrolled_limit)
     }
