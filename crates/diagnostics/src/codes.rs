@@ -167,7 +167,7 @@ codes! {
         "write letters that the font has, or name a font file that has them";
 
     PROMISE_BROKEN "E0502" "A promise that sampling refutes"
-        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, `hits` against the field along rays, `copies` against balls about points; and `lipschitz` of its functions against pairs of points where they are called; with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."
+        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, `intersect` against the field along rays, `copies` against balls about points; and `lipschitz` of its functions against pairs of points where they are called; with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."
         "state what holds, or drop the clause";
 
     NOT_EXACT "W0601" "An operator that wants an exact distance has only a bound"

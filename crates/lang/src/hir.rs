@@ -177,8 +177,8 @@ pub struct ShapeDef {
     pub bounds: Option<Expr>,
     /// `material e`: a material, or a number made of samples.
     pub material: Option<Expr>,
-    /// `hits e`.
-    pub hits: Option<Hits>,
+    /// `intersect e`.
+    pub intersect: Option<Intersect>,
     /// Where `copies` stands.
     pub copies: Option<Span>,
     /// The formula: a number.
@@ -189,7 +189,7 @@ pub struct ShapeDef {
 
 /// Where a ray is inside a solid.
 #[derive(Clone, Debug)]
-pub struct Hits {
+pub struct Intersect {
     /// The ray's origin `o`, a point.
     pub origin: LocalId,
     /// Its direction `d`, of unit length.

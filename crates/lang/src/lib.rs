@@ -37,11 +37,11 @@ pub mod font;
 pub mod hir;
 pub mod import;
 pub mod library;
+pub mod live_literals;
 pub mod outline;
 mod reach;
 pub mod reference;
 pub mod settings;
-pub mod slots;
 mod spelling;
 mod synonyms;
 
@@ -71,10 +71,11 @@ pub fn front_with_imports(
 /// How a scene is elaborated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// Numbers written in the scene become params, see [`slots`].
-    pub slots: bool,
-    /// Of a scene that has more numbers than can be params those around this byte of its text are; the first, if none is given.
-    pub near: Option<u32>,
+    /// Numbers written in the scene become params, see [`live_literals`].
+    pub live_literals: bool,
+    /// If the scene has more than [`live_literals::MAX_LIVE_LITERALS`] literals, those nearest to
+    /// this byte offset become params; the first ones if it is `None`.
+    pub focus: Option<u32>,
 }
 
 /// As [`front_with_imports`], with options.
@@ -101,8 +102,8 @@ pub fn front_with(
         return (None, found);
     }
     let fonts = font::Fonts::new(resolver);
-    let (elaborated, of_elaboration) = if options.slots {
-        slots::elaborate(&program, &fonts, sources, file, options.near)
+    let (elaborated, of_elaboration) = if options.live_literals {
+        live_literals::elaborate(&program, &fonts, sources, file, options.focus)
     } else {
         elab::elaborate(&program, &fonts)
     };

@@ -66,13 +66,13 @@ fn calls() {
 #[test]
 fn intervals_of_rays() {
     assert_findings!(all(&[
-        "region r() hits [0, 1] = length(p) - 1\nr().extrude(1)",
-        "shape s() hits [0, 1] = length(p) - 1\nsphere(1)",
-        "fn f(a = 1) hits [0, 1] = a\nsphere(f())",
-        "solid s() hits [0, 1] hits [0, 1] = length(p) - 1\ns()",
-        "solid s() hits \"far\" = length(p) - 1\ns()",
-        "solid s() hits [p.x, 1] = length(p) - 1\ns()",
-        "solid s() hits [o.x, d.x] = length(p) - o.x\ns()",
+        "region r() intersect [0, 1] = length(p) - 1\nr().extrude(1)",
+        "shape s() intersect [0, 1] = length(p) - 1\nsphere(1)",
+        "fn f(a = 1) intersect [0, 1] = a\nsphere(f())",
+        "solid s() intersect [0, 1] intersect [0, 1] = length(p) - 1\ns()",
+        "solid s() intersect \"far\" = length(p) - 1\ns()",
+        "solid s() intersect [p.x, 1] = length(p) - 1\ns()",
+        "solid s() intersect [o.x, d.x] = length(p) - o.x\ns()",
     ]));
 }
 

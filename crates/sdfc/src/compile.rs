@@ -9,7 +9,7 @@ use sdfc_diagnostics::{
 };
 use sdfc_graph::eval::TapeError;
 use sdfc_graph::{Param, Program};
-use sdfc_lang::slots::Slot;
+use sdfc_lang::live_literals::LiveLiteral;
 use sdfc_lang::{Elaborated, NoFiles, Options, Resolver, Site};
 
 use crate::field::Tapes;
@@ -147,8 +147,8 @@ impl Scene {
     }
 
     /// Numbers of the scene that have become params; none unless compiled so.
-    pub fn slots(&self) -> &[Slot] {
-        &self.elaborated.slots
+    pub fn slots(&self) -> &[LiveLiteral] {
+        &self.elaborated.live_literals
     }
 
     /// Whether the scene draws anything.
@@ -201,7 +201,7 @@ pub fn compile_with_imports(name: &str, text: &str, resolver: &dyn Resolver) -> 
 /// ```
 /// use sdfc::lang::{NoFiles, Options};
 ///
-/// let options = Options { slots: true, ..Options::default() };
+/// let options = Options { live_literals: true, ..Options::default() };
 /// let compiled = sdfc::compile_with("ball.sdf", "sphere(0.5)", &NoFiles, options);
 /// let scene = compiled.scene.expect("no errors");
 /// let [slot] = scene.slots() else { panic!("one number is written") };

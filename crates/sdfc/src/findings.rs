@@ -203,11 +203,11 @@ fn refutation(declared: &Declared, refuted: &Violation) -> Option<Diagnostic> {
                 None => "enter or leave",
             };
             let message = format!(
-                "this states `hits` by which the ray o = {origin}, d = {direction} should {said} at {at}, but the \
+                "this states `intersect` by which the ray o = {origin}, d = {direction} should {said} at {at}, but the \
                  field there is {field}"
             );
             let help = "the intervals hold all of the ray that is inside, and begin and end where the field is 0";
-            Some(error(declared.hits?, message).help(help))
+            Some(error(declared.intersect?, message).help(help))
         }
         Clause::Copies(CopiesViolation { from, reach, to, .. }) => {
             let [middle, there] = [from, to].map(|place| point(place));

@@ -209,10 +209,14 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     let options = BenchOptions { size: [32, 24], repetitions: 2, ..BenchOptions::default() };
     let text = format!("torus(major: 0.8, minor: 0.2){VIEW}");
     let torus = scene(&text);
-    let moving =
-        compile_with("test.sdf", &text, &NoFiles, Options { slots: true, ..Options::default() })
-            .scene
-            .unwrap();
+    let moving = compile_with(
+        "test.sdf",
+        &text,
+        &NoFiles,
+        Options { live_literals: true, ..Options::default() },
+    )
+    .scene
+    .unwrap();
     let gpu = Gpu::new()?;
     let row = torus.bench(&moving, "torus", &gpu, &options, &mut unwatched)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();

@@ -12,8 +12,12 @@ use sdfc::{
 };
 
 fn slotted(text: &str) -> (Compiled, Scene) {
-    let mut compiled =
-        compile_with("a.sdf", text, &NoFiles, Options { slots: true, ..Options::default() });
+    let mut compiled = compile_with(
+        "a.sdf",
+        text,
+        &NoFiles,
+        Options { live_literals: true, ..Options::default() },
+    );
     let scene = compiled.scene.take();
     let scene = scene.unwrap_or_else(|| panic!("{}", compiled.diagnostics_text(false)));
     (compiled, scene)
@@ -22,7 +26,9 @@ fn slotted(text: &str) -> (Compiled, Scene) {
 /// The numbers that move, as they are written.
 fn offered(text: &str) -> Vec<String> {
     let (compiled, scene) = slotted(text);
-    let written = |slot: &sdfc::lang::slots::Slot| compiled.sources.slice(slot.span).to_owned();
+    let written = |slot: &sdfc::lang::live_literals::LiveLiteral| {
+        compiled.sources.slice(slot.span).to_owned()
+    };
     let mut slots = scene.slots().to_vec();
     slots.sort_by_key(|slot| slot.span);
     slots.iter().map(written).collect()
@@ -103,12 +109,12 @@ fn of_more_numbers_than_can_move_those_near_a_place_do() {
     let rows = (0..600).map(|i| format!("  + 0.00{i} * sin(p.x)\n"));
     let text = format!("solid waves() = p.y\n{}waves()\n", rows.collect::<String>());
     let lines = |near| {
-        let options = Options { slots: true, near };
+        let options = Options { live_literals: true, focus: near };
         let compiled = compile_with("a.sdf", &text, &NoFiles, options);
         let scene = compiled.scene.unwrap();
         let line = |at: u32| text[..at as usize].lines().count();
         let lines: Vec<usize> = scene.slots().iter().map(|slot| line(slot.span.start)).collect();
-        assert_eq!(lines.len(), sdfc::lang::slots::MAX_SLOTS);
+        assert_eq!(lines.len(), sdfc::lang::live_literals::MAX_LIVE_LITERALS);
         [*lines.iter().min().unwrap(), *lines.iter().max().unwrap()]
     };
     assert_eq!(lines(None), [2, 513]);

@@ -170,8 +170,8 @@ pub enum ClauseKind {
     Bounds(Expr),
     /// `material e`
     Material(Expr),
-    /// `hits e`
-    Hits(Expr),
+    /// `intersect e`
+    Intersect(Expr),
     /// `copies`
     Copies,
     /// `require condition, "message"`; the message unescaped.

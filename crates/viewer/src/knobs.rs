@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use sdfc::FrameValues;
 use sdfc::diagnostics::Span;
 use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::slots::Slot;
+use sdfc::lang::live_literals::LiveLiteral;
 use sdfc::render::linear_to_srgb8;
 
 use crate::document;
@@ -45,7 +45,7 @@ impl Knobs {
     }
 
     /// Sets a number of the text; its own value takes the change back.
-    pub fn set_literal(&mut self, slot: &Slot, value: f64) {
+    pub fn set_literal(&mut self, slot: &LiveLiteral, value: f64) {
         if value == slot.value {
             self.literals.remove(&slot.span);
         } else if value.is_finite() {
@@ -54,7 +54,7 @@ impl Knobs {
     }
 
     /// The value of a number of the text.
-    pub fn literal(&self, slot: &Slot) -> f64 {
+    pub fn literal(&self, slot: &LiveLiteral) -> f64 {
         self.literals.get(&slot.span).copied().unwrap_or(slot.value)
     }
 
@@ -70,7 +70,7 @@ impl Knobs {
 
     /// The text with moved numbers in it.
     pub fn rewritten(&self, model: &Model) -> String {
-        let edit = |(slot, _): (&Slot, &Param)| {
+        let edit = |(slot, _): (&LiveLiteral, &Param)| {
             let value = *self.literals.get(&slot.span)?;
             Some((slot.span, literal_text(model, slot, value)))
         };
@@ -152,7 +152,7 @@ fn angle_text(radians: f64, unit: &str) -> String {
 }
 
 /// A number in the place of a literal, with the unit that stands there.
-fn literal_text(model: &Model, slot: &Slot, value: f64) -> String {
+fn literal_text(model: &Model, slot: &LiveLiteral, value: f64) -> String {
     let span = slot.span.start as usize..slot.span.end as usize;
     let written = model.text.get(span).unwrap_or_default();
     let unit = written.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE_+-".contains(c));

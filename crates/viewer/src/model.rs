@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
-use sdfc::lang::slots::Slot;
+use sdfc::lang::live_literals::LiveLiteral;
 use sdfc::march::{Knob, method};
 use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
@@ -80,13 +80,13 @@ impl Model {
     }
 
     /// Its numbers that move, and the params that they are.
-    pub fn literals(&self) -> impl Iterator<Item = (&Slot, &Param)> {
+    pub fn literals(&self) -> impl Iterator<Item = (&LiveLiteral, &Param)> {
         let params = self.scene.params();
         self.scene.slots().iter().filter_map(|slot| Some((slot, params.get(slot.param)?)))
     }
 
     /// Those that are all of a `let` with a line of its own, by its name.
-    pub fn named(&self) -> impl Iterator<Item = (&str, &Slot, &Param)> {
+    pub fn named(&self) -> impl Iterator<Item = (&str, &LiveLiteral, &Param)> {
         self.literals().filter_map(|(slot, param)| {
             let (start, end) = (slot.span.start as usize, slot.span.end as usize);
             Some((let_name(&self.text, start..end)?, slot, param))

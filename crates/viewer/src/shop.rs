@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use sdfc::lang::Options;
-use sdfc::lang::slots::Slot;
+use sdfc::lang::live_literals::LiveLiteral;
 use sdfc::{Compiled, Error, FrameValues, Scene};
 
 use crate::document::{Document, Imports};
@@ -182,7 +182,8 @@ impl<T: FnMut(News)> Shop<T> {
     fn near(&self, build: &Build, text: &str) -> Option<u32> {
         let (_, shown) = self.shown.as_ref().filter(|(by, _)| by.path == build.path)?;
         let edit = Edit::between(&shown.text, text);
-        let moves = |slot: &Slot| slot.span.start <= edit.old_end && edit.start <= slot.span.end;
+        let moves =
+            |slot: &LiveLiteral| slot.span.start <= edit.old_end && edit.start <= slot.span.end;
         if edit.is_empty() || shown.scene.slots().iter().any(moves) {
             return shown.near.map(|near| edit.moved(near));
         }
@@ -200,7 +201,7 @@ impl<T: FnMut(News)> Shop<T> {
         near: Option<u32>,
     ) -> Compiled {
         let compile = |slots| {
-            let options = Options { slots, near };
+            let options = Options { live_literals: slots, focus: near };
             sdfc::compile_with(&document.name, &document.text, imports, options)
         };
         if build.live && !self.rolls {

@@ -251,7 +251,7 @@ pub(crate) mod tests {
             let lines: Vec<usize> = (model.literals())
                 .map(|(slot, _)| text[..slot.span.start as usize].lines().count())
                 .collect();
-            assert_eq!(lines.len(), sdfc::lang::slots::MAX_SLOTS);
+            assert_eq!(lines.len(), sdfc::lang::live_literals::MAX_LIVE_LITERALS);
             lines.into_iter().fold([usize::MAX, 0], |[lo, hi], at| [lo.min(at), hi.max(at)])
         };
         assert_eq!(moving("0.5")[0], 2);

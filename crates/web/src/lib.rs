@@ -81,7 +81,7 @@ pub fn compile(source: &str, options: &str) -> String {
 }
 
 fn answer(source: &str, options: Options) -> Answer {
-    let front = sdfc::lang::Options { slots: options.slots, ..Default::default() };
+    let front = sdfc::lang::Options { live_literals: options.slots, ..Default::default() };
     let shader = options.shader();
     let compiled = sdfc::compile_with(&options.name, source, &Files(options.files), front);
     let diagnostics = compiled.rows().into_iter().map(Finding::Scene).collect();

@@ -1,7 +1,7 @@
 //! What of a scene rays meet without marching.
 //!
 //! From the root down through hard minima and maxima, sign changes and rigid or scaled samples, shapes that state
-//! `hits` are asked where the ray is inside them; the ray is carried along by the same maps as the point. What a union
+//! `intersect` are asked where the ray is inside them; the ray is carried along by the same maps as the point. What a union
 //! is made of falls into two parts: operands whose intervals are known, and those that are left to march. Intersections
 //! and complements are known where all that they are made of is, and where they take few intervals.
 //!

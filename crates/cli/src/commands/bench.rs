@@ -13,7 +13,7 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
-const WITH_SLOTS: Options = Options { slots: true, near: None };
+const WITH_SLOTS: Options = Options { live_literals: true, focus: None };
 
 /// Measures the scenes, shows a table and writes the figures.
 ///

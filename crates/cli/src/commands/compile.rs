@@ -21,7 +21,8 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
     let options = options(args)?;
-    let mut compiled = super::compiled_with(&args.file, Options { slots: args.slots, near: None })?;
+    let mut compiled =
+        super::compiled_with(&args.file, Options { live_literals: args.slots, focus: None })?;
     super::show(&mut compiled, console);
     let scene = compiled.scene.ok_or(Failure::Scene)?;
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;

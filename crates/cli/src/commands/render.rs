@@ -28,7 +28,8 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// or an output and the scene, are one file; the machine cannot draw or write it; ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
-    let scene = super::scene(&args.file, Options { slots: args.slots, near: None }, console)?;
+    let scene =
+        super::scene(&args.file, Options { live_literals: args.slots, focus: None }, console)?;
     let scene = match args.writing {
         Writing::Auto => scene,
         writing @ (Writing::Inline | Writing::Rolled) => {

@@ -4,7 +4,7 @@ use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, DeclKind};
 
 use super::call::{Callee, Given, Value, count};
-use super::decl::Slot;
+use super::decl::ParameterSignature;
 use super::names::{Entry, Found, is_private};
 use super::types::show;
 use super::written::written;
@@ -64,17 +64,17 @@ impl<'a> Checker<'a> {
     pub(super) fn parameter_for_value(
         &mut self,
         callee: Callee,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         given: &Given<'a>,
     ) -> Option<Diagnostic> {
         let Value::Expr(ast::Expr { kind: ast::ExprKind::Name(name), span }) = given.value else {
             return None;
         };
-        let slot = slots.iter().find(|slot| slot.name == name)?;
+        let parameter = parameters.iter().find(|parameter| parameter.name == name)?;
         if name == "p" || self.look_up(name).is_some() {
             return None;
         }
-        let value = if slot.ty == Type::Bool { "true" } else { "..." };
+        let value = if parameter.ty == Type::Bool { "true" } else { "..." };
         let message = format!("`{name}` has no value here; it is a parameter of `{}`", callee.name);
         let found = Diagnostic::error(Code::UNKNOWN_NAME, *span, message);
         let found = found.help(format!("give it one: {name}: {value}"));
@@ -82,30 +82,34 @@ impl<'a> Checker<'a> {
     }
 }
 
-pub(super) fn too_many(callee: Callee, slots: &[Slot], span: Span) -> Diagnostic {
-    let message = match slots.len() {
+pub(super) fn too_many(
+    callee: Callee,
+    parameters: &[ParameterSignature],
+    span: Span,
+) -> Diagnostic {
+    let message = match parameters.len() {
         0 => format!("`{}` takes no arguments", callee.name),
         n => format!("`{}` takes at most {}", callee.name, count(n, "argument")),
     };
-    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, slots))
+    Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, parameters))
 }
 
 /// How to call it: `capsule(a: vec3, b: vec3, r: number = 0.5)`
-pub(super) fn signature(name: &str, slots: &[Slot]) -> String {
-    let slots: Vec<String> = slots
+pub(super) fn signature(name: &str, parameters: &[ParameterSignature]) -> String {
+    let parameters: Vec<String> = parameters
         .iter()
-        .map(|slot| {
-            let ty = match &slot.ty {
-                Type::List(of) if slot.variadic => format!("{}...", show(of)),
+        .map(|parameter| {
+            let ty = match &parameter.ty {
+                Type::List(of) if parameter.variadic => format!("{}...", show(of)),
                 ty => show(ty),
             };
-            let default = match slot.default {
+            let default = match parameter.default {
                 Some(default) => format!(" = {}", written(default)),
-                None if slot.optional => " = ...".to_owned(),
+                None if parameter.optional => " = ...".to_owned(),
                 None => String::new(),
             };
-            format!("{}: {ty}{default}", slot.name)
+            format!("{}: {ty}{default}", parameter.name)
         })
         .collect();
-    format!("{name}({})", slots.join(", "))
+    format!("{name}({})", parameters.join(", "))
 }

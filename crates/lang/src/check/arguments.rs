@@ -6,7 +6,7 @@ use sdfc_syntax::ast::{self, Name};
 use super::advice::{signature, too_many};
 use super::call::{Callee, Given, Value, is_lambda};
 use super::coerce::{Role, mismatch};
-use super::decl::Slot;
+use super::decl::ParameterSignature;
 use super::types;
 use super::written::written;
 use super::{Checker, poison};
@@ -19,27 +19,31 @@ impl<'a> Checker<'a> {
     pub(super) fn arguments(
         &mut self,
         callee: Callee,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         given: Vec<Given<'a>>,
     ) -> Vec<Option<Expr>> {
-        let bound = self.bind(callee, slots, given);
-        let free: Vec<&Slot> =
-            slots.iter().zip(&bound).filter(|(_, given)| given.is_empty()).map(|it| it.0).collect();
-        slots
+        let bound = self.bind(callee, parameters, given);
+        let free: Vec<&ParameterSignature> = parameters
+            .iter()
+            .zip(&bound)
+            .filter(|(_, given)| given.is_empty())
+            .map(|it| it.0)
+            .collect();
+        parameters
             .iter()
             .enumerate()
             .zip(bound)
-            .map(|((at, slot), mut given)| {
-                let role = Role::Argument(callee.name, slot.name);
-                if slot.variadic && given.first().is_none_or(|given| given.name.is_none()) {
-                    return Some(self.variadic(&slots[at..], given, role, callee.span));
+            .map(|((at, parameter), mut given)| {
+                let role = Role::Argument(callee.name, parameter.name);
+                if parameter.variadic && given.first().is_none_or(|given| given.name.is_none()) {
+                    return Some(self.variadic(&parameters[at..], given, role, callee.span));
                 }
                 let given = given.pop()?;
                 Some(match given.value {
                     Value::Expr(e) if given.name.is_none() && is_literal(e) => {
-                        self.literal(e, &slot.ty, role, &free)
+                        self.literal(e, &parameter.ty, role, &free)
                     }
-                    _ => self.one_argument(given, &slot.ty, role),
+                    _ => self.one_argument(given, &parameter.ty, role),
                 })
             })
             .collect()
@@ -49,14 +53,14 @@ impl<'a> Checker<'a> {
     fn bind(
         &mut self,
         callee: Callee,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         given: Vec<Given<'a>>,
     ) -> Vec<Vec<Given<'a>>> {
-        let mut bound: Vec<Vec<Given>> = vec![Vec::new(); slots.len()];
+        let mut bound: Vec<Vec<Given>> = vec![Vec::new(); parameters.len()];
         let (mut next, mut named, mut excess) = (0, false, Vec::new());
         for mut given in given {
             if given.name.is_none()
-                && let Some(found) = self.parameter_for_value(callee, slots, &given)
+                && let Some(found) = self.parameter_for_value(callee, parameters, &given)
             {
                 self.report(found);
                 given = Given::done(poison(given.span));
@@ -68,13 +72,15 @@ impl<'a> Checker<'a> {
                     None
                 }
                 None => {
-                    let place = (next < slots.len()).then_some(next);
-                    next += usize::from(slots.get(next).is_some_and(|slot| !slot.variadic));
+                    let place = (next < parameters.len()).then_some(next);
+                    next += usize::from(
+                        parameters.get(next).is_some_and(|parameter| !parameter.variadic),
+                    );
                     place
                 }
                 Some(name) => {
                     named = true;
-                    self.named_place(callee, slots, name, &bound)
+                    self.named_place(callee, parameters, name, &bound)
                 }
             };
             match place {
@@ -86,31 +92,32 @@ impl<'a> Checker<'a> {
             && first.name.is_none()
             && !named
         {
-            let found = too_many(callee, slots, first.span);
+            let found = too_many(callee, parameters, first.span);
             self.report(found);
         }
         self.give_up(excess, callee.span);
-        self.report_missing(callee, slots, &bound);
+        self.report_missing(callee, parameters, &bound);
         bound
     }
 
     fn named_place(
         &mut self,
         callee: Callee,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         name: &Name,
         bound: &[Vec<Given<'a>>],
     ) -> Option<usize> {
-        let Some(place) = slots.iter().position(|slot| slot.name == name.text) else {
+        let Some(place) = parameters.iter().position(|parameter| parameter.name == name.text)
+        else {
             let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
             let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
-            let near = nearest(&name.text, slots.iter().map(|slot| slot.name));
+            let near = nearest(&name.text, parameters.iter().map(|parameter| parameter.name));
             let found = match near {
                 Some(near) => found.help(format!("did you mean `{near}`?")),
                 None => self.elsewhere(
                     callee.name,
                     &name.text,
-                    found.help(signature(callee.name, slots)),
+                    found.help(signature(callee.name, parameters)),
                 ),
             };
             self.report(found);
@@ -127,51 +134,66 @@ impl<'a> Checker<'a> {
     }
 
     /// A literal without a name. Where it does not fit, but one of the `free` parameters, that is said.
-    fn literal(&mut self, e: &'a ast::Expr, want: &Type, role: Role, free: &[&Slot<'a>]) -> Expr {
+    fn literal(
+        &mut self,
+        e: &'a ast::Expr,
+        want: &Type,
+        role: Role,
+        free: &[&ParameterSignature<'a>],
+    ) -> Expr {
         let value = self.infer(e);
         let value = match self.try_coerce(value, want) {
             Ok(value) => return value,
             Err(value) => value,
         };
         let found = mismatch(&value, want, role);
-        let fits = |slot: &&&Slot| {
-            types::same_value(&value.ty, &slot.ty)
-                || (value.ty == Type::Int && slot.ty == Type::Number)
+        let fits = |parameter: &&&ParameterSignature| {
+            types::same_value(&value.ty, &parameter.ty)
+                || (value.ty == Type::Int && parameter.ty == Type::Number)
         };
         let found = match free.iter().find(fits) {
-            Some(slot) => found.help(format!("or name it: {}: {}", slot.name, written(e))),
+            Some(parameter) => {
+                found.help(format!("or name it: {}: {}", parameter.name, written(e)))
+            }
             None => found,
         };
         self.report(found);
         poison(e.span)
     }
 
-    fn report_missing(&mut self, callee: Callee, slots: &[Slot<'a>], bound: &[Vec<Given<'a>>]) {
-        let missing: Vec<String> = slots
+    fn report_missing(
+        &mut self,
+        callee: Callee,
+        parameters: &[ParameterSignature<'a>],
+        bound: &[Vec<Given<'a>>],
+    ) {
+        let missing: Vec<String> = parameters
             .iter()
             .zip(bound)
-            .filter(|(slot, given)| given.is_empty() && !slot.optional && !slot.variadic)
-            .map(|(slot, _)| format!("`{}`", slot.name))
+            .filter(|(parameter, given)| {
+                given.is_empty() && !parameter.optional && !parameter.variadic
+            })
+            .map(|(parameter, _)| format!("`{}`", parameter.name))
             .collect();
         if !missing.is_empty() {
             let message = format!("`{}` needs {}", callee.name, missing.join(" and "));
             self.report(
                 Diagnostic::error(Code::ARGUMENTS, callee.at, message)
-                    .help(signature(callee.name, slots)),
+                    .help(signature(callee.name, parameters)),
             );
         }
     }
 
-    /// All that a variadic parameter, the first of the slots, takes: values, lists and `for`.
+    /// All that a variadic parameter, the first of the parameters, takes: values, lists and `for`.
     fn variadic(
         &mut self,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         given: Vec<Given<'a>>,
         role: Role,
         span: Span,
     ) -> Expr {
-        let [slot, later @ ..] = slots else { return poison(span) };
-        let Type::List(want) = &slot.ty else { return poison(span) };
+        let [parameter, later @ ..] = parameters else { return poison(span) };
+        let Type::List(want) = &parameter.ty else { return poison(span) };
         let mut elements = Vec::with_capacity(given.len());
         for given in given {
             let element = match given.value {
@@ -179,7 +201,7 @@ impl<'a> Checker<'a> {
                 Value::Expr(e) => {
                     let value = self.infer(e);
                     match later.iter().find(|later| meant_for(&value.ty, later, want)) {
-                        Some(later) => Element::One(self.needs_name(e, slot, later)),
+                        Some(later) => Element::One(self.needs_name(e, parameter, later)),
                         None => self.spread(Element::One(value), want, role),
                     }
                 }
@@ -188,12 +210,17 @@ impl<'a> Checker<'a> {
             };
             elements.push(element);
         }
-        Expr { kind: ExprKind::List(elements), ty: slot.ty.clone(), span }
+        Expr { kind: ExprKind::List(elements), ty: parameter.ty.clone(), span }
     }
 
     /// Reports an argument that only a name brings to its parameter.
-    fn needs_name(&mut self, given: &ast::Expr, slot: &Slot<'a>, later: &Slot<'a>) -> Expr {
-        let message = format!("what follows `{}` is named", slot.name);
+    fn needs_name(
+        &mut self,
+        given: &ast::Expr,
+        parameter: &ParameterSignature<'a>,
+        later: &ParameterSignature<'a>,
+    ) -> Expr {
+        let message = format!("what follows `{}` is named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
         self.report(found.help(format!("{}: {}", later.name, written(given))));
         poison(given.span)
@@ -246,6 +273,6 @@ fn is_literal(e: &ast::Expr) -> bool {
 }
 
 /// Whether a value that is no `want` fits a later parameter, which only its name can reach.
-fn meant_for(ty: &Type, later: &Slot, want: &Type) -> bool {
+fn meant_for(ty: &Type, later: &ParameterSignature, want: &Type) -> bool {
     !types::poisoned(ty) && !types::same_value(ty, want) && types::same_value(ty, &later.ty)
 }

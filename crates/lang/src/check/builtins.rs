@@ -4,7 +4,7 @@ use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph as graph;
 
 use super::call::{Callee, Given, count};
-use super::decl::Slot;
+use super::decl::ParameterSignature;
 use super::kernel::Builtin;
 use super::operators::as_type;
 use super::types::{self, describe, is_scalar, lanes};
@@ -21,8 +21,8 @@ const FIELDS: [(&str, MaterialField, Type); 5] = [
 ];
 
 /// A parameter of a kernel function.
-pub(super) fn slot(name: &str, ty: Type, optional: bool) -> Slot<'_> {
-    Slot { name, ty, variadic: false, optional, default: None }
+pub(super) fn parameter(name: &str, ty: Type, optional: bool) -> ParameterSignature<'_> {
+    ParameterSignature { name, ty, variadic: false, optional, default: None }
 }
 
 /// An operation of the kernel.
@@ -83,8 +83,8 @@ impl<'a> Checker<'a> {
             Builtin::With => self.with(callee, given),
             Builtin::Color(kernel) => self.color(kernel, callee, given),
             Builtin::Soft => {
-                let slots = [slot("sharpness", Type::Number, false)];
-                let arguments = self.all_arguments(callee, &slots, given);
+                let parameters = [parameter("sharpness", Type::Number, false)];
+                let arguments = self.all_arguments(callee, &parameters, given);
                 kernel(Kernel::Soft, arguments, Type::Shadow, callee.span)
             }
             Builtin::GlyphCurves => self.glyph_curves(callee, given),
@@ -96,16 +96,16 @@ impl<'a> Checker<'a> {
         let span = callee.span;
         let text =
             |value: &str| Expr { kind: ExprKind::Text(value.to_owned()), ty: Type::Text, span };
-        let slots = [
-            slot("text", Type::Text, false),
-            slot("font", Type::Text, true),
-            slot("align", Type::Text, true),
-            slot("spacing", Type::Number, true),
-            slot("leading", Type::Number, true),
+        let parameters = [
+            parameter("text", Type::Text, false),
+            parameter("font", Type::Text, true),
+            parameter("align", Type::Text, true),
+            parameter("spacing", Type::Number, true),
+            parameter("leading", Type::Number, true),
         ];
         let defaults =
             [poison(span), text("sans"), text("left"), number(0.0, span), number(1.2, span)];
-        let arguments = self.arguments(callee, &slots, given);
+        let arguments = self.arguments(callee, &parameters, given);
         let arguments = arguments.into_iter().zip(defaults);
         let arguments = arguments.map(|(value, default)| value.unwrap_or(default)).collect();
         let curve = Type::List(Box::new(Type::Vec(2)));
@@ -116,10 +116,10 @@ impl<'a> Checker<'a> {
     fn all_arguments(
         &mut self,
         callee: Callee,
-        slots: &[Slot<'a>],
+        parameters: &[ParameterSignature<'a>],
         given: Vec<Given<'a>>,
     ) -> Vec<Expr> {
-        let arguments = self.arguments(callee, slots, given);
+        let arguments = self.arguments(callee, parameters, given);
         arguments.into_iter().map(|value| value.unwrap_or_else(|| poison(callee.span))).collect()
     }
 
@@ -296,9 +296,9 @@ impl<'a> Checker<'a> {
 
     /// `material(color: ..., roughness: ...)`, every field optional.
     fn material(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
-        let slots = FIELDS.map(|(name, _, ty)| slot(name, ty, true));
+        let parameters = FIELDS.map(|(name, _, ty)| parameter(name, ty, true));
         let span = callee.span;
-        let arguments = self.arguments(callee, &slots, given);
+        let arguments = self.arguments(callee, &parameters, given);
         let fields = arguments
             .into_iter()
             .zip(FIELDS)
@@ -308,9 +308,9 @@ impl<'a> Checker<'a> {
 
     /// `m.with(color: c)`
     fn with(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
-        let mut slots = vec![slot("material", Type::Material, false)];
-        slots.extend(FIELDS.map(|(name, _, ty)| slot(name, ty, true)));
-        let mut arguments = self.arguments(callee, &slots, given).into_iter();
+        let mut parameters = vec![parameter("material", Type::Material, false)];
+        parameters.extend(FIELDS.map(|(name, _, ty)| parameter(name, ty, true)));
+        let mut arguments = self.arguments(callee, &parameters, given).into_iter();
         let Some(base) = arguments.next().flatten() else { return poison(callee.span) };
         let changes: Vec<(MaterialField, Expr)> = arguments
             .zip(FIELDS)
@@ -329,10 +329,10 @@ impl<'a> Checker<'a> {
             Kernel::Oklch => [("l", Number), ("c", Number), ("h", Angle)],
             _ => [("r", Number), ("g", Number), ("b", Number)],
         };
-        let mut slots = names.map(|(name, ty)| slot(name, ty, false)).to_vec();
-        slots.push(slot("a", Number, true));
+        let mut parameters = names.map(|(name, ty)| parameter(name, ty, false)).to_vec();
+        parameters.push(parameter("a", Number, true));
         let span = callee.span;
-        let arguments = self.arguments(callee, &slots, given);
+        let arguments = self.arguments(callee, &parameters, given);
         let opaque = |value: Option<Expr>| value.unwrap_or_else(|| number(1.0, span));
         kernel(function, arguments.into_iter().map(opaque).collect(), Type::Color, span)
     }

@@ -11,12 +11,13 @@ use super::coerce::Role;
 use super::order::Node;
 use super::{Checker, DeclIndex, Shared, poison, types};
 use crate::hir::{
-    Expr, FnId, Function, Hits, LocalId, Parameter, Promise, Require, ShapeDef, ShapeDefId, Type,
+    Expr, FnId, Function, Intersect, LocalId, Parameter, Promise, Require, ShapeDef, ShapeDefId,
+    Type,
 };
 
 /// One parameter, as calls see it.
 #[derive(Clone, Debug)]
-pub(super) struct Slot<'a> {
+pub(super) struct ParameterSignature<'a> {
     pub name: &'a str,
     /// A list for a variadic one.
     pub ty: Type,
@@ -38,7 +39,7 @@ pub(super) enum Target {
 pub(super) struct Signature<'a> {
     pub target: Target,
     pub name: &'a str,
-    pub slots: Vec<Slot<'a>>,
+    pub parameters: Vec<ParameterSignature<'a>>,
     pub result: Type,
 }
 
@@ -71,7 +72,7 @@ struct Clauses {
     everywhere: bool,
     bounds: Option<Expr>,
     material: Option<Expr>,
-    hits: Option<Hits>,
+    intersect: Option<Intersect>,
     copies: Option<Span>,
 }
 
@@ -144,18 +145,18 @@ impl<'a> Checker<'a> {
         let target = self.reserve(decl, body.point);
         body.node = Some(Node::of(target));
         let outer = std::mem::replace(&mut self.body, body);
-        let (parameters, slots) = self.check_parameters(decl);
+        let (checked, parameters) = self.check_parameters(decl);
         let result = self.declared_result(decl);
         let known = result.is_some();
         let mut signature = Signature {
             target,
             name: &decl.name.text,
-            slots,
+            parameters,
             result: result.unwrap_or(Type::Error),
         };
         let shared = Rc::new(signature.clone());
         let body = std::mem::replace(&mut self.body, outer);
-        let pending = Pending { decl, signature: shared.clone(), parameters, body };
+        let pending = Pending { decl, signature: shared.clone(), parameters: checked, body };
         if known {
             self.instances.insert((index, either), Instance::Known(shared.clone()));
             self.pending.push(pending);
@@ -205,7 +206,7 @@ impl<'a> Checker<'a> {
                     everywhere: false,
                     bounds: None,
                     material: None,
-                    hits: None,
+                    intersect: None,
                     copies: None,
                     body,
                     docs,
@@ -230,13 +231,16 @@ impl<'a> Checker<'a> {
     }
 
     /// Parameters in order; each sees those to its left.
-    fn check_parameters(&mut self, decl: &'a ast::Decl) -> (Vec<Parameter>, Vec<Slot<'a>>) {
+    fn check_parameters(
+        &mut self,
+        decl: &'a ast::Decl,
+    ) -> (Vec<Parameter>, Vec<ParameterSignature<'a>>) {
         let parms = &decl.signature.parms;
         let point = usize::from(self.body.point.is_some());
         if let Some(frame) = self.body.frames.last_mut() {
             frame.locals = (parms.len() + point) as u32;
         }
-        let (mut parameters, mut slots) = (Vec::<Parameter>::new(), Vec::new());
+        let (mut parameters, mut signatures) = (Vec::<Parameter>::new(), Vec::new());
         for (at, parm) in parms.iter().enumerate() {
             let name = parm.name.text.as_str();
             if let Some(first) = parameters.iter().find(|other| other.name == name) {
@@ -250,7 +254,7 @@ impl<'a> Checker<'a> {
             }
             let parameter = self.check_parameter(parm);
             self.body.declare_as(LocalId(at as u32), name, parameter.ty.clone(), parm.name.span);
-            slots.push(Slot {
+            signatures.push(ParameterSignature {
                 name,
                 ty: parameter.ty.clone(),
                 variadic: parm.variadic,
@@ -259,7 +263,7 @@ impl<'a> Checker<'a> {
             });
             parameters.push(parameter);
         }
-        (parameters, slots)
+        (parameters, signatures)
     }
 
     fn check_variadic(&mut self, parm: &Parm, before: &[Parameter]) {
@@ -325,8 +329,16 @@ impl<'a> Checker<'a> {
         let ty = formula.ty.clone();
         let body = std::mem::replace(&mut self.body, outer);
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
-        let Clauses { requires, promises, lipschitz, everywhere, bounds, material, hits, copies } =
-            clauses;
+        let Clauses {
+            requires,
+            promises,
+            lipschitz,
+            everywhere,
+            bounds,
+            material,
+            intersect,
+            copies,
+        } = clauses;
         match signature.target {
             Target::Fn(FnId(id)) => {
                 if let Some(function) = self.program.functions.get_mut(id as usize) {
@@ -347,7 +359,7 @@ impl<'a> Checker<'a> {
                     shape.everywhere = everywhere;
                     shape.bounds = bounds;
                     shape.material = material;
-                    shape.hits = hits;
+                    shape.intersect = intersect;
                     shape.copies = copies;
                     shape.body = formula;
                 }
@@ -395,10 +407,10 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// `hits e`: an interval `[enter, exit]`, or a list of such, in terms of the ray's origin `o` and direction `d`.
-    fn check_hits(&mut self, kind: DeclKind, e: &'a ast::Expr) -> Hits {
+    /// `intersect e`: an interval `[enter, exit]`, or a list of such, in terms of the ray's origin `o` and direction `d`.
+    fn check_intersect(&mut self, kind: DeclKind, e: &'a ast::Expr) -> Intersect {
         if kind != DeclKind::Solid {
-            self.report_rays("hits", e.span);
+            self.report_rays("intersect", e.span);
         }
         let mark = self.body.enter();
         let space = types::point(Dim::Three);
@@ -410,10 +422,10 @@ impl<'a> Checker<'a> {
         let value = if value.ty == intervals {
             value
         } else {
-            self.coerce(value, &interval, Role::The("what `hits` states"))
+            self.coerce(value, &interval, Role::The("what `intersect` states"))
         };
         self.body.leave(mark);
-        Hits { origin, direction, value }
+        Intersect { origin, direction, value }
     }
 
     /// A clause of what is no solid.
@@ -453,9 +465,9 @@ impl<'a> Checker<'a> {
                     clauses.bounds.replace(bounds).is_some()
                 }
                 ClauseKind::Material(_) => std::mem::replace(&mut material, true),
-                ClauseKind::Hits(e) => {
-                    let hits = self.check_hits(decl.kind, e);
-                    clauses.hits.replace(hits).is_some()
+                ClauseKind::Intersect(e) => {
+                    let intersect = self.check_intersect(decl.kind, e);
+                    clauses.intersect.replace(intersect).is_some()
                 }
                 ClauseKind::Copies => {
                     if decl.kind != DeclKind::Solid {
@@ -514,7 +526,7 @@ fn belongs_to_functions(clause: &ClauseKind) -> bool {
         | ClauseKind::Bound(..)
         | ClauseKind::Bounds(_)
         | ClauseKind::Material(_)
-        | ClauseKind::Hits(_)
+        | ClauseKind::Intersect(_)
         | ClauseKind::Copies => false,
     }
 }

@@ -2,7 +2,7 @@
 
 use sdfc_diagnostics::{Code, Diagnostic};
 
-use super::builtins::{kernel, slot};
+use super::builtins::{kernel, parameter};
 use super::call::{Callee, Given, Value, is_lambda};
 use super::lambda::arity_of;
 use super::operators::as_type;
@@ -56,13 +56,13 @@ impl<'a> Checker<'a> {
         let step = Type::Fn(takes, Box::new(state.clone()));
         let goes_on = Type::Fn(vec![state.clone()], Box::new(Type::Bool));
         let over = over_type(&given, place("over", 0, &given));
-        let slots = [
-            slot("over", over, false),
-            slot("start", state.clone(), false),
-            slot("step", step, false),
-            slot("while", goes_on, true),
+        let parameters = [
+            parameter("over", over, false),
+            parameter("start", state.clone(), false),
+            parameter("step", step, false),
+            parameter("while", goes_on, true),
         ];
-        let arguments = self.arguments(callee, &slots, given);
+        let arguments = self.arguments(callee, &parameters, given);
         if arguments[..3].iter().any(|value| value.as_ref().is_none_or(|v| types::poisoned(&v.ty)))
         {
             return poison(callee.span);

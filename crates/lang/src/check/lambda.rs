@@ -114,7 +114,7 @@ impl<'a> Checker<'a> {
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
                 | ClauseKind::Material(_)
-                | ClauseKind::Hits(_)
+                | ClauseKind::Intersect(_)
                 | ClauseKind::Copies => {} // reported by the parser
             }
         }
@@ -170,7 +170,7 @@ impl<'a> Names<'a> {
                 | ClauseKind::Bound(..)
                 | ClauseKind::Bounds(_)
                 | ClauseKind::Material(_)
-                | ClauseKind::Hits(_)
+                | ClauseKind::Intersect(_)
                 | ClauseKind::Copies => {}
             }
         }

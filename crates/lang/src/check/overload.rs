@@ -38,7 +38,7 @@ impl<'a> Checker<'a> {
                 if self.wants_other_dimension(decls, &signature, callee, &given) {
                     return self.give_up(given, callee.span);
                 }
-                let arguments = self.arguments(callee, &signature.slots, given);
+                let arguments = self.arguments(callee, &signature.parameters, given);
                 self.make(&signature, arguments, callee)
             }
             Picked::Kernel(builtin) => self.call_builtin(builtin, callee, given),
@@ -57,7 +57,7 @@ impl<'a> Checker<'a> {
         let others = decls.iter().map(|decl| self.decls[decl.0].ast).filter(|_| decls.len() > 1);
         let elsewhere: Vec<&str> = others
             .flat_map(|decl| decl.signature.parms.iter().map(|parm| parm.name.text.as_str()))
-            .filter(|name| signature.slots.iter().all(|slot| slot.name != *name))
+            .filter(|name| signature.parameters.iter().all(|parameter| parameter.name != *name))
             .collect();
         let named = given.iter().filter_map(|given| given.name);
         let Some(name) = named.into_iter().find(|name| elsewhere.contains(&name.text.as_str()))
@@ -161,13 +161,15 @@ impl<'a> Checker<'a> {
             let Picked::Declared(signature) = self.declared(decl, Some(dim), callee) else {
                 return Picked::Nothing;
             };
-            let Some(slot) = signature.slots.get(at) else { return Picked::Declared(signature) };
-            let want = match &slot.ty {
-                Type::List(of) if slot.variadic => &**of,
+            let Some(parameter) = signature.parameters.get(at) else {
+                return Picked::Declared(signature);
+            };
+            let want = match &parameter.ty {
+                Type::List(of) if parameter.variadic => &**of,
                 ty => ty,
             };
             self.body.attempts.push(Vec::new());
-            let read = self.check_expr(e, want, Role::Argument(callee.name, slot.name));
+            let read = self.check_expr(e, want, Role::Argument(callee.name, parameter.name));
             let found = self.body.attempts.pop().unwrap_or_default();
             let failed = found.iter().any(sdfc_diagnostics::Diagnostic::is_error);
             if !failed || self.body.attempts.len() >= MAX_ATTEMPTS {

@@ -7,7 +7,7 @@ use sdfc_syntax::ast::{self, ExprKind as Ast, Item};
 use super::body::Body;
 use super::call::{Callee, Given};
 use super::coerce::region_for_solid;
-use super::decl::{Slot, Target};
+use super::decl::{ParameterSignature, Target};
 use super::names::{Entry, Found, ImportedName, is_private};
 use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
@@ -195,10 +195,10 @@ impl<'a> Checker<'a> {
 
     fn setting(&mut self, row: usize, callee: Callee<'a>, args: &'a [ast::Arg]) {
         let row = self.settings[row].clone();
-        let slots: Vec<Slot> = row
+        let parameters: Vec<ParameterSignature> = row
             .parameters
             .iter()
-            .map(|parameter| Slot {
+            .map(|parameter| ParameterSignature {
                 name: parameter.name,
                 ty: parameter.ty.clone(),
                 variadic: false,
@@ -207,7 +207,7 @@ impl<'a> Checker<'a> {
             })
             .collect();
         let given = args.iter().map(Given::of).collect();
-        let args = self.arguments(callee, &slots, given);
+        let args = self.arguments(callee, &parameters, given);
         if let Some(first) = self.program.settings.iter().find(|s| s.kind == row.kind && row.once) {
             let message = format!("`{}` stands twice", row.name);
             let found = Diagnostic::error(Code::SETTING_TWICE, callee.at, message)
@@ -227,7 +227,7 @@ impl<'a> Checker<'a> {
                 .help("both say what is seen where nothing is met: remove one");
             self.report(found);
         }
-        let place = |name: &str| slots.iter().position(|slot| slot.name == name);
+        let place = |name: &str| parameters.iter().position(|parameter| parameter.name == name);
         if row.kind == SettingKind::Camera
             && let (Some(fov), Some(height)) = (place("fov"), place("height"))
             && let (Some(_), Some(height)) = (&args[fov], &args[height])

@@ -74,15 +74,14 @@ impl<'a> Checker<'a> {
             && !self.decls[only.0].generic
             && let Some(signature) = self.instance(only, None, span)
             && let Target::Fn(id) = signature.target
-            && signature.slots.len() == want.len()
-            && signature
-                .slots
-                .iter()
-                .zip(want)
-                .all(|(slot, want)| !slot.variadic && types::same_value(want, &slot.ty))
+            && signature.parameters.len() == want.len()
+            && signature.parameters.iter().zip(want).all(|(parameter, want)| {
+                !parameter.variadic && types::same_value(want, &parameter.ty)
+            })
         {
             self.needs(Node::Fn(id.0), span);
-            let parameters = signature.slots.iter().map(|slot| slot.ty.clone()).collect();
+            let parameters =
+                signature.parameters.iter().map(|parameter| parameter.ty.clone()).collect();
             let ty = Type::Fn(parameters, Box::new(signature.result.clone()));
             return Expr { kind: ExprKind::FnValue(id), ty, span };
         }
@@ -104,13 +103,14 @@ impl<'a> Checker<'a> {
             return self.no_single_type(name, span);
         }
         let Some(signature) = self.instance(only, None, span) else { return poison(span) };
-        if signature.slots.iter().any(|slot| slot.variadic) {
+        if signature.parameters.iter().any(|parameter| parameter.variadic) {
             return self.no_single_type(name, span);
         }
         if types::poisoned(&signature.result) {
             return poison(span);
         }
-        let parameters: Vec<Type> = signature.slots.iter().map(|slot| slot.ty.clone()).collect();
+        let parameters: Vec<Type> =
+            signature.parameters.iter().map(|parameter| parameter.ty.clone()).collect();
         match signature.target {
             Target::Fn(id) => {
                 self.needs(Node::Fn(id.0), span);

@@ -196,7 +196,7 @@ impl<'p> Elaborator<'p> {
         let Value::Range(lo, hi) = self.eval(env, range)? else {
             return Ok(());
         };
-        self.lies_in(*value, [lo, hi]);
+        self.lies_within(*value, [lo, hi]);
         let (above, below) = (self.not_above(lo, *value), self.not_above(*value, hi));
         for holds in above.into_iter().chain(below) {
             if let Some(found) = self.refute(holds) {
@@ -258,7 +258,7 @@ impl<'p> Elaborator<'p> {
     ) -> Outcome<()> {
         for require in requires {
             let condition = self.number(env, &require.condition)?;
-            self.binds(condition);
+            self.constrains(condition);
             let Some(found) = self.refute(condition) else {
                 continue;
             };

@@ -73,7 +73,7 @@ impl<'p> Elaborator<'p> {
         let mut running: Option<NodeId> = None;
         for (round, item) in rounds.items.into_iter().enumerate() {
             if let Some(holds) = self.goes_on(steps, state.clone())? {
-                self.decides(holds);
+                self.must_stay_constant(holds);
                 running = Some(self.both(running, holds));
             }
             let mut active = running;
@@ -164,7 +164,7 @@ impl<'p> Elaborator<'p> {
             return Ok(None);
         }
         if let Some(limit) = rounds.limit {
-            self.decides(limit);
+            self.must_stay_constant(limit);
         }
         let (cap, count) = (rounds.items.len() as u32, rounds.limit);
         let (start, next) = (vec![start], vec![next]);
@@ -189,7 +189,7 @@ impl<'p> Elaborator<'p> {
         for item in items {
             let Value::Node(node) = item else { return None };
             // A literal that moves is none: it is left as it is.
-            self.decides(*node);
+            self.must_stay_constant(*node);
             elements.push(self.graph.as_const(*node)?);
         }
         let ty = elements.first()?.ty();
@@ -220,7 +220,7 @@ impl<'p> Elaborator<'p> {
             return Ok(Rounds { items, limit: None, first });
         }
         let count = self.number(env, over)?;
-        self.decides(count);
+        self.must_stay_constant(count);
         let (cap, limit) = match self.graph.as_number(count) {
             Some(count) => (count, None),
             None => (self.highest(count, over.span)?, Some(count)),

@@ -140,7 +140,7 @@ impl<'p> Elaborator<'p> {
         let [a, b] = self.numbers(env, at.args)?;
         if op == Binary::Pow {
             // A power with a moving exponent has no value below 0.
-            self.decides(b);
+            self.must_stay_constant(b);
         }
         let result = match swapped {
             Swapped::No => self.graph.binary(op, a, b),
@@ -217,7 +217,7 @@ impl<'p> Elaborator<'p> {
             Some(value) if value == deciding => Ok(Value::Node(a)),
             Some(_) => Ok(Value::Node(self.number(env, b)?)),
             None => {
-                self.decides(a);
+                self.must_stay_constant(a);
                 let b = self.number(env, b)?;
                 Ok(Value::Node(self.graph.binary(op, a, b)))
             }

@@ -16,17 +16,17 @@
 mod call;
 mod color;
 mod expr;
-mod hits;
+mod intersect;
 mod iterate;
 mod kernel;
 mod lights;
+mod literals;
 mod probe;
 mod report;
 mod scene;
 mod sequence;
 mod settings;
 mod shape;
-mod slots;
 mod special;
 mod text;
 mod value;
@@ -39,8 +39,8 @@ use sdfc_graph::{Bounds, Claim, Graph, NodeId, Scene, ShapeId};
 
 use crate::font::Fonts;
 use crate::hir;
+use literals::LiteralUses;
 use report::Frame;
-use slots::Offer;
 use value::{ClosureKey, Value};
 
 /// Graph nodes of one scene.
@@ -64,8 +64,8 @@ pub struct Elaborated {
     /// Which calls built which shapes, in order of elaboration. Equal shapes share an instance,
     /// so one instance may have several sites.
     pub sites: Vec<Site>,
-    /// Literals that move: none unless asked for.
-    pub slots: Vec<crate::slots::Slot>,
+    /// Literals that are params: none unless [`crate::Options::live_literals`] is set.
+    pub live_literals: Vec<LiveLiteral>,
     /// The shapes that the scene and what it imports declare, with the places of their clauses.
     pub declared: Vec<Declared>,
     /// What functions of the scene's own state of their results, by call.
@@ -97,7 +97,7 @@ pub struct Declared {
     /// Where it states its bounds.
     pub bounds: Option<Span>,
     /// Where it states where rays are inside.
-    pub hits: Option<Span>,
+    pub intersect: Option<Span>,
     /// Where it states that what it does not sample is no nearer than it says.
     pub copies: Option<Span>,
 }
@@ -113,6 +113,17 @@ pub struct DeclaredPromise {
     pub inside: bool,
     /// Its place.
     pub span: Span,
+}
+
+/// A literal of the scene that became a param, see [`crate::live_literals`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct LiveLiteral {
+    /// Where it is written.
+    pub span: Span,
+    /// Its value there.
+    pub value: f64,
+    /// The index of its param.
+    pub param: usize,
 }
 
 /// A place in the scene's own files that built a shape.
@@ -142,15 +153,16 @@ pub(crate) fn elaborate_with(
     program: &hir::Program,
     fonts: &Fonts<'_>,
     first_literal: usize,
-) -> (Option<Elaborated>, Vec<Diagnostic>, Offer) {
+) -> (Option<Elaborated>, Vec<Diagnostic>, LiteralUses) {
     let mut elaborator = Elaborator::new(program, fonts, first_literal);
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let declared = shape::declared(program, &elaborator.definitions);
-    let Elaborator { soft_shadows, sites, claims, diagnostics, offer, .. } = elaborator;
-    let elaborated = Elaborated { scene, sites, slots: Vec::new(), declared, claims, soft_shadows };
-    ((!failed).then_some(elaborated), diagnostics, offer)
+    let Elaborator { soft_shadows, sites, claims, diagnostics, literals, .. } = elaborator;
+    let elaborated =
+        Elaborated { scene, sites, live_literals: Vec::new(), declared, claims, soft_shadows };
+    ((!failed).then_some(elaborated), diagnostics, literals)
 }
 
 /// An error was reported; what depends on the value stays silent.
@@ -221,9 +233,9 @@ struct Elaborator<'p> {
     /// `bounds(a)` was asked for since this was last set to false.
     asked_bounds: bool,
     /// Shapes that rays may meet in closed form, by definition.
-    waiting: BTreeMap<hir::ShapeDefId, hits::Waiting<'p>>,
-    /// Params that stand for literals.
-    offer: Offer,
+    waiting: BTreeMap<hir::ShapeDefId, intersect::Waiting<'p>>,
+    /// What is known of the params that stand for literals.
+    literals: LiteralUses,
     /// How many loops the body at hand lies in.
     loop_depth: u8,
     /// How often their rounds run it.
@@ -256,7 +268,7 @@ impl<'p> Elaborator<'p> {
             in_clause: false,
             asked_bounds: false,
             waiting: BTreeMap::new(),
-            offer: Offer::new(first_literal),
+            literals: LiteralUses::new(first_literal),
             loop_depth: 0,
             loop_rounds: 1,
         }

@@ -133,7 +133,7 @@ impl<'p> Elaborator<'p> {
 
     /// Reports that something must be known at compile time, and why it is not.
     pub(super) fn not_constant(&mut self, span: Span, what: &str, node: NodeId) -> Poison {
-        self.decides(node);
+        self.must_stay_constant(node);
         let why = self.why_not_constant(node);
         let message = format!("{what} must be known at compile time; {why}");
         let help = "write the value here, or make it a `let`";

@@ -26,7 +26,7 @@ impl<'p> Elaborator<'p> {
         }
         let settings = self.settings();
         let root = self.drawn();
-        self.ask_hits();
+        self.add_intersections();
         let painted = root.is_some_and(|root| is_painted(&self.graph, root));
         let graph = std::mem::take(&mut self.graph);
         let params = std::mem::take(&mut self.params);

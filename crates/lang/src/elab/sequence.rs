@@ -126,7 +126,7 @@ impl<'p> Elaborator<'p> {
         let (items, at) = (self.sequence(env, base, "a list"), self.number(env, index));
         let (items, at) = (items?, at?);
         if self.as_lanes(at).is_none() {
-            self.decides(at);
+            self.must_stay_constant(at);
             return self.select_index(&items, at, index.span);
         }
         let position = self.whole(at, index.span, "an index")?;
@@ -220,7 +220,7 @@ impl<'p> Elaborator<'p> {
             Some(true) => self.eval(env, yes),
             Some(false) => self.eval(env, no),
             None => {
-                self.decides(chosen);
+                self.must_stay_constant(chosen);
                 let (yes, no) = (self.eval(env, yes), self.eval(env, no));
                 self.select(chosen, &yes?, &no?, span)
             }

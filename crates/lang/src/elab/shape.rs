@@ -44,7 +44,7 @@ pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared
         promises: shape.promises.iter().map(promise).collect(),
         lipschitz: shape.lipschitz.as_ref().map(|stated| stated.span),
         bounds: shape.bounds.as_ref().map(|stated| stated.span),
-        hits: shape.hits.as_ref().map(|stated| stated.value.span),
+        intersect: shape.intersect.as_ref().map(|stated| stated.value.span),
         copies: shape.copies,
     })
     .collect()
@@ -240,7 +240,7 @@ impl<'p> Elaborator<'p> {
             Some(condition) => self.number(env, condition)?,
             None => self.graph.boolean(true),
         };
-        self.binds(condition);
+        self.constrains(condition);
         if !self.is_early(condition) || self.as_bool(condition) == Some(false) {
             return Ok(());
         }

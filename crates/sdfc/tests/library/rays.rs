@@ -1,4 +1,4 @@
-//! Whether rays are inside where an entry's `hits` says so, in both precisions, and whether they meet nothing else than copies where
+//! Whether rays are inside where an entry's `intersect` says so, in both precisions, and whether they meet nothing else than copies where
 //! `copies` says so.
 
 use sdfc::FrameValues;

@@ -114,7 +114,7 @@ fn clause<'a>(source: &mut Source<'a>, tree: &Clause) -> Doc<'a> {
                 docs.extend([text(" "), source.take()]);
             }
         }
-        ClauseKind::Bounds(value) | ClauseKind::Material(value) | ClauseKind::Hits(value) => {
+        ClauseKind::Bounds(value) | ClauseKind::Material(value) | ClauseKind::Intersect(value) => {
             docs.extend([text(" "), expr(source, value)]);
         }
         ClauseKind::Copies => {}

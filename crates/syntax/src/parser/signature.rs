@@ -10,7 +10,10 @@ use crate::token::TokenKind;
 
 /// The words that clauses start with.
 const CLAUSES: [&str; 8] =
-    ["exact", "bound", "lipschitz", "bounds", "material", "require", "hits", "copies"];
+    ["exact", "bound", "lipschitz", "bounds", "material", "require", "intersect", "copies"];
+
+/// The former name of the clause `intersect`.
+const FORMER_INTERSECT: &str = "hits";
 
 impl Parser<'_> {
     /// `(parameters) [-> type] clauses`
@@ -55,8 +58,7 @@ impl Parser<'_> {
             return self
                 .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
         }
-        let help =
-            "the clauses are exact, bound, lipschitz, bounds, material, hits, copies and require";
+        let help = "the clauses are exact, bound, lipschitz, bounds, material, intersect, copies and require";
         if self.kind() == TokenKind::Name && !self.at_new_item() {
             let word = self.slice(self.span());
             let message = format!("expected `=` or a clause, found `{word}`");
@@ -93,7 +95,13 @@ impl Parser<'_> {
     }
 
     /// The word that a clause starts with, if one comes next.
-    fn clause_word(&self) -> Option<&'static str> {
+    fn clause_word(&mut self) -> Option<&'static str> {
+        if self.at_word(FORMER_INTERSECT) {
+            let message = format!("the clause `{FORMER_INTERSECT}` is called `intersect` now");
+            let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
+            self.report(found.help("write `intersect` and keep the rest of the clause"));
+            return Some("intersect");
+        }
         CLAUSES.into_iter().find(|word| self.at_word(word))
     }
 
@@ -128,7 +136,7 @@ impl Parser<'_> {
             }
             "bounds" => ClauseKind::Bounds(self.expr()?),
             "material" => ClauseKind::Material(self.expr()?),
-            "hits" => ClauseKind::Hits(self.expr()?),
+            "intersect" => ClauseKind::Intersect(self.expr()?),
             "copies" => ClauseKind::Copies,
             _ => self.requirement()?,
         };

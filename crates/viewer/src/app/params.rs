@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Response, RichText, SliderClamping, Ui};
 use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::slots::Slot;
+use sdfc::lang::live_literals::LiveLiteral;
 
 use super::{Wish, source, style};
 use crate::knobs::{display_text, value_text};
@@ -60,7 +60,7 @@ fn declared(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Vec<
 }
 
 /// A number that the scene gives a name.
-fn named(ui: &mut Ui, session: &mut Session, name: &str, slot: &Slot, param: &Param) {
+fn named(ui: &mut Ui, session: &mut Session, name: &str, slot: &LiveLiteral, param: &Param) {
     let is_angle = param.kind == ParamKind::Angle;
     let unit = if is_angle { 1f64.to_degrees() } else { 1.0 };
     let before = session.knobs.literal(slot);

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, RichText, Ui};
 use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::slots::{MAX_SLOTS, Slot};
+use sdfc::lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
 
 use super::params::drag;
 use super::{Wish, style};
@@ -43,8 +43,8 @@ pub fn orders(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Ve
     ui.horizontal(|ui| {
         let what = match moved {
             0 if model.literals().next().is_none() => "no number to drag".to_owned(),
-            0 if model.scene.slots().len() == MAX_SLOTS => {
-                format!("drag one of {MAX_SLOTS} numbers")
+            0 if model.scene.slots().len() == MAX_LIVE_LITERALS => {
+                format!("drag one of {MAX_LIVE_LITERALS} numbers")
             }
             0 => "drag a number".to_owned(),
             1 => "1 number moved".to_owned(),
@@ -53,7 +53,7 @@ pub fn orders(ui: &mut Ui, session: &mut Session, model: &Model, wishes: &mut Ve
         let color = if moved > 0 { style::of(ui).accent } else { style::of(ui).weak };
         let help = format!(
             "Numbers that decide what is built stay as they are, and so do those of a scene whose many parts are \
-             loops. Of more than {MAX_SLOTS} those move that stand around the last edit: change another in the file, \
+             loops. Of more than {MAX_LIVE_LITERALS} those move that stand around the last edit: change another in the file, \
              which takes a new shader once."
         );
         ui.label(RichText::new(what).small().color(color)).on_hover_text(help);
@@ -88,7 +88,7 @@ fn lines(text: &str) -> Vec<(usize, &str)> {
 
 fn line(ui: &mut Ui, session: &mut Session, model: &Model, start: usize, text: &str) {
     let end = start + text.len();
-    let mut inside: Vec<(&Slot, &Param)> = model
+    let mut inside: Vec<(&LiveLiteral, &Param)> = model
         .literals()
         .filter(|(slot, _)| (start..end).contains(&(slot.span.start as usize)))
         .collect();
@@ -112,7 +112,7 @@ fn plain(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).monospace().color(color));
 }
 
-fn number(ui: &mut Ui, session: &mut Session, slot: &Slot, param: &Param) {
+fn number(ui: &mut Ui, session: &mut Session, slot: &LiveLiteral, param: &Param) {
     let is_angle = param.kind == ParamKind::Angle;
     let unit = if is_angle { 1f64.to_degrees() } else { 1.0 };
     let before = session.knobs.literal(slot);

@@ -1,4 +1,4 @@
-//! Where a ray is inside a solid, as its clause `hits` states it.
+//! Where a ray is inside a solid, as its clause `intersect` states it.
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
@@ -7,9 +7,9 @@ use sdfc_graph::{Dim, FAR, Graph, NodeId, ShapeId, reachable};
 use super::report::Frame;
 use super::value::Value;
 use super::{Elaborator, Env, Outcome};
-use crate::hir::{Hits, ShapeDefId};
+use crate::hir::{Intersect, ShapeDefId};
 
-/// Instances of one definition that are asked for their `hits` at most: among more, marching costs a ray less than
+/// Instances of one definition that are asked for their `intersect` at most: among more, marching costs a ray less than
 /// meeting each.
 const MOST_INSTANCES: usize = 512;
 
@@ -19,7 +19,7 @@ pub(super) type Waiting<'p> = Option<Vec<Unasked<'p>>>;
 /// An instance, with its clause, what that may name and the calls that built it.
 pub(super) struct Unasked<'p> {
     shape: ShapeId,
-    stated: &'p Hits,
+    stated: &'p Intersect,
     env: Env<'p>,
     frames: Vec<Frame<'p>>,
 }
@@ -29,7 +29,7 @@ impl<'p> Elaborator<'p> {
     /// asked.
     pub(super) fn may_be_hit(&mut self, id: ShapeDefId, shape: ShapeId, env: Env<'p>) {
         let definition = self.program.shapes.get(id.0 as usize);
-        let Some(stated) = definition.and_then(|definition| definition.hits.as_ref()) else {
+        let Some(stated) = definition.and_then(|definition| definition.intersect.as_ref()) else {
             return;
         };
         if self.loop_depth > 0 {
@@ -43,24 +43,24 @@ impl<'p> Elaborator<'p> {
     }
 
     /// Asks all that wait.
-    pub(super) fn ask_hits(&mut self) {
+    pub(super) fn add_intersections(&mut self) {
         for instance in std::mem::take(&mut self.waiting).into_values().flatten().flatten() {
             let Unasked { shape, stated, mut env, frames } = instance;
             let outer = std::mem::replace(&mut self.frames, frames);
             // What is wrong has been said.
             let level = self.graph.shape(shape).level;
-            if let Ok(hits) = self.hits(&mut env, stated, level) {
-                self.graph.set_hits(shape, hits);
+            if let Ok(intervals) = self.intervals(&mut env, stated, level) {
+                self.graph.set_hits(shape, intervals);
             }
             self.frames = outer;
         }
     }
 
     /// The intervals of a ray whose origin is the point of a level and whose direction is that of the next.
-    fn hits(
+    fn intervals(
         &mut self,
         env: &mut Env<'p>,
-        stated: &'p Hits,
+        stated: &'p Intersect,
         level: u16,
     ) -> Outcome<Vec<[NodeId; 2]>> {
         let [origin, direction] =
@@ -69,9 +69,9 @@ impl<'p> Elaborator<'p> {
         env.set(stated.direction.0 as usize, Value::Node(direction));
         let span = stated.value.span;
         // Both sides of its choices stand in the shader: a literal in a condition may still move.
-        let decisive = self.offer.decisive.clone();
+        let decisive = self.literals.fixed.clone();
         let value = self.eval(env, &stated.value)?;
-        self.offer.decisive = decisive;
+        self.literals.fixed = decisive;
         match value {
             Value::Node(interval) => Ok(vec![self.interval(interval, span)?]),
             Value::List(intervals) => {

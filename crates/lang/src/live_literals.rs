@@ -1,133 +1,133 @@
-//! Literals that move without a recompile.
+//! Live literals: numbers written in the scene that can change without a recompile.
 //!
-//! A number written in the scene becomes a param of its own, with the number as its default, unless it
-//! decides what is built: a branch, a length, a count, a promise, a requirement, an exponent. Which do
-//! is found out by elaborating: what a decision asked about is put back, and the scene elaborated again,
-//! until nothing is asked. Everything after that treats such a param as any other.
+//! Each literal becomes a param of its own, with the literal as its default. A literal stays
+//! constant if it decides what is built (a branch, a length, a count, an exponent) or if a promise
+//! or a requirement depends on it. Elaboration finds these: they are made constant again, and the
+//! scene is elaborated again, until no more are found. Later phases treat a live literal as they
+//! treat any other param.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 
+pub use crate::elab::LiveLiteral;
 use crate::elab::{self, Elaborated};
 use crate::font::Fonts;
 use crate::hir::{self, Element, Expr, ExprKind, ParamId, Program};
 
-/// How often a scene is elaborated before its literals are left as they are.
-const MAX_ROUNDS: usize = 64;
-/// Most literals of a scene that move: what a uniform buffer of 16 KiB holds, with room for params.
-pub const MAX_SLOTS: usize = 512;
+/// Number of elaborations after which all literals of a scene stay constant.
+const MAX_ELABORATIONS: usize = 64;
+/// Most live literals of a scene: a uniform buffer of 16 KiB holds them, with room for params.
+pub const MAX_LIVE_LITERALS: usize = 512;
 
-/// A literal that moves.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slot {
-    /// Where it is written.
-    pub span: Span,
-    /// Its value there.
-    pub value: f64,
-    /// The param that it has become, by position.
-    pub param: usize,
-}
-
-/// What is known of the literals so far.
+/// What earlier elaborations found out about the literals.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Known {
-    decisive: BTreeSet<Span>,
+struct LiteralFacts {
+    /// Literals that must stay constant.
+    fixed: BTreeSet<Span>,
+    /// The range within which a literal may move.
     ranges: BTreeMap<Span, [f64; 2]>,
 }
 
-/// Elaborates a checked scene with as many of its literals as possible as params.
+/// Elaborates a checked scene with as many of its literals as possible as params. If there are
+/// more than [`MAX_LIVE_LITERALS`], those nearest to the byte offset `focus` become params.
 pub(crate) fn elaborate(
     program: &Program,
     fonts: &Fonts<'_>,
     sources: &Sources,
     file: FileId,
-    near: Option<u32>,
+    focus: Option<u32>,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let plain = elab::elaborate(program, fonts);
     if plain.0.is_none() {
         return plain;
     }
-    let mut known = Known::default();
-    for _ in 0..MAX_ROUNDS {
-        let mut moving = program.clone();
-        let chosen = near.and_then(|near| around(near, program, sources, file, &known));
-        let slots = Offering { chosen, ..Offering::new(sources, file, &known) }.make(&mut moving);
-        if slots.is_empty() {
+    let mut facts = LiteralFacts::default();
+    for _ in 0..MAX_ELABORATIONS {
+        let mut lifted = program.clone();
+        let chosen = focus.and_then(|focus| around(focus, program, sources, file, &facts));
+        let lifting = Lifting { chosen, ..Lifting::new(sources, file, &facts) };
+        let literals = lifting.lift(&mut lifted);
+        if literals.is_empty() {
             return plain;
         }
-        let (elaborated, _, offer) = elab::elaborate_with(&moving, fonts, program.params.len());
-        let span = |param: &usize| slots.iter().find(|s| s.param == *param).map(|s| s.span);
-        let mut learned = known.clone();
-        learned.decisive.extend(offer.decisive.iter().filter_map(span));
-        if learned == known {
-            learned.decisive.extend(offer.bound.iter().filter_map(span));
-            let ranges = offer.ranges.iter();
+        let (elaborated, _, uses) = elab::elaborate_with(&lifted, fonts, program.params.len());
+        let span = |param: &usize| literals.iter().find(|s| s.param == *param).map(|s| s.span);
+        let mut learned = facts.clone();
+        learned.fixed.extend(uses.fixed.iter().filter_map(span));
+        if learned == facts {
+            learned.fixed.extend(uses.constrained.iter().filter_map(span));
+            let ranges = uses.ranges.iter();
             learned.ranges.extend(ranges.filter_map(|(param, range)| Some((span(param)?, *range))));
         }
-        if learned != known {
-            known = learned;
+        if learned != facts {
+            facts = learned;
             continue;
         }
         return match elaborated {
-            Some(elaborated) => (Some(Elaborated { slots, ..elaborated }), plain.1),
+            Some(elaborated) => {
+                (Some(Elaborated { live_literals: literals, ..elaborated }), plain.1)
+            }
             None => plain,
         };
     }
     plain
 }
 
-/// Of the literals in the order of the text as many as can move, with the one nearest to a byte in their middle; `None` where
-/// all can.
+/// The [`MAX_LIVE_LITERALS`] literals around a byte offset; `None` if there are no more than that.
 fn around(
-    near: u32,
+    focus: u32,
     program: &Program,
     sources: &Sources,
     file: FileId,
-    known: &Known,
+    facts: &LiteralFacts,
 ) -> Option<BTreeSet<Span>> {
-    let all = Offering { most: usize::MAX, ..Offering::new(sources, file, known) };
-    let mut all: Vec<Span> = all.make(&mut program.clone()).iter().map(|slot| slot.span).collect();
-    if all.len() <= MAX_SLOTS {
+    let all = Lifting { most: usize::MAX, ..Lifting::new(sources, file, facts) };
+    let literals = all.lift(&mut program.clone());
+    let mut all: Vec<Span> = literals.iter().map(|literal| literal.span).collect();
+    if all.len() <= MAX_LIVE_LITERALS {
         return None;
     }
     all.sort_unstable();
-    let middle = all.partition_point(|span| span.end < near);
-    let first = middle.saturating_sub(MAX_SLOTS / 2).min(all.len() - MAX_SLOTS);
-    Some(all[first..first + MAX_SLOTS].iter().copied().collect())
+    let middle = all.partition_point(|span| span.end < focus);
+    let first = middle.saturating_sub(MAX_LIVE_LITERALS / 2).min(all.len() - MAX_LIVE_LITERALS);
+    Some(all[first..first + MAX_LIVE_LITERALS].iter().copied().collect())
 }
 
-/// Puts params in the places of literals.
-struct Offering<'a> {
+/// Replaces literals of a program by params.
+struct Lifting<'a> {
     sources: &'a Sources,
     file: FileId,
-    known: &'a Known,
-    /// The literals to choose from; all, if nothing is said.
+    facts: &'a LiteralFacts,
+    /// The literals to choose from; `None` for all.
     chosen: Option<BTreeSet<Span>>,
+    /// How many literals to lift at most.
     most: usize,
     params: Vec<hir::Param>,
-    slots: Vec<Slot>,
-    /// The param of each literal so far.
-    places: BTreeMap<Span, ParamId>,
+    literals: Vec<LiveLiteral>,
+    /// The param of each literal lifted so far.
+    lifted: BTreeMap<Span, ParamId>,
+    /// Index of the first param that stands for a literal.
     first: usize,
 }
 
-impl<'a> Offering<'a> {
-    fn new(sources: &'a Sources, file: FileId, known: &'a Known) -> Self {
+impl<'a> Lifting<'a> {
+    fn new(sources: &'a Sources, file: FileId, facts: &'a LiteralFacts) -> Self {
         Self {
             sources,
             file,
-            known,
+            facts,
             chosen: None,
-            most: MAX_SLOTS,
+            most: MAX_LIVE_LITERALS,
             params: Vec::new(),
-            slots: Vec::new(),
-            places: BTreeMap::new(),
+            literals: Vec::new(),
+            lifted: BTreeMap::new(),
             first: 0,
         }
     }
 
-    fn make(mut self, program: &mut Program) -> Vec<Slot> {
+    /// Puts the params into the program and returns the literals that they stand for.
+    fn lift(mut self, program: &mut Program) -> Vec<LiveLiteral> {
         self.first = program.params.len();
         for global in &mut program.globals {
             self.expr(&mut global.value);
@@ -144,7 +144,7 @@ impl<'a> Offering<'a> {
             setting.args.iter_mut().flatten().for_each(|arg| self.expr(arg));
         }
         program.params.append(&mut self.params);
-        self.slots
+        self.literals
     }
 
     fn expr(&mut self, expr: &mut Expr) {
@@ -158,7 +158,7 @@ impl<'a> Offering<'a> {
         match &mut expr.kind {
             ExprKind::Number(value) => {
                 let value = *value;
-                if let Some(id) = self.offer(expr.span, value, &expr.ty) {
+                if let Some(id) = self.lift_literal(expr.span, value, &expr.ty) {
                     expr.kind = ExprKind::Param(id);
                 }
             }
@@ -222,25 +222,26 @@ impl<'a> Offering<'a> {
         }
     }
 
-    /// The param for a literal; `None` if it must stay. `pi` and its like are names, not literals.
-    fn offer(&mut self, span: Span, value: f64, ty: &hir::Type) -> Option<ParamId> {
+    /// The param for a literal; `None` if the literal must stay. Constants such as `pi` are names,
+    /// not literals.
+    fn lift_literal(&mut self, span: Span, value: f64, ty: &hir::Type) -> Option<ParamId> {
         let written = self.sources.slice(span).starts_with(|c: char| c.is_ascii_digit());
-        if !written || self.known.decisive.contains(&span) {
+        if !written || self.facts.fixed.contains(&span) {
             return None;
         }
-        if let Some(again) = self.places.get(&span) {
+        if let Some(again) = self.lifted.get(&span) {
             return Some(*again);
         }
-        if self.slots.len() == self.most
+        if self.literals.len() == self.most
             || self.chosen.as_ref().is_some_and(|it| !it.contains(&span))
         {
             return None;
         }
-        let param = self.first + self.slots.len();
+        let param = self.first + self.literals.len();
         let number = |value| Expr { kind: ExprKind::Number(value), ty: hir::Type::Number, span };
         let ty = if *ty == hir::Type::Angle { hir::Type::Angle } else { hir::Type::Number };
         let place = self.sources.line_column(span.file, span.start);
-        let range = self.known.ranges.get(&span).map(|[lo, hi]| Expr {
+        let range = self.facts.ranges.get(&span).map(|[lo, hi]| Expr {
             kind: ExprKind::Range(Box::new(number(*lo)), Box::new(number(*hi))),
             ty: hir::Type::Range(Box::new(ty.clone())),
             span,
@@ -254,8 +255,8 @@ impl<'a> Offering<'a> {
             span,
             docs: vec![self.sources.slice(span).to_owned()],
         });
-        self.slots.push(Slot { span, value, param });
-        self.places.insert(span, ParamId(param as u32));
+        self.literals.push(LiveLiteral { span, value, param });
+        self.lifted.insert(span, ParamId(param as u32));
         Some(ParamId(param as u32))
     }
 }
