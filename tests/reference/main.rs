@@ -1,8 +1,8 @@
-//! `docs/reference` says what the library, the kernel, the settings and the types say of themselves, with a
-//! picture of everything that the library draws.
+//! Checks that `docs/reference` matches the documentation of the library, the kernel, the settings
+//! and the types, with a picture of everything that the library draws.
 //!
-//! After a change, `REFERENCE_UPDATE=1 cargo test -p sdfc-cli -p sdfc --test reference` writes it anew. Texts are
-//! compared to the letter, pictures as `same_picture` says.
+//! After a change, `REFERENCE_UPDATE=1 cargo test -p sdfc-cli -p sdfc --test reference` writes it
+//! again. Pages must match exactly, pictures as `same_picture` describes.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,12 +1,16 @@
-//! The library: files of the language, and what their documentation says.
+//! The library: its source files in `std`, and their documentation.
 //!
-//! Everything that is a shape, a blend or a pattern is written there. A new shape is a new entry
-//! of one of the files; nothing here or elsewhere in Rust names one.
+//! All shapes, blends and patterns are written in the language, in these files. A new shape is a
+//! new entry in one of them; no Rust code names a shape.
+//!
+//! The first line of an entry's doc comment is its summary. A line `name: ...` describes a
+//! parameter, `source: ...` and `example: ...` are keys too, and all other lines are details. A
+//! line that is indented by two blanks continues the line before it.
 
 use sdfc_diagnostics::{FileId, Sources, Span};
 use sdfc_syntax::ast::{self, DeclKind, Item};
 
-/// Name, as messages show it, and text of each file.
+/// Name and source of each file. Diagnostics show the name.
 pub const FILES: &[(&str, &str)] = &[
     ("std/bezier.sdf", include_str!("../std/bezier.sdf")),
     ("std/combine.sdf", include_str!("../std/combine.sdf")),
@@ -24,7 +28,7 @@ pub const FILES: &[(&str, &str)] = &[
     ("std/surfaces.sdf", include_str!("../std/surfaces.sdf")),
 ];
 
-/// Adds the library's files, unless they are there.
+/// Adds the library's files to `sources`, unless they are already there. Returns their ids.
 pub(crate) fn add_to(sources: &mut Sources) -> Vec<FileId> {
     FILES.iter().map(|(name, text)| add(sources, name, text)).collect()
 }
@@ -35,36 +39,36 @@ fn add(sources: &mut Sources, name: &str, text: &str) -> FileId {
     known.next().unwrap_or_else(|| sources.add(name, text))
 }
 
-/// What the reference says of one name: a public declaration of the library, or something that the
+/// The reference's entry for one name: a public declaration of the library, or a name that the
 /// compiler itself knows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// Its name; a shape declared for solids and for regions has two entries.
+    /// The name. A shape that is declared for solids and for regions has two entries.
     pub name: String,
-    /// `fn`, `solid`, `region` or `shape`; beyond the library `kernel`, `setting` or `type`.
+    /// `fn`, `solid`, `region` or `shape` for the library; else `kernel`, `setting` or `type`.
     pub kind: &'static str,
-    /// What it belongs to: for the library the name of its file, without folder and ending.
+    /// Its section: for the library the name of its file, without folder and extension.
     pub topic: &'static str,
-    /// Name, parameters and result as written, on one line.
+    /// Name, parameters and result as in the source, on one line.
     pub signature: String,
-    /// The first line.
+    /// The first line of the documentation.
     pub summary: String,
-    /// Prose after the first line, on one line; often empty.
+    /// The prose after the first line, joined to one line; often empty.
     pub details: String,
-    /// Name and description of each parameter that has one.
+    /// Name and description of each documented parameter.
     pub parameters: Vec<(String, String)>,
-    /// The clauses as written, each on one line.
+    /// The clauses as in the source, each on one line.
     pub clauses: Vec<String>,
-    /// Where the formula is from.
+    /// The source of the formula: a publication, or a derivation.
     pub source: String,
-    /// An expression that uses it.
+    /// An expression that uses the entry.
     pub example: String,
-    /// Name of the file that declares it, and the line, from 1; only of the library.
+    /// For the library: the name of the file that declares it, and the line, counted from 1.
     pub place: Option<(&'static str, u32)>,
 }
 
 impl Entry {
-    /// The clauses, one after the other, separated by `; `.
+    /// The clauses, separated by `; `.
     pub fn contract(&self) -> String {
         self.clauses.join("; ")
     }
@@ -101,21 +105,37 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
         place: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
         ..Entry::default()
     };
-    let mut lines = decl.docs.lines.iter();
-    entry.summary = lines.next().cloned().unwrap_or_default();
+    let mut lines = unwrapped(&decl.docs.lines).into_iter();
+    entry.summary = lines.next().unwrap_or_default();
     for line in lines {
-        describe(&mut entry, decl, line);
+        describe(&mut entry, decl, &line);
     }
     entry
 }
 
-/// `std/solids.sdf` is about `solids`.
+/// Joins each line that is indented by two blanks to the line before it.
+fn unwrapped(lines: &[String]) -> Vec<String> {
+    let mut joined: Vec<String> = Vec::new();
+    for line in lines {
+        match (line.strip_prefix("  "), joined.last_mut()) {
+            (Some(rest), Some(last)) => {
+                last.push(' ');
+                last.push_str(rest.trim());
+            }
+            (Some(_), None) | (None, _) => joined.push(line.clone()),
+        }
+    }
+    joined
+}
+
+/// The topic of a file: `solids` for `std/solids.sdf`.
 fn topic(file: &'static str) -> &'static str {
     let name = file.rsplit('/').next().unwrap_or(file);
     name.strip_suffix(".sdf").unwrap_or(name)
 }
 
-/// Sorts one line of documentation by its key: `source:`, `example:`, a parameter's name, or prose.
+/// Adds one line of documentation to an entry. Its key, such as `source:` or a parameter's name,
+/// says which part of the entry it is; a line without a key is prose.
 fn describe(entry: &mut Entry, decl: &ast::Decl, line: &str) {
     let keyed = line.split_once(':').map(|(key, text)| (key.trim(), text.trim().to_owned()));
     match keyed {
@@ -143,7 +163,8 @@ fn clauses(sources: &Sources, decl: &ast::Decl) -> Vec<String> {
     clauses.map(|clause| one_line(sources, clause.span)).collect()
 }
 
-/// A span's text without comments, each run of white space one blank, and none where a list was broken into lines.
+/// The source of a span on one line, without comments. Each run of white space becomes one blank;
+/// the blanks and commas that come from breaking a list into lines are dropped.
 fn one_line(sources: &Sources, span: Span) -> String {
     let code = sources.slice(span).lines().map(|line| line.split("//").next().unwrap_or(line));
     let words: Vec<&str> = code.flat_map(str::split_whitespace).collect();

@@ -1,7 +1,7 @@
-//! Everything that a scene can name without declaring it: the library, the kernel, the settings, the types.
+//! The reference: all names that a scene can use without declaring them.
 //!
-//! Nothing is described here: the library's entries say what they are in their own files, the rest in
-//! the tables that the checker looks names up in.
+//! These are the names of the library, the kernel, the settings and the types. The descriptions of
+//! library entries come from the doc comments in `std`, the others from the checker's tables.
 
 use crate::check::kernel::ROWS;
 use crate::check::types::{WORDS, show};
@@ -9,7 +9,7 @@ use crate::library::{self, Entry};
 use crate::settings::{self, SettingRow};
 use crate::spelling;
 
-/// All entries, topic by topic.
+/// All entries, sorted by topic.
 pub fn entries() -> Vec<Entry> {
     let mut entries = library::entries();
     entries.extend(ROWS.iter().map(|row| Entry {
@@ -47,7 +47,7 @@ fn setting(row: &SettingRow) -> Entry {
         topic: "settings",
         signature: format!("{}({})", row.name, written.join(", ")),
         summary: row.summary.to_owned(),
-        details: if row.once { "It stands at most once." } else { "Any number may stand." }
+        details: if row.once { "May appear only once." } else { "May appear any number of times." }
             .to_owned(),
         parameters: about.collect(),
         example: row.example.to_owned(),
@@ -55,7 +55,7 @@ fn setting(row: &SettingRow) -> Entry {
     }
 }
 
-/// What to say of a name that nothing has: "did you mean `sphere`?"
+/// A suggestion for an unknown name: "did you mean `sphere`?"
 pub fn meant(entries: &[Entry], name: &str) -> Option<String> {
     spelling::meant(name, entries.iter().map(|entry| entry.name.as_str()))
 }

@@ -1,9 +1,9 @@
-//! The settings and their parameters, what they take and what they are for: one row each.
+//! The settings of a scene (camera, lights, background, ...), their parameters and documentation.
 
 use crate::hir::{SettingKind, Type};
 
-/// What `march(method: ...)` may name, the default first: the ray methods of `sdfc-march`, save those that are
-/// there to compare with.
+/// The ray methods that `march(method: ...)` can name, the default first. These are the methods of
+/// `sdfc-march`, except those that exist only for comparison.
 pub const RAY_METHODS: [&str; 9] = [
     "auto",
     "fixed",
@@ -23,26 +23,26 @@ pub struct SettingParameter {
     pub name: &'static str,
     /// Its type.
     pub ty: Type,
-    /// Whether it may be left out.
+    /// True if it can be omitted.
     pub optional: bool,
-    /// What it is, with its unit and its default.
+    /// Its meaning, unit and default.
     pub about: &'static str,
 }
 
 /// One setting.
 #[derive(Clone, Debug)]
 pub struct SettingRow {
-    /// Which.
+    /// The kind of setting.
     pub kind: SettingKind,
     /// Its name in the language.
     pub name: &'static str,
-    /// Whether it may stand only once.
+    /// True if a scene can contain it only once.
     pub once: bool,
-    /// What it does, in a sentence or two.
+    /// Its effect, in a sentence or two.
     pub summary: &'static str,
-    /// A line that uses it.
+    /// A line of a scene that uses it.
     pub example: &'static str,
-    /// Its parameters in order; `hir::Setting::args` has one place for each.
+    /// Its parameters in order; `hir::Setting::args` has one element for each.
     pub parameters: Vec<SettingParameter>,
 }
 
@@ -51,149 +51,149 @@ pub fn table() -> Vec<SettingRow> {
     use SettingKind as Kind;
     use Type::{Angle, Color, Int, Number, Shadow, Text};
     let vec3 = Type::Vec(3);
-    let position = ("position", vec3.clone(), false, "where it is, in scene units");
-    let color = ("color", Color, true, "its colour; white if not given");
-    let strength = ("strength", Number, true, "what its colour is multiplied by; 1 if not given");
+    let position = ("position", vec3.clone(), false, "position, in scene units");
+    let color = ("color", Color, true, "colour; default white");
+    let strength = ("strength", Number, true, "factor of the colour; default 1");
     let brightness = (
         "strength",
         Number,
         true,
-        "what its colour is multiplied by at distance 1, a quarter of it at 2; 1 if not given",
+        "factor of the colour at distance 1; it falls with the square of the distance; default 1",
     );
     let shadow = (
         "shadow",
         Shadow,
         true,
-        "`hard`, or `soft(k)` whose edge fades over 1 / k of the way from what throws it; none if not given",
+        "`hard`, or `soft(k)`, whose penumbra is (distance from the occluder) / k wide: a smaller k gives a softer shadow; default no shadow",
     );
     vec![
         row(
             (Kind::Camera, "camera", ONCE),
-            "Where the picture is seen from. Without a camera the view is fitted to the scene.",
+            "The camera. Without this setting the view is fitted to the scene.",
             "camera(eye: [4, 3, 5], target: [0, 0.5, 0], fov: 35deg)",
             &[
-                ("eye", vec3.clone(), false, "where the eye is, in scene units"),
-                ("target", vec3.clone(), true, "what it looks at; the origin if not given"),
-                ("up", vec3.clone(), true, "what is up in the picture; y if not given"),
-                ("fov", Angle, true, "vertical field of view; 40deg if not given"),
+                ("eye", vec3.clone(), false, "position of the camera, in scene units"),
+                ("target", vec3.clone(), true, "the point that it looks at; default the origin"),
+                ("up", vec3.clone(), true, "direction that is up in the image; default y"),
+                ("fov", Angle, true, "vertical field of view; default 40deg"),
                 (
                     "height",
                     Number,
                     true,
-                    "of a picture by parallel rays, instead of `fov`, in scene units",
+                    "height of the view in scene units, for a parallel projection, instead of `fov`",
                 ),
             ],
         ),
         row(
             (Kind::Ambient, "ambient", ONCE),
-            "Light from everywhere alike. Without it what no light reaches is black.",
+            "Light that comes equally from all directions. Without it, surfaces that no light reaches are black.",
             "ambient(#dfe9ff, 0.3)",
             &[
                 color.clone(),
-                ("strength", Number, true, "what its colour is multiplied by; 0.2 if not given"),
+                ("strength", Number, true, "factor of the colour; default 0.2"),
             ],
         ),
         row(
             (Kind::Sky, "sky", ONCE),
-            "What is seen, and mirrored, where nothing is met: the horizon's colour turns into the zenith's \
-             upwards. It lights nothing; `ambient` does.",
+            "A sky behind the scene, also seen in reflections: a gradient from the horizon's colour to the \
+             zenith's. It does not light the scene; use `ambient` for that.",
             "sky(zenith: #4477bb, horizon: #dde8f0)",
             &[
-                ("zenith", Color, true, "the colour straight up; #4477bb if not given"),
+                ("zenith", Color, true, "colour straight up; default #4477bb"),
                 (
                     "horizon",
                     Color,
                     true,
-                    "the colour at the horizon and below it; #dde8f0 if not given",
+                    "colour at the horizon and below it; default #dde8f0",
                 ),
             ],
         ),
         row(
             (Kind::Fog, "fog", ONCE),
-            "What is far away fades: of a surface at distance t its colour stays by exp(-density * t).",
+            "Fog: a surface at distance t keeps the fraction exp(-density * t) of its colour.",
             "fog(density: 0.05)",
             &[
-                ("density", Number, true, "how fast, per scene unit; 0.05 if not given"),
+                ("density", Number, true, "density per scene unit; default 0.05"),
                 (
                     "color",
                     Color,
                     true,
-                    "what it fades to; the sky or the background behind it if not given",
+                    "colour of the fog; default the sky or background behind the surface",
                 ),
             ],
         ),
         row(
             (Kind::Background, "background", ONCE),
-            "What is seen where nothing is met.",
+            "The colour of rays that hit nothing.",
             "background(#1b1e26)",
-            &[("color", Color, false, "its colour")],
+            &[("color", Color, false, "the colour")],
         ),
         row(
             (Kind::AmbientOcclusion, "ambient_occlusion", ONCE),
-            "Corners that little ambient light reaches are darker.",
+            "Ambient occlusion: darkens corners that little ambient light reaches.",
             "ambient_occlusion(radius: 0.3)",
             &[
                 (
                     "radius",
                     Number,
                     true,
-                    "how far away things count, in scene units; 0.3 if not given",
+                    "distance within which surfaces occlude, in scene units; default 0.3",
                 ),
-                ("strength", Number, true, "0 for none to 1 for all of it; 1 if not given"),
+                ("strength", Number, true, "from 0 (no effect) to 1 (full effect); default 1"),
             ],
         ),
         row(
             (Kind::Reflections, "reflections", ONCE),
-            "Surfaces mirror one another and what lies behind, all alike.",
+            "Reflections: all surfaces mirror the scene and the sky or background by the same fraction.",
             "reflections(count: 2, strength: 0.5)",
             &[
-                ("count", Int, true, "how many mirrors a ray follows, at most 8; 1 if not given"),
+                ("count", Int, true, "number of reflections that a ray follows, at most 8; default 1"),
                 (
                     "strength",
                     Number,
                     true,
-                    "what each mirror is multiplied by, 0 to 1; 0.3 if not given",
+                    "factor of each reflection, from 0 to 1; default 0.3",
                 ),
             ],
         ),
         row(
             (Kind::Antialias, "antialias", ONCE),
-            "Several rays for each pixel, averaged. `--samples` goes before it.",
+            "Antialiasing: averages several rays per pixel. The command line option `--samples` overrides it.",
             "antialias(samples: 4)",
-            &[("samples", Int, true, "how many, at most 1024; 4 if not given")],
+            &[("samples", Int, true, "number of rays per pixel, at most 1024; default 4")],
         ),
         row(
             (Kind::March, "march", ONCE),
-            "How rays find surfaces, where the compiler shall not choose.",
+            "Overrides how rays find surfaces. Without this setting the compiler chooses.",
             "march(method: \"sphere\", steps: 200, epsilon: 0.001)",
             &[
-                ("steps", Int, true, "at most so many steps a ray; 256 if not given"),
+                ("steps", Int, true, "largest number of steps per ray; default 256"),
                 (
                     "epsilon",
                     Number,
                     true,
-                    "nearer than this is a hit, in scene units, for `fixed` and `sphere`",
+                    "for `fixed` and `sphere`: distance to the surface that counts as a hit, in scene units",
                 ),
-                ("distance", Number, true, "where rays end, in scene units"),
-                ("method", Text, true, "the ray method; \"auto\" if not given"),
+                ("distance", Number, true, "length of the rays, in scene units"),
+                ("method", Text, true, "the ray method; default \"auto\""),
                 (
                     "tolerance",
                     Number,
                     true,
-                    "nearer than this is a hit, in widths of a pixel there, for all other methods; 0.25 if not given",
+                    "for all other methods: distance to the surface that counts as a hit, in pixel widths at the hit; default 0.25",
                 ),
             ],
         ),
         row(
             (Kind::Sun, "sun", false),
-            "A light from far away, alike everywhere.",
+            "A distant light: its direction and brightness are the same everywhere.",
             "sun(direction: [1, 2, 1], shadow: hard)",
             &[
                 (
                     "direction",
                     vec3.clone(),
                     true,
-                    "towards it, of any length; [1, 2, 1] if not given",
+                    "direction towards the light, of any length but 0; default [1, 2, 1]",
                 ),
                 color.clone(),
                 strength.clone(),
@@ -202,22 +202,22 @@ pub fn table() -> Vec<SettingRow> {
         ),
         row(
             (Kind::PointLight, "point_light", false),
-            "A light at a place, which shines in all directions.",
+            "A light at a point that shines in all directions.",
             "point_light(position: [0, 3, 0], strength: 5)",
             &[position.clone(), color.clone(), brightness.clone(), shadow.clone()],
         ),
         row(
             (Kind::SpotLight, "spot_light", false),
-            "A light at a place, which shines in a cone.",
+            "A light at a point that shines in a cone.",
             "spot_light(position: [0, 3, 0], angle: 20deg, strength: 9)",
             &[
                 position,
-                ("target", vec3, true, "what it shines at; the origin if not given"),
+                ("target", vec3, true, "the point that it shines at; default the origin"),
                 (
                     "angle",
                     Angle,
                     true,
-                    "from the middle of the cone to its edge; 30deg if not given",
+                    "angle from the axis of the cone to its edge; default 30deg",
                 ),
                 color,
                 brightness,
@@ -227,10 +227,10 @@ pub fn table() -> Vec<SettingRow> {
     ]
 }
 
-/// Of a setting that may stand only once.
+/// Marks a setting that can appear only once.
 const ONCE: bool = true;
 
-/// Name, type, whether it may be left out, and what it is.
+/// Name, type, whether it is optional, and description.
 type Parameter = (&'static str, Type, bool, &'static str);
 
 fn row(

@@ -26,24 +26,24 @@ macro_rules! words {
 
 /// The words that name a type.
 pub(crate) const WORDS: &[Word] = words! {
-    "number" "A number; what a parameter takes that says nothing else." "fn twice(x: number) = 2 * x";
-    "length" "A number again, by the name that readers and sliders want for scene units." "fn half(h: length) = h / 2";
-    "int" "A number known to be whole: a whole literal, what `for`, `len` and `floor` give, and sums and products of those." "fn last(n: int) = n - 1";
-    "angle" "Radians that came from a unit: `90deg`, `0.25turn`, `1.57rad`, `x * 1rad`. A plain number other than 0 is refused where an angle is wanted." "fn back(t: angle) = -t";
-    "bool" "`true` or `false`: comparisons, `&&`, `||`, `!`." "fn pick(big: bool) = if big { 2 } else { 1 }";
-    "string" "Text between double quotes: choices of a param, messages." "param style: string = \"round\" in [\"round\", \"flat\"]";
-    "vec2" "Two numbers, `[x, y]`. A number where a vector is wanted fills it." "fn turned(v: vec2) = [-v.y, v.x]";
-    "vec3" "Three numbers, `[x, y, z]`, picked and reordered by letters: `v.xz`." "fn flat(v: vec3) = v.xz";
+    "number" "A number. A parameter without a type is a number." "fn twice(x: number) = 2 * x";
+    "length" "A number in scene units. It behaves like `number`; the name tells readers and sliders the unit." "fn half(h: length) = h / 2";
+    "int" "A whole number: a whole literal, the result of `len` or `floor`, the variable of `for` over ints, or a sum, difference or product of ints." "fn last(n: int) = n - 1";
+    "angle" "An angle, written with a unit: `90deg`, `0.25turn`, `1.57rad`, `x * 1rad`. Where an angle is expected, a plain number other than 0 is an error." "fn back(t: angle) = -t";
+    "bool" "`true` or `false`; the result of comparisons, `&&`, `||` and `!`." "fn pick(big: bool) = if big { 2 } else { 1 }";
+    "string" "Text between double quotes, for `text(...)`, font names, choices of a param, import paths and messages." "param style: string = \"round\" in [\"round\", \"flat\"]";
+    "vec2" "Two numbers, `[x, y]`. Where a vector is expected, one number fills all its components." "fn turned(v: vec2) = [-v.y, v.x]";
+    "vec3" "Three numbers, `[x, y, z]`. Letters select components in any order: `v.xz`." "fn flat(v: vec3) = v.xz";
     "vec4" "Four numbers, `[x, y, z, w]`." "fn first(v: vec4) = v.xyz";
-    "color" "Linear red, green, blue and alpha. Literals like `#d94f30` are sRGB and converted at once." "fn dark(c: color) = c * 0.5";
-    "range" "`lo..hi`. `for` and slices leave the upper end out, `in` includes it. It has `.lo` and `.hi`." "fn middle(r: range) = (r.lo + r.hi) / 2";
-    "solid" "A shape in space: its signed distance at a point is had by calling it." "fn pair(a: solid) = a | a.translate(x: 2)";
-    "region" "A shape in the plane." "fn plate(a: region) = a.extrude(0.1)";
-    "shape" "A solid or a region, one of them per call of the declaration." "shape skin(a: shape, wall: length = 0.1) = abs(a(p)) - wall / 2";
-    "point" "What a shape is asked at: vec3 for a solid, vec2 for a region." "solid moved(a: solid, by: fn(point) -> vec3) = a(p - by(p))";
-    "material" "Colour, roughness, metallic, emission and occlusion." "fn shiny(m: material) = m.with(roughness: 0.1)";
-    "blend" "How two distances join: `fn(length, length) -> length`." "fn steep(k: number) -> blend = fn(a, b) = min(a, k * b)";
-    "pattern" "A colour at each point: `fn(vec3) -> color`. A colour is one too." "fn striped() -> pattern = fn(q) = if fract(q.y) < 0.5 { #fff } else { #222 }";
+    "color" "A colour: linear red, green, blue and alpha. Literals such as `#d94f30` are sRGB and are converted to linear values." "fn dark(c: color) = c * 0.5";
+    "range" "A range `lo..hi`, with `.lo` and `.hi`. `for` and slices exclude the upper end; `in` includes it." "fn middle(r: range) = (r.lo + r.hi) / 2";
+    "solid" "A 3D shape. Call it with a point, `a(q)`, to get its signed distance there." "fn pair(a: solid) = a | a.translate(x: 2)";
+    "region" "A 2D shape. Call it with a vec2, `a(q)`, to get its signed distance there." "fn plate(a: region) = a.extrude(0.1)";
+    "shape" "A solid or a region. All parameters of type `shape` of one call have the same dimension." "shape skin(a: shape, wall: length = 0.1) = abs(a(p)) - wall / 2";
+    "point" "The type of the points of a shape: vec3 for a solid, vec2 for a region." "solid moved(a: solid, by: fn(point) -> vec3) = a(p - by(p))";
+    "material" "A material: colour, roughness, metallic, emission and occlusion." "fn shiny(m: material) = m.with(roughness: 0.1)";
+    "blend" "A function that joins two distances, `fn(length, length) -> length`." "fn steep(k: number) -> blend = fn(a, b) = min(a, k * b)";
+    "pattern" "A colour at each point, `fn(vec3) -> color`. A single colour is a pattern too." "fn striped() -> pattern = fn(q) = if fract(q.y) < 0.5 { #fff } else { #222 }";
 };
 
 /// The type of `blend`: two distances to one.
