@@ -88,10 +88,7 @@ pub fn table() -> Vec<SettingRow> {
             (Kind::Ambient, "ambient", ONCE),
             "Light that comes equally from all directions. Without it, surfaces that no light reaches are black.",
             "ambient(#dfe9ff, 0.3)",
-            &[
-                color.clone(),
-                ("strength", Number, true, "factor of the colour; default 0.2"),
-            ],
+            &[color.clone(), ("strength", Number, true, "factor of the colour; default 0.2")],
         ),
         row(
             (Kind::Sky, "sky", ONCE),
@@ -100,12 +97,7 @@ pub fn table() -> Vec<SettingRow> {
             "sky(zenith: #4477bb, horizon: #dde8f0)",
             &[
                 ("zenith", Color, true, "colour straight up; default #4477bb"),
-                (
-                    "horizon",
-                    Color,
-                    true,
-                    "colour at the horizon and below it; default #dde8f0",
-                ),
+                ("horizon", Color, true, "colour at the horizon and below it; default #dde8f0"),
             ],
         ),
         row(
@@ -147,13 +139,13 @@ pub fn table() -> Vec<SettingRow> {
             "Reflections: all surfaces mirror the scene and the sky or background by the same fraction.",
             "reflections(count: 2, strength: 0.5)",
             &[
-                ("count", Int, true, "number of reflections that a ray follows, at most 8; default 1"),
                 (
-                    "strength",
-                    Number,
+                    "count",
+                    Int,
                     true,
-                    "factor of each reflection, from 0 to 1; default 0.3",
+                    "number of reflections that a ray follows, at most 8; default 1",
                 ),
+                ("strength", Number, true, "factor of each reflection, from 0 to 1; default 0.3"),
             ],
         ),
         row(
