@@ -1,25 +1,25 @@
 //! The npm package of the compiler, in a browser.
 
 use libtest_mimic::Failed;
+use sdfc_tests::{compiled_examples, examples_folder, repository};
 use serde_json::json;
 
 use crate::Place;
-use crate::examples::{examples, folder};
 use crate::pages::{STATE, check, drawn, shown};
 
 /// The environment variable that makes the trial fail, not be ignored, where the package was not built.
 const REQUIRE: &str = "SDFC_REQUIRE_WASM";
-const PACKAGE: &str = "../crates/web/npm";
+const PACKAGE: &str = "crates/web/npm";
 
 /// Whether there is no `sdfc.wasm`, and none is required.
 pub fn is_missing() -> bool {
     std::env::var_os(REQUIRE).is_none_or(|value| value != "1")
-        && !folder().join(PACKAGE).join("sdfc.wasm").exists()
+        && !repository().join(PACKAGE).join("sdfc.wasm").exists()
 }
 
 fn lay(place: &Place) -> Result<(), Failed> {
     for file in ["index.js", "sdfc.wasm"] {
-        let bytes = std::fs::read(folder().join(PACKAGE).join(file))?;
+        let bytes = std::fs::read(repository().join(PACKAGE).join(file))?;
         place.server.lay(&format!("crates/web/npm/{file}"), bytes);
     }
     Ok(())
@@ -67,8 +67,8 @@ pub fn gives_the_same_in_a_browser(place: &mut Place) -> Result<(), Failed> {
         "import('/crates/web/npm/index.js').then(async ({ load }) => { window.compiler = await load(); })",
     )?;
     let mut asked: Vec<[String; 2]> = Vec::new();
-    for (name, _) in examples()? {
-        let text = std::fs::read_to_string(folder().join(&name))?;
+    for (name, _) in compiled_examples()? {
+        let text = std::fs::read_to_string(examples_folder().join(&name))?;
         for target in ["wgsl", "glsl-es", "spirv"] {
             asked.push([text.clone(), json!({ "name": name, "target": target }).to_string()]);
         }

@@ -2,10 +2,10 @@
 
 use libtest_mimic::Failed;
 use sdfc::{Code, Emit, ShaderOptions, Stage, Target};
+use sdfc_tests::compiled_examples;
 use serde_json::{Value, json};
 
 use crate::Place;
-use crate::examples::examples;
 
 const COMPILERS: &str = include_str!("compiles.js");
 const SHADERTOY: &str = include_str!("../targets/shadertoy.glsl");
@@ -13,7 +13,7 @@ const SHADERTOY: &str = include_str!("../targets/shadertoy.glsl");
 /// Every part of every example is compiled.
 pub fn every_example(place: &mut Place, target: Target) -> Result<(), Failed> {
     let mut shaders = Vec::new();
-    for (name, scene) in examples()? {
+    for (name, scene) in compiled_examples()? {
         for (emit, stage) in PARTS {
             let options = ShaderOptions { target, emit, stage, ..ShaderOptions::default() };
             // What a target has no words for is counted by `tests/targets`.

@@ -5,8 +5,6 @@
 mod chromium;
 mod compiler;
 mod compiles;
-#[path = "../shared/examples.rs"]
-mod examples;
 mod pages;
 mod server;
 mod table;
@@ -71,7 +69,7 @@ fn main() {
 fn in_place(check: &Check) -> Result<(), Failed> {
     let mut place = PLACE.lock().unwrap_or_else(PoisonError::into_inner);
     if place.is_none() {
-        let server = Server::start(&examples::folder().join("embed"))?;
+        let server = Server::start(&sdfc_tests::examples_folder().join("embed"))?;
         server.lay("shadertoy/index.html", include_bytes!("shadertoy.html").to_vec());
         server.lay("shadertoy/head.glsl", include_bytes!("../targets/shadertoy.glsl").to_vec());
         *place = Some(Place { chromium: Chromium::start()?, server });

@@ -6,8 +6,8 @@ use sdfc::{
     Code, Emit, FrameValues, PictureOptions, Scene, ShaderOptions, Stage, Target, VIEW_SIZE,
     unwatched,
 };
+use sdfc_tests::compiled_example;
 
-use crate::examples::example;
 use crate::{Place, table};
 
 /// Largest difference of a colour channel that does not count, in steps of 1/255.
@@ -100,7 +100,7 @@ pub const STATE: &str = "new Promise(done => {
 pub fn show_every_scene(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
     let mut found = Vec::new();
     for name in SCENES {
-        let scene = example(name)?;
+        let scene = compiled_example(name)?;
         embedding.open(place, &scene, "")?;
         found.push(check(&shown(place)?, &drawn(&scene, None, None)?, name)?);
     }
@@ -109,7 +109,7 @@ pub fn show_every_scene(place: &mut Place, embedding: &Embedding) -> Result<(), 
 
 /// A knob is turned and the mouse is dragged over the picture.
 pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
-    let scene = example("params.sdf")?;
+    let scene = compiled_example("params.sdf")?;
     embedding.open(place, &scene, "")?;
     place.chromium.evaluate(
         "for (const [name, value] of [['wall', 0.25], ['opening', 1.5], ['glaze', '#c04a6a']]) {
@@ -134,7 +134,7 @@ pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Resul
 
 /// A scene with `time` is at the time that the page is told, and moves where it is told none.
 pub fn follow_the_clock(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
-    let scene = example("time.sdf")?;
+    let scene = compiled_example("time.sdf")?;
     embedding.open(place, &scene, "?time=0.75")?;
     let frame = FrameValues { time: 0.75, ..FrameValues::defaults(scene.params()) };
     check(&shown(place)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
@@ -156,12 +156,12 @@ pub fn moves(place: &mut Place) -> Result<(), Failed> {
 /// The clock moves the scene, and the mouse turns the camera: by a turn over the width of the picture.
 pub fn shadertoy_follows_clock_and_mouse(place: &mut Place) -> Result<(), Failed> {
     let [_, _, shadertoy] = &EMBEDDINGS;
-    let scene = example("time.sdf")?;
+    let scene = compiled_example("time.sdf")?;
     shadertoy.open(place, &scene, "?time=0.75")?;
     let frame = FrameValues { time: 0.75, ..FrameValues::defaults(scene.params()) };
     check(&shown(place)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
 
-    let scene = example("params.sdf")?;
+    let scene = compiled_example("params.sdf")?;
     // From the middle of the picture a quarter of its width to the right.
     shadertoy.open(place, &scene, "?x=480&y=180")?;
     let pose = pose(&scene)?;

@@ -1,8 +1,7 @@
 //! The table in `docs/embedding-web.md`: how far pages are from `sdfc render`.
 
-use std::path::Path;
-
 use libtest_mimic::Failed;
+use sdfc_tests::repository;
 
 use crate::pages::{EDGES, SCENES};
 
@@ -12,7 +11,7 @@ const UPDATE: &str = "EMBEDDINGS_UPDATE";
 /// Holds a page's row against what was found, in the order of [`SCENES`]. Figures differ from one machine to another
 /// and are not compared.
 pub fn check(page: &str, found: &[f64]) -> Result<(), Failed> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/embedding-web.md");
+    let path = repository().join("docs/embedding-web.md");
     let text = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
     let head = format!("| page | {} |", SCENES.join(" | "));
     if !text.contains(&head) {

@@ -4,10 +4,10 @@ use libtest_mimic::Failed;
 use sdfc::graph::eval::{FieldSample, Tape, sample_field};
 use sdfc::render::{HIT, View, linear_to_srgb8};
 use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, unwatched};
+use sdfc_tests::{compiled_example, examples_folder};
 use serde_json::json;
 
 use crate::Place;
-use crate::examples::{example, folder};
 use crate::pages::{Pixels, SCENES, THREE, check, moves, pose, shown};
 use crate::table;
 
@@ -19,14 +19,15 @@ const FAR: f32 = 100.0;
 
 /// Whether three.js is not installed, and not required either.
 pub fn is_missing() -> bool {
-    !crate::chromium::is_required() && !folder().join("embed/three/node_modules/three").exists()
+    !crate::chromium::is_required()
+        && !examples_folder().join("embed/three/node_modules/three").exists()
 }
 
 /// Each scene at its defaults, seen by its camera; the differences are a row of the documentation's table.
 pub fn shows_every_scene(place: &mut Place) -> Result<(), Failed> {
     let mut found = Vec::new();
     for name in SCENES {
-        let scene = example(name)?;
+        let scene = compiled_example(name)?;
         THREE.open(place, &scene, "")?;
         let pose = pose(&scene)?;
         let (eye, target) = (pose.eye.to_array(), pose.target.to_array());
@@ -49,7 +50,7 @@ const LOOK: &str = "({ eye, target, fov }) => {
 
 /// Some of the mesh's pixels are the field's.
 pub fn hides_meshes_and_fields(place: &mut Place) -> Result<(), Failed> {
-    THREE.open(place, &example(SCENE)?, "")?;
+    THREE.open(place, &compiled_example(SCENE)?, "")?;
     let with_mesh = shown(place)?;
     place.chromium.evaluate("page.knot.visible = false; page.draw()")?;
     let field = shown(place)?;
@@ -77,7 +78,7 @@ pub fn takes_a_bare_scene(place: &mut Place) -> Result<(), Failed> {
 
 /// A scene with `time` stands at the time that the page is told, and moves where it is told none.
 pub fn follows_the_clock(place: &mut Place) -> Result<(), Failed> {
-    let scene = example("time.sdf")?;
+    let scene = compiled_example("time.sdf")?;
     let at = |place: &mut Place, query: &str| -> Result<Pixels, Failed> {
         THREE.open(place, &scene, query)?;
         shown(place)

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use crate::root;
+use sdfc_tests::repository;
 
 /// Below this an error is none, as in a chart.
 const LEAST_ERROR: f64 = 1e-5;
 
 fn charts() -> Vec<(PathBuf, Value)> {
-    let files = std::fs::read_dir(root().join("docs/charts")).unwrap();
+    let files = std::fs::read_dir(repository().join("docs/charts")).unwrap();
     let paths = files.map(|file| file.unwrap().path());
     let json = paths.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
     json.map(|path| {

@@ -18,24 +18,19 @@
 
 mod charts;
 mod pictures;
-#[path = "../shared/same_picture.rs"]
-mod same_picture;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use sdfc::{check, lang::NoFiles};
+use sdfc_tests::{is_same_picture, repository};
 
 /// Two values are one if they differ by no more than this.
 const ROUNDING: f64 = 1e-6;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
 /// Name and text of every page that people read.
 fn pages() -> Vec<(String, String)> {
     let mut found = Vec::new();
-    let mut folders = vec![root().join("docs")];
+    let mut folders = vec![repository().join("docs")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
@@ -46,10 +41,10 @@ fn pages() -> Vec<(String, String)> {
             }
         }
     }
-    found.push(root().join("README.md"));
+    found.push(repository().join("README.md"));
     found.sort();
     let page = |path: PathBuf| {
-        let name = path.strip_prefix(root()).unwrap().display().to_string();
+        let name = path.strip_prefix(repository()).unwrap().display().to_string();
         (name.replace('\\', "/"), std::fs::read_to_string(path).unwrap().replace("\r\n", "\n"))
     };
     found.into_iter().map(page).collect()
@@ -150,13 +145,13 @@ fn every_expression_gives_what_is_said() {
 
 #[test]
 fn every_picture_of_the_tutorial_is_what_its_block_draws() {
-    let page = std::fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let page = std::fs::read_to_string(repository().join("docs/tutorial.md")).unwrap();
     let shown = pictures::shown(&page.replace("\r\n", "\n"));
     assert!(shown.len() > 5, "the pictures were not found");
     for (path, block) in shown {
-        let place = root().join("docs").join(&path);
+        let place = repository().join("docs").join(&path);
         let drawn = pictures::drawn(&block);
-        let is_same = || same_picture::same(&std::fs::read(&place).unwrap_or_default(), &drawn);
+        let is_same = || is_same_picture(&std::fs::read(&place).unwrap_or_default(), &drawn);
         if std::env::var_os("DOCUMENTS_UPDATE").is_some() && !is_same() {
             std::fs::write(&place, &drawn).unwrap();
         }
@@ -168,7 +163,7 @@ fn every_picture_of_the_tutorial_is_what_its_block_draws() {
 fn every_link_within_the_repository_leads_somewhere() {
     let mut broken = Vec::new();
     for (page, text) in pages() {
-        let folder = root().join(&page).parent().unwrap().to_owned();
+        let folder = repository().join(&page).parent().unwrap().to_owned();
         // Every other part is a block of code, where brackets and parentheses are no link.
         let prose: String = text.split("\n```").step_by(2).collect();
         let targets = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());

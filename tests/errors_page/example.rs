@@ -1,10 +1,10 @@
 //! A scene that has a code, and the same scene mended.
 
-use std::path::Path;
 use std::sync::OnceLock;
 
 use sdfc::{Compiled, check, lang::NoFiles};
 use sdfc_diagnostics::{ALL_CODES, CodeInfo, Note};
+use sdfc_tests::repository;
 
 /// What the scenes are called.
 const SCENE: &str = "scene.sdf";
@@ -32,7 +32,7 @@ pub fn all() -> &'static [Example] {
 
 impl Example {
     fn of(code: &'static CodeInfo) -> Self {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/errors_page/examples");
+        let folder = repository().join("tests/errors_page/examples");
         let path = folder.join(format!("{}.txt", code.code));
         let text = std::fs::read_to_string(&path)
             .unwrap_or_else(|e| panic!("every code has an example; {}: {e}", path.display()))

@@ -2,7 +2,7 @@
 //! is said of that scene, and the scene mended.
 //!
 //! Meanings come from the table of codes, scenes from `examples/CODE.txt`: the wrong one, a line of dashes, the mended
-//! one. After a change, `ERRORS_UPDATE=1 cargo test -p sdfc-cli -p sdfc --test errors_page` writes the pages anew.
+//! one. After a change, `ERRORS_UPDATE=1 cargo test -p sdfc-tests --test errors_page` writes the pages anew.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,10 +10,11 @@ mod example;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use example::Example;
 use sdfc_diagnostics::ALL_CODES;
+use sdfc_tests::repository;
 
 const HEAD: &str = "\
 # Errors and warnings
@@ -36,7 +37,7 @@ const GROUPS: [(&str, &str); 6] = [
 ];
 
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
+    repository().join("docs")
 }
 
 /// The list of all codes.

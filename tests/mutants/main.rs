@@ -30,7 +30,7 @@ const SIZE: [u32; 2] = [96, 72];
 const DEPTH: f64 = 0.5;
 
 /// The folder of the repository.
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 fn main() {
     let without_gpu = testing::without_gpu();

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 use libtest_mimic::Failed;
 use sdfc::{FrameValues, Scene};
+use sdfc_tests::repository;
 
 /// Most error in depth that a case may allow unless it is exempt, in widths of a pixel.
 const MOST_DEPTH: f64 = 0.05;
@@ -60,7 +61,7 @@ pub struct Bounds {
 
 /// The cases, by name.
 pub fn cases() -> Result<Vec<Case>, Failed> {
-    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let top = repository();
     let mut paths: Vec<PathBuf> = Vec::new();
     for folder in ["tests/stability", "examples/faults"] {
         for entry in std::fs::read_dir(top.join(folder))? {

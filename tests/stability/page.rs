@@ -2,20 +2,21 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use libtest_mimic::Failed;
 use sdfc::FrameValues;
 use sdfc::accuracy_data::chart::LEAST_ERROR;
 use sdfc::accuracy_data::{Metrics, Truth};
 use sdfc::render::{AdapterInfo, Gpu, View};
+use sdfc_tests::repository;
 
 use crate::case::Case;
 
 const HEAD: &str = "\
 # Where ray methods fail, and `auto` holds
 
-<!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc --test stability`; change the scenes' comments or the test. -->
+<!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc-tests --test stability`; change the scenes' comments or the test. -->
 
 Each row is a scene of [tests/stability](../tests/stability) or [examples/faults](../examples/faults), made so that some way of marching
 it goes wrong; its comment says what fails and why. Every ray method draws it at 160x120 with its usual settings, at each of the scene's frames, and
@@ -107,7 +108,7 @@ pub struct Page {
 
 impl Page {
     fn path() -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/stability.md")
+        repository().join("docs/stability.md")
     }
 
     pub fn read() -> Result<Self, Failed> {

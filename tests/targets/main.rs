@@ -2,19 +2,17 @@
 //! `docs/targets.md`.
 //!
 //! A trial whose tool is not installed is reported as ignored. After a change to what can be written,
-//! or a new example, `TARGETS_UPDATE=1 cargo test -p sdfc --test targets` writes the table anew.
+//! or a new example, `TARGETS_UPDATE=1 cargo test -p sdfc-tests --test targets` writes the table anew.
 
 mod draw;
-#[path = "../shared/examples.rs"]
-mod examples;
 mod paste;
 mod table;
 mod tools;
 
-use examples::examples;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::render::testing;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+use sdfc_tests::compiled_examples;
 
 /// A part that is written: what it is called here, and how it is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +75,7 @@ fn write(scene: &Scene, target: Target, part: Part) -> Result<Code, sdfc::Error>
 
 fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
     let devices = draw::Devices::open()?;
-    for (name, scene) in examples()? {
+    for (name, scene) in compiled_examples()? {
         compared(&devices, &scene)
             .map_err(|found| format!("{name}: {}", found.message().unwrap_or("")))?;
     }
@@ -85,7 +83,7 @@ fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
 }
 
 fn every_example_is_written(target: Target) -> Result<(), Failed> {
-    for (name, scene) in examples()? {
+    for (name, scene) in compiled_examples()? {
         for part in PARTS {
             let found = write(&scene, target, part);
             if found.is_ok() != is_held(target, part) {
@@ -97,7 +95,7 @@ fn every_example_is_written(target: Target) -> Result<(), Failed> {
 }
 
 fn every_example_is_accepted(tool: &tools::Tool) -> Result<(), Failed> {
-    for (name, scene) in examples()? {
+    for (name, scene) in compiled_examples()? {
         for part in PARTS.into_iter().filter(|part| is_held(tool.target, *part)) {
             let code = write(&scene, tool.target, part).map_err(|e| e.to_string())?;
             let place = format!("{name}, {}", part.name);
@@ -108,8 +106,8 @@ fn every_example_is_accepted(tool: &tools::Tool) -> Result<(), Failed> {
 }
 
 fn the_same_source_gives_the_same_bytes() -> Result<(), Failed> {
-    let again = examples()?;
-    for ((name, scene), (_, twin)) in examples()?.iter().zip(&again) {
+    let again = compiled_examples()?;
+    for ((name, scene), (_, twin)) in compiled_examples()?.iter().zip(&again) {
         for target in Target::ALL {
             for part in PARTS.into_iter().filter(|part| is_held(target, *part)) {
                 let [one, other] = [scene, twin].map(|s| write(s, target, part));

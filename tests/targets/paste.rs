@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use libtest_mimic::Failed;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+use sdfc_tests::compiled_examples;
 
 use crate::Part;
-use crate::examples::examples;
 use crate::tools::Tool;
 
 const TEXTS: [Target; 5] = [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
@@ -22,7 +22,8 @@ solid dots() = length(p - places[floor(clamp(p.x, 0, 4))]) - 0.2
 /// validator is here, it takes the two as one file.
 pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
     let lists = Scene::from_source("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
-    for (name, scene) in examples()?.into_iter().chain([("short lists".to_owned(), lists)]) {
+    for (name, scene) in compiled_examples()?.into_iter().chain([("short lists".to_owned(), lists)])
+    {
         for target in TEXTS {
             for emit in [Emit::Field, Emit::March] {
                 let place = format!("{name} as {}, {emit:?}", target.name());

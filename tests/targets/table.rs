@@ -1,12 +1,11 @@
 //! The table in `docs/targets.md`.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use libtest_mimic::Failed;
 use sdfc::Target;
+use sdfc_tests::{compiled_examples, repository};
 
-use crate::examples::examples;
 use crate::tools::TOOLS;
 use crate::{PARTS, write};
 
@@ -30,7 +29,7 @@ fn table() -> Result<String, Failed> {
     let mut text =
         format!("| example | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
     writeln!(text, "| *judged by* | {} |", Target::ALL.map(judges).join(" | "))?;
-    for (name, scene) in examples()? {
+    for (name, scene) in compiled_examples()? {
         write!(text, "| {name} |")?;
         for target in Target::ALL {
             let written = PARTS.iter().filter(|part| write(&scene, target, **part).is_ok());
@@ -43,7 +42,7 @@ fn table() -> Result<String, Failed> {
 }
 
 pub fn is_current() -> Result<(), Failed> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/targets.md");
+    let path = repository().join("docs/targets.md");
     let page = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
     let parts = page.split_once(BEGIN).and_then(|(head, rest)| {
         let (found, tail) = rest.split_once(END)?;

@@ -2,8 +2,6 @@
 #![allow(missing_docs)]
 
 mod common;
-#[path = "../../../tests/shared/scenes.rs"]
-mod scenes;
 
 use common::verify::verify;
 use common::{Library, printed};
@@ -29,7 +27,7 @@ fn a_scene_reaches_only_what_it_needs() {
 #[test]
 fn all_example_scenes_check() {
     let library = Library::new();
-    for (name, text) in scenes::scene_files().expect("the examples") {
+    for (name, text) in sdfc_test_support::example_sources().expect("the examples") {
         let (program, found, rendered) = library.check(&text);
         assert!(found.is_empty(), "{name}\n{rendered}");
         verify(&program);

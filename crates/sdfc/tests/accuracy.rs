@@ -5,11 +5,11 @@
 
 mod common;
 
-use common::scenes::scene_files;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
 use sdfc::{ChartOptions, OracleOptions, unwatched};
+use sdfc_test_support::example_sources;
 
 /// What a scene keeps, seen at a size; no pixel is missed, false, out of steps or no number.
 struct Bound {
@@ -57,7 +57,7 @@ fn main() {
         let title = name.clone();
         Trial::test(title, move || auto_is_right(&name, &text)).with_ignored_flag(without_gpu)
     };
-    let mut files = scene_files().expect("the examples can be read");
+    let mut files = example_sources().expect("the examples can be read");
     files.push((MANY.to_owned(), many()));
     let listed = EXCEPTIONS.iter().map(|it| it.0).chain(DEARER.iter().map(|it| it.0));
     for listed in listed {

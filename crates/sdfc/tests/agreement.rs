@@ -6,14 +6,14 @@
 mod common;
 
 use common::agree;
-use common::scenes::scene_files;
 use libtest_mimic::{Arguments, Trial};
 use sdfc::render::testing;
+use sdfc_test_support::example_sources;
 
 fn main() {
     let mut trials = Vec::new();
     let without_gpu = testing::without_gpu();
-    for (name, text) in scene_files().expect("the examples can be read") {
+    for (name, text) in example_sources().expect("the examples can be read") {
         let (again, source) = (name.clone(), text.clone());
         let cpu = move || agree::precisions(&agree::scene(&again, &source)?).map(drop);
         trials.push(Trial::test(format!("cpu/{name}"), cpu));

@@ -2,9 +2,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-#[path = "../../../tests/shared/scenes.rs"]
-mod scenes;
-
 use sdfc::graph::eval::sample_field;
 use sdfc::lang::{NoFiles, Options};
 use sdfc::{
@@ -45,7 +42,7 @@ fn distances(scene: &Scene, frame: &FrameValues) -> Vec<f64> {
 #[test]
 fn every_example_is_the_same_scene_with_slots() {
     let mut seen = 0;
-    for (path, text) in scenes::scene_files().unwrap() {
+    for (path, text) in sdfc_test_support::example_sources().unwrap() {
         let Some(plain) = compile("a.sdf", &text).scene.filter(Scene::draws) else { continue };
         let (_, slots) = slotted(&text);
         if slots.slots().is_empty() {

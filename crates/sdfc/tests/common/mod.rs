@@ -3,5 +3,3 @@
 #![allow(dead_code, reason = "each binary uses a part")]
 
 pub mod agree;
-#[path = "../../../../tests/shared/scenes.rs"]
-pub mod scenes;

@@ -6,9 +6,8 @@ mod run;
 mod spirv;
 mod thirty;
 
-use std::path::{Path, PathBuf};
-
 use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc_tests::repository;
 
 /// The compiler's scenes that have a hand-written field.
 const SCENES: [(&str, &str); 2] =
@@ -49,16 +48,12 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
 fn generated_files_are_current() -> Result<(), Failed> {
     for (path, text) in thirty::files() {
-        if std::env::var_os("YARDSTICK_UPDATE").is_some() {
-            std::fs::write(root().join(path), &text)?;
+        if std::env::var_os("HAND_WRITTEN_UPDATE").is_some() {
+            std::fs::write(repository().join(path), &text)?;
         }
-        if std::fs::read_to_string(root().join(path))?.replace("\r\n", "\n") != text {
+        if std::fs::read_to_string(repository().join(path))?.replace("\r\n", "\n") != text {
             return Err(format!("{path} is not what thirty.rs writes").into());
         }
     }
@@ -66,7 +61,8 @@ fn generated_files_are_current() -> Result<(), Failed> {
 }
 
 fn hand_written(name: &str) -> Result<spirv::Words, Failed> {
-    let wgsl = std::fs::read_to_string(root().join(format!("tests/yardstick/{name}.wgsl")))?;
+    let wgsl =
+        std::fs::read_to_string(repository().join(format!("tests/hand_written/{name}.wgsl")))?;
     Ok(spirv::optimize(&spirv::compile(&wgsl)?)?)
 }
 
@@ -77,7 +73,7 @@ fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
         return Err(format!("{name}: {counted} arithmetic instructions, stated {stated:?}").into());
     }
     let row = format!("| {counted} |");
-    let readme = std::fs::read_to_string(root().join("tests/yardstick/README.md"))?;
+    let readme = std::fs::read_to_string(repository().join("tests/hand_written/README.md"))?;
     let start = format!("| `{name}.wgsl` |");
     if !readme.lines().any(|line| line.starts_with(&start) && line.ends_with(&row)) {
         return Err(format!("README.md has no row for {name} with {counted}").into());
@@ -88,7 +84,7 @@ fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
 /// The field that the compiler makes of the scene, optimised.
 fn emitted(name: &str) -> Result<spirv::Words, Failed> {
     let path = SCENES.iter().find(|row| row.0 == name).map_or("", |row| row.1);
-    let compiled = sdfc::compile(path, &std::fs::read_to_string(root().join(path))?);
+    let compiled = sdfc::compile(path, &std::fs::read_to_string(repository().join(path))?);
     let scene = compiled.scene.ok_or_else(|| {
         sdfc::diagnostics::render(&compiled.sources, &compiled.diagnostics, false)
     })?;

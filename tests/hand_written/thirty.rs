@@ -27,8 +27,8 @@ pub fn files() -> [(&'static str, String); 3] {
     let parts = parts();
     [
         ("examples/bench/thirty.sdf", scene(&parts)),
-        ("tests/yardstick/thirty.wgsl", wgsl(&parts, Form::Plain)),
-        ("tests/yardstick/tight/thirty.wgsl", wgsl(&parts, Form::Tight)),
+        ("tests/hand_written/thirty.wgsl", wgsl(&parts, Form::Plain)),
+        ("tests/hand_written/tight/thirty.wgsl", wgsl(&parts, Form::Tight)),
     ]
 }
 
@@ -92,7 +92,7 @@ fn triple(hundredths: [i64; 3]) -> String {
 fn scene(parts: &[Part]) -> String {
     let mut text = String::from(
         "// Thirty leaves joined smoothly one after the other: a measuring scene, written by a seeded generator\n\
-         // (tests/yardstick/thirty.rs) with the same constants as tests/yardstick/thirty.wgsl.\n\n",
+         // (tests/hand_written/thirty.rs) with the same constants as tests/hand_written/thirty.wgsl.\n\n",
     );
     for (index, part) in parts.iter().enumerate() {
         let leaf = match &part.leaf {

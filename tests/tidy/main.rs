@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use sdfc_tests::repository;
 use serde_json::Value;
 
 /// A file that nobody can hold in mind is split before it gets here.
@@ -70,10 +71,6 @@ const ALSO_METHODS: ([&str; 2], [&str; 3]) =
 /// Library names that are also operations of the kernel.
 const ALSO_KERNEL: [&str; 1] = ["round"];
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
 fn short(package: &str) -> &str {
     package.strip_prefix("sdfc-").unwrap_or(package)
 }
@@ -82,13 +79,13 @@ fn short(package: &str) -> &str {
 fn dependencies() -> Vec<(String, String)> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
-        .current_dir(root())
+        .current_dir(repository())
         .output()
         .unwrap();
     let metadata: Value = serde_json::from_slice(&output.stdout).unwrap();
     let list = |value: &Value, key: &str| value[key].as_array().unwrap().clone();
     let name = |value: &Value| value["name"].as_str().unwrap().to_owned();
-    let crates = root().join("crates").canonicalize().unwrap();
+    let crates = repository().join("crates").canonicalize().unwrap();
     let is_crate = |package: &Value| {
         Path::new(package["manifest_path"].as_str().unwrap()).starts_with(&crates)
     };
@@ -131,7 +128,7 @@ fn product(path: &Path) -> String {
 
 /// Product sources of the crate in this folder, with the file they come from.
 fn sources(krate: &str) -> Vec<(PathBuf, String)> {
-    let folder = root().join("crates").join(krate).join("src");
+    let folder = repository().join("crates").join(krate).join("src");
     let found = files(&folder, "rs").into_iter().filter(|path| !path.ends_with("tests.rs"));
     found.map(|path| (path.clone(), product(&path))).collect()
 }
@@ -153,7 +150,7 @@ fn crates_know_only_what_the_architecture_allows() {
 
 #[test]
 fn every_crate_has_a_row() {
-    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
+    for entry in std::fs::read_dir(repository().join("crates")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(MAY_KNOW.iter().any(|row| row.0 == name), "crate {name} has no row in MAY_KNOW");
     }
@@ -162,7 +159,7 @@ fn every_crate_has_a_row() {
 #[test]
 fn no_file_is_too_long() {
     for extension in ["rs", "wgsl", "sdf", "md"] {
-        for path in files(&root(), extension) {
+        for path in files(&repository(), extension) {
             let lines = std::fs::read_to_string(&path).unwrap().lines().count();
             assert!(
                 lines <= MAX_LINES,
@@ -176,7 +173,7 @@ fn no_file_is_too_long() {
 #[test]
 fn only_the_library_names_shapes() {
     let mut names = BTreeSet::new();
-    for path in files(&root().join("crates/lang/std"), "sdf") {
+    for path in files(&repository().join("crates/lang/std"), "sdf") {
         let text = std::fs::read_to_string(&path).unwrap();
         let words = ["solid ", "region ", "shape ", "fn "];
         for line in text.lines() {

@@ -3,16 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "shared/scenes.rs"]
-mod scenes;
-
 use sdfc::{Backend, PictureOptions, unwatched};
 
-use scenes::scene_files;
+use sdfc_tests::example_sources;
 
 #[test]
 fn examples_are_formatted() {
-    for (name, text) in scene_files().unwrap() {
+    for (name, text) in example_sources().unwrap() {
         let formatted = sdfc::format(&name, &text, false);
         assert!(formatted.as_deref() == Ok(&text), "{name}: run `sdfc fmt`");
     }
@@ -29,7 +26,7 @@ fn the_library_is_formatted() {
 
 #[test]
 fn examples_say_what_they_show() {
-    for (name, text) in scene_files().unwrap() {
+    for (name, text) in example_sources().unwrap() {
         assert!(text.starts_with("// "), "{name} begins with no comment");
     }
 }
@@ -37,7 +34,7 @@ fn examples_say_what_they_show() {
 #[test]
 fn examples_compile_without_a_finding_that_they_do_not_explain_and_draw_something() {
     let options = PictureOptions { size: [32, 20], backend: Backend::Cpu, ..Default::default() };
-    for (name, text) in scene_files().unwrap() {
+    for (name, text) in example_sources().unwrap() {
         let compiled = sdfc::compile(&name, &text);
         let explained = compiled.diagnostics.iter().all(|found| text.contains(found.code.0));
         assert!(explained, "{}", compiled.diagnostics_text(false));

@@ -1,0 +1,8 @@
+//! Helpers that several tests of this folder share.
+
+mod examples;
+mod pictures;
+
+pub use examples::{compiled_example, compiled_examples};
+pub use pictures::is_same_picture;
+pub use sdfc_test_support::{example_sources, examples_folder, repository};
