@@ -1,4 +1,4 @@
-//! A scene that has a code, and the same scene mended.
+//! A scene that has a diagnostic code, and the same scene fixed.
 
 use std::sync::OnceLock;
 
@@ -6,25 +6,26 @@ use sdfc::{Compiled, check, lang::NoFiles};
 use sdfc_diagnostics::{ALL_CODES, CodeInfo, Note};
 use sdfc_tests::repository;
 
-/// What the scenes are called.
+/// The name of the scenes in messages.
 const SCENE: &str = "scene.sdf";
 
-/// What a page shows of a line that is longer.
-const WIDEST: usize = 160;
+/// The most characters of a message's line that a page shows.
+const MAX_COLUMNS: usize = 160;
 
-/// The two scenes of a code. `{{300 * (}}` stands for so many round brackets.
+/// The two scenes of a code. `{{300 * (}}` stands for 300 opening brackets.
 pub struct Example {
     pub code: &'static CodeInfo,
     pub wrong: String,
-    pub mended: String,
-    /// What is said of the wrong scene, on a page, less the library's lines, and its codes.
-    pub said: String,
+    pub fixed: String,
+    /// The messages about the wrong scene as a page shows them, without notes about the library.
+    pub messages: String,
+    /// The codes of those messages.
     pub codes: Vec<&'static str>,
-    /// What is said of the mended scene.
-    pub said_of_mended: String,
+    /// The messages about the fixed scene.
+    pub messages_of_fixed: String,
 }
 
-/// Those of all codes, each compiled once.
+/// Returns the examples of all codes, each compiled once.
 pub fn all() -> &'static [Example] {
     static ALL: OnceLock<Vec<Example>> = OnceLock::new();
     ALL.get_or_init(|| ALL_CODES.iter().map(Example::of).collect())
@@ -37,56 +38,57 @@ impl Example {
         let text = std::fs::read_to_string(&path)
             .unwrap_or_else(|e| panic!("every code has an example; {}: {e}", path.display()))
             .replace("\r\n", "\n");
-        let (wrong, mended) = text
+        let (wrong, fixed) = text
             .split_once("\n----\n")
-            .unwrap_or_else(|| panic!("{}: four dashes part wrong from mended", path.display()));
+            .unwrap_or_else(|| panic!("{}: no line of four dashes", path.display()));
         let compiled = |text| check(SCENE, &expanded(text), &NoFiles);
-        let mut found = compiled(wrong);
-        leave_out_the_library(&mut found);
-        let said = found.diagnostics_text(false);
-        let lines: Vec<String> = said.trim_end().lines().map(shortened).collect();
+        let mut result = compiled(wrong);
+        remove_library_notes(&mut result);
+        let messages = result.diagnostics_text(false);
+        let lines: Vec<String> = messages.trim_end().lines().map(shortened).collect();
         Self {
             code,
             wrong: wrong.to_owned(),
-            mended: mended.trim_end().to_owned(),
-            said: lines.join("\n"),
-            codes: found.diagnostics.iter().map(|found| found.code.0).collect(),
-            said_of_mended: compiled(mended).diagnostics_text(false),
+            fixed: fixed.trim_end().to_owned(),
+            messages: lines.join("\n"),
+            codes: result.diagnostics.iter().map(|diagnostic| diagnostic.code.0).collect(),
+            messages_of_fixed: compiled(fixed).diagnostics_text(false),
         }
     }
 
-    /// What the marks in the scene stand for, if there are any.
-    pub fn key(&self) -> Option<String> {
-        let mark = self.wrong.split_once("{{")?.1.split_once("}}")?.0;
-        let (count, part) = mark.split_once(" * ")?;
-        let line_end = if part.contains("\\n") { ", `\\n` being the end of a line" } else { "" };
-        Some(format!("`{{{{{mark}}}}}` stands for `{part}`, {count} times{line_end}."))
+    /// Explains the placeholder in the wrong scene, if there is one.
+    pub fn placeholder(&self) -> Option<String> {
+        let placeholder = self.wrong.split_once("{{")?.1.split_once("}}")?.0;
+        let (count, part) = placeholder.split_once(" * ")?;
+        let line_end = if part.contains("\\n") { "; `\\n` is a line break" } else { "" };
+        Some(format!("`{{{{{placeholder}}}}}` stands for `{part}`, {count} times{line_end}."))
     }
 }
 
-/// Places in the library move with every line that is written above them: a page would change with each.
-fn leave_out_the_library(found: &mut Compiled) {
-    let sources = &found.sources;
+/// Removes the notes about lines of the library, since line numbers there change often.
+fn remove_library_notes(compiled: &mut Compiled) {
+    let sources = &compiled.sources;
     let in_library = |note: &Note| note.span.is_some_and(|at| sources.name(at.file) != SCENE);
-    for diagnostic in &mut found.diagnostics {
+    for diagnostic in &mut compiled.diagnostics {
         diagnostic.notes.retain(|note| !in_library(note));
     }
 }
 
 fn shortened(line: &str) -> String {
-    if line.chars().count() <= WIDEST {
+    if line.chars().count() <= MAX_COLUMNS {
         return line.trim_end().to_owned();
     }
-    line.chars().take(WIDEST).chain(" ...".chars()).collect()
+    line.chars().take(MAX_COLUMNS).chain(" ...".chars()).collect()
 }
 
+/// Replaces the placeholders in a scene by what they stand for.
 fn expanded(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
-    while let Some((before, (mark, after))) =
+    while let Some((before, (placeholder, after))) =
         rest.split_once("{{").and_then(|(before, rest)| Some((before, rest.split_once("}}")?)))
     {
-        let (count, part) = mark.split_once(" * ").unwrap();
+        let (count, part) = placeholder.split_once(" * ").unwrap();
         out.push_str(before);
         out.push_str(&part.replace("\\n", "\n").repeat(count.parse().unwrap()));
         rest = after;

@@ -1,8 +1,9 @@
-//! `docs/errors.md` lists all codes, and `docs/errors/CODE.md` says of each what it means, shows a scene that has it, what
-//! is said of that scene, and the scene mended.
+//! `docs/errors.md` lists all codes. `docs/errors/CODE.md` explains each code and shows a scene that
+//! has it, the messages about that scene, and the scene fixed.
 //!
-//! Meanings come from the table of codes, scenes from `examples/CODE.txt`: the wrong one, a line of dashes, the mended
-//! one. After a change, `ERRORS_UPDATE=1 cargo test -p sdfc-tests --test errors_page` writes the pages anew.
+//! Explanations come from the table of codes, scenes from `examples/CODE.txt`: the wrong scene, a
+//! line of four dashes, the fixed scene. After a change,
+//! `ERRORS_UPDATE=1 cargo test -p sdfc-tests --test errors_page` rewrites the pages.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -14,25 +15,27 @@ use std::path::PathBuf;
 
 use example::Example;
 use sdfc_diagnostics::ALL_CODES;
-use sdfc_tests::repository;
+use sdfc_tests::{repository, wrapped};
 
 const HEAD: &str = "\
 # Errors and warnings
 
-Every diagnostic has a code that never changes its meaning: `E` is an error, the scene does not compile; `W` is a
-warning, it compiles and may not mean what was intended. `sdfc check` shows all of a scene's at once, `sdfc doc E0104` says in a
-terminal what a code means, and the code's page here shows a scene that has it, what is said of it, and how it is mended.
+Every diagnostic has a code whose meaning never changes. `E` is an error: the scene does not
+compile. `W` is a warning: the scene compiles, but may not mean what its author intended.
 
-These pages are written from the table in `crates/diagnostics/src/codes.rs` and the scenes in
-`tests/errors_page/examples`; change those.
+`sdfc check` shows all diagnostics of a scene at once. `sdfc doc E0104` explains a code in the
+terminal. The page of a code here also shows a scene that has it, the message, and the scene fixed.
+
+These pages are generated from the table in `crates/diagnostics/src/codes.rs` and the scenes in
+`tests/errors_page/examples`. Edit those.
 ";
 
 const GROUPS: [(&str, &str); 6] = [
-    ("E01", "How a scene is written"),
+    ("E01", "Syntax"),
     ("E02", "Names and calls"),
     ("E03", "Types and values"),
-    ("E04", "What is known when, and limits"),
-    ("E05", "Promises"),
+    ("E04", "Compile-time values and limits"),
+    ("E05", "Violated clauses"),
     ("W06", "Warnings"),
 ];
 
@@ -40,11 +43,11 @@ fn docs() -> PathBuf {
     repository().join("docs")
 }
 
-/// The list of all codes.
+/// Returns the list of all codes.
 fn index() -> String {
     let mut text = HEAD.to_owned();
     for (prefix, title) in GROUPS {
-        let _ = write!(text, "\n## {title}\n\n| code | means |\n|---|---|\n");
+        let _ = write!(text, "\n## {title}\n\n| code | meaning |\n|---|---|\n");
         for row in ALL_CODES.iter().filter(|row| row.code.0.starts_with(prefix)) {
             let code = row.code;
             let _ = writeln!(text, "| [{code}](errors/{code}.md) | {} |", row.title);
@@ -57,15 +60,15 @@ fn page(example: &Example) -> String {
     let (code, title, meaning) = (example.code.code, example.code.title, example.code.page);
     let mut text = format!("# {code}: {title}\n\n{meaning}\n\n## Example\n\n");
     let _ = write!(text, "```sdf\n{}\n```\n\n", example.wrong);
-    if let Some(key) = example.key() {
-        let _ = write!(text, "{key}\n\n");
+    if let Some(placeholder) = example.placeholder() {
+        let _ = write!(text, "{placeholder}\n\n");
     }
-    let _ = write!(text, "`sdfc check` says\n\n```text\n{}\n```\n", example.said);
-    let _ = write!(text, "\n## Mended\n\n```sdf\n{}\n```\n", example.mended);
-    text + "\n[All codes](../errors.md)\n"
+    let _ = write!(text, "`sdfc check` reports\n\n```text\n{}\n```\n", example.messages);
+    let _ = write!(text, "\n## Fixed\n\n```sdf\n{}\n```\n", example.fixed);
+    wrapped(&(text + "\n[All codes](../errors.md)\n"))
 }
 
-/// All pages by their paths below `docs`.
+/// Returns all pages by their paths below `docs`.
 fn pages() -> BTreeMap<String, String> {
     let of_codes = example::all().iter();
     let mut pages: BTreeMap<String, String> =
@@ -87,17 +90,17 @@ fn the_pages_of_codes_are_current() {
         let found = std::fs::read_to_string(docs().join(path)).unwrap_or_default();
         assert!(
             found.replace("\r\n", "\n") == *page,
-            "docs/{path} is not what is said; write it anew with ERRORS_UPDATE=1"
+            "docs/{path} is out of date; rewrite it with ERRORS_UPDATE=1"
         );
     }
     for entry in std::fs::read_dir(docs().join("errors")).unwrap() {
         let path = format!("errors/{}", entry.unwrap().file_name().to_str().unwrap());
-        assert!(pages.contains_key(&path), "no code has the page docs/{path}");
+        assert!(pages.contains_key(&path), "docs/{path} is the page of no code");
     }
 }
 
 #[test]
-fn every_code_is_shown_by_its_example_alone() {
+fn every_example_has_its_code_and_no_other() {
     let others = example::all().iter().filter(|example| {
         let codes = &example.codes;
         codes.is_empty() || codes.iter().any(|code| *code != example.code.code.0)
@@ -107,22 +110,23 @@ fn every_code_is_shown_by_its_example_alone() {
 }
 
 #[test]
-fn every_message_points_somewhere_and_says_how_to_mend_it() {
-    let mut helpless = Vec::new();
+fn every_message_has_a_position_and_a_suggestion() {
+    let mut without_help = Vec::new();
     for example in example::all() {
-        let (code, said) = (example.code.code, &example.said);
-        assert!(said.contains("scene.sdf:") && said.contains('^'), "{code}: no place in\n{said}");
-        if !said.contains("= help: ") {
-            helpless.push(code.0);
+        let (code, messages) = (example.code.code, &example.messages);
+        let has_position = messages.contains("scene.sdf:") && messages.contains('^');
+        assert!(has_position, "{code}: no position in\n{messages}");
+        if !messages.contains("= help: ") {
+            without_help.push(code.0);
         }
     }
-    assert_eq!(helpless, [""; 0], "these do not say how to mend it");
+    assert_eq!(without_help, [""; 0], "these have no suggestion");
 }
 
 #[test]
-fn every_example_is_mended() {
+fn every_fixed_example_has_no_diagnostics() {
     for example in example::all() {
-        assert_eq!(example.said_of_mended, "", "{}", example.code.code);
+        assert_eq!(example.messages_of_fixed, "", "{}", example.code.code);
     }
 }
 

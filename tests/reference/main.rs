@@ -1,8 +1,8 @@
-//! Checks that `docs/reference` matches the documentation of the library, the kernel, the settings
-//! and the types, with a picture of everything that the library draws.
+//! `docs/reference` shows the doc comments of the library, the kernel, the settings and the types,
+//! with a picture of every shape of the library.
 //!
-//! After a change, `REFERENCE_UPDATE=1 cargo test -p sdfc-cli -p sdfc --test reference` writes it
-//! again. Pages must match exactly, pictures as `same_picture` describes.
+//! After a change, `REFERENCE_UPDATE=1 cargo test -p sdfc-tests --test reference` rewrites it. Text
+//! must be the same to the letter, pictures as `is_same_picture` defines it.
 
 #![allow(
     clippy::unwrap_used,
@@ -13,22 +13,21 @@
 
 mod pages;
 mod pictures;
-#[path = "../shared/same_picture.rs"]
-mod same_picture;
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use sdfc::lang::reference;
+use sdfc_tests::{is_same_picture, repository};
 
-/// Everything that stands in the folder: path below it and bytes.
+/// The files of the folder: path below it and content.
 type Files = Vec<(String, Vec<u8>)>;
 
 fn folder() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference")
+    repository().join("docs/reference")
 }
 
-/// What the folder should hold.
+/// Returns the files that the folder should have.
 fn files() -> Files {
     let entries = reference::entries();
     let mut files = pages::files(&entries);
@@ -36,7 +35,7 @@ fn files() -> Files {
     files
 }
 
-/// Paths of the files that are there, below the folder.
+/// Returns the paths below the folder of the files that are there.
 fn present() -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for below in ["", "pictures"] {
@@ -61,10 +60,10 @@ fn the_reference_is_current() {
             std::fs::remove_file(folder().join(stray)).unwrap();
         }
         for (path, bytes) in &files {
-            let place = folder().join(path);
-            // A picture within the tolerance stays as it is, so that a new machine changes nothing.
-            if !same(path, &std::fs::read(&place).unwrap_or_default(), bytes) {
-                std::fs::write(place, bytes).unwrap();
+            let file = folder().join(path);
+            // A picture within the tolerance stays, so that another machine changes nothing.
+            if !same(path, &std::fs::read(&file).unwrap_or_default(), bytes) {
+                std::fs::write(file, bytes).unwrap();
             }
         }
     }
@@ -75,13 +74,13 @@ fn the_reference_is_current() {
     wrong.extend(files.iter().filter(differs).map(|(path, _)| path.clone()));
     assert!(
         wrong.is_empty(),
-        "docs/reference is not what the library says; write it anew with REFERENCE_UPDATE=1: {wrong:?}"
+        "docs/reference is out of date; rewrite it with REFERENCE_UPDATE=1: {wrong:?}"
     );
 }
 
 fn same(path: &str, found: &[u8], wanted: &[u8]) -> bool {
     if path.ends_with(".png") {
-        return same_picture::same(found, wanted);
+        return is_same_picture(found, wanted);
     }
     String::from_utf8_lossy(found).replace("\r\n", "\n").as_bytes() == wanted
 }

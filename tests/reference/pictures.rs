@@ -1,4 +1,4 @@
-//! The pictures: an example of a solid as it is drawn, a region as its field in the plane.
+//! The pictures: a rendered example of each solid, and the field of each region in the plane.
 
 use sdfc::graph::eval::{FrameValues, Tape};
 use sdfc::graph::{Dim, Expander, ShapeId, bounds};
@@ -10,31 +10,31 @@ use super::Files;
 /// Width and height in pixels.
 pub const SIZE: [u32; 2] = [160, 120];
 
-/// Rays for each pixel of a solid, points along each side of a region's pixel.
+/// The number of rays per pixel of a solid, and of points along each side of a region's pixel.
 const SAMPLES: u32 = 4;
 const POINTS: u32 = 3;
 
-/// Light and ground for all pictures of solids.
+/// The light and the background of all pictures of solids.
 const LIGHT: &str =
     "\nsun(direction: [1, 2, 1.5], strength: 0.75)\nambient(strength: 0.2)\nbackground(#e8ecf2)";
 
-/// Colours of a region's field, sRGB: inside, outside, and the outline.
+/// The sRGB colours of a region's field: inside, outside, and the outline.
 const INSIDE: [f64; 3] = [217.0, 120.0, 80.0];
 const OUTSIDE: [f64; 3] = [232.0, 236.0, 242.0];
 const OUTLINE: [f64; 3] = [60.0, 40.0, 40.0];
-/// Every other band of this width, as a part of the picture's height, is darker.
+/// Every other band of this width, as a fraction of the picture's height, is darker.
 const BAND: f64 = 0.08;
 const DARKER: f64 = 0.94;
-/// Thickness of the outline, as a part of the picture's height.
+/// The thickness of the outline, as a fraction of the picture's height.
 const LINE: f64 = 0.012;
 
-/// Where the picture of an entry lies, if there is one.
+/// Returns the path of an entry's picture below the folder, if it has one.
 pub fn name(entry: &Entry) -> Option<String> {
     entry.place?;
     Some(format!("pictures/{}-{}.png", entry.name, entry.kind))
 }
 
-/// The pictures as files.
+/// Returns the pictures as files.
 pub fn files(entries: &[Entry]) -> Files {
     let pictures = entries.iter().filter_map(|entry| Some((name(entry)?, png(entry))));
     pictures.collect()
@@ -56,8 +56,8 @@ fn png(entry: &Entry) -> Vec<u8> {
 
 fn scene(entry: &Entry, more: &str) -> Scene {
     let compiled = compile(&entry.name, &format!("{}{more}", entry.example));
-    let findings = compiled.diagnostics_text(false);
-    compiled.scene.unwrap_or_else(|| panic!("{findings}"))
+    let messages = compiled.diagnostics_text(false);
+    compiled.scene.unwrap_or_else(|| panic!("{messages}"))
 }
 
 fn solid(entry: &Entry) -> Vec<u8> {
@@ -71,7 +71,7 @@ fn solid(entry: &Entry) -> Vec<u8> {
     picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
 }
 
-/// The region of this name in the example, with bands that follow its distance.
+/// Draws the region of this name in the example, with bands along its distance.
 fn region(entry: &Entry) -> Vec<u8> {
     let scene = scene(entry, "");
     let mut graph = scene.graph().graph.clone();
@@ -95,8 +95,8 @@ fn region(entry: &Entry) -> Vec<u8> {
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
         let mut sum = [0.0; 3];
         for (j, i) in (0..POINTS).flat_map(|j| (0..POINTS).map(move |i| (j, i))) {
-            let part = |at, of| f64::from(at) + (f64::from(of) + 0.5) / f64::from(POINTS);
-            let color = window.color(field.scalar(window.point(part(x, i), part(y, j))));
+            let offset = |at, of| f64::from(at) + (f64::from(of) + 0.5) / f64::from(POINTS);
+            let color = window.color(field.scalar(window.point(offset(x, i), offset(y, j))));
             sum = [0, 1, 2].map(|channel| sum[channel] + color[channel]);
         }
         pixels.extend(sum.map(|sum| (sum / f64::from(POINTS * POINTS)).round() as u8));
@@ -107,13 +107,13 @@ fn region(entry: &Entry) -> Vec<u8> {
 /// The part of the plane that a picture shows.
 struct Window {
     middle: [f64; 2],
-    /// Of the whole picture, in scene units.
+    /// The height of the whole picture, in scene units.
     height: f64,
 }
 
 impl Window {
     fn around(lo: [f64; 4], hi: [f64; 4]) -> Self {
-        let finite = |end: f64, instead: f64| if end.is_finite() { end } else { instead };
+        let finite = |end: f64, default: f64| if end.is_finite() { end } else { default };
         let [x, y] = [0, 1].map(|axis| [finite(lo[axis], -1.0), finite(hi[axis], 1.0)]);
         let [width, height] = SIZE.map(f64::from);
         let needed = (y[1] - y[0]).max((x[1] - x[0]) * height / width);

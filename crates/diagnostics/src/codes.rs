@@ -1,6 +1,6 @@
-//! The table of codes: one row each, never renumbered, never reused.
+//! The table of diagnostic codes. A code is never renumbered and never reused.
 
-/// What a diagnostic is about: `E0201`, `W0601`.
+/// Identifies a kind of diagnostic: `E0201`, `W0601`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Code(pub &'static str);
 
@@ -15,179 +15,246 @@ impl std::fmt::Display for Code {
 pub struct CodeInfo {
     /// The code.
     pub code: Code,
-    /// What it means, in a few words.
+    /// The meaning in a few words: the title of the code's page.
     pub title: &'static str,
-    /// Why it is so and how to mend it, for the code's page.
+    /// The explanation on the code's page: why it is reported and how to fix it.
     pub page: &'static str,
-    /// How to mend it, where the finding itself does not say.
-    pub mend: &'static str,
+    /// The suggestion for diagnostics that have none of their own.
+    pub suggestion: &'static str,
 }
 
 macro_rules! codes {
-    ($($name:ident $code:literal $title:literal $page:literal $mend:literal;)*) => {
+    ($($name:ident $code:literal $title:literal $page:literal $suggestion:literal;)*) => {
         impl Code {
             $(#[doc = $title] pub const $name: Code = Code($code);)*
         }
-        /// Every code, in order.
-        pub const ALL_CODES: &[CodeInfo] =
-            &[$(CodeInfo { code: Code::$name, title: $title, page: $page, mend: $mend }),*];
+        /// All codes, in order.
+        pub const ALL_CODES: &[CodeInfo] = &[
+            $(CodeInfo {
+                code: Code::$name,
+                title: $title,
+                page: $page,
+                suggestion: $suggestion,
+            }),*
+        ];
     };
 }
 
 codes! {
-    UNKNOWN_CHARACTER "E0101" "A character that starts no token"
-        "Outside comments and strings a scene is written in ASCII. Often the character was pasted from a text with typographic quotes or dashes."
+    UNKNOWN_CHARACTER "E0101" "Unexpected character"
+        "Outside comments and strings a scene is written in ASCII. Often the character was pasted \
+         from a text with typographic quotes or dashes."
         "remove it; outside strings and comments a scene is written in ASCII";
-    BAD_STRING "E0102" "A string that does not end, or an unknown escape"
-        "A string ends on the line where it starts. Escapes are `\\\"`, `\\\\`, `\\n` and `\\u{...}`."
+    BAD_STRING "E0102" "Unterminated string or unknown escape"
+        "A string ends on the line where it starts. The escapes are `\\\"`, `\\\\`, `\\n` and \
+         `\\u{...}`."
         "close it with a quote on its line; the escapes are \\\", \\\\, \\n and \\u{...}";
-    BAD_COLOUR "E0103" "A colour with the wrong number of digits"
-        "Colours are `#rgb`, `#rgba`, `#rrggbb` or `#rrggbbaa` in hexadecimal digits."
+    BAD_COLOUR "E0103" "Colour with the wrong number of digits"
+        "Colours are written `#rgb`, `#rgba`, `#rrggbb` or `#rrggbbaa` in hexadecimal digits."
         "write 3, 4, 6 or 8 hexadecimal digits: #f80, #ff8800";
-    EXPECTED "E0104" "Something else was expected here"
-        "The parser names what it could have gone on with. Two shapes on one line are joined with `|`, or stand on lines of their own."
-        "write what is named here, or start a new line";
-    BAD_NUMBER "E0105" "A number that is not written as numbers are"
-        "A decimal point has a digit on both sides, so that `0..8` reads as a range: write `0.5` and `1.0`. The units are `deg`, `turn` and `rad`, joined on."
+    EXPECTED "E0104" "Syntax error"
+        "The message says what may stand at this position. Join two shapes on one line with `|`, \
+         or write each on a line of its own."
+        "write one of the things that the message names, or start a new line";
+    BAD_NUMBER "E0105" "Malformed number"
+        "A decimal point has a digit on both sides, so that `0..8` reads as a range: write `0.5` \
+         and `1.0`. The units `deg`, `turn` and `rad` follow the number without a space."
         "write a digit on both sides of the point, and the unit right behind";
-    UNCLOSED "E0106" "A bracket that is never closed"
-        "The message points at the opening bracket. Brackets close in the order in which they opened."
+    UNCLOSED "E0106" "Unclosed bracket"
+        "The message points at the opening bracket. Close the last opened bracket first."
         "close the bracket there, or remove it";
     NESTING "E0107" "Nesting deeper than 256 levels"
-        "Brackets, blocks and conditions may be nested 256 deep. Name the inner parts with `let`."
+        "Brackets, blocks and conditions may be nested 256 levels deep. Name the inner parts with \
+         `let`."
         "name the inner parts with `let`";
-    TOO_LARGE "E0108" "A file that is too large"
-        "A scene file has at most 4 MiB. Larger scenes are written with comprehensions, functions and imports."
+    TOO_LARGE "E0108" "File too large"
+        "A scene file may have at most 4 MiB. Write larger scenes with comprehensions, functions \
+         and imports."
         "write repeated parts with `for`, functions and imports";
-    DOES_NOT_CHAIN "E0109" "Comparisons and ranges do not chain"
+    DOES_NOT_CHAIN "E0109" "Chained comparison or range"
         "`a < b < c` would compare a truth value with a number. Write `a < b && b < c`."
         "join two comparisons with `&&`";
-    RESERVED "E0110" "A reserved word used as a name"
-        "The reserved words are let, param, fn, solid, region, shape, import, if, else, for, in, true and false; `p` is reserved in a shape's formula."
+    RESERVED "E0110" "Reserved word used as a name"
+        "The reserved words are let, param, fn, solid, region, shape, import, if, else, for, in, \
+         true and false; `p` is reserved in a shape's formula."
         "choose another name";
 
-    UNKNOWN_NAME "E0201" "A name that nothing has"
-        "Names are looked up from the block outwards: block, parameters, file, imports, library, kernel. `let` and `param` are visible only after their line."
-        "declare it, or look it up with `sdfc doc`";
-    DECLARED_TWICE "E0202" "The same name declared twice in one file"
-        "At top level of a file a name has one meaning, except that one shape name may be declared once for solids and once for regions."
+    UNKNOWN_NAME "E0201" "Unknown name"
+        "Names are looked up from the inside outwards: block, parameters, file, imports, library, \
+         kernel. `let` and `param` are visible only after their line."
+        "declare it, or search with `sdfc doc`";
+    DECLARED_TWICE "E0202" "Name declared twice in one file"
+        "At the top level of a file a name has one meaning. One exception: a shape name may be \
+         declared once for solids and once for regions."
         "rename one of them";
-    SETTING_TWICE "E0203" "A setting that can stand only once stands twice"
-        "camera, ambient, sky, fog, background, ambient_occlusion, reflections, antialias and march stand at most once."
+    SETTING_TWICE "E0203" "Setting given twice"
+        "These settings may be given at most once: camera, ambient, sky, fog, background, \
+         ambient_occlusion, reflections, antialias and march."
         "keep one of them";
-    MISPLACED_SETTING "E0204" "A setting that is not at top level"
-        "Settings such as `camera(...)` give no value; they are lines of their own in the scene."
+    MISPLACED_SETTING "E0204" "Setting outside the top level"
+        "Settings such as `camera(...)` have no value. Write each on a line of its own at the top \
+         level of the scene."
         "write it on a line of its own, outside of brackets and without `let`";
-    WRONG_CALL "E0205" "A call of something that takes other arguments"
-        "A shape without arguments in brackets is a shape already: calling it samples its distance at a point."
-        "write it without brackets, or call what takes these arguments";
-    ARGUMENTS "E0206" "Arguments that do not fit the parameters"
-        "Positional arguments come first, then named ones, each parameter once. Parameters after a variadic one are named only."
-        "`sdfc doc NAME` says what the entries of the library take";
-    UNUSED_VALUE "E0207" "A value at top level that nothing uses"
-        "Only solids and settings stand alone at top level. Name other values with `let`."
+    WRONG_CALL "E0205" "Call of something that cannot be called like this"
+        "A shape without arguments in brackets is already a shape. Calling it samples its distance \
+         at a point, so its argument is a point."
+        "write it without brackets, or call something that takes these arguments";
+    ARGUMENTS "E0206" "Arguments do not match the parameters"
+        "Positional arguments come first, then named ones, each parameter once. Parameters after a \
+         variadic one must be named."
+        "`sdfc doc NAME` shows the parameters of a library entry";
+    UNUSED_VALUE "E0207" "Unused value at top level"
+        "Only solids and settings may stand alone at the top level. Name other values with `let`."
         "name it with `let`, or remove it";
-    NO_FIELD "E0208" "A field or swizzle that the value does not have"
-        "Vectors have `xyzw` and `rgba`, as far as they are long; ranges have `lo` and `hi`."
-        "vectors have x, y, z, w as far as they are long, ranges lo and hi";
-    IMPORT "E0209" "An import that cannot be followed"
-        "Imports are paths relative to the file, with `/`, inside the folder of the scene that was opened."
+    NO_FIELD "E0208" "Unknown field or swizzle"
+        "A vector has as many of the components `xyzw` (or `rgba`) as its length; a range has `lo` \
+         and `hi`."
+        "a vector has x, y, z, w up to its length; a range has lo and hi";
+    IMPORT "E0209" "Import not found or not allowed"
+        "An import path is relative to the importing file, uses `/`, and stays inside the folder \
+         of the scene that was opened."
         "paths are relative to the file, with `/`, inside the folder of the scene";
-    MISPLACED_CLAUSE "E0210" "A clause, default or result type that does not belong here"
-        "`exact`, `bound`, `bounds` and `material` are for shapes; `fn` and lambdas have only `lipschitz` and `require`. Each clause but `exact`, `bound` and `require` stands once."
+    MISPLACED_CLAUSE "E0210" "Clause, default or result type not allowed here"
+        "`exact`, `bound`, `bounds` and `material` belong to shapes; `fn` and lambdas have only \
+         `lipschitz` and `require`. Each clause except `exact`, `bound` and `require` may be \
+         given once."
         "remove it here";
-    CLOCK "E0211" "A param that has the clock's name"
-        "Pages, players and programs hand a scene its clock by the names `time` and `frame`, as they set a param by its own. A scene uses both without declaring them."
-        "use the clock as it is, without `param`, or choose another name";
+    CLOCK "E0211" "Param named `time` or `frame`"
+        "`time` and `frame` are the scene's clock. Programs and pages that show the scene set them \
+         by these names, as they set a param by its name. A scene uses both without declaring them."
+        "use the clock without declaring a `param`, or choose another name";
 
-    REGION_FOR_SOLID "E0301" "A region (2D) where a solid (3D) is wanted"
-        "Regions become solids by `.extrude(h)` or `.revolve()`."
+    REGION_FOR_SOLID "E0301" "Region (2D) where a solid (3D) is expected"
+        "`.extrude(h)` or `.revolve()` makes a solid of a region."
         ".extrude(0.2) or .revolve()";
-    SOLID_FOR_REGION "E0302" "A solid (3D) where a region (2D) is wanted"
-        "Regions are made by `circle`, `rect` and the other 2D entries of the library."
-        "regions are made by circle, rect and the other 2D entries of the library";
-    TYPE_MISMATCH "E0303" "A value of the wrong type"
-        "The message names both types. The coercions are: int and angle to number, a number to a vector of equal parts, a value to a constant function."
-        "write a value of the type that is wanted here";
-    NOT_AN_ANGLE "E0304" "A plain number where an angle is wanted"
-        "Angles carry their unit: `90deg`, `0.25turn`, `1.57rad`; a computed number becomes one by `* 1rad`."
+    SOLID_FOR_REGION "E0302" "Solid (3D) where a region (2D) is expected"
+        "Regions come from `circle`, `rect` and the other 2D entries of the library."
+        "use circle, rect or another 2D entry of the library";
+    TYPE_MISMATCH "E0303" "Value of the wrong type"
+        "The message names both types. These conversions happen by themselves: int or angle to \
+         number, a number to a vector of equal components, a value to a constant function."
+        "write a value of the expected type";
+    NOT_AN_ANGLE "E0304" "Plain number where an angle is expected"
+        "Angles have a unit: `90deg`, `0.25turn`, `1.57rad`. To make an angle of a computed \
+         number, multiply it by `1rad`."
         "write a unit: 90deg, 0.25turn, or x * 1rad";
-    BRANCH_TYPES "E0305" "The two branches of an `if` have different types"
-        "Both branches give one type in every case, whether or not the condition is known at compile time."
+    BRANCH_TYPES "E0305" "Branches of an `if` have different types"
+        "Both branches must have one type, whether or not the condition is known at compile time."
         "make both branches give values of one type";
-    BAD_OPERAND "E0307" "An operator on something it does not take"
-        "`+ - * /` and comparisons are for numbers, vectors and angles; `|`, `&`, `-` join shapes; `a.scale(2)` resizes one."
+    BAD_OPERAND "E0307" "Operator on an unsupported operand"
+        "`+ - * /` and comparisons are for numbers, vectors and angles; `|`, `&`, `-` join shapes; \
+         `a.scale(2)` resizes one."
         "`sdfc doc` lists the functions that take such values";
-    NEEDS_RESULT_TYPE "E0308" "A recursive function without a result type"
-        "Result types are inferred from the body; a function that calls itself must say `-> T`."
+    NEEDS_RESULT_TYPE "E0308" "Recursive function without a result type"
+        "Result types are inferred from the body. A function that calls itself must declare its \
+         result type with `-> T`."
         "write the result type: `-> number`, `-> solid`";
-    OUT_OF_RANGE "E0309" "An argument outside its parameter's range"
-        "A parameter's `in lo..hi` says which values make sense; both ends are included."
-        "choose a value within the range; both its ends are allowed";
-    REQUIREMENT "E0310" "A `require` of the library or the file does not hold"
-        "The message is the one that the entry's author wrote."
+    OUT_OF_RANGE "E0309" "Argument outside its parameter's range"
+        "The range `in lo..hi` of a parameter includes both ends."
+        "choose a value within the range, which includes both ends";
+    REQUIREMENT "E0310" "A `require` does not hold"
+        "An entry of the library or of the file states a condition on its arguments. The message \
+         is the one that the author of the entry wrote."
         "change the arguments so that it holds";
-    NOT_FINITE "E0311" "A constant that is not a finite number"
-        "Division by a constant zero, the root of a negative constant and overflow have no value that a shader could hold."
+    NOT_FINITE "E0311" "Constant that is not a finite number"
+        "Division by a constant zero, the root of a negative constant and overflow have no value \
+         that a shader could use."
         "keep divisors away from 0, roots from negative numbers, and powers small";
-    DEGENERATE "E0312" "An index, slice or list that does not exist"
-        "Lists are indexed from 0 with constants; a list has one type and some functions want it not empty."
+    DEGENERATE "E0312" "Index out of range, empty slice or empty list"
+        "List indices are constants and start at 0. All elements of a list have one type. Some \
+         functions need a list with at least one element."
         "the first element has index 0, the last one less than the length";
 
-    NOT_COMPILE_TIME "E0402" "Something that must be known at compile time is not"
-        "The sequence of `for`, list indices, strings and the condition around a recursive call are fixed when the scene compiles; a param moves without a recompile."
+    NOT_COMPILE_TIME "E0402" "Value not known at compile time"
+        "These must be known when the scene compiles: the sequence of a `for`, list indices, \
+         strings, and the condition around a recursive call. A param can change later, without a \
+         recompile."
         "write the value here, or make it a `let`";
     RECURSION "E0405" "Recursion deeper than 64 levels"
         "Functions are inlined at each call, so recursion must end at compile time."
         "end the recursion by an `if` whose condition is known at compile time";
     TOO_MANY_NODES "E0406" "More than a million graph nodes"
-        "Everything is inlined; a comprehension inside a comprehension multiplies. Use repetition (`repeat`) for copies."
-        "use repetition for copies, or draw less";
+        "All calls are inlined, and nested comprehensions multiply. Use `repeat` for many copies \
+         of one shape."
+        "use `repeat` for copies, or draw less";
     SHAPE_NESTING "E0407" "Shapes nested too deep"
-        "A shape may contain shapes 1,024 levels deep. Join many shapes in one `union(...)` instead of one by one."
+        "Shapes may be nested 1,024 levels deep. Join many shapes in one `union(...)` instead of \
+         one by one."
         "join many shapes in one `union(...)` instead of one by one";
     NO_POINT "E0408" "`p` outside a shape's formula"
-        "An argument cannot mention the point; pass a function of it: `fn(q) = q.y`."
+        "The point `p` exists only in the formula of a shape. Where an argument depends on the \
+         point, pass a function: `fn(q) = q.y`."
         "pass a function of the point: fn(q) = q.y";
-    SELF_CALL "E0409" "A shape that calls itself"
-        "Shapes do not recurse; a `fn` that returns a shape may."
+    SELF_CALL "E0409" "Shape that calls itself"
+        "Shapes cannot recurse; a `fn` that returns a shape can."
         "write a `fn` that returns a shape; it may call itself";
-    ITERATIONS "E0410" "`iterate` with too many rounds"
-        "A loop known at compile time runs at most 4,096 rounds."
-        "go through fewer rounds";
+    ITERATIONS "E0410" "Too many iterations of `iterate`"
+        "A loop whose count is known at compile time runs at most 4,096 iterations."
+        "use fewer iterations";
 
-    NOT_YET "E0411" "A ray method that this version does not have"
-        "The specification has it, this version of the compiler does not; nothing is drawn in its place."
-        "remove it; nothing is drawn in its place";
-    TOO_MANY_LIGHTS "E0412" "More lights than are drawn"
-        "A scene has at most 8 lights, those of all kinds counted: each is asked for at every point that is seen."
-        "remove one, or let `ambient` stand for the weakest";
-    TEXT "E0413" "A text whose letters cannot be drawn"
-        "Letters are the outlines of a font: the one called `sans`, which comes with sdfc, or a TrueType or OpenType file in the folder of the scene. Each character must be in the font, and all outlines of one text together have at most 4,096 curves."
+    NOT_YET "E0411" "Ray method not available in this version"
+        "The specification describes this ray method, but this version of the compiler does not \
+         have it. No other method is used in its place."
+        "remove it; no other method is used in its place";
+    TOO_MANY_LIGHTS "E0412" "Too many lights"
+        "A scene has at most 8 lights of all kinds together, because every visible point is lit by \
+         each of them."
+        "remove one, or replace the weakest by `ambient`";
+    TEXT "E0413" "Text that cannot be drawn"
+        "Letters are outlines of a font: the font `sans`, which comes with sdfc, or a TrueType or \
+         OpenType file in the folder of the scene. The font must have every character, and the \
+         outlines of one text may have at most 4,096 curves together."
         "write letters that the font has, or name a font file that has them";
 
-    PROMISE_BROKEN "E0502" "A promise that sampling refutes"
-        "`sdfc check` holds the clauses of the scene's own shapes against a fixed number of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points within the bounds, `bounds` against points outside them, `intersect` against the field along rays, `copies` against balls about points; and `lipschitz` of its functions against pairs of points where they are called; with the params at their defaults and at both ends of their ranges. The message gives a point where the clause fails. A clause is held to what it says given children that keep the same promise: `exact` of an operator says nothing where a child is only a bound."
-        "state what holds, or drop the clause";
+    PROMISE_BROKEN "E0502" "Violated clause"
+        "`sdfc check` tests the clauses of the scene's own shapes and functions at a fixed number \
+         of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points \
+         within the bounds, `bounds` against points outside them, `intersect` against the field \
+         along rays, `copies` against balls around points, and `lipschitz` of a function against \
+         pairs of points where it is called. Params are at their defaults and at both ends of their \
+         ranges. The message gives a point where the clause fails. A clause has to hold only for \
+         children that satisfy the same clause: `exact` on an operator claims nothing where a \
+         child is only a bound."
+        "state what holds, or remove the clause";
 
-    NOT_EXACT "W0601" "An operator that wants an exact distance has only a bound"
-        "`round`, `shell` and every other formula `a(p) - r` or `abs(a(p)) - w` use the value of the distance, not only its sign; of a bound the result is a surface too, but at a distance that varies. The note says where the field stops being the distance: a smooth blend, an intersection (outside), a union (inside). Round the parts instead of the whole, or leave it as it is if it looks right."
+    NOT_EXACT "W0601" "Operator on a bound where it expects an exact distance"
+        "`round`, `shell` and every other formula `a(p) - r` or `abs(a(p)) - w` use the value of \
+         the distance, not only its sign. Applied to a bound they still give a surface, but at a \
+         varying distance. The note says where the field stops being the exact distance: at a \
+         smooth blend, outside an intersection, inside a union. Round the parts instead of the \
+         whole, or leave it as it is if it looks right."
         "do this to the parts before they are joined, or leave it if it looks right";
     UNCERTIFIED "W0602" "No Lipschitz constant could be derived"
-        "Steps as long as the distance may lead through this part; `auto` proves stretches of rays free instead (`interval`), unless that does not end within a ray's steps. A formula whose slope depends on the point has a constant within finite bounds: cut the shape, or state `bounds`. Else state a constant with `lipschitz`, or use an operator whose constant is known. A shape bent or twisted without bounds (a plane) has none: cut it first."
+        "A ray may step through this shape when its step is as long as the field's value. `auto` \
+         therefore falls back to interval tracing, which is slower; only if that runs out of steps \
+         does it step by the field's value. Where the slope of a formula depends on the point, a \
+         constant exists within finite bounds: intersect the shape with something, or state \
+         `bounds`. Otherwise state a constant with `lipschitz`, or use an operator whose constant \
+         is known. A shape without bounds, such as a plane, has no constant once it is bent or \
+         twisted: intersect it first."
         "state what holds with `lipschitz` and `bounds`";
-    UNUSED "W0603" "A private name, a local `let` or an import that nothing uses"
+    UNUSED "W0603" "Unused private name, local `let` or import"
         "Remove it, or use it. Names with a leading `_` are private to their file."
         "remove it, or use it";
-    NOTHING_DRAWN "W0604" "A file that draws nothing"
-        "It can be imported, not rendered. Every solid that stands alone at top level is drawn."
-        "write a solid on a line of its own; to be imported, a file need not draw";
-    SOFT_SHADOW "W0605" "Soft shadows of a field that is not the distance"
-        "A soft shadow is made of the distances by which rays to the lamp pass what throws it. Where the field is less than the distance, edges are wider and darker than `soft(...)` says; where nothing is known of the field they may be anything. The note says where the field stops being the distance: a smooth blend, an intersection, a shape bent or stretched. Outside a hard union of exact shapes the field is the distance."
+    NOTHING_DRAWN "W0604" "File that draws nothing"
+        "The file can be imported, but not rendered. Every solid that stands alone at the top \
+         level is drawn."
+        "write a solid on a line of its own; a file that is only imported need not draw";
+    SOFT_SHADOW "W0605" "Soft shadows of a field that is not the exact distance"
+        "A soft shadow is computed from the distances at which rays to the light pass the shape \
+         that throws it. Where the field is less than the distance, edges are wider and darker \
+         than `soft(...)` says; where nothing is known about the field, they may look wrong in \
+         any way. The note says where the field stops being the distance: at a smooth blend, an \
+         intersection, or a shape that is bent or stretched. Outside a hard union of exact shapes \
+         the field is the distance."
         "`shadow: hard` needs no distances; or leave it if it looks right";
-    IDLE_CLAUSE "W0606" "A clause `copies` that does nothing"
-        "`auto` meets copies in closed form where the formula is a minimum of samples and of values without samples: each sample at a map of p that is rigid while `round`, `floor` and `sign` keep their values, by itself or cut by a box, and one value at least that says how near others are. A minimum under an `if` that a param decides is none."
-        "bring the formula into that form, or drop the clause";
+    IDLE_CLAUSE "W0606" "Clause `copies` without effect"
+        "`auto` intersects copies analytically if the formula is `min(sample, ..., limit)`. Every \
+         sample is a rigid transform of `p` between jumps of `round`, `floor` and `sign`, \
+         optionally intersected with a box. At least one term is a limit: a value without samples \
+         that bounds the distance to all other copies. A `min` inside an `if` on a param does not \
+         count."
+        "bring the formula into that form, or remove the clause";
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Source lines as they are shown: of long ones a part, around what is marked.
+//! Source lines as they are shown: long lines are shortened around the labelled spans.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,41 +7,42 @@ use codespan_reporting::files::{Error, Files};
 
 use crate::{FileId, Sources};
 
-/// Bytes of a line that are shown at most.
+/// The most bytes of a line that are shown.
 const WIDTH: usize = 240;
-/// Bytes that are shown before what is marked, where a line is longer.
+/// The number of bytes shown before a span in a line that is longer than [`WIDTH`].
 const BEFORE: usize = 80;
-/// Stands where a line was cut.
+/// The mark that shows where a line was cut.
 const CUT: &str = "…";
 
-/// [`Sources`] whose long lines are cut around places.
+/// [`Sources`] whose long lines are cut around given positions.
 ///
-/// A text keeps its length and its offsets: a cut writes its mark over what stood there, and what lies farther out is not shown.
+/// Offsets stay valid: a cut overwrites text of its own length with [`CUT`], and the text beyond it
+/// is not shown.
 pub(crate) struct Excerpts<'a> {
     sources: &'a Sources,
-    /// What is shown of a long line, by file and line.
+    /// The byte range that is shown of a long line, by file and line.
     windows: BTreeMap<(FileId, usize), Range<usize>>,
-    /// Texts with marks, of files that have such lines.
+    /// The texts of files with such lines, with the cuts marked.
     marked: BTreeMap<FileId, String>,
 }
 
 impl<'a> Excerpts<'a> {
-    /// Cut around `places`: byte offsets, of which the first in a line counts.
-    pub(crate) fn around(sources: &'a Sources, places: &[(FileId, usize)]) -> Self {
+    /// Cuts long lines around `positions`: byte offsets, of which the first in each line counts.
+    pub(crate) fn around(sources: &'a Sources, positions: &[(FileId, usize)]) -> Self {
         let mut excerpts = Self { sources, windows: BTreeMap::new(), marked: BTreeMap::new() };
-        for &(file, place) in places {
-            let line = sources.line_column(file, place as u32).line as usize - 1;
+        for &(file, position) in positions {
+            let line = sources.line_column(file, position as u32).line as usize - 1;
             let Some(whole) = sources.line_bytes(file, line) else { continue };
             if whole.len() > WIDTH && !excerpts.windows.contains_key(&(file, line)) {
-                excerpts.cut(file, line, whole, place);
+                excerpts.cut(file, line, whole, position);
             }
         }
         excerpts
     }
 
-    fn cut(&mut self, file: FileId, line: usize, whole: Range<usize>, place: usize) {
+    fn cut(&mut self, file: FileId, line: usize, whole: Range<usize>, position: usize) {
         let text = self.marked.entry(file).or_insert_with(|| self.sources.text(file).to_owned());
-        let from = place.saturating_sub(BEFORE).max(whole.start);
+        let from = position.saturating_sub(BEFORE).max(whole.start);
         let end = text.floor_char_boundary((from + WIDTH).min(whole.end));
         let start = text.floor_char_boundary(end.saturating_sub(WIDTH).max(whole.start));
         if start > whole.start {
@@ -53,7 +54,7 @@ impl<'a> Excerpts<'a> {
         self.windows.insert((file, line), start..end);
     }
 
-    /// The part of the bytes that is shown; `None` where nothing of what they begin with is.
+    /// Returns the part of the bytes that is shown, or `None` if their start is not shown.
     pub(crate) fn shown(&self, file: FileId, bytes: Range<usize>) -> Option<Range<usize>> {
         let text = self.marked.get(&file);
         let clamp = |at: usize| {
@@ -61,7 +62,7 @@ impl<'a> Excerpts<'a> {
             let (Some(w), Some(text)) = (self.windows.get(&(file, line)), text) else {
                 return (at, true);
             };
-            // Within a mark no character begins.
+            // No character begins inside of a mark.
             (text.floor_char_boundary(at.clamp(w.start, w.end)), (w.start..=w.end).contains(&at))
         };
         let (start, seen) = clamp(bytes.start);
@@ -69,7 +70,7 @@ impl<'a> Excerpts<'a> {
     }
 }
 
-/// Writes [`CUT`] over the characters from an offset on, blanks behind it where they were longer.
+/// Overwrites the characters from an offset on with [`CUT`], padded with blanks to their length.
 fn mark(text: &mut String, at: usize) {
     let Some(end) = (at + CUT.len()..=text.len()).find(|&end| text.is_char_boundary(end)) else {
         return;

@@ -1,31 +1,31 @@
-//! Spans, codes and the one renderer of sdfc's diagnostics.
+//! Source spans, diagnostic codes and the renderer of diagnostics.
 //!
 //! # What
 //!
-//! A [`Diagnostic`] is plain data: a [`Code`], a severity, a message, a [`Span`] and the
-//! ways to mend it. [`Sources`] owns the text of every file that was read, so that spans
-//! are eight bytes and need no lifetime.
+//! A [`Diagnostic`] is plain data: a [`Code`], a severity, a message, a [`Span`] and
+//! suggestions. [`Sources`] owns the text of every file that was read, so a span holds only a
+//! file and two offsets and needs no lifetime.
 //!
 //! # How
 //!
-//! Phases collect diagnostics in a `Vec` and go on; nothing stops at the first. [`render`]
-//! is the only code that turns them into text for people, [`Located`] the only
-//! one that turns them into lines and columns for programs.
+//! Phases collect diagnostics in a `Vec` and continue after the first. Only [`render`] turns them
+//! into text for people, and only [`locate`] into lines and columns for programs.
 //!
 //! ```
 //! use sdfc_diagnostics::{Code, Diagnostic, Sources, Span, render};
 //!
 //! let mut sources = Sources::new();
 //! let file = sources.add("scene.sdf", "spere(1)\n");
-//! let found = Diagnostic::error(Code::UNKNOWN_NAME, Span::new(file, 0, 5), "unknown name `spere`")
+//! let span = Span::new(file, 0, 5);
+//! let unknown = Diagnostic::error(Code::UNKNOWN_NAME, span, "unknown name `spere`")
 //!     .help("did you mean `sphere`?");
-//! let text = render(&sources, &[found], false);
+//! let text = render(&sources, &[unknown], false);
 //! assert!(text.contains("E0201") && text.contains("scene.sdf:1:1"));
 //! ```
 //!
 //! # Limits
 //!
-//! Files are at most 4 GiB (offsets are `u32`); the parser refuses far smaller ones.
+//! Files are at most 4 GiB, because offsets are `u32`. The parser has a far lower limit.
 
 mod codes;
 mod excerpt;
@@ -36,50 +36,50 @@ pub use codes::{ALL_CODES, Code, CodeInfo};
 pub use render::{Located, locate, render};
 pub use source::{FileId, LineColumn, Sources, Span};
 
-/// How bad it is.
+/// The severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The scene means something else than its author may think; it still compiles.
+    /// The scene compiles, but may not mean what its author intended.
     Warning,
     /// The scene does not compile.
     Error,
 }
 
-/// A further place, or a further fact, that explains a diagnostic.
+/// A further fact that explains a diagnostic, with or without a position in the source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Where, if it has a place.
+    /// The position that the note refers to, if any.
     pub span: Option<Span>,
-    /// What, in one line, without a final stop.
+    /// The message: one line, without a final full stop.
     pub message: String,
 }
 
-/// One finding about a scene.
+/// An error or a warning about a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Stable identity; has a page in the documentation.
+    /// The stable code, which has a page in the documentation.
     pub code: Code,
-    /// Error or warning.
+    /// The severity.
     pub severity: Severity,
-    /// What is wrong, in one line, without a final stop.
+    /// What is wrong: one line, without a final full stop.
     pub message: String,
-    /// Where.
+    /// The source range that is wrong.
     pub span: Span,
-    /// Text at the caret; empty when the message says it all.
+    /// The text at the caret; empty if the message is enough.
     pub label: String,
-    /// Other places that matter, in the order they should be read.
+    /// Further facts, in the order in which they should be read.
     pub notes: Vec<Note>,
-    /// Ways to mend it in this case, best first; see [`Self::ways_to_mend`].
+    /// Suggestions for this case, best first; see [`Self::suggestions`].
     pub help: Vec<String>,
 }
 
 impl Diagnostic {
-    /// An error without label, notes or help.
+    /// Creates an error without label, notes or help.
     pub fn error(code: Code, span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Error, code, span, message.into())
     }
 
-    /// A warning without label, notes or help.
+    /// Creates a warning without label, notes or help.
     pub fn warning(code: Code, span: Span, message: impl Into<String>) -> Self {
         Self::new(Severity::Warning, code, span, message.into())
     }
@@ -89,46 +89,46 @@ impl Diagnostic {
         Self { code, severity, message, span, label, notes, help }
     }
 
-    /// With `label` at the caret.
+    /// Sets the text at the caret.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
-    /// With a note that has no place.
+    /// Adds a note without a position.
     pub fn note(mut self, message: impl Into<String>) -> Self {
         self.notes.push(Note { span: None, message: message.into() });
         self
     }
 
-    /// With a note at another place.
+    /// Adds a note about another source range.
     pub fn note_at(mut self, span: Span, message: impl Into<String>) -> Self {
         self.notes.push(Note { span: Some(span), message: message.into() });
         self
     }
 
-    /// With one more way to mend it.
+    /// Adds a suggestion.
     pub fn help(mut self, message: impl Into<String>) -> Self {
         self.help.push(message.into());
         self
     }
 
-    /// Ways to mend it, best first: its own, or what its code has for all findings.
-    pub fn ways_to_mend(&self) -> Vec<&str> {
+    /// Returns its own suggestions, best first, or else the general suggestion of its code.
+    pub fn suggestions(&self) -> Vec<&str> {
         if !self.help.is_empty() {
             return self.help.iter().map(String::as_str).collect();
         }
         let row = ALL_CODES.iter().find(|row| row.code == self.code);
-        row.map(|row| row.mend).into_iter().collect()
+        row.map(|row| row.suggestion).into_iter().collect()
     }
 
-    /// Whether it keeps the scene from compiling.
+    /// Returns true if it keeps the scene from compiling.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
     }
 }
 
-/// Whether any of them keeps the scene from compiling.
+/// Returns true if any of the diagnostics keeps the scene from compiling.
 pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(Diagnostic::is_error)
 }

@@ -1,4 +1,4 @@
-//! From diagnostics to text for people, and to lines and columns for programs.
+//! Diagnostics as text for people, and as lines and columns for programs.
 
 use std::borrow::Cow;
 
@@ -8,16 +8,17 @@ use codespan_reporting::term::{self, termcolor};
 use crate::excerpt::Excerpts;
 use crate::{Diagnostic, FileId, LineColumn, Severity, Sources, Span};
 
-/// Characters of a message that are shown at most: names in it may be of any length.
-const MESSAGE: usize = 400;
+/// The most characters of a message that are shown, since names in it may be of any length.
+const MAX_MESSAGE: usize = 400;
 
-/// All of them as text with source lines and carets, in the order given. Of lines and messages that are too long for people to read a part
-/// is shown.
+/// Renders diagnostics with source lines and carets, in the given order.
+///
+/// Lines and messages that are too long to read are shortened.
 pub fn render(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> String {
     let mut out = if color { termcolor::Buffer::ansi() } else { termcolor::Buffer::no_color() };
     let config = term::Config::default();
     for diagnostic in diagnostics {
-        let excerpts = Excerpts::around(sources, &places(diagnostic));
+        let excerpts = Excerpts::around(sources, &positions(diagnostic));
         let report = report(sources, diagnostic, &excerpts);
         // Writing to memory fails only for a span outside its file; the message still counts.
         if term::emit_to_write_style(&mut out, &config, &excerpts, &report).is_err() {
@@ -28,8 +29,8 @@ pub fn render(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> Str
     String::from_utf8_lossy(out.as_slice()).into_owned()
 }
 
-/// Ends of all spans, those of the finding itself first.
-fn places(diagnostic: &Diagnostic) -> Vec<(FileId, usize)> {
+/// Returns the start and end of every span, those of the diagnostic itself first.
+fn positions(diagnostic: &Diagnostic) -> Vec<(FileId, usize)> {
     let noted = diagnostic.notes.iter().filter_map(|note| note.span);
     let spans = std::iter::once(diagnostic.span).chain(noted);
     spans.flat_map(|s| [(s.file, s.start as usize), (s.file, s.end as usize)]).collect()
@@ -59,19 +60,19 @@ fn report(sources: &Sources, diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -
     for note in diagnostic.notes.iter() {
         add(LabelStyle::Secondary, note.span, &note.message);
     }
-    let ways = diagnostic.ways_to_mend();
-    report.notes.extend(ways.iter().map(|help| format!("help: {}", shortened(help))));
+    let suggestions = diagnostic.suggestions();
+    report.notes.extend(suggestions.iter().map(|help| format!("help: {}", shortened(help))));
     report.with_code(diagnostic.code.0).with_message(shortened(&diagnostic.message))
 }
 
-/// A message, without its middle if it is too long to read.
+/// Returns a message without its middle if it is longer than [`MAX_MESSAGE`].
 fn shortened(message: &str) -> Cow<'_, str> {
-    let Some((cut, _)) = message.char_indices().nth(MESSAGE) else { return message.into() };
-    let end = message.char_indices().rev().nth(MESSAGE / 4).map_or(cut, |(at, _)| at).max(cut);
+    let Some((cut, _)) = message.char_indices().nth(MAX_MESSAGE) else { return message.into() };
+    let end = message.char_indices().rev().nth(MAX_MESSAGE / 4).map_or(cut, |(at, _)| at).max(cut);
     format!("{}…{}", &message[..cut], &message[end..]).into()
 }
 
-/// A diagnostic as `check --json` writes it.
+/// A diagnostic with its position, as `check --json` writes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Located {
     /// The code, `E0201`.
@@ -80,17 +81,17 @@ pub struct Located {
     pub severity: &'static str,
     /// What is wrong.
     pub message: String,
-    /// Name of the file.
+    /// The name of the file.
     pub file: String,
-    /// Where it begins.
+    /// The start of its source range.
     pub start: LineColumn,
-    /// Where it ends.
+    /// The end of its source range.
     pub end: LineColumn,
-    /// Ways to mend it, one a line.
+    /// Suggestions, one per line.
     pub help: String,
 }
 
-/// The diagnostic with its place as lines and columns.
+/// Converts a diagnostic's span to lines and columns.
 pub fn locate(sources: &Sources, diagnostic: &Diagnostic) -> Located {
     let span = diagnostic.span;
     Located {
@@ -103,7 +104,7 @@ pub fn locate(sources: &Sources, diagnostic: &Diagnostic) -> Located {
         file: sources.name(span.file).to_owned(),
         start: sources.line_column(span.file, span.start),
         end: sources.line_column(span.file, span.end),
-        help: diagnostic.ways_to_mend().join("\n"),
+        help: diagnostic.suggestions().join("\n"),
     }
 }
 
@@ -121,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_long_line_the_part_around_the_place_is_shown() {
+    fn a_long_line_is_shortened_around_the_span() {
         let text = format!("{}wrong{}", "é".repeat(5_000), "ü".repeat(5_000));
         let shown = rendered(text, 10_000..10_005);
         assert!(shown.contains("long.sdf:1:5001"), "{shown}");
@@ -134,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_a_long_line_is_shown() {
+    fn every_span_of_a_long_line_is_rendered() {
         let texts = ["x".repeat(700), "é".repeat(400), "😀".repeat(200)];
         for text in texts.into_iter().flat_map(|text| [format!("{text}\nb"), text + "x"]) {
             let ends: Vec<usize> =
@@ -149,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn long_spans_and_messages_end_somewhere() {
+    fn long_spans_and_messages_are_shortened() {
         let shown = rendered("x".repeat(100_000), 5..100_000);
         assert!(shown.len() < 1_000, "{} bytes", shown.len());
         let message = "x".repeat(100_000) + " is wrong";

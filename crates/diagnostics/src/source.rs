@@ -1,10 +1,10 @@
-//! Source files and places in them.
+//! Source files and positions in them.
 
-/// Which file of a [`Sources`].
+/// Identifies a file of a [`Sources`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId(pub u32);
 
-/// A run of bytes in one file: `start..end`, `end` not included.
+/// The byte range `start..end` of one file; `end` is exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
     /// The file.
@@ -16,12 +16,12 @@ pub struct Span {
 }
 
 impl Span {
-    /// The bytes `start..end` of `file`.
+    /// Creates the span of the bytes `start..end` of `file`.
     pub fn new(file: FileId, start: u32, end: u32) -> Self {
         Self { file, start, end }
     }
 
-    /// The smallest span that covers both; `self` where they lie in different files.
+    /// Returns the smallest span that covers both, or `self` if they lie in different files.
     pub fn to(self, other: Self) -> Self {
         if self.file != other.file {
             return self;
@@ -29,13 +29,13 @@ impl Span {
         Self::new(self.file, self.start.min(other.start), self.end.max(other.end))
     }
 
-    /// The empty span right behind this one.
+    /// Returns the empty span at the end of this one.
     pub fn after(self) -> Self {
         Self::new(self.file, self.end, self.end)
     }
 }
 
-/// A place as people and editors count it: both from 1, columns in characters.
+/// A position as people and editors count it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineColumn {
     /// Line, from 1.
@@ -51,19 +51,19 @@ struct Source {
     line_starts: Vec<u32>,
 }
 
-/// Every file that was read, by [`FileId`].
+/// All files that were read, by [`FileId`].
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<Source>,
 }
 
 impl Sources {
-    /// No files.
+    /// Creates an empty set of files.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Adds a file under the name that messages will show.
+    /// Adds a file under the name that messages show.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> FileId {
         let text = text.into();
         let mut line_starts = vec![0];
@@ -76,32 +76,32 @@ impl Sources {
         self.files.get(file.0 as usize)
     }
 
-    /// How many files there are.
+    /// Returns the number of files.
     pub fn len(&self) -> usize {
         self.files.len()
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no files.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
 
-    /// The name shown for a file; empty for an unknown one.
+    /// Returns the name of a file, or an empty string if there is no such file.
     pub fn name(&self, file: FileId) -> &str {
         self.get(file).map_or("", |source| &source.name)
     }
 
-    /// The text of a file; empty for an unknown one.
+    /// Returns the text of a file, or an empty string if there is no such file.
     pub fn text(&self, file: FileId) -> &str {
         self.get(file).map_or("", |source| &source.text)
     }
 
-    /// The text of a span; empty where the span does not fit its file.
+    /// Returns the text of a span, or an empty string if the span lies outside of its file.
     pub fn slice(&self, span: Span) -> &str {
         self.text(span.file).get(span.start as usize..span.end as usize).unwrap_or("")
     }
 
-    /// The bytes of a line, counted from 0, its line break included.
+    /// Returns the byte range of a line, counted from 0, including its line break.
     pub fn line_bytes(&self, file: FileId, line: usize) -> Option<std::ops::Range<usize>> {
         let source = self.get(file)?;
         let start = *source.line_starts.get(line)? as usize;
@@ -109,7 +109,7 @@ impl Sources {
         Some(start..end)
     }
 
-    /// Line and column of a byte offset; an offset past the end counts as the end.
+    /// Returns the line and column of a byte offset; an offset past the end counts as the end.
     pub fn line_column(&self, file: FileId, offset: u32) -> LineColumn {
         let Some(source) = self.get(file) else {
             return LineColumn { line: 1, column: 1 };

@@ -66,7 +66,7 @@ impl Finding {
             }
             None => note.message.clone(),
         });
-        let help = found.ways_to_mend().into_iter().map(|way| format!("help: {way}"));
+        let help = found.suggestions().into_iter().map(|way| format!("help: {way}"));
         Self {
             code: located.code,
             is_error: found.is_error(),

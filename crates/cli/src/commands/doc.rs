@@ -82,7 +82,8 @@ fn code(name: &str) -> Option<&'static CodeInfo> {
 
 fn write_code(row: &CodeInfo, as_json: bool, console: &Console) -> Result<(), Failure> {
     if as_json {
-        let row = CodeRow { code: row.code.0, title: row.title, meaning: row.page, help: row.mend };
+        let row =
+            CodeRow { code: row.code.0, title: row.title, meaning: row.page, help: row.suggestion };
         return output::to_stdout(&super::json(&[row])?);
     }
     let mut page = Page::new(console.output_color());

@@ -72,7 +72,7 @@ impl Page {
         self.text.push('\n');
         self.indented(row.page);
         self.text.push('\n');
-        self.line("help", row.mend);
+        self.line("help", row.suggestion);
     }
 
     /// A last line of its own.

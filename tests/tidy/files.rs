@@ -1,0 +1,62 @@
+//! The files of the repository that the checks read.
+
+use std::path::{Path, PathBuf};
+
+use sdfc_test_support::repository;
+
+/// The most lines of a file.
+const MAX_LINES: usize = 800;
+
+/// Returns every file below `folder` whose name ends in `.extension`, sorted.
+pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes()[0] == b'.');
+            let is_foreign = path.ends_with("target") || path.ends_with("node_modules");
+            if path.is_dir() && !is_hidden && !is_foreign {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == extension) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Returns the path below the repository, with `/`, and the text of every file with one of the
+/// extensions.
+pub fn texts(extensions: &[&str]) -> Vec<(String, String)> {
+    let root = repository();
+    let paths = extensions.iter().flat_map(|extension| files(&root, extension));
+    let text = |path: PathBuf| {
+        let name = path.strip_prefix(&root).unwrap().display().to_string().replace('\\', "/");
+        (name, std::fs::read_to_string(&path).unwrap())
+    };
+    paths.map(text).collect()
+}
+
+/// Returns the part of a source file before its tests.
+pub fn product(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.split("#[cfg(test)]").next().unwrap_or_default().to_owned()
+}
+
+/// Returns the crate or folder that a path below the repository belongs to, such as `crates/graph`,
+/// `docs` or `tests`; for files at the top, their own name.
+pub fn area(path: &str) -> &str {
+    let folders = if path.starts_with("crates/") { 2 } else { 1 };
+    let end = path.match_indices('/').nth(folders - 1).map_or(path.len(), |(at, _)| at);
+    &path[..end]
+}
+
+#[test]
+fn no_file_is_too_long() {
+    for (path, text) in texts(&["rs", "wgsl", "sdf", "md"]) {
+        let lines = text.lines().count();
+        assert!(lines <= MAX_LINES, "{path} has {lines} lines, more than {MAX_LINES}");
+    }
+}
