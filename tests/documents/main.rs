@@ -1,11 +1,10 @@
-//! What the documentation shows is true: every block of the language compiles, every block that is said to be wrong has
-//! the code that is named, every value in a table is what its expression gives, and every link leads somewhere.
+//! The documentation is correct: code blocks compile or have the diagnostic code that they name,
+//! values in tables are right, pictures are current, and links lead to files that exist.
 //!
 //! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
 //! - ```` ```sdf E0304 ```` is a scene with that code and no other.
-//! - A row of a table with the head `| expression | gives |` holds two expressions of one value.
-//! - Charts show what is said of them (`charts.rs`).
-//! - In the tutorial a picture right behind a block shows what that block draws.
+//! - A row of a table with the head `| expression | gives |` has two expressions of equal value.
+//! - In the tutorial, a picture right behind a block shows the scene of that block.
 //!
 //! The pages of `docs/reference` and `docs/errors` have tests of their own.
 
@@ -24,10 +23,10 @@ use std::path::PathBuf;
 use sdfc::{check, lang::NoFiles};
 use sdfc_tests::{is_same_picture, repository};
 
-/// Two values are one if they differ by no more than this.
+/// The largest difference of two values that count as equal.
 const ROUNDING: f64 = 1e-6;
 
-/// Name and text of every page that people read.
+/// Returns the name and the text of every page.
 fn pages() -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut folders = vec![repository().join("docs")];
@@ -50,14 +49,14 @@ fn pages() -> Vec<(String, String)> {
     found.into_iter().map(page).collect()
 }
 
-/// Those whose blocks are checked here.
+/// Returns the pages whose blocks are checked here.
 fn checked_pages() -> Vec<(String, String)> {
     let elsewhere = ["docs/reference/", "docs/errors/"];
     let is_here = |page: &(String, String)| !elsewhere.iter().any(|it| page.0.starts_with(it));
     pages().into_iter().filter(is_here).collect()
 }
 
-/// The blocks of the language in a page: line, what stands behind ```` ```sdf ````, text.
+/// Returns the `sdf` blocks of a page: line, the rest of the line behind ```` ```sdf ````, text.
 fn blocks(page: &str) -> Vec<(usize, String, String)> {
     let mut found = Vec::new();
     let mut open: Option<(usize, String, String)> = None;
@@ -72,14 +71,14 @@ fn blocks(page: &str) -> Vec<(usize, String, String)> {
             (None, None) => {}
         }
     }
-    let of_language = |(line, info, text): (usize, String, String)| {
+    let sdf_block = |(line, info, text): (usize, String, String)| {
         let rest = info.strip_prefix("sdf")?;
         Some((line, rest.trim().to_owned(), text))
     };
-    found.into_iter().filter_map(of_language).collect()
+    found.into_iter().filter_map(sdf_block).collect()
 }
 
-/// Rows of the tables of expressions: line, expression, value.
+/// Returns the rows of the tables of expressions: line, expression, value.
 fn values(page: &str) -> Vec<(usize, String, String)> {
     let mut found = Vec::new();
     let mut inside = false;
@@ -95,7 +94,7 @@ fn values(page: &str) -> Vec<(usize, String, String)> {
 }
 
 #[test]
-fn every_block_compiles_or_has_the_code_that_is_named() {
+fn every_block_compiles_or_has_the_code_that_it_names() {
     let mut wrong = Vec::new();
     let mut count = 0;
     for (page, text) in checked_pages() {
@@ -103,7 +102,7 @@ fn every_block_compiles_or_has_the_code_that_is_named() {
             count += 1;
             let compiled = check(&page, &block, &NoFiles);
             let codes: Vec<&str> = compiled.diagnostics.iter().map(|it| it.code.0).collect();
-            // Declarations alone draw nothing, and need not.
+            // A block may have declarations only, which draw nothing.
             let fits = match &*expected {
                 "" => codes.iter().all(|code| *code == "W0604"),
                 code => !codes.is_empty() && codes.iter().all(|it| *it == code),
@@ -144,27 +143,27 @@ fn every_expression_gives_what_is_said() {
 }
 
 #[test]
-fn every_picture_of_the_tutorial_is_what_its_block_draws() {
+fn every_picture_of_the_tutorial_shows_the_scene_of_its_block() {
     let page = std::fs::read_to_string(repository().join("docs/tutorial.md")).unwrap();
     let shown = pictures::shown(&page.replace("\r\n", "\n"));
     assert!(shown.len() > 5, "the pictures were not found");
     for (path, block) in shown {
-        let place = repository().join("docs").join(&path);
+        let file = repository().join("docs").join(&path);
         let drawn = pictures::drawn(&block);
-        let is_same = || is_same_picture(&std::fs::read(&place).unwrap_or_default(), &drawn);
+        let is_same = || is_same_picture(&std::fs::read(&file).unwrap_or_default(), &drawn);
         if std::env::var_os("DOCUMENTS_UPDATE").is_some() && !is_same() {
-            std::fs::write(&place, &drawn).unwrap();
+            std::fs::write(&file, &drawn).unwrap();
         }
-        assert!(is_same(), "{path} is not what is drawn; write it anew with DOCUMENTS_UPDATE=1");
+        assert!(is_same(), "{path} is out of date; rewrite it with DOCUMENTS_UPDATE=1");
     }
 }
 
 #[test]
-fn every_link_within_the_repository_leads_somewhere() {
+fn every_link_within_the_repository_leads_to_a_file() {
     let mut broken = Vec::new();
     for (page, text) in pages() {
         let folder = repository().join(&page).parent().unwrap().to_owned();
-        // Every other part is a block of code, where brackets and parentheses are no link.
+        // Every second part is a code block, where brackets and parentheses are not links.
         let prose: String = text.split("\n```").step_by(2).collect();
         let targets = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
         let pictures = prose.split("src=\"").skip(1).filter_map(|rest| rest.split('"').next());

@@ -1,12 +1,14 @@
-//! The pictures of the tutorial: each is what the block before it draws. `DOCUMENTS_UPDATE=1` writes them anew.
+//! The pictures of the tutorial: each shows the scene of the block before it.
+//! `DOCUMENTS_UPDATE=1` rewrites them.
 
 use sdfc::{Backend, PictureOptions, compile, unwatched};
 
-/// Width and height in pixels, and rays for each.
+/// Width and height in pixels.
 const SIZE: [u32; 2] = [320, 240];
+/// The number of rays per pixel.
 const SAMPLES: u32 = 2;
 
-/// Path of each picture, and the block before it.
+/// Returns the path of each picture and the block before it.
 pub fn shown(page: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut rest = page;
@@ -21,7 +23,7 @@ pub fn shown(page: &str) -> Vec<(String, String)> {
     found
 }
 
-/// The block as a PNG.
+/// Draws a block and returns the PNG file.
 pub fn drawn(block: &str) -> Vec<u8> {
     let options = PictureOptions {
         size: SIZE,

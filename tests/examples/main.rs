@@ -1,5 +1,5 @@
-//! Every scene under `examples/` compiles without a finding that its text does not name, is formatted, and draws something; the library is
-//! formatted too.
+//! Every scene under `examples/` is formatted, compiles with no diagnostic that its comments do not
+//! name, and draws something. The library is formatted too.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -25,18 +25,18 @@ fn the_library_is_formatted() {
 }
 
 #[test]
-fn examples_say_what_they_show() {
+fn examples_begin_with_a_comment() {
     for (name, text) in example_sources().unwrap() {
         assert!(text.starts_with("// "), "{name} begins with no comment");
     }
 }
 
 #[test]
-fn examples_compile_without_a_finding_that_they_do_not_explain_and_draw_something() {
+fn examples_draw_something_and_explain_their_diagnostics() {
     let options = PictureOptions { size: [32, 20], backend: Backend::Cpu, ..Default::default() };
     for (name, text) in example_sources().unwrap() {
         let compiled = sdfc::compile(&name, &text);
-        let explained = compiled.diagnostics.iter().all(|found| text.contains(found.code.0));
+        let explained = compiled.diagnostics.iter().all(|it| text.contains(it.code.0));
         assert!(explained, "{}", compiled.diagnostics_text(false));
         let scene = compiled.scene.unwrap();
         let pixels = scene.render(&options, &mut unwatched).unwrap().stats.pixels;

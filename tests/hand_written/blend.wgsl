@@ -1,5 +1,5 @@
-// The field of examples/course/blend.sdf as a careful person writes it: all constants inlined, vector
-// code, no work done twice. The compiler is measured against it; README.md beside it says how.
+// The field of examples/course/blend.sdf as a careful person writes it: all constants are inlined,
+// vector code, no repeated work. README.md explains how the compiler is compared with it.
 
 fn smooth_min(a: f32, b: f32) -> f32 {
     // Quadratic smooth minimum with k = 0.4; 0.625 is 0.25 / k.
@@ -15,7 +15,7 @@ fn field(p: vec3f) -> f32 {
     return min(smooth_min(ball, block), ground);
 }
 
-// Keeps `field` alive through the optimiser and adds no arithmetic of its own.
+// Keeps the optimiser from deleting `field` and adds no arithmetic of its own.
 @group(0) @binding(0) var<storage, read_write> sample: vec4f;
 
 @compute @workgroup_size(1)

@@ -1,6 +1,7 @@
-//! The compiler's fields against those that a careful person writes; README.md says what is counted.
+//! The compiler's field functions have no more instructions than hand-written ones. README.md
+//! explains what is counted.
 //!
-//! Without `spirv-opt` the trials that count are reported as ignored.
+//! Without `spirv-opt`, the tests that count are reported as ignored.
 
 mod run;
 mod spirv;
@@ -9,11 +10,11 @@ mod thirty;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_tests::repository;
 
-/// The compiler's scenes that have a hand-written field.
+/// The scenes that have a hand-written field.
 const SCENES: [(&str, &str); 2] =
     [("blend", "examples/course/blend.sdf"), ("thirty", "examples/bench/thirty.sdf")];
 
-/// What the hand-written files end with, around the compiler's function.
+/// The entry point that the hand-written files have, for the compiler's function.
 const ENTRY: &str = "
 @group(0) @binding(0) var<storage, read_write> sample: vec4f;
 
@@ -23,7 +24,7 @@ fn main() {
 }
 ";
 
-/// A hand-written field, and its row of the table in README.md.
+/// The hand-written fields and their arithmetic instructions, as the table in README.md has them.
 const HAND_WRITTEN: [(&str, usize); 4] =
     [("blend", 21), ("thirty", 421), ("tight/blend", 19), ("tight/thirty", 371)];
 
@@ -32,19 +33,38 @@ fn main() {
     let counting = |name: String, run: fn(&str) -> Result<(), Failed>, of: &'static str| {
         Trial::test(name, move || run(of)).with_ignored_flag(!countable)
     };
-    let mut trials =
-        vec![Trial::test("thirty_is_what_its_generator_writes", generated_files_are_current)];
+    let mut trials = vec![Trial::test("generated_files_are_current", generated_files_are_current)];
     for (name, _) in HAND_WRITTEN {
-        trials.push(counting(format!("count_of_{name}"), hand_written_count_is_the_table_s, name));
+        trials.push(counting(
+            format!("hand_written_{name}_has_the_stated_count"),
+            has_stated_count,
+            name,
+        ));
     }
     for name in ["blend", "thirty"] {
-        trials.push(counting(format!("values_of_{name}"), tight_form_is_the_same_field, name));
+        trials.push(counting(
+            format!("tight_{name}_is_the_same_field"),
+            tight_form_is_the_same_field,
+            name,
+        ));
     }
     for (name, _) in SCENES {
-        trials.push(counting(format!("emitted_{name}_is_no_longer"), emitted_is_no_longer, name));
-        trials.push(counting(format!("emitted_{name}_is_the_same"), emitted_is_the_same, name));
+        trials.push(counting(
+            format!("emitted_{name}_has_no_more_instructions"),
+            emitted_is_no_longer,
+            name,
+        ));
+        trials.push(counting(
+            format!("emitted_{name}_is_the_same_field"),
+            emitted_is_the_same,
+            name,
+        ));
     }
-    trials.push(counting("values_by_formula".into(), blend_is_its_formula, "blend"));
+    trials.push(counting(
+        "hand_written_blend_is_its_formula".into(),
+        blend_is_its_formula,
+        "blend",
+    ));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -54,7 +74,9 @@ fn generated_files_are_current() -> Result<(), Failed> {
             std::fs::write(repository().join(path), &text)?;
         }
         if std::fs::read_to_string(repository().join(path))?.replace("\r\n", "\n") != text {
-            return Err(format!("{path} is not what thirty.rs writes").into());
+            return Err(
+                format!("{path} is out of date; rewrite it with HAND_WRITTEN_UPDATE=1").into()
+            );
         }
     }
     Ok(())
@@ -66,7 +88,7 @@ fn hand_written(name: &str) -> Result<spirv::Words, Failed> {
     Ok(spirv::optimize(&spirv::compile(&wgsl)?)?)
 }
 
-fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
+fn has_stated_count(name: &str) -> Result<(), Failed> {
     let stated = HAND_WRITTEN.iter().find(|row| row.0 == name).map(|row| row.1);
     let counted = spirv::arithmetic(&hand_written(name)?);
     if stated != Some(counted) {
@@ -81,7 +103,7 @@ fn hand_written_count_is_the_table_s(name: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The field that the compiler makes of the scene, optimised.
+/// Returns the field that the compiler emits for a scene, optimised.
 fn emitted(name: &str) -> Result<spirv::Words, Failed> {
     let path = SCENES.iter().find(|row| row.0 == name).map_or("", |row| row.1);
     let compiled = sdfc::compile(path, &std::fs::read_to_string(repository().join(path))?);
@@ -110,7 +132,7 @@ fn emitted_is_the_same(name: &str) -> Result<(), Failed> {
     compare(name, |p| Ok((run::field(&by_hand, p)?, run::field(&by_compiler, p)?)))
 }
 
-/// Points in and around the scenes, from a lattice that meets no symmetry of theirs.
+/// Returns points in and around the scenes, from a lattice that avoids their symmetries.
 fn points() -> impl Iterator<Item = [f32; 3]> {
     // The plastic number's powers spread points evenly (Roberts 2018).
     const STEP: [f64; 3] = [0.819_172_5, 0.671_043_6, 0.549_700_5];
@@ -118,14 +140,14 @@ fn points() -> impl Iterator<Item = [f32; 3]> {
 }
 
 fn compare(
-    what: &str,
-    mut of: impl FnMut([f32; 3]) -> Result<(f32, f32), String>,
+    name: &str,
+    mut values: impl FnMut([f32; 3]) -> Result<(f32, f32), String>,
 ) -> Result<(), Failed> {
     for point in points() {
-        let (a, b) = of(point)?;
+        let (a, b) = values(point)?;
         // A few roundings of numbers below 8, after another order of operations.
         if (a - b).abs() > 1e-5 {
-            return Err(format!("{what} at {point:?}: {a} and {b}").into());
+            return Err(format!("{name} at {point:?}: {a} and {b}").into());
         }
     }
     Ok(())
@@ -136,7 +158,7 @@ fn tight_form_is_the_same_field(name: &str) -> Result<(), Failed> {
     compare(name, |p| Ok((run::field(&plain, p)?, run::field(&tight, p)?)))
 }
 
-/// The runner and the hand-written text, against the definition in f64.
+/// Compares the interpreter and the hand-written field with the formula in f64.
 fn blend_is_its_formula(name: &str) -> Result<(), Failed> {
     let words = hand_written(name)?;
     compare(name, |p| Ok((run::field(&words, p)?, blend(p.map(f64::from)) as f32)))

@@ -1,34 +1,39 @@
-//! Runs the entry point of an optimised module that has no branches: what is counted is also what is
-//! evaluated.
+//! An interpreter of optimised SPIR-V modules without branches, so that the code that is counted is
+//! also the code that is evaluated.
 
 use std::collections::HashMap;
 
 use crate::spirv::{Instruction, instructions};
 
-/// Numbers are vectors of one component.
+/// A vector; a number is a vector of one component.
 type Value = Vec<f32>;
 
 #[derive(Default)]
-struct Machine {
+struct Interpreter {
     values: HashMap<u32, Value>,
-    /// How many components a type has.
+    /// The number of components of each type.
     widths: HashMap<u32, usize>,
-    /// Component of the variable that a pointer points at; `None` is all of it.
+    /// The component of the variable that a pointer points at; `None` means all of it.
     pointers: HashMap<u32, Option<usize>>,
-    /// The one variable, `sample`.
+    /// The value of the only variable, `sample`.
     memory: [f32; 4],
 }
 
-/// Distance at `point`, or what the module contains that this cannot run.
+/// Returns the distance at `point`.
+///
+/// # Errors
+///
+/// The module has an instruction that the interpreter does not know.
 pub fn field(words: &[u32], point: [f32; 3]) -> Result<f32, String> {
-    let mut machine = Machine { memory: [point[0], point[1], point[2], 0.0], ..Machine::default() };
+    let memory = [point[0], point[1], point[2], 0.0];
+    let mut interpreter = Interpreter { memory, ..Interpreter::default() };
     for instruction in instructions(words) {
-        machine.step(&instruction)?;
+        interpreter.step(&instruction)?;
     }
-    Ok(machine.memory[3])
+    Ok(interpreter.memory[3])
 }
 
-impl Machine {
+impl Interpreter {
     fn step(&mut self, instruction: &Instruction) -> Result<(), String> {
         let o = instruction.operands;
         match instruction.opcode {
@@ -52,7 +57,7 @@ impl Machine {
                     None => self.memory.copy_from_slice(&stored),
                 }
             }
-            // The variable is wrapped in a struct: the first index is 0, the second a component.
+            // The variable is wrapped in a struct: index 0 is the variable, the next a component.
             65 | 66 => {
                 let component = o.get(4).map(|index| self.get(*index)).transpose()?;
                 let at = component.map(|index| index[0].to_bits() as usize);
@@ -73,14 +78,14 @@ impl Machine {
                 self.set(o[1], vec![a.iter().zip(b).map(|(a, b)| a * b).sum()]);
             }
             12 => self.extended(o)?,
-            // Names, decorations, types, functions, labels and returns compute nothing.
+            // Names, decorations, types, functions, labels and returns have no effect here.
             0..=20 | 24..=39 | 54..=58 | 71 | 72 | 248 | 253 => {}
-            other => return Err(format!("opcode {other} is not one of a straight field's")),
+            other => return Err(format!("unknown opcode {other}")),
         }
         Ok(())
     }
 
-    /// An instruction of `GLSL.std.450`.
+    /// Runs an instruction of `GLSL.std.450`.
     fn extended(&mut self, o: &[u32]) -> Result<(), String> {
         let shifted: Vec<u32> = [&o[..2], &o[4..]].concat();
         match o[3] {
@@ -96,13 +101,11 @@ impl Machine {
                 self.set(o[1], vec![squares.sqrt()]);
                 Ok(())
             }
-            other => {
-                Err(format!("GLSL.std.450 instruction {other} is not one of a straight field's"))
-            }
+            other => Err(format!("unknown instruction {other} of GLSL.std.450")),
         }
     }
 
-    /// Component by component; a single number goes with every component.
+    /// Sets the result of `f`, applied to each component. A number is used with every component.
     fn map(&mut self, o: &[u32], f: impl Fn(&[f32]) -> f32) -> Result<(), String> {
         let arguments = self.all(&o[2..])?;
         let width = arguments.iter().map(Vec::len).max().unwrap_or(1);

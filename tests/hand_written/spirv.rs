@@ -1,18 +1,18 @@
-//! From WGSL to optimised SPIR-V, and what is counted there.
+//! Compiles WGSL to optimised SPIR-V and counts its arithmetic instructions.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-/// Words of a module.
+/// The words of a SPIR-V module.
 pub type Words = Vec<u32>;
 
-/// One instruction: its opcode and operands, result type and result included.
+/// An instruction. The operands include the result type and the result.
 pub struct Instruction<'a> {
     pub opcode: u16,
     pub operands: &'a [u32],
 }
 
-/// The module that naga makes of `wgsl`.
+/// Compiles WGSL with naga.
 pub fn compile(wgsl: &str) -> Result<Words, String> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| e.emit_to_string(wgsl))?;
     let flags = naga::valid::ValidationFlags::all();
@@ -26,13 +26,13 @@ pub fn compile(wgsl: &str) -> Result<Words, String> {
     naga::back::spv::write_vec(&module, &info, &options, None).map_err(|e| e.to_string())
 }
 
-/// Whether the optimiser is installed.
+/// Returns true if `spirv-opt` is installed.
 pub fn has_optimizer() -> bool {
-    let found = Command::new("spirv-opt").arg("--version").stdout(Stdio::null()).status();
-    found.is_ok_and(|status| status.success())
+    let status = Command::new("spirv-opt").arg("--version").stdout(Stdio::null()).status();
+    status.is_ok_and(|status| status.success())
 }
 
-/// `spirv-opt -O`, after `spirv-val`.
+/// Validates a module with `spirv-val` and optimises it with `spirv-opt -O`.
 pub fn optimize(words: &[u32]) -> Result<Words, String> {
     pipe("spirv-val", &["--target-env", "vulkan1.1", "-"], words)?;
     let bytes = pipe("spirv-opt", &["-O", "-", "-o", "-"], words)?;
@@ -58,7 +58,7 @@ fn pipe(tool: &str, args: &[&str], words: &[u32]) -> Result<Vec<u8>, String> {
     }
 }
 
-/// The instructions after the five words of the header.
+/// Returns the instructions, which follow the five words of the header.
 pub fn instructions(words: &[u32]) -> Vec<Instruction<'_>> {
     let mut rest = words.get(5..).unwrap_or(&[]);
     let mut found = Vec::new();
@@ -70,7 +70,7 @@ pub fn instructions(words: &[u32]) -> Vec<Instruction<'_>> {
     found
 }
 
-/// How many instructions do arithmetic; README.md gives the ranges in words.
+/// Returns the number of arithmetic instructions. README.md explains the ranges of opcodes.
 pub fn arithmetic(words: &[u32]) -> usize {
     let counts = |opcode| matches!(opcode, 12 | 109..=115 | 126..=152 | 154..=191 | 194..=205);
     instructions(words).iter().filter(|found| counts(found.opcode)).count()

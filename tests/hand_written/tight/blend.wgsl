@@ -1,5 +1,5 @@
-// The field of blend.wgsl in the fewest arithmetic instructions that were found, at the price of being
-// harder to read and of one more rounding far from the blend. README.md one level up derives it.
+// The field of blend.wgsl in the fewest arithmetic instructions that were found. It is harder to
+// read and rounds once more far from the blend. README.md one level up derives the form.
 
 fn field(p: vec3f) -> f32 {
     // 0.4 = k more than the distance to the ball, so that the smooth minimum needs no `abs`.
@@ -11,7 +11,7 @@ fn field(p: vec3f) -> f32 {
     return min(nearer + h * h * -0.625, p.y + 0.5);
 }
 
-// Keeps `field` alive through the optimiser and adds no arithmetic of its own.
+// Keeps the optimiser from deleting `field` and adds no arithmetic of its own.
 @group(0) @binding(0) var<storage, read_write> sample: vec4f;
 
 @compute @workgroup_size(1)
