@@ -20,7 +20,7 @@ const EDGES: usize = 5;
 fn main() {
     let tests = [
         Trial::test("two_scenes_in_one_shader_are_drawn_as_sdfc_draws_them", same_picture),
-        Trial::test("a_slice_is_that_of_the_processor", same_slice),
+        Trial::test("a_slice_is_that_of_the_cpu", same_slice),
     ];
     let ignored = testing::without_gpu();
     let tests = tests.into_iter().map(|test| test.with_ignored_flag(ignored)).collect();
