@@ -4,7 +4,7 @@ use libtest_mimic::Failed;
 use sdfc::render::Pose;
 use sdfc::{
     Code, Emit, FrameValues, PictureOptions, Scene, ShaderOptions, Stage, Target, VIEW_SIZE,
-    unwatched,
+    no_progress,
 };
 use sdfc_tests::compiled_example;
 
@@ -208,7 +208,7 @@ pub fn drawn(
 ) -> Result<Pixels, Failed> {
     let options =
         PictureOptions { size: VIEW_SIZE, samples: Some(1), frame, pose, ..Default::default() };
-    let image = scene.render(&options, &mut unwatched)?.image;
+    let image = scene.render(&options, &mut no_progress)?.image;
     Ok(image.to_srgb8().as_chunks().0.to_vec())
 }
 

@@ -3,7 +3,7 @@
 use libtest_mimic::Failed;
 use sdfc::graph::eval::{FieldSample, Tape, sample_field};
 use sdfc::render::{HIT, View, linear_to_srgb8};
-use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, unwatched};
+use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, no_progress};
 use sdfc_tests::{compiled_example, examples_folder};
 use serde_json::json;
 
@@ -95,7 +95,7 @@ pub fn follows_the_clock(place: &mut Place) -> Result<(), Failed> {
 /// The shading of `main.js`, on what `sdfc render` meets.
 fn expected(scene: &Scene) -> Result<Pixels, Failed> {
     let options = PictureOptions { size: VIEW_SIZE, samples: Some(1), ..Default::default() };
-    let picture = scene.render(&options, &mut unwatched)?.image;
+    let picture = scene.render(&options, &mut no_progress)?.image;
     let frame = FrameValues::defaults(scene.params());
     let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), VIEW_SIZE)?;
     let places = (0..VIEW_SIZE[1]).flat_map(|y| (0..VIEW_SIZE[0]).map(move |x| [x, y]));

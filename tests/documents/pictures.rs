@@ -1,7 +1,7 @@
 //! The pictures of the tutorial: each shows the scene of the block before it.
 //! `DOCUMENTS_UPDATE=1` rewrites them.
 
-use sdfc::{Backend, PictureOptions, compile, unwatched};
+use sdfc::{Backend, PictureOptions, compile, no_progress};
 
 /// Width and height in pixels.
 const SIZE: [u32; 2] = [320, 240];
@@ -32,6 +32,6 @@ pub fn drawn(block: &str) -> Vec<u8> {
         ..Default::default()
     };
     let scene = compile("tutorial.sdf", block).scene.expect("it compiles");
-    let picture = scene.render(&options, &mut unwatched).expect("it is drawn");
+    let picture = scene.render(&options, &mut no_progress).expect("it is drawn");
     picture.image.to_png().expect("a picture in memory")
 }

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sdfc::{Backend, PictureOptions, unwatched};
+use sdfc::{Backend, PictureOptions, no_progress};
 
 use sdfc_tests::example_sources;
 
@@ -39,7 +39,7 @@ fn examples_draw_something_and_explain_their_diagnostics() {
         let explained = compiled.diagnostics.iter().all(|it| text.contains(it.code.0));
         assert!(explained, "{}", compiled.diagnostics_text(false));
         let scene = compiled.scene.unwrap();
-        let pixels = scene.render(&options, &mut unwatched).unwrap().stats.pixels;
+        let pixels = scene.render(&options, &mut no_progress).unwrap().stats.pixels;
         assert!(pixels.hit > 32 && pixels.nan == 0, "{name}: {pixels:?}");
     }
 }

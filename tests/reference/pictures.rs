@@ -3,7 +3,7 @@
 use sdfc::graph::eval::{FrameValues, Tape};
 use sdfc::graph::{Dim, Expander, ShapeId, bounds};
 use sdfc::lang::library::Entry;
-use sdfc::{Backend, PictureOptions, Scene, compile, unwatched};
+use sdfc::{Backend, PictureOptions, Scene, compile, no_progress};
 
 use super::Files;
 
@@ -67,7 +67,7 @@ fn solid(entry: &Entry) -> Vec<u8> {
         samples: Some(SAMPLES),
         ..Default::default()
     };
-    let picture = scene(entry, LIGHT).render(&options, &mut unwatched);
+    let picture = scene(entry, LIGHT).render(&options, &mut no_progress);
     picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
 }
 

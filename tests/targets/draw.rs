@@ -6,7 +6,7 @@ use libtest_mimic::Failed;
 use sdfc::codegen::{Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
 use sdfc::render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
 use sdfc::render::{linear_to_srgb8, uniform_values};
-use sdfc::{FrameValues, Scene, Stage, unwatched};
+use sdfc::{FrameValues, Scene, Stage, no_progress};
 use wgpu::BufferUsages as Usage;
 
 /// Width and height, those of `shadertoy.wgsl`. A row of pixels is a multiple of 256 bytes, as copies want it.
@@ -42,13 +42,13 @@ pub fn compute(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
         &view,
         &slots,
         &options,
-        &mut unwatched,
+        &mut no_progress,
     )?;
 
     let embedded = embedded(scene, Stage::Compute, false)?;
     let params = params(scene, &embedded.reflection());
     let pipeline = Pipeline::new(&devices.own, embedded, params.len())?;
-    let drawn = pipeline.render(&view, &params, &options, &mut unwatched)?;
+    let drawn = pipeline.render(&view, &params, &options, &mut no_progress)?;
     let found = compare(&own.image, &drawn.image).ok_or("the sizes differ")?;
     if found.color > COLOR || found.status > 0 {
         return Err(format!("{found:?}").into());
@@ -62,7 +62,7 @@ pub fn fragment(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let shader = embedded(scene, Stage::Compute, false)?;
     let params = params(scene, &shader.reflection());
     let pipeline = Pipeline::new(&devices.own, shader, params.len())?;
-    let drawn = pipeline.render(&view, &params, &RenderOptions::default(), &mut unwatched)?;
+    let drawn = pipeline.render(&view, &params, &RenderOptions::default(), &mut no_progress)?;
     let expected = drawn.image.pixels().iter().map(|pixel| eight_bits(pixel.color));
 
     let expected: Pixels = expected.collect();
@@ -89,7 +89,7 @@ pub fn shadertoy(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let (frame, view) = at_defaults(scene)?;
     let slots = uniform_values(scene.program(), &frame);
     let own = Pipeline::new(&devices.own, scene.picture_shader(scene.method())?, slots.len())?;
-    let own = own.render(&view, &slots, &RenderOptions::default(), &mut unwatched)?;
+    let own = own.render(&view, &slots, &RenderOptions::default(), &mut no_progress)?;
     let expected = own.image.pixels().iter().map(|pixel| eight_bits(pixel.color)).collect();
 
     let view = view_bytes(&view.block(TILE));

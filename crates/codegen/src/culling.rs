@@ -3,7 +3,7 @@
 use naga::{Function, GlobalVariable, Handle, Module};
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Inert, Program, Visit};
-use sdfc_march::{Features, prune_source, stubs};
+use sdfc_march::{Features, culling_source, stubs};
 
 use crate::inputs::declare_slots;
 use crate::lower::function_of_round;
@@ -17,14 +17,14 @@ use crate::{Error, Shader, link};
 /// Its entry points are `mark`, one invocation for each 32 rounds (x), tile of the level (y) and loop (z), to be run for each level from the
 /// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Those for cells are `least_of_groups` and
 /// `mark_groups`, one for each group of cells (x), 32 rounds (y) and loop (z), and `list_cells`, one for each cell (x). Its bindings are those
-/// of the picture, in place of the pixels storage arrays of words, at 4 `visits`, which the picture reads, at 5 `marks`, and at 7 `tally`, and
+/// of the picture, in place of the pixels storage arrays of words, at 4 `active_lists`, which the picture reads, at 5 `masks`, and at 7 `counters`, and
 /// at 6 the uniform `level`.
 #[derive(Debug)]
 pub struct Culling {
     /// The shader.
     pub shader: Shader,
-    /// How many rounds each loop has.
-    pub rounds: Vec<u32>,
+    /// How many iterations each loop has.
+    pub iterations: Vec<u32>,
     /// Whether rays go by cells, and if so for each loop whether no round need be visited outside all cells.
     pub cells: Option<Vec<bool>>,
 }
@@ -34,25 +34,25 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     if !features.culled {
         return Ok(None);
     }
-    let visits: Vec<&Visit> = program.visits.iter().take(stubs::REACHES.len()).collect();
+    let visits: Vec<&Visit> = program.visits.iter().take(stubs::CULLING_BOUNDS.len()).collect();
     let roots: Vec<_> = visits.iter().map(|visit| visit.ends).collect();
     let used = used_slots(program, roots.clone());
-    let mut module = skeleton(&prune_source(), features, &used, &[])?;
+    let mut module = skeleton(&culling_source(), features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     if let Some(load_frame) = load_frame {
         link::fill(&mut module, stubs::LOAD_FRAME, load_frame)?;
     }
     inputs.tables = Tables::in_buffer(LISTS);
     inputs.tables.declare(&mut module, program, &roots)?;
-    for (stub, root) in stubs::REACHES.into_iter().zip(roots) {
+    for (stub, root) in stubs::CULLING_BOUNDS.into_iter().zip(roots) {
         let function = function_of_round(program, &inputs, &mut module.types, stub, root)?;
         link::fill(&mut module, stub, function)?;
     }
     let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
     let shader = Shader::new(module, parts, features)?;
-    let rounds = visits.iter().map(|visit| visit.rounds).collect();
+    let iterations = visits.iter().map(|visit| visit.rounds).collect();
     let is_joined = || visits.iter().map(|visit| visit.is_joined).collect();
-    Ok(Some(Culling { shader, rounds, cells: features.roaming().then(is_joined) }))
+    Ok(Some(Culling { shader, iterations, cells: features.culls_by_cell().then(is_joined) }))
 }
 
 /// Where functions find which rounds to visit.
@@ -73,13 +73,13 @@ pub(crate) struct Visits {
 impl Visits {
     /// Those of a picture's module; `None` where all rounds are visited.
     pub(crate) fn of(module: &Module, program: &Program) -> Option<Self> {
-        let lists = link::find_variable(module, stubs::VISITS)?;
-        let spans = link::find_variable(module, stubs::VISIT_SPANS)?;
-        let visited = link::find_variable(module, stubs::VISITED);
-        let free = link::find_variable(module, stubs::VISIT_FREE);
-        let at = link::find_function(module, stubs::VISIT_AT).zip(free);
+        let lists = link::find_variable(module, stubs::ACTIVE_LISTS)?;
+        let spans = link::find_variable(module, stubs::ACTIVE_SPANS)?;
+        let visited = link::find_variable(module, stubs::ITERATIONS_RUN);
+        let free = link::find_variable(module, stubs::INACTIVE_DISTANCE);
+        let at = link::find_function(module, stubs::SELECT_LISTS).zip(free);
         let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
-        let loops = loops.take(stubs::REACHES.len()).collect();
+        let loops = loops.take(stubs::CULLING_BOUNDS.len()).collect();
         Some(Self { lists, spans, visited, at, loops })
     }
 

@@ -2,7 +2,7 @@
 
 use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeInner};
 use sdfc_graph::{Graph, MaterialField, NodeId, Program, Type};
-use sdfc_march::{Features, Method, ray_source, stubs};
+use sdfc_march::{Features, MethodDefinition, ray_source, stubs};
 
 use crate::inputs::{declare_members, raw_inputs};
 use crate::lower::struct_function;
@@ -68,13 +68,13 @@ pub fn march_module(
 
 fn functions(
     program: &Program,
-    method: Option<&Method>,
+    method: Option<&MethodDefinition>,
     options: &FieldOptions,
 ) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.clone();
-    let features = ray_features(&program, method.is_some_and(|method| method.looks_ahead));
+    let features = ray_features(&program, method.is_some_and(|method| method.pre_intersects));
     let mut fillings = vec![Filling::of_point(Some(Role::Distance), stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
@@ -92,7 +92,7 @@ fn functions(
 
     let mut module = match method {
         Some(method) => {
-            link::skeleton(&ray_source(method), &features.overrides(), &[stubs::PASSED])?
+            link::skeleton(&ray_source(method), &features.overrides(), &[stubs::RECORD_SAMPLE])?
         }
         None => Module::default(),
     };

@@ -61,8 +61,8 @@ pub use error::Error;
 pub use field::{FieldOptions, field_module, march_module};
 pub use instructions::FunctionCost;
 pub use picture::{
-    PictureOptions, Stage, counted_module, measured_module, normals_module, picture_module,
-    posed_module, render_module,
+    PictureOptions, Stage, benchmark_module, instrumented_module, normals_module, picture_module,
+    render_module, render_module_with_camera,
 };
 pub use reflect::{
     Buffer, BufferRole, Entry, FunctionInfo, Member, Reflection, Role, Structure, StructureMember,

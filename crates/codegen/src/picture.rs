@@ -3,7 +3,7 @@
 use naga::{Function, Module, ResourceBinding, UniqueArena};
 use rustc_hash::FxHashSet;
 use sdfc_graph::{LightSource, NodeId, Program, Rays, Settings, Shadow, reachable_where};
-use sdfc_march::{Features, FieldSource, Form, Method, method, source_over, stubs};
+use sdfc_march::{Features, FieldSource, Form, MethodDefinition, method, source_with, stubs};
 
 use crate::culling::{Visits, culling};
 use crate::inputs::{Inputs, declare_members, declare_slots, declare_variable, raw_inputs};
@@ -43,7 +43,11 @@ pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Err
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn posed_module(program: &Program, method_name: &str, parallel: bool) -> Result<Shader, Error> {
+pub fn render_module_with_camera(
+    program: &Program,
+    method_name: &str,
+    parallel: bool,
+) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     link_picture(program, Form::Compute, method, Some(parallel))
 }
@@ -54,7 +58,7 @@ pub fn posed_module(program: &Program, method_name: &str, parallel: bool) -> Res
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn normals_module(program: &Program, method: &Method) -> Result<Shader, Error> {
+pub fn normals_module(program: &Program, method: &MethodDefinition) -> Result<Shader, Error> {
     let Settings { camera, march, .. } = program.settings.clone();
     let settings = Settings { camera, march, ..Settings::default() };
     let unlit = Program { material: None, settings, ..program.clone() };
@@ -70,7 +74,7 @@ pub fn normals_module(program: &Program, method: &Method) -> Result<Shader, Erro
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn measured_module(
+pub fn benchmark_module(
     program: &Program,
     method_name: &str,
     field: FieldSource,
@@ -78,13 +82,13 @@ pub fn measured_module(
     measured(program, method_name, field, false)
 }
 
-/// As [`measured_module`] of the scene's distance, whose pixels tell as evaluations how many rounds of loops were visited, where these
+/// As [`benchmark_module`] of the scene's distance, whose pixels tell as evaluations how many rounds of loops were visited, where these
 /// are listed; those for normals are among them.
 ///
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn counted_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+pub fn instrumented_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
     measured(program, method_name, FieldSource::Distance, true)
 }
 
@@ -92,7 +96,7 @@ fn measured(
     program: &Program,
     method_name: &str,
     field: FieldSource,
-    counted: bool,
+    instrumented: bool,
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let distance = match field {
@@ -102,10 +106,10 @@ fn measured(
     };
     // All of the field is marched.
     let culled = field == FieldSource::Distance && is_culled(program, method);
-    let counted = culled && counted;
-    let features = Features { materials: false, culled, counted, ..features(program, false) };
+    let instrumented = culled && instrumented;
+    let features = Features { materials: false, culled, instrumented, ..features(program, false) };
     let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
-    let source = source_over(field, Form::Compute, method, features);
+    let source = source_with(field, Form::Compute, method, features);
     let mut module = skeleton(&source, features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
     inputs.tables = Tables::in_buffer(LISTS);
@@ -126,7 +130,7 @@ fn measured(
 
 /// Whether rays from the eye visit the rounds of loops that can matter to them alone. Those of methods that look at stretches do
 /// not: what they know of a stretch holds all rounds.
-fn is_culled(program: &Program, method: &Method) -> bool {
+fn is_culled(program: &Program, method: &MethodDefinition) -> bool {
     let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
     !program.visits.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
 }
@@ -218,7 +222,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
 fn link_picture(
     program: &Program,
     form: Form,
-    method: &Method,
+    method: &MethodDefinition,
     parallel: Option<bool>,
 ) -> Result<Shader, Error> {
     let mut picture = Picture::skeleton(program, form, method, parallel, &[], true)?;
@@ -252,18 +256,18 @@ impl<'p> Picture<'p> {
     pub(crate) fn skeleton(
         program: &'p Program,
         form: Form,
-        method: &Method,
+        method: &MethodDefinition,
         parallel: Option<bool>,
         unused: &[&str],
         culled: bool,
     ) -> Result<Self, Error> {
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
-        let mut features = features(program, method.looks_ahead);
+        let mut features = features(program, method.pre_intersects);
         features.culled = culled && is_culled(program, method);
         features.parallel = parallel.unwrap_or(features.parallel);
         let mut fillings = ahead(program, features);
-        let steps = features.steps() && !features.closed;
+        let steps = features.steps() && !features.analytic;
         if steps || features.occlusion {
             fillings.push(Filling::of_point(Some(Role::Distance), stubs::FIELD, distance));
         }
@@ -274,7 +278,7 @@ impl<'p> Picture<'p> {
         let mut roots: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);
-        let source = source_over(FieldSource::Scene, form, method, features);
+        let source = source_with(FieldSource::Scene, form, method, features);
         let module = skeleton(&source, features, &used, unused)?;
         let (inputs, parts) = Default::default();
         Ok(Self { program, fillings, features, used, module, inputs, parts })
@@ -374,14 +378,17 @@ impl Filling {
 
 /// What fills the stubs of `rays.wgsl` that are called.
 pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
-    if !features.closed && !features.clipped && !features.copies {
+    if !features.analytic && !features.clipped && !features.copies {
         return Vec::new();
     }
     let Rays { hits, closed, marched, clip, copies } = program.rays;
     let closed = closed.filter(|_| features.soft_shadows);
-    let marched = marched.filter(|_| features.closed && features.steps());
-    let of_ray = [(stubs::HITS, hits), (stubs::CLIP, clip), (stubs::COPIES, copies)].into_iter();
-    let of_point = [(stubs::CLOSED, closed), (stubs::MARCHED, marched)].into_iter();
+    let marched = marched.filter(|_| features.analytic && features.steps());
+    let of_ray =
+        [(stubs::ANALYTIC_HIT, hits), (stubs::CLIP_INTERVAL, clip), (stubs::COPIES, copies)]
+            .into_iter();
+    let of_point =
+        [(stubs::ANALYTIC_DISTANCE, closed), (stubs::MARCHED_DISTANCE, marched)].into_iter();
     of_ray
         .filter_map(|(stub, root)| Some(Filling::of_ray(stub, root?)))
         .chain(of_point.filter_map(|(stub, root)| Some(Filling::of_point(None, stub, root?))))
@@ -389,7 +396,10 @@ pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
 }
 
 /// What a method wants to know of stretches of rays.
-pub(crate) fn stretches(program: &Program, method: &Method) -> Result<Vec<Filling>, Error> {
+pub(crate) fn stretches(
+    program: &Program,
+    method: &MethodDefinition,
+) -> Result<Vec<Filling>, Error> {
     let known = [
         Filling::of_stretch(Role::Range, stubs::RANGE, program.range, &["a", "b"]),
         Filling::of_stretch(
@@ -404,7 +414,7 @@ pub(crate) fn stretches(program: &Program, method: &Method) -> Result<Vec<Fillin
 }
 
 /// The ray method of that name.
-pub(crate) fn known_method(name: &str) -> Result<&'static Method, Error> {
+pub(crate) fn known_method(name: &str) -> Result<&'static MethodDefinition, Error> {
     method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
 }
 
@@ -422,19 +432,19 @@ pub(crate) fn skeleton(
 }
 
 /// What of a scene's rays is known before they are marched, for a method that asks for it.
-pub(crate) fn ray_features(program: &Program, looks_ahead: bool) -> Features {
+pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features {
     let Rays { hits, closed: _, marched, clip, copies } = program.rays;
     Features {
-        closed: looks_ahead && hits.is_some(),
-        marched: !looks_ahead || hits.is_none() || marched.is_some(),
-        clipped: looks_ahead && clip.is_some(),
-        copies: looks_ahead && copies.is_some(),
+        analytic: pre_intersects && hits.is_some(),
+        marched: !pre_intersects || hits.is_none() || marched.is_some(),
+        clipped: pre_intersects && clip.is_some(),
+        copies: pre_intersects && copies.is_some(),
         ..Features::default()
     }
 }
 
 /// What a scene's picture needs beyond the least.
-fn features(program: &Program, looks_ahead: bool) -> Features {
+fn features(program: &Program, pre_intersects: bool) -> Features {
     let settings = &program.settings;
     let mut features = Features {
         materials: program.material.is_some(),
@@ -444,13 +454,15 @@ fn features(program: &Program, looks_ahead: bool) -> Features {
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
         parallel: settings.is_parallel(),
-        ..ray_features(program, looks_ahead)
+        ..ray_features(program, pre_intersects)
     };
     for light in &settings.lights {
         match light.source {
             LightSource::Sun { .. } => {}
-            LightSource::Point { .. } => features.lamps = true,
-            LightSource::Spot { .. } => (features.lamps, features.spots) = (true, true),
+            LightSource::Point { .. } => features.positional_lights = true,
+            LightSource::Spot { .. } => {
+                (features.positional_lights, features.spot_lights) = (true, true)
+            }
         }
         match light.shadow {
             Shadow::Off => {}

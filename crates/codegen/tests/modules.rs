@@ -113,7 +113,7 @@ fn blocks_have_the_layout_of_the_shader() {
     );
     assert_eq!(
         layout(module, "Light"),
-        block!(LightBlock: place kind color shadow axis sharpness rim pad)
+        block!(LightBlock: position kind color shadow axis sharpness rim pad)
     );
     assert_eq!(
         layout(module, "Pixel"),

@@ -26,8 +26,8 @@ impl Bytes {
     }
 
     fn light(&mut self, light: &LightBlock) -> &mut Self {
-        let LightBlock { place, kind, color, shadow, axis, sharpness, rim, pad } = light;
-        self.floats(place).words(&[*kind]).floats(color).words(&[*shadow]);
+        let LightBlock { position, kind, color, shadow, axis, sharpness, rim, pad } = light;
+        self.floats(position).words(&[*kind]).floats(color).words(&[*shadow]);
         self.floats(axis).floats(&[*sharpness]).floats(rim).floats(pad)
     }
 }

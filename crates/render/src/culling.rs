@@ -11,10 +11,10 @@ use crate::{
 
 /// Most rounds of a loop that the lists of one tile of eight by eight pixels hold together; where more can matter, all are visited.
 const CAPACITY: u32 = 512;
-/// Most rounds that are kept while the lists of a tile are made, and what is kept of one: see `prune.wgsl`.
+/// Most rounds that are kept while the lists of a tile are made, and what is kept of one: see `culling.wgsl`.
 const MOST_KEPT: u32 = 1024;
 const KEPT_WORDS: u32 = 2;
-/// What a tile's record begins with, and for how many slices of its rays it has room, see `visit_layout.wgsl`.
+/// What a tile's record begins with, and for how many slices of its rays it has room, see `active_layout.wgsl`.
 const RECORD_HEAD: u32 = 3;
 const MOST_SLICES: u32 = 16;
 /// Most bytes of lists, and of marks, for the tiles that are drawn at once.
@@ -33,7 +33,7 @@ const TALLY: u32 = 7;
 /// Words of the tally before the least operands, and where it counts operands that were evaluated.
 const TALLY_HEAD: usize = 2;
 pub(crate) const EVALUATED: u64 = 1;
-/// Words before the record by which all rounds are visited, see `visit_layout.wgsl`.
+/// Words before the record by which all rounds are visited, see `active_layout.wgsl`.
 const HEAD: u32 = 7;
 /// Groups of cells, to an axis and in all.
 const GROUP_SIDE: u32 = 8;
@@ -120,7 +120,7 @@ fn with_marks(tiles: [u32; 2]) -> u64 {
 
 impl Culling {
     pub(crate) fn new(gpu: &Gpu, made: sdfc_codegen::Culling, uniform_count: usize) -> Self {
-        let sdfc_codegen::Culling { shader, rounds, cells } = made;
+        let sdfc_codegen::Culling { shader, iterations: rounds, cells } = made;
         let table = table(gpu, &uniform_bytes(shader.lists()));
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("culling"),
@@ -394,7 +394,7 @@ mod tests {
 
     /// What a constant of the shaders is.
     fn constant(name: &str) -> u32 {
-        let text = sdfc_march::prune_source();
+        let text = sdfc_march::culling_source();
         let stated = text.split_once(&format!("const {name}: u32 = ")).unwrap().1;
         stated.split_once(';').unwrap().0.parse().unwrap()
     }
@@ -402,13 +402,13 @@ mod tests {
     #[test]
     fn what_the_shaders_know_of_the_lists_is_what_is_written() {
         assert_eq!(constant("FIRST_SLICE"), RECORD_HEAD);
-        assert_eq!(constant("MOST_SLICES"), MOST_SLICES);
-        assert_eq!(constant("WHOLE"), HEAD);
+        assert_eq!(constant("MAX_SLICES"), MOST_SLICES);
+        assert_eq!(constant("ALL_ITERATIONS"), HEAD);
         assert_eq!(constant("TILE"), WORKGROUP);
-        assert_eq!(constant("HIGHEST") + 1, LEVELS);
+        assert_eq!(constant("TOP_LEVEL") + 1, LEVELS);
         assert_eq!(1 << constant("WIDER_BITS"), WIDER);
         assert_eq!(constant("GROUP_SIDE"), GROUP_SIDE);
-        assert_eq!(constant("LEAST") as usize, TALLY_HEAD);
+        assert_eq!(constant("LEAST_OPERANDS") as usize, TALLY_HEAD);
         assert_eq!(u64::from(constant("EVALUATED")), EVALUATED);
     }
 
@@ -425,9 +425,9 @@ mod tests {
             let at = |name| head[constant(name) as usize];
             assert_eq!(at("RECORD_STRIDE"), stride(&rounds));
             assert_eq!(at("CAPACITY"), CAPACITY);
-            assert_eq!(at("MOST_WORDS"), 2);
+            assert_eq!(at("MAX_WORDS"), 2);
             assert_eq!(at("LOOPS"), 2);
-            assert_eq!(at("MOST_KEPT"), 90);
+            assert_eq!(at("MAX_SCRATCH"), 90);
             assert!(is_round(&head, 0) && is_round(&head, 1));
             (at("FIRST_RECORD"), at("CELLS") as usize, head)
         };
@@ -437,14 +437,14 @@ mod tests {
         let within = Some([DVec3::splat(-1.0), DVec3::ONE]);
         let (first, cells, head) = head_of(Some(&[true, false]), within);
         assert_eq!(cells + ABOUT_CELLS as usize, head.len());
-        // The order of `cells_at`.
+        // The order of `read_cells`.
         let [loops, side, records, outside, lists, end] =
             [0, 1, 2, 3, 4, 5].map(|i| head[cells + i]);
         assert_eq!((loops, side, records as usize, end), (2, GROUP[0], head.len(), first));
         let [_, first_of_all, _, second_of_all] = [0, 1, 2, 3].map(|i| head[HEAD as usize + i]);
         assert_eq!(head[outside as usize..][..4], [0, first_of_all, 50, second_of_all]);
         assert_eq!(lists, records + 5 * cell_count(&rounds));
-        let last = format!("three_at(place + {}u)", ABOUT_CELLS - 3);
-        assert!(sdfc_march::prune_source().contains(&last));
+        let last = format!("read_vec3(start + {}u)", ABOUT_CELLS - 3);
+        assert!(sdfc_march::culling_source().contains(&last));
     }
 }

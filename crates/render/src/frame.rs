@@ -29,7 +29,7 @@ pub struct Progress {
 pub type OnProgress<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// An [`OnProgress`] that never cancels.
-pub fn unwatched(_: Progress) -> ControlFlow<()> {
+pub fn no_progress(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -45,8 +45,8 @@ pub struct Frame {
     /// How many tiles it was drawn in.
     pub tiles: u32,
     /// How many operands of loops were evaluated before the rays, by a shader that counts them
-    /// ([`counted_module`](sdfc_codegen::counted_module)).
-    pub evaluated_before: u64,
+    /// ([`instrumented_module`](sdfc_codegen::instrumented_module)).
+    pub culling_evaluations: u64,
 }
 
 /// The values of a program's per-frame nodes, as its shader reads them.

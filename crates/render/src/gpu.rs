@@ -99,7 +99,7 @@ impl Pipeline {
         tables.iter().try_for_each(tables_fit)?;
         culling
             .as_ref()
-            .map_or(Ok(()), |made| culling::fits(gpu, &made.rounds, made.cells.is_some()))?;
+            .map_or(Ok(()), |made| culling::fits(gpu, &made.iterations, made.cells.is_some()))?;
         let start = Instant::now();
         let tables = gpu.scoped("the shader's tables", || {
             tables.iter().map(|bytes| table(gpu, bytes)).collect::<Vec<_>>()
@@ -210,11 +210,11 @@ impl Pipeline {
                 return Err(RenderError::Cancelled);
             }
         }
-        let evaluated_before = run.evaluated_before();
+        let culling_evaluations = run.culling_evaluations();
         if self.culling.is_some() {
             self.keep(run.into_buffers());
         }
-        Ok(Frame { image, milliseconds, clock, tiles, evaluated_before })
+        Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
     }
 
     /// Those of the last frame, unless another is being drawn with them.

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use sdfc_graph::{Dim, Program, Unary, eval::FrameValues};
-//! use sdfc_render::{CpuScene, HIT, RenderOptions, View, unwatched};
+//! use sdfc_render::{CpuScene, HIT, RenderOptions, View, no_progress};
 //!
 //! // A unit sphere: |p| - 1, with the gradient p / |p|.
 //! let mut program = Program::default();
@@ -21,7 +21,7 @@
 //! let frame = FrameValues::defaults(&program.params);
 //! let view = View::new(&program, &frame, Some([[-1.0; 3], [1.0; 3]]), [32, 24])?;
 //! let scene = CpuScene::new(&program)?;
-//! let drawn = scene.render(&view, &frame, "auto", &RenderOptions::default(), &mut unwatched)?;
+//! let drawn = scene.render(&view, &frame, "auto", &RenderOptions::default(), &mut no_progress)?;
 //! assert_eq!(drawn.image.pixel(16, 12).map(|pixel| pixel.status), Some(HIT));
 //! let png: Vec<u8> = drawn.image.to_png()?;
 //! # assert!(png.starts_with(b"\x89PNG"));
@@ -67,14 +67,14 @@ pub use cpu::{CpuScene, Real};
 #[cfg(feature = "gpu")]
 pub use device::Gpu;
 pub use error::RenderError;
-pub use frame::{Frame, OnProgress, Progress, RenderOptions, uniform_values, unwatched};
+pub use frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, uniform_values};
 #[cfg(feature = "gpu")]
 pub use gpu::Pipeline;
 #[cfg(feature = "files")]
 pub use image::Animation;
 pub use image::{
     CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts, is_finite,
-    linear_to_srgb, linear_to_srgb8, sample_places,
+    linear_to_srgb, linear_to_srgb8, sample_offsets,
 };
 pub use stats::{
     AdapterInfo, Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,

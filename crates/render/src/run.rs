@@ -47,7 +47,7 @@ pub(crate) struct Run<'a> {
     moment: Moment,
     buffers: Buffers,
     /// How many operands were evaluated before the rays, where they are counted.
-    evaluated_before: u32,
+    culling_evaluations: u32,
 }
 
 #[derive(Debug)]
@@ -98,7 +98,7 @@ impl<'a> Run<'a> {
             }
             buffers
         })?;
-        Ok(Self { pipeline, moment, buffers, evaluated_before: 0 })
+        Ok(Self { pipeline, moment, buffers, culling_evaluations: 0 })
     }
 
     pub(crate) fn into_buffers(self) -> Buffers {
@@ -106,8 +106,8 @@ impl<'a> Run<'a> {
     }
 
     /// How many operands were evaluated before the rays, where they are counted.
-    pub(crate) fn evaluated_before(&self) -> u64 {
-        u64::from(self.evaluated_before)
+    pub(crate) fn culling_evaluations(&self) -> u64 {
+        u64::from(self.culling_evaluations)
     }
 
     /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
@@ -267,7 +267,7 @@ impl<'a> Run<'a> {
         let (times, count) = rest.split_at(TIMESTAMP_BYTES as usize);
         if self.buffers.visits.is_some() {
             let count = count.try_into().map_or(0, u32::from_ne_bytes);
-            self.evaluated_before = self.evaluated_before.saturating_add(count);
+            self.culling_evaluations = self.culling_evaluations.saturating_add(count);
         }
         image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
         let time =

@@ -239,8 +239,13 @@ mod tests {
         image.pixels_mut()[0].status = crate::HIT;
         image.pixels_mut()[0].evaluations = 9;
         image.pixels_mut()[1].evaluations = 6;
-        let frame =
-            Frame { image, milliseconds: 2.0, clock: Clock::Wall, tiles: 1, evaluated_before: 0 };
+        let frame = Frame {
+            image,
+            milliseconds: 2.0,
+            clock: Clock::Wall,
+            tiles: 1,
+            culling_evaluations: 0,
+        };
         let times = FrameTimes::of(&[frame.milliseconds], frame.clock).unwrap();
         let compile_ms = CompileTimes {
             front: Some(1.0),

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use sdfc_graph::{Program, Shadow, eval::FrameValues};
 use sdfc_render::{
     CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
-    TileSize, compare, edges, unwatched,
+    TileSize, compare, edges, no_progress,
 };
 
 fn draw(program: &Program, size: [u32; 2], method: &str, tile_size: TileSize) -> Frame {
@@ -16,7 +16,7 @@ fn draw(program: &Program, size: [u32; 2], method: &str, tile_size: TileSize) ->
     let options = RenderOptions { tile_size };
     CpuScene::new(program)
         .unwrap()
-        .render(&view, &FrameValues::default(), method, &options, &mut unwatched)
+        .render(&view, &FrameValues::default(), method, &options, &mut no_progress)
         .unwrap()
 }
 
@@ -329,7 +329,7 @@ fn faults_of_the_call_are_errors() {
     let (view, frame) = (common::view(&program, [64, 64]), FrameValues::default());
     let scene = CpuScene::new(&program).unwrap();
     let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
-    let error = scene.render(&view, &frame, "fixed", &options, &mut unwatched).unwrap_err();
+    let error = scene.render(&view, &frame, "fixed", &options, &mut no_progress).unwrap_err();
     assert_eq!(error, RenderError::MethodNotOnCpu("fixed".to_owned()));
 
     let mut calls = 0;

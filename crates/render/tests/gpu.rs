@@ -10,7 +10,7 @@ use sdfc_graph::{Program, Shadow, eval::FrameValues};
 use sdfc_march::METHODS;
 use sdfc_render::{
     Clock, CpuScene, Frame, Gpu, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize,
-    View, compare, testing, uniform_values, unwatched,
+    View, compare, no_progress, testing, uniform_values,
 };
 
 type Outcome = Result<(), Failed>;
@@ -41,7 +41,7 @@ fn main() {
 
 fn pattern(gpu: &Gpu, view: &View, tile_size: TileSize) -> Result<Frame, RenderError> {
     let options = RenderOptions { tile_size };
-    Pipeline::from_wgsl(gpu, PATTERN, 2)?.render(view, &VALUES, &options, &mut unwatched)
+    Pipeline::from_wgsl(gpu, PATTERN, 2)?.render(view, &VALUES, &options, &mut no_progress)
 }
 
 /// A frame of a program by its own shader.
@@ -58,7 +58,7 @@ fn draw(
     let view = View::new(program, frame, None, size)?;
     let uniforms = uniform_values(program, frame);
     let options = RenderOptions { tile_size };
-    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
+    Ok(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
 }
 
 fn gpu_and_cpu_agree() -> Outcome {
@@ -84,7 +84,7 @@ fn gpu_and_cpu_agree() -> Outcome {
             let tiles = TileSize::default();
             let on_gpu = draw(&gpu, &program, &frame, size, method, tiles)?.image;
             let options = RenderOptions::default();
-            let on_cpu = scene.render(&view, &frame, method, &options, &mut unwatched)?.image;
+            let on_cpu = scene.render(&view, &frame, method, &options, &mut no_progress)?.image;
             let close = compare(&on_gpu, &on_cpu).ok_or("different sizes")?;
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
             assert!(close.color <= 1 && close.mean_color < 0.1, "{method}: {close:?}");
@@ -128,7 +128,7 @@ fn soft_shadows_are_the_same() -> Outcome {
     let view = common::view(&program, size);
     let (scene, options) = (CpuScene::new(&program)?, RenderOptions::default());
     for method in ["auto", "interval"] {
-        let on_cpu = scene.render(&view, &frame, method, &options, &mut unwatched)?.image;
+        let on_cpu = scene.render(&view, &frame, method, &options, &mut no_progress)?.image;
         is_same(&on_cpu, &format!("{method} on the CPU"))?;
     }
     Ok(())
@@ -214,7 +214,7 @@ fn impossible_calls_are_refused() -> Outcome {
     let view = common::view(&common::sphere(), [4, 4]);
     let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;
     let refused =
-        pipeline.render(&view, &VALUES[..1], &RenderOptions::default(), &mut unwatched).err();
+        pipeline.render(&view, &VALUES[..1], &RenderOptions::default(), &mut no_progress).err();
     assert_eq!(refused, Some(RenderError::UniformCount { given: 1, expected: 2 }));
     let many = Pipeline::from_wgsl(&gpu, PATTERN, 1 << 40).err();
     assert!(matches!(many, Some(RenderError::Uniforms { .. })), "{many:?}");
@@ -257,7 +257,7 @@ fn a_lost_device_stays_lost() -> Outcome {
     let lost = pipeline.render(&view, &VALUES, &options, &mut lose).err();
     assert!(matches!(lost, Some(RenderError::DeviceLost(_))), "{lost:?}");
     assert_eq!(tiles, 3);
-    let again = pipeline.render(&view, &VALUES, &options, &mut unwatched).err();
+    let again = pipeline.render(&view, &VALUES, &options, &mut no_progress).err();
     assert!(matches!(again, Some(RenderError::DeviceLost(_))), "{again:?}");
     let anew = Pipeline::from_wgsl(&gpu, PATTERN, 2).err();
     assert!(matches!(anew, Some(RenderError::DeviceLost(_))), "{anew:?}");
@@ -279,7 +279,7 @@ fn progress_is_told_and_stops_the_frame() -> Outcome {
     let cancelled = pipeline.render(&view, &VALUES, &options, &mut stop).err();
     assert_eq!(cancelled, Some(RenderError::Cancelled));
     assert_eq!(seen, [(256, 4096), (512, 4096), (768, 4096)]);
-    let again = pipeline.render(&view, &VALUES, &options, &mut unwatched)?;
+    let again = pipeline.render(&view, &VALUES, &options, &mut no_progress)?;
     assert_eq!(again.image.counts().hit, 64 * 64);
     Ok(())
 }

@@ -7,7 +7,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_codegen::{FieldOptions, field_module};
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{Binary, Graph, NodeId, Type};
-use sdfc_render::{Gpu, Pipeline, RenderOptions, TileSize, testing, unwatched};
+use sdfc_render::{Gpu, Pipeline, RenderOptions, TileSize, no_progress, testing};
 
 type Outcome = Result<(), Failed>;
 
@@ -38,7 +38,7 @@ fn values(
     padded.resize(POINTS, [0.0; 4]);
     let view = common::view(&common::sphere(), [points.len() as u32, 1]);
     let options = RenderOptions { tile_size: TileSize::default() };
-    let frame = pipeline.render(&view, &padded, &options, &mut unwatched)?;
+    let frame = pipeline.render(&view, &padded, &options, &mut no_progress)?;
 
     let tape = Tape::new(&program.graph, program.distance.as_slice())?;
     let frame_values = FrameValues::default();

@@ -10,7 +10,7 @@ use sdfc_analyze::cost;
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{NodeId, Program};
-use sdfc_march::{METHODS, Method, method, stubs};
+use sdfc_march::{METHODS, MethodDefinition, method, stubs};
 use sdfc_render::{
     Clock, FrameTimes, Gpu, OnProgress, Pipeline, Progress, RenderOptions, View, uniform_values,
 };
@@ -125,8 +125,8 @@ impl Scene {
         let oracle = self.oracle()?;
 
         let methods = methods(&options.methods)?;
-        let parts = |method: &'static Method| {
-            let all = method.charted.iter().copied();
+        let parts = |method: &'static MethodDefinition| {
+            let all = method.chart_factors.iter().copied();
             all.filter(|part| !options.defaults_only || *part == 1.0)
         };
         let total = methods.iter().map(|method| parts(method).count() as u64).sum();
@@ -149,11 +149,11 @@ impl Scene {
             let uniforms = uniform_values(&program, &frame);
             let sampler = self.sampler(gpu, method)?;
             for part in parts(method) {
-                let view = view.with_part(method.knob, part);
+                let view = view.with_scaled_parameter(method.parameter, part);
                 let frame_ms = self.timed(&pipeline, &view, &uniforms, options.repetitions)?;
                 let samples = sampler.samples(&view, &frame)?;
                 let metrics = compare(&oracle, &frame, &truth, &samples);
-                let set = method.knob.map(|knob| (knob.name(), view.knob(knob)));
+                let set = method.parameter.map(|knob| (knob.name(), view.parameter(knob)));
                 let settings = BTreeMap::from_iter(set);
                 let evaluations = metrics.evaluations.mean;
                 let operations = self.operations_of(&program, marched_by, evaluations);
@@ -178,7 +178,7 @@ impl Scene {
         let asked = stretches.into_iter().filter(|(stub, _)| method.calls(stub));
         let asked: Vec<NodeId> = asked.filter_map(|asked| asked.1).collect();
         if asked.is_empty() {
-            return self.report.operations_per_ray(evaluations, method.looks_ahead);
+            return self.report.operations_per_ray(evaluations, method.pre_intersects);
         }
         let roots: Vec<NodeId> = program.distance.into_iter().chain(asked).collect();
         evaluations * cost(&program.graph, &roots).operations as f64
@@ -194,7 +194,7 @@ impl Scene {
     ) -> Result<FrameMs, Error> {
         let draw = || {
             let options = RenderOptions::default();
-            pipeline.render(view, uniforms, &options, &mut sdfc_render::unwatched)
+            pipeline.render(view, uniforms, &options, &mut sdfc_render::no_progress)
         };
         let first = draw()?;
         let mut times = Vec::new();
@@ -211,7 +211,7 @@ impl Scene {
 }
 
 /// The methods of those names; all for none.
-fn methods(names: &[String]) -> Result<Vec<&'static Method>, Error> {
+fn methods(names: &[String]) -> Result<Vec<&'static MethodDefinition>, Error> {
     if names.is_empty() {
         return Ok(METHODS.iter().collect());
     }
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_chart_shows_every_knob_at_its_default_too() {
         for method in METHODS {
-            assert!(method.charted.contains(&1.0), "{}", method.name);
+            assert!(method.chart_factors.contains(&1.0), "{}", method.name);
         }
     }
 }

@@ -84,8 +84,8 @@ impl Comparison {
 mod tests {
     use std::sync::atomic::AtomicU64;
 
-    use sdfc_march::Knob;
-    use sdfc_render::{CpuScene, RenderOptions, unwatched};
+    use sdfc_march::MethodParameter;
+    use sdfc_render::{CpuScene, RenderOptions, no_progress};
 
     use super::*;
 
@@ -108,9 +108,9 @@ mod tests {
         assert!(counts.hit > 100 && counts.undecided == 0, "{counts:?}");
         let cpu = CpuScene::new(scene.drawn()).expect("evaluates");
         let error = |epsilon: f64| {
-            let view = compared.view().with_knob(Knob::Epsilon, epsilon);
+            let view = compared.view().with_parameter(MethodParameter::Epsilon, epsilon);
             let options = RenderOptions::default();
-            let drawn = cpu.render(&view, compared.frame(), "sphere", &options, &mut unwatched);
+            let drawn = cpu.render(&view, compared.frame(), "sphere", &options, &mut no_progress);
             compared.metrics(&drawn.expect("a picture").image)
         };
         let (fine, coarse) = (error(1e-4), error(0.1));

@@ -1,12 +1,12 @@
 //! The faults of a classroom practical, measured: scenes under `examples/faults` as its own interpreter and march
 //! draw them, and as they are drawn otherwise.
 
-use sdfc_codegen::{FieldSource, measured_module};
+use sdfc_codegen::{FieldSource, benchmark_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
-    CpuScene, Gpu, HIT, Image, Pipeline, RenderOptions, View, edges, linear_to_srgb8,
-    uniform_values, unwatched,
+    CpuScene, Gpu, HIT, Image, Pipeline, RenderOptions, View, edges, linear_to_srgb8, no_progress,
+    uniform_values,
 };
 use serde::Serialize;
 
@@ -102,10 +102,10 @@ impl Scene {
                     (&[][..], uniform_values(&program, &frame))
                 }
             };
-            let shader = measured_module(&program, method, field)?;
+            let shader = benchmark_module(&program, method, field)?;
             let pipeline = Pipeline::with_tables(gpu, shader, uniforms.len(), tables)?;
             let options = RenderOptions::default();
-            let drawn = pipeline.render(&view, &uniforms, &options, &mut unwatched)?;
+            let drawn = pipeline.render(&view, &uniforms, &options, &mut no_progress)?;
             Ok(compared(name, &drawn.image, &reference))
         };
         let variants = VARIANTS.into_iter().map(draw).collect::<Result<_, Error>>()?;
@@ -120,7 +120,7 @@ fn reference(program: &Program, frame: &FrameValues, view: &View) -> Result<Imag
     let view = View { epsilon, steps, ..view.clone() };
     let scene = CpuScene::new(program)?;
     let options = RenderOptions::default();
-    Ok(scene.render_in::<f64>(&view, frame, "sphere", &options, &mut unwatched)?.image)
+    Ok(scene.render_in::<f64>(&view, frame, "sphere", &options, &mut no_progress)?.image)
 }
 
 fn compared(name: &'static str, image: &Image, reference: &Image) -> FaultVariant {

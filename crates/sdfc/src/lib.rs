@@ -9,7 +9,7 @@
 //! # How
 //!
 //! ```
-//! use sdfc::{Backend, PictureOptions, compile, unwatched};
+//! use sdfc::{Backend, PictureOptions, compile, no_progress};
 //!
 //! let compiled = compile("ball.sdf", "sphere(0.5)\nplane(y: -0.5)");
 //! assert!(compiled.diagnostics.is_empty());
@@ -19,7 +19,7 @@
 //! assert!(shader.wgsl()?.contains("fn sdf_distance"));
 //!
 //! let options = PictureOptions { size: [32, 18], backend: Backend::Cpu, ..Default::default() };
-//! let picture = scene.render(&options, &mut unwatched)?;
+//! let picture = scene.render(&options, &mut no_progress)?;
 //! assert!(picture.stats.pixels.hit > 0);
 //! # Ok::<(), sdfc::Error>(())
 //! ```
@@ -110,7 +110,7 @@ pub use sdfc_lang as lang;
 pub use sdfc_lang::Resolver;
 pub use sdfc_march as march;
 pub use sdfc_render as render;
-pub use sdfc_render::{Progress, unwatched};
+pub use sdfc_render::{Progress, no_progress};
 pub use uniforms::uniform_bytes;
 #[cfg(feature = "wgpu")]
 pub use wgpu;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use sdfc_graph::Program;
-use sdfc_march::{METHODS, UNCERTIFIED, method, stubs};
+use sdfc_march::{FALLBACK_METHOD, METHODS, method, stubs};
 use sdfc_render::{CpuScene, HIT, MISS, View};
 
 use crate::{Error, Scene};
@@ -59,7 +59,7 @@ impl Scene {
     /// distance, so that nothing is missed, unless intervals do not end on it within the steps that a ray has.
     pub fn marched_by<'n>(&self, name: &'n str) -> &'n str {
         let is_auto = METHODS.first().is_some_and(|auto| auto.name == name);
-        if is_auto && !self.is_certified() && self.intervals_end() { UNCERTIFIED } else { name }
+        if is_auto && !self.is_certified() && self.intervals_end() { FALLBACK_METHOD } else { name }
     }
 
     /// Why [`Scene::marched_by`] says what it does, in one line; `None` where the field is certified or another method
@@ -70,10 +70,10 @@ impl Scene {
             return None;
         }
         Some(if self.intervals_end() {
-            format!("the field is uncertified: `{name}` is `{UNCERTIFIED}`")
+            format!("the field is uncertified: `{name}` is `{FALLBACK_METHOD}`")
         } else {
             format!(
-                "the field is uncertified and its bounds are too wide for `{UNCERTIFIED}`: \
+                "the field is uncertified and its bounds are too wide for `{FALLBACK_METHOD}`: \
                  `{name}` takes it for the distance"
             )
         })
@@ -90,8 +90,8 @@ impl Scene {
         let frame = self.defaults();
         let view = self.view(&frame, TRIED)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
-        let program = with_stretches(self.drawn(), UNCERTIFIED);
-        let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, UNCERTIFIED)?;
+        let program = with_stretches(self.drawn(), FALLBACK_METHOD);
+        let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, FALLBACK_METHOD)?;
         let ended = |status: u32| status == HIT || status == MISS;
         Ok(depths.pixels().iter().filter(|pixel| !ended(pixel.status)).count())
     }

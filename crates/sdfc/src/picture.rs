@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::time::Instant;
 
-use sdfc_codegen::{posed_module, render_module};
+use sdfc_codegen::{render_module, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
     OnProgress, Pipeline, Pose, Progress, RenderError, RenderOptions, Stats, View, Why,
-    milliseconds_since, sample_places, uniform_values,
+    milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::{Error, Marched, Scene};
@@ -103,7 +103,7 @@ impl Scene {
         let start = Instant::now();
         let method = options.method.as_deref().unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
-        let samples = sample_places(samples)?;
+        let samples = sample_offsets(samples)?;
         let gpu = match options.backend {
             Backend::Gpu => Ok(Gpu::new()?),
             Backend::Cpu => Err(None),
@@ -156,7 +156,7 @@ impl Scene {
     ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
         let shader = match parallel {
-            Some(parallel) => posed_module(program, method, parallel)?,
+            Some(parallel) => render_module_with_camera(program, method, parallel)?,
             None => render_module(program, method)?,
         };
         let validate = shader.validation_time().as_secs_f64() * 1e3;
@@ -249,8 +249,8 @@ impl Painter<'_> {
             Some(pose) => View::from_pose(program, values, bounds, self.size, pose)?,
             None => View::new(program, values, bounds, self.size)?,
         };
-        let knob = sdfc_march::method(&self.method).and_then(|method| method.knob);
-        Ok(view.with_part(knob, self.tolerance))
+        let knob = sdfc_march::method(&self.method).and_then(|method| method.parameter);
+        Ok(view.with_scaled_parameter(knob, self.tolerance))
     }
 
     fn adapter(&self) -> Option<&AdapterInfo> {

@@ -6,8 +6,8 @@ use sdfc_accuracy::{Normal, PixelSample, Status};
 use sdfc_codegen::normals_module;
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
-use sdfc_march::{Method, PixelBlock};
-use sdfc_render::{Gpu, HIT, MISS, Pipeline, RenderOptions, View, uniform_values, unwatched};
+use sdfc_march::{MethodDefinition, PixelBlock};
+use sdfc_render::{Gpu, HIT, MISS, Pipeline, RenderOptions, View, no_progress, uniform_values};
 
 use crate::marched::with_stretches;
 use crate::{Error, Scene};
@@ -26,7 +26,7 @@ impl Scene {
     /// # Errors
     ///
     /// [`Error::NothingDrawn`], [`Error::Codegen`], [`Error::Render`].
-    pub fn sampler(&self, gpu: &Gpu, method: &Method) -> Result<Sampler<'_>, Error> {
+    pub fn sampler(&self, gpu: &Gpu, method: &MethodDefinition) -> Result<Sampler<'_>, Error> {
         let marched_by = self.marched_by(method.name);
         // A method that is not of the table may have the name of one that is.
         let other = sdfc_march::method(marched_by).filter(|other| other.name != method.name);
@@ -46,7 +46,7 @@ impl Sampler<'_> {
     pub fn samples(&self, view: &View, frame: &FrameValues) -> Result<Vec<PixelSample>, Error> {
         let uniforms = uniform_values(&self.program, frame);
         let options = RenderOptions::default();
-        let drawn = self.pipeline.render(view, &uniforms, &options, &mut unwatched)?;
+        let drawn = self.pipeline.render(view, &uniforms, &options, &mut no_progress)?;
         Ok(drawn.image.pixels().iter().map(sample).collect())
     }
 }

@@ -8,7 +8,7 @@ mod common;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
-use sdfc::{ChartOptions, OracleOptions, unwatched};
+use sdfc::{ChartOptions, OracleOptions, no_progress};
 use sdfc_test_support::example_sources;
 
 /// What a scene keeps, seen at a size; no pixel is missed, false, out of steps or no number.
@@ -92,7 +92,7 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let methods = names.iter().map(ToString::to_string).collect();
     let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
     let options = ChartOptions { size: *size, methods, ..once };
-    let chart = scene.chart(name, &gpu, &options, OracleOptions::default(), &mut unwatched)?;
+    let chart = scene.chart(name, &gpu, &options, OracleOptions::default(), &mut no_progress)?;
     let open = chart.oracle.undecided as f64 / pixels;
     if open > *undecided {
         return Err(format!("the oracle leaves {open:.4} of the pixels undecided").into());

@@ -5,11 +5,11 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::baseline::{Encoded, Inexpressible, tape, units};
-use sdfc::codegen::{FieldSource, measured_module};
+use sdfc::codegen::{FieldSource, benchmark_module};
 use sdfc::lang::{NoFiles, Options};
 use sdfc::render::{Gpu, Image, Pipeline, RenderOptions, View, compare, testing, uniform_values};
 use sdfc::{
-    BenchOptions, FrameValues, LoopStrategy, Scene, compile, compile_with, suite, unwatched,
+    BenchOptions, FrameValues, LoopStrategy, Scene, compile, compile_with, no_progress, suite,
 };
 
 /// Width and height in pixels.
@@ -125,9 +125,9 @@ fn picture(scene: &Scene, field: FieldSource) -> Result<Image, Failed> {
         FieldSource::Units => (in_units(scene).map_err(|e| e.0)?.tables, Vec::new()),
         FieldSource::Tape => (on_tape(scene).map_err(|e| e.0)?.tables, Vec::new()),
     };
-    let shader = measured_module(scene.program(), "sphere", field)?;
+    let shader = benchmark_module(scene.program(), "sphere", field)?;
     let pipeline = Pipeline::with_tables(&gpu, shader, uniforms.len(), &tables)?;
-    Ok(pipeline.render(&view, &uniforms, &RenderOptions::default(), &mut unwatched)?.image)
+    Ok(pipeline.render(&view, &uniforms, &RenderOptions::default(), &mut no_progress)?.image)
 }
 
 fn same_picture(text: &str, field: FieldSource) -> Result<(), Failed> {
@@ -218,7 +218,7 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     .scene
     .unwrap();
     let gpu = Gpu::new()?;
-    let row = torus.bench(&moving, "torus", &gpu, &options, &mut unwatched)?;
+    let row = torus.bench(&moving, "torus", &gpu, &options, &mut no_progress)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
     assert_eq!(names, ["units", "tape", "specialized", "specialized-slots", "rolled", "pruned"]);
     let [units, tape, specialized, slots, rolled, pruned] = &row.variants[..] else {
@@ -235,7 +235,7 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
     // A scene none of whose numbers can move.
-    let row = torus.bench(&torus, "torus", &gpu, &options, &mut unwatched)?;
+    let row = torus.bench(&torus, "torus", &gpu, &options, &mut no_progress)?;
     assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);
     Ok(())
 }

@@ -5,12 +5,12 @@
 use std::fmt::Write;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::codegen::{FieldSource, Shader, counted_module, measured_module, render_module};
+use sdfc::codegen::{FieldSource, Shader, benchmark_module, instrumented_module, render_module};
 use sdfc::graph::{Program, Type};
 use sdfc::render::{
     Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
-use sdfc::{FrameValues, LoopStrategy, PictureOptions, Scene, compile, unwatched};
+use sdfc::{FrameValues, LoopStrategy, PictureOptions, Scene, compile, no_progress};
 
 const SIZE: [u32; 2] = [160, 96];
 /// How many parts, few enough for a driver that ends all loops after 65,535 turns.
@@ -169,7 +169,7 @@ fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Fail
     let uniforms = uniform_values(program, &frame);
     let pipeline = Pipeline::new(&gpu, shader, uniforms.len())?;
     let options = RenderOptions { tile_size: TileSize::Fixed([60, 44]) };
-    Ok(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
+    Ok(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
 }
 
 /// How many pixels of a scene differ between rays that visit what the program says and such that visit all.
@@ -265,9 +265,9 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
         let near = all.graph.splat(Type::Vec3, near);
         visit.ends = all.graph.add(visit.ends, near);
     }
-    let plain = measured_module(&all, "sphere", FieldSource::Distance)?;
+    let plain = benchmark_module(&all, "sphere", FieldSource::Distance)?;
     let plain = frame(&scene, &all, plain)?.image;
-    let counted = frame(&scene, &all, counted_module(&all, "sphere")?)?;
+    let counted = frame(&scene, &all, instrumented_module(&all, "sphere")?)?;
     for (plain, counted) in plain.pixels().iter().zip(counted.image.pixels()) {
         let normals = if plain.status == HIT { 4 } else { 0 };
         let expected = PARTS as u32 * (plain.evaluations + normals);
@@ -276,13 +276,13 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
         }
     }
     let program = scene.program();
-    let few = frame(&scene, program, counted_module(program, "sphere")?)?;
+    let few = frame(&scene, program, instrumented_module(program, "sphere")?)?;
     let sum = |image: &Image| -> u64 {
         image.pixels().iter().map(|pixel| u64::from(pixel.evaluations)).sum()
     };
     let (few_rounds, all_rounds) = (sum(&few.image), sum(&counted.image));
     // What finds them asks for each part at least once.
-    let before = few.evaluated_before;
+    let before = few.culling_evaluations;
     if few_rounds == 0 || 10 * (few_rounds + before) > all_rounds || before < PARTS as u64 {
         return Err(format!("{few_rounds} and {before} before of {all_rounds}").into());
     }
@@ -295,7 +295,7 @@ fn leaves_are_told() -> Result<(), Failed> {
     let told = |method: &str| -> Result<Option<f64>, Failed> {
         let method = Some(method.to_owned());
         let options = PictureOptions { size: [16, 16], method, ..PictureOptions::default() };
-        let drawn = scene.render(&options, &mut unwatched)?;
+        let drawn = scene.render(&options, &mut no_progress)?;
         Ok(drawn.stats.leaf_evals_per_pixel.mean)
     };
     match (told("interval")?, told("sphere")?) {
@@ -310,7 +310,7 @@ fn cells_are_kept() -> Result<(), Failed> {
     let scene = scene(&text.replace("sphere(0.2)", "sphere(s)"));
     let (gpu, program) = (Gpu::new()?, scene.program());
     let pipeline = || {
-        let shader = counted_module(program, "sphere")?;
+        let shader = instrumented_module(program, "sphere")?;
         Ok::<_, Failed>(Pipeline::new(&gpu, shader, program.uniforms.len())?)
     };
     let draw = |pipeline: &Pipeline, s: f64, width: u32| {
@@ -319,7 +319,7 @@ fn cells_are_kept() -> Result<(), Failed> {
         let view = View::new(program, &frame, scene.bounds_at(&frame), [width, SIZE[1]])?;
         let uniforms = uniform_values(program, &frame);
         let options = RenderOptions { tile_size: TileSize::Fixed(SIZE) };
-        Ok::<_, Failed>(pipeline.render(&view, &uniforms, &options, &mut unwatched)?)
+        Ok::<_, Failed>(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
     };
     let kept = pipeline()?;
     let first = draw(&kept, 0.2, SIZE[0])?;
@@ -327,7 +327,7 @@ fn cells_are_kept() -> Result<(), Failed> {
     let narrower = draw(&kept, 0.2, SIZE[0] / 2)?;
     let moved = draw(&kept, 0.3, SIZE[0])?;
     // There are 4096 cells of many more parts than a tile's.
-    let [a, b, c, d] = [&first, &again, &narrower, &moved].map(|frame| frame.evaluated_before);
+    let [a, b, c, d] = [&first, &again, &narrower, &moved].map(|frame| frame.culling_evaluations);
     if 2 * b > a || 2 * c > a || d < a / 2 {
         return Err(format!("{a}, {b}, {c} and {d} evaluations before the rays").into());
     }

@@ -5,7 +5,7 @@
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::render::testing;
-use sdfc::{Backend, PictureOptions, unwatched};
+use sdfc::{Backend, PictureOptions, no_progress};
 
 const SIZE: [u32; 2] = [96, 54];
 /// Where the scenes are moved.
@@ -74,7 +74,7 @@ fn drawn(text: &str, at: &str, backend: Backend) -> Result<Drawn, Failed> {
     let compiled = sdfc::compile("far.sdf", &format!("let at = {at}\n{text}\n"));
     let scene = compiled.scene.as_ref().ok_or_else(|| compiled.diagnostics_text(false))?;
     let options = PictureOptions { size: SIZE, backend, ..PictureOptions::default() };
-    let image = scene.render(&options, &mut unwatched)?.image;
+    let image = scene.render(&options, &mut no_progress)?.image;
     Ok((image.pixels().iter().map(|pixel| pixel.depth).collect(), image.to_srgb8()))
 }
 

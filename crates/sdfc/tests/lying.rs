@@ -9,7 +9,7 @@ use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::accuracy_data::chart::Row;
 use sdfc::render::{Gpu, testing};
-use sdfc::{ChartOptions, OracleOptions, Scene, unwatched};
+use sdfc::{ChartOptions, OracleOptions, Scene, no_progress};
 
 const SIZE: [u32; 2] = [96, 54];
 /// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
@@ -119,5 +119,5 @@ fn rows(scene: &Scene, name: &str, methods: &[&str]) -> Result<Vec<Row>, Failed>
     let once = ChartOptions { repetitions: 1, defaults_only: true, ..ChartOptions::default() };
     let options = ChartOptions { size: SIZE, methods, ..once };
     let oracle = OracleOptions::default();
-    Ok(scene.chart(name, &Gpu::new()?, &options, oracle, &mut unwatched)?.methods)
+    Ok(scene.chart(name, &Gpu::new()?, &options, oracle, &mut no_progress)?.methods)
 }

@@ -5,7 +5,7 @@
 use sdfc::graph::eval::sample_field;
 use sdfc::lang::{NoFiles, Options};
 use sdfc::{
-    Backend, Compiled, FrameValues, PictureOptions, Scene, compile, compile_with, unwatched,
+    Backend, Compiled, FrameValues, PictureOptions, Scene, compile, compile_with, no_progress,
 };
 
 fn slotted(text: &str) -> (Compiled, Scene) {
@@ -62,7 +62,7 @@ fn every_example_is_the_same_scene_with_slots() {
         let options =
             PictureOptions { size: [24, 15], backend: Backend::Cpu, ..Default::default() };
         let [a, b] = [&plain, &slots]
-            .map(|scene| scene.render(&options, &mut unwatched).unwrap().image.to_srgb8());
+            .map(|scene| scene.render(&options, &mut no_progress).unwrap().image.to_srgb8());
         let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         assert!(differing <= 24, "{path}: {differing} channels differ");
     }

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::codegen::{Shader, posed_module};
+use sdfc::codegen::{Shader, render_module_with_camera};
 use sdfc::graph::Program;
 use sdfc::render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
 use sdfc::{Error, Marched, Scene};
@@ -55,7 +55,7 @@ struct Text {
 
 impl Text {
     fn of(shader: &Shader) -> Result<Self, Error> {
-        let culling = shader.culling().map(|it| Ok((it.shader.wgsl()?, it.rounds.clone())));
+        let culling = shader.culling().map(|it| Ok((it.shader.wgsl()?, it.iterations.clone())));
         let culling = culling.transpose().map_err(Error::Codegen)?;
         Ok(Self { picture: shader.wgsl().map_err(Error::Codegen)?, culling })
     }
@@ -100,7 +100,7 @@ impl Engines {
     ) -> Result<Option<Prepared>, Error> {
         let start = Instant::now();
         let marched = scene.marched(wanted);
-        let shader = posed_module(&marched.program, &marched.method, parallel);
+        let shader = render_module_with_camera(&marched.program, &marched.method, parallel);
         let shader = shader.map_err(Error::Codegen)?;
         let (text, lists) = (Text::of(&shader)?, Lists::of(&shader));
         stages.lower = milliseconds_since(start);

@@ -12,8 +12,8 @@ use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Instant;
 
 use sdfc::accuracy_data::{Counts, Metrics};
-use sdfc::codegen::posed_module;
-use sdfc::march::{METHODS, Method};
+use sdfc::codegen::render_module_with_camera;
+use sdfc::march::{METHODS, MethodDefinition};
 use sdfc::render::{
     Frame, Gpu, Pipeline, Pose, Progress, RenderError, RenderOptions, View, milliseconds_since,
     uniform_values,
@@ -281,7 +281,7 @@ impl Court {
         self.begin("drawing");
         let Compared { case, comparison, .. } = &*compared;
         let model = &case.model;
-        let view = comparison.view().with_part(model.knob(), case.tolerance);
+        let view = comparison.view().with_scaled_parameter(model.knob(), case.tolerance);
         let drawn = match &model.engine {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(model.marched(), &case.frame);
@@ -343,18 +343,19 @@ impl Court {
     fn compare_method(
         &self,
         gpu: &Gpu,
-        method: &'static Method,
+        method: &'static MethodDefinition,
         compared: &mut Compared,
     ) -> Result<(), Error> {
         let Compared { case, comparison, all, .. } = compared;
         let scene = &case.model.scene;
         // `auto` is shown under its own name also where it is another method.
         let marched = scene.marched(method.name);
-        let shader = posed_module(&marched.program, &marched.method, case.pose.parallel)?;
+        let shader =
+            render_module_with_camera(&marched.program, &marched.method, case.pose.parallel)?;
         let pipeline = Pipeline::new(gpu, shader, marched.program.uniforms.len())?;
         let uniforms = uniform_values(&marched.program, &case.frame);
-        for part in method.charted {
-            let view = comparison.view().with_part(method.knob, *part);
+        for part in method.chart_factors {
+            let view = comparison.view().with_scaled_parameter(method.parameter, *part);
             let drawn = self.draw(&pipeline, &view, &uniforms)?;
             all.push(figures(case, comparison, (method.name, *part), &drawn));
         }

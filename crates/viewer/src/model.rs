@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc::lang::live_literals::LiveLiteral;
-use sdfc::march::{Knob, method};
+use sdfc::march::{MethodParameter, method};
 use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
 
@@ -99,8 +99,8 @@ impl Model {
     }
 
     /// What the method can be made finer or coarser by.
-    pub fn knob(&self) -> Option<Knob> {
-        method(&self.method).and_then(|method| method.knob)
+    pub fn knob(&self) -> Option<MethodParameter> {
+        method(&self.method).and_then(|method| method.parameter)
     }
 
     /// The values of a frame in which nothing has been changed.

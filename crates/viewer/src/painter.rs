@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use sdfc::render::{
     Clock, EvaluationCounts, Frame, Image, PixelCounts, Pose, Progress, RenderError, RenderOptions,
-    TileSize, View, milliseconds_since, sample_places, uniform_values,
+    TileSize, View, milliseconds_since, sample_offsets, uniform_values,
 };
 use sdfc::{Error, FrameValues};
 
@@ -255,7 +255,7 @@ impl<T: FnMut(Painted)> Studio<T> {
         let bounds = model.scene.bounds_at(values);
         let view = View::from_pose(program, values, bounds, size, &request.pose)
             .map_err(|error| Stop::Error(error.into()))?
-            .with_part(model.knob(), request.tolerance);
+            .with_scaled_parameter(model.knob(), request.tolerance);
         let frame = self.frame(request, &view, gives_way)?;
         let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
         let request = Arc::clone(request);
@@ -305,7 +305,7 @@ impl<T: FnMut(Painted)> Studio<T> {
 
     /// More rays for each pixel, as many again each time before they are shown.
     fn smooth(&mut self, request: &Arc<Request>) -> Result<(), Stop> {
-        let places = sample_places(request.samples).map_err(|error| Stop::Error(error.into()))?;
+        let places = sample_offsets(request.samples).map_err(|error| Stop::Error(error.into()))?;
         let start = Instant::now();
         let wants = |drawn: &Drawn| {
             request.mode == Mode::Shaded

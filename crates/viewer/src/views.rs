@@ -339,7 +339,7 @@ fn dimmed(color: [u8; 3]) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sdfc::render::{CpuScene, RenderOptions, unwatched};
+    use sdfc::render::{CpuScene, RenderOptions, no_progress};
 
     const SIZE: [u32; 2] = [32, 24];
 
@@ -350,7 +350,8 @@ mod tests {
         let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE).unwrap();
         let cpu = CpuScene::new(program).unwrap();
         let options = RenderOptions::default();
-        let mut image = cpu.render(&view, &frame, "auto", &options, &mut unwatched).unwrap().image;
+        let mut image =
+            cpu.render(&view, &frame, "auto", &options, &mut no_progress).unwrap().image;
         change(&mut image);
         let probe = Probe::new(program);
         let slice = Slice::default();
@@ -371,7 +372,7 @@ mod tests {
         let scene = sdfc::compile("a", BALL).scene.unwrap();
         let options =
             sdfc::PictureOptions { size: SIZE, backend: sdfc::Backend::Cpu, ..Default::default() };
-        let expected = scene.render(&options, &mut sdfc::unwatched).unwrap().image.to_srgb8();
+        let expected = scene.render(&options, &mut sdfc::no_progress).unwrap().image.to_srgb8();
         let (colors, _) = painted(BALL, Mode::Shaded, |_| {});
         for (color, expected) in colors.iter().flatten().zip(expected) {
             assert!(color.abs_diff(expected) <= 1, "{color} {expected}");

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::march::METHODS;
 use sdfc::render::{Gpu, HIT, testing};
-use sdfc::{PictureOptions, unwatched};
+use sdfc::{PictureOptions, no_progress};
 use sdfc_viewer::mode::Mode;
 use sdfc_viewer::model::{Engine, Model};
 use sdfc_viewer::painter::Picture;
@@ -235,7 +235,7 @@ fn methods() -> Result<(), Failed> {
                 samples: Some(1),
                 ..PictureOptions::default()
             };
-            let expected = model.scene.render(&options, &mut unwatched)?;
+            let expected = model.scene.render(&options, &mut no_progress)?;
             let (shown, meant) = (fixture.picture()?.counts, expected.image.counts());
             let what = format!("{}: {shown:?}, not {meant:?}", method.name);
             expect(model.method == expected.stats.method, &what)?;
@@ -271,7 +271,7 @@ fn parallel() -> Result<(), Failed> {
             expect(worst < 0.01, &format!("{lens} {parallel}: rays end {worst} off the ball"))?;
             let pose = Some(request.pose);
             let options = PictureOptions { size: SIZE, pose, ..PictureOptions::default() };
-            let file = request.model.scene.render(&options, &mut unwatched)?;
+            let file = request.model.scene.render(&options, &mut no_progress)?;
             expect(file.image.counts() == *counts, &format!("{:?}", file.image.counts()))?;
         }
     }
@@ -307,7 +307,7 @@ fn compared() -> Result<(), Failed> {
     fixture.session.poll();
     let judgement = fixture.session.comparing.judgement.as_ref().ok_or("there are no figures")?;
     expect(judgement.finished && judgement.refused.is_empty(), &format!("{judgement:?}"))?;
-    let settings: usize = METHODS.iter().map(|method| method.charted.len()).sum();
+    let settings: usize = METHODS.iter().map(|method| method.chart_factors.len()).sum();
     expect(judgement.all.len() == settings, &format!("{} figures", judgement.all.len()))?;
     let auto = judgement.all.iter().find(|it| (it.method.as_str(), it.part) == ("auto", 1.0));
     let auto = auto.ok_or("auto is missing")?;

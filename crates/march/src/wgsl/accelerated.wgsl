@@ -5,10 +5,10 @@
 // Part of the ball ahead that a step covers.
 const TRUST: f32 = 0.95;
 // Straight away from a surface there is no end to the ball ahead; this bounds it.
-const LEAST_APPROACH: f32 = 0.1;
+const MIN_APPROACH: f32 = 0.1;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
@@ -24,13 +24,13 @@ fn trace(ray: Ray) -> Trace {
             stride = radius;
             continue;
         }
-        passed(next, distance);
+        record_sample(next, distance);
         // Beside a plane the distance r falls by the same slope s all along; the ball that touches this one
         // has the radius r (1 - s) / (1 + s).
         var ahead = 0.0;
         if stride > 0.0 {
             let slope = (radius - distance) / stride;
-            ahead = TRUST * distance * max(1.0 - slope, 0.0) / max(1.0 + slope, LEAST_APPROACH);
+            ahead = TRUST * distance * max(1.0 - slope, 0.0) / max(1.0 + slope, MIN_APPROACH);
         }
         t = next;
         radius = distance;
@@ -40,7 +40,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t + distance <= ray.t_max) {
             return Trace(t + distance, MISS, step + 1u);
         }
-        stride = min(paced(distance + ahead, distance), ray.t_max - t);
+        stride = min(limited_step(distance + ahead, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

@@ -3,39 +3,39 @@
 // through the surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
 
 // A ray may take so many times the steps that it has by other methods: the few that do graze a floor on their way to the horizon.
-const PATIENCE: u32 = 4;
+const STEP_BUDGET_FACTOR: u32 = 4;
 // Weight of the last step's slope in the mean.
-const NEWEST: f32 = 0.5;
+const SLOPE_WEIGHT: f32 = 0.5;
 // Steps are at most so many distances: straight away from a surface there is no end to them.
-const MOST_RELAXATION: f32 = 4.0;
+const MAX_RELAXATION: f32 = 4.0;
 // A secant is at most the inverse of this times the distance, or that part of the tolerance.
-const LEAST_SLOPE: f32 = 0.25;
-const LEAST_PART: f32 = 0.25;
+const MIN_SLOPE: f32 = 0.25;
+const MIN_STEP_FRACTION: f32 = 0.25;
 // What is left of the way at a hit is at most the inverse of this times the distance.
-const LEAST_LAST_SLOPE: f32 = 0.0078125;
+const MIN_FINAL_SLOPE: f32 = 0.0078125;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
     var found: Trace;
-    if LOOKS_AHEAD {
-        let ahead = look_ahead(ray);
+    if PRE_INTERSECTS {
+        let known = pre_intersect(ray);
         found = Trace(0.0, MISS, 0u);
         if ANY_MARCHED {
-            if ahead.start <= ahead.end {
+            if known.start <= known.end {
                 if COPIES {
-                    found = among_copies(moved(ray, ahead.start), ahead.end - ahead.start);
+                    found = march_copies(advanced(ray, known.start), known.end - known.start);
                 } else {
-                    found = march(moved(ray, ahead.start), ahead.end - ahead.start);
+                    found = march(advanced(ray, known.start), known.end - known.start);
                 }
             }
         }
-        found = met_in_all(ray, ahead, found);
+        found = combined(ray, known, found);
     } else {
         if COPIES {
-            found = among_copies(ray, ray.t_max);
+            found = march_copies(ray, ray.t_max);
         } else {
             found = march(ray, ray.t_max);
         }
@@ -44,16 +44,16 @@ fn trace(ray: Ray) -> Trace {
 }
 
 // Copies are met in closed form, a few at a time: those that are sampled at a place, as far from there as there are no others.
-fn among_copies(ray: Ray, end: f32) -> Trace {
+fn march_copies(ray: Ray, end: f32) -> Trace {
     if SOFT_SHADOWS {
         // How narrowly a ray passes is known from the distance alone.
-        if watched {
+        if records_clearance {
             return march(ray, end);
         }
     }
     var t = 0.0;
-    for (var step = 0u; step < PATIENCE * ray.steps; step++) {
-        let sampled = t + copies(ray_point(ray, t), ray.direction);
+    for (var step = 0u; step < STEP_BUDGET_FACTOR * ray.steps; step++) {
+        let sampled = t + intersect_copies(ray_point(ray, t), ray.direction);
         if sampled.x <= min(sampled.y, end) {
             return Trace(sampled.x, HIT, step + 1u);
         }
@@ -62,7 +62,7 @@ fn among_copies(ray: Ray, end: f32) -> Trace {
         }
         t = max(sampled.y, t + rounding(ray, t));
     }
-    return Trace(t, CAPPED, PATIENCE * ray.steps);
+    return Trace(t, CAPPED, STEP_BUDGET_FACTOR * ray.steps);
 }
 
 fn march(ray: Ray, end: f32) -> Trace {
@@ -73,10 +73,10 @@ fn march(ray: Ray, end: f32) -> Trace {
     var slope = -1.0;
     // Whether the last place is nearer to a surface than the tolerance.
     var close = false;
-    for (var step = 0u; step < PATIENCE * ray.steps; step++) {
+    for (var step = 0u; step < STEP_BUDGET_FACTOR * ray.steps; step++) {
         let last = bracket.outside;
         let t = last.x + stride;
-        let distance = along(ray_point(ray, t));
+        let distance = marched_field(ray_point(ray, t));
         // A ray that starts inside is at its hit.
         if step == 0u && distance < 0.0 {
             return Trace(t, HIT, 1u);
@@ -89,17 +89,17 @@ fn march(ray: Ray, end: f32) -> Trace {
             slope = -1.0;
             continue;
         }
-        passed(t, distance);
+        record_sample(t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
         if abs(distance) < hit {
-            return Trace(t + distance / max(-gain, LEAST_LAST_SLOPE), HIT, step + 1u);
+            return Trace(t + distance / max(-gain, MIN_FINAL_SLOPE), HIT, step + 1u);
         }
-        bracket = narrowed(bracket, t, distance);
+        bracket = with_sample(bracket, t, distance);
         if bracket.crossed {
             if width(bracket) < hit {
                 return Trace(bracket.inside.x, HIT, step + 1u);
             }
-            stride = between(bracket) - bracket.outside.x;
+            stride = false_position(bracket) - bracket.outside.x;
             continue;
         }
         // Only the distance is known to be free.
@@ -107,19 +107,19 @@ fn march(ray: Ray, end: f32) -> Trace {
         if !(free <= end) {
             return Trace(free, MISS, step + 1u);
         }
-        slope = mix(slope, gain, NEWEST);
+        slope = mix(slope, gain, SLOPE_WEIGHT);
         close = distance < near;
         if close {
-            stride = distance / max(-gain, LEAST_SLOPE);
+            stride = distance / max(-gain, MIN_SLOPE);
             // Along a surface, and hardly towards it: what is that short does not matter.
-            if gain > -LEAST_SLOPE {
-                stride = max(stride, LEAST_PART * near);
+            if gain > -MIN_SLOPE {
+                stride = max(stride, MIN_STEP_FRACTION * near);
             }
         } else {
             // Two balls touch at a step z = r + (r + slope z).
-            stride = 2.0 / clamp(1.0 - slope, 2.0 / MOST_RELAXATION, 2.0) * distance;
+            stride = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0) * distance;
         }
-        stride = min(paced(stride, distance), end - t);
+        stride = min(limited_step(stride, distance), end - t);
     }
-    return Trace(bracket.outside.x + stride, CAPPED, PATIENCE * ray.steps);
+    return Trace(bracket.outside.x + stride, CAPPED, STEP_BUDGET_FACTOR * ray.steps);
 }

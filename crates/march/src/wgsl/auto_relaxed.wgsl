@@ -4,12 +4,12 @@
 // papers); without a latch, as in their program.
 
 // Weight of the last step's slope.
-const NEWEST: f32 = 0.3;
+const SLOPE_WEIGHT: f32 = 0.3;
 // Steps are at most so many distances: straight away from a surface there is no end to them.
-const MOST_RELAXATION: f32 = 10.0;
+const MAX_RELAXATION: f32 = 10.0;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
@@ -28,9 +28,9 @@ fn trace(ray: Ray) -> Trace {
             slope = -1.0;
             continue;
         }
-        passed(next, distance);
+        record_sample(next, distance);
         if stride > 0.0 {
-            slope = mix(slope, (distance - radius) / stride, NEWEST);
+            slope = mix(slope, (distance - radius) / stride, SLOPE_WEIGHT);
         }
         t = next;
         radius = distance;
@@ -41,8 +41,8 @@ fn trace(ray: Ray) -> Trace {
             return Trace(t + distance, MISS, step + 1u);
         }
         // Two balls touch at a step z = r + (r + slope z).
-        let relaxation = 2.0 / clamp(1.0 - slope, 2.0 / MOST_RELAXATION, 2.0);
-        stride = min(paced(relaxation * distance, distance), ray.t_max - t);
+        let relaxation = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0);
+        stride = min(limited_step(relaxation * distance, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

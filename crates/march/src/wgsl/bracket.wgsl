@@ -1,7 +1,7 @@
 // Closing in on where a ray goes in, once a place outside and one inside are known.
 
 // A hit is nearer than this part of the tolerance.
-const HIT_PART: f32 = 0.00390625;
+const HIT_FRACTION: f32 = 0.00390625;
 
 struct Bracket {
     // Last place outside and first place inside, as (t, distance).
@@ -12,7 +12,7 @@ struct Bracket {
 }
 
 // With one more place.
-fn narrowed(bracket: Bracket, t: f32, distance: f32) -> Bracket {
+fn with_sample(bracket: Bracket, t: f32, distance: f32) -> Bracket {
     var next = bracket;
     if distance < 0.0 {
         next.inside = vec2f(t, distance);
@@ -25,13 +25,13 @@ fn narrowed(bracket: Bracket, t: f32, distance: f32) -> Bracket {
 
 // How near to the surface a hit is.
 fn hit_within(ray: Ray, t: f32, near: f32) -> f32 {
-    return max(HIT_PART * near, rounding(ray, t));
+    return max(HIT_FRACTION * near, rounding(ray, t));
 }
 
 // Where to look next: false position, kept off the ends so that the bracket always shrinks.
-fn between(bracket: Bracket) -> f32 {
-    let part = clamp(bracket.outside.y / (bracket.outside.y - bracket.inside.y), 0.1, 0.9);
-    return mix(bracket.outside.x, bracket.inside.x, part);
+fn false_position(bracket: Bracket) -> f32 {
+    let fraction = clamp(bracket.outside.y / (bracket.outside.y - bracket.inside.y), 0.1, 0.9);
+    return mix(bracket.outside.x, bracket.inside.x, fraction);
 }
 
 fn width(bracket: Bracket) -> f32 {

@@ -3,16 +3,16 @@
 @group(0) @binding(2) var<storage, read_write> pixels: array<Pixel>;
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) place: vec3u) {
-    if any(place.xy >= view.tile_size) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if any(id.xy >= view.tile_size) {
         return;
     }
     load_frame();
     if CULLED {
-        open_visits(place.xy);
+        start_pixel(id.xy);
     }
-    pixels[place.y * view.tile_size.x + place.x] = picture(view.tile_origin + place.xy);
-    if COUNTED {
-        pixels[place.y * view.tile_size.x + place.x].evaluations = visited;
+    pixels[id.y * view.tile_size.x + id.x] = picture(view.tile_origin + id.xy);
+    if INSTRUMENTED {
+        pixels[id.y * view.tile_size.x + id.x].evaluations = iterations_run;
     }
 }

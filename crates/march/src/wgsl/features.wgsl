@@ -2,20 +2,20 @@
 // stays and the other goes, with all that only it reached.
 
 // Some of the scene is met without marching; some is left to march; that lies in a box.
-override CLOSED: bool;
+override ANALYTIC: bool;
 override MARCHED: bool;
 override CLIPPED: bool;
 // All of that is met in closed form, as far as it is sampled at a place.
 override COPIES: bool;
 // Either of the first and the last; some rays are marched, be it to see how narrowly they pass.
-override LOOKS_AHEAD: bool;
+override PRE_INTERSECTS: bool;
 override ANY_MARCHED: bool;
 // Some light throws a shadow; some light's shadow is soft.
 override SHADOWS: bool;
 override SOFT_SHADOWS: bool;
 // Some light stands at a point; some of those shine in a cone.
-override LAMPS: bool;
-override SPOTS: bool;
+override POSITIONAL_LIGHTS: bool;
+override SPOT_LIGHTS: bool;
 // Surfaces mirror each other.
 override REFLECTIONS: bool;
 // Light from everywhere does not reach everything.
@@ -30,6 +30,6 @@ override PARALLEL: bool;
 // Rays from the eye visit only those rounds of loops that can matter to them.
 override CULLED: bool;
 // There are others then.
-override ROAMING: bool;
+override CULLED_BY_CELL: bool;
 // What is asked for is not how often the field was evaluated, but how many rounds of loops were visited.
-override COUNTED: bool;
+override INSTRUMENTED: bool;

@@ -12,7 +12,7 @@ fn trace(ray: Ray) -> Trace {
     var crossed = false;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        passed(t, distance);
+        record_sample(t, distance);
         let inside = distance < 0.0;
         // A ray that starts inside is at its hit; so is one whose bracket has closed on a jump.
         if abs(distance) < near || stride < near || (inside && step == 0u) {

@@ -6,7 +6,7 @@ fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {
 }
 
 @fragment
-fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
+fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     load_frame();
-    return picture(pixel_at(place.xy)).color;
+    return picture(pixel_at(position.xy)).color;
 }

@@ -5,24 +5,24 @@ fn picture(pixel: vec2u) -> Pixel {
     let ray = camera_ray(pixel);
     var found: Trace;
     if CULLED {
-        found = trace_listed(ray, true);
+        found = trace_culled(ray, true);
     } else {
         found = trace(ray);
     }
-    var place = vec3f();
-    var turned = vec2f();
+    var point = vec3f();
+    var encoded = vec2f();
     if found.status == HIT {
-        place = ray_point(ray, found.t);
-        turned = unfolded(normal_at(place, -ray.direction));
+        point = ray_point(ray, found.t);
+        encoded = octahedral(normal_at(point, -ray.direction));
     }
-    var told = pixel_of(found, place, bitcast<u32>(turned.y));
-    told.color.w = turned.x;
-    return told;
+    var pixel_out = pixel_of(found, point, bitcast<u32>(encoded.y));
+    pixel_out.color.w = encoded.x;
+    return pixel_out;
 }
 
 // A direction on the faces of an octahedron, its lower half turned outward: two numbers for three.
 // Q. Meyer et al., On Floating-Point Normal Vectors (EGSR 2010).
-fn unfolded(direction: vec3f) -> vec2f {
+fn octahedral(direction: vec3f) -> vec2f {
     let on_face = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
     let side = select(vec2f(-1.0), vec2f(1.0), on_face.xy >= vec2f());
     return select(on_face.xy, (1.0 - abs(on_face.yx)) * side, on_face.z < 0.0);

@@ -8,25 +8,25 @@ const OCCLUSION_SAMPLES: u32 = 5;
 var<private> slope: f32;
 
 // After each gradient, its square.
-fn sloped(square: f32) {
+fn record_slope(square: f32) {
     slope = select(1.0, sqrt(square), square > 0.0);
 }
 
-fn open_part(point: vec3f, normal: vec3f) -> f32 {
+fn unoccluded_fraction(point: vec3f, normal: vec3f) -> f32 {
     if CULLED {
         // What does not matter to a ray from the eye may be near.
-        visit_cells(view.occlusion_radius);
+        use_cells(view.occlusion_radius);
     }
-    var closed = 0.0;
-    var all = 0.0;
-    var share = 1.0;
+    var occluded = 0.0;
+    var total = 0.0;
+    var weight = 1.0;
     // The nearer, the more it counts.
     for (var i = 1u; i <= OCCLUSION_SAMPLES; i++) {
         let height = view.occlusion_radius * f32(i) / f32(OCCLUSION_SAMPLES);
         let distance = field(point + height * normal) / slope;
-        closed += share * saturate(1.0 - distance / height);
-        all += share;
-        share *= 0.5;
+        occluded += weight * saturate(1.0 - distance / height);
+        total += weight;
+        weight *= 0.5;
     }
-    return 1.0 - view.occlusion_strength * closed / all;
+    return 1.0 - view.occlusion_strength * occluded / total;
 }

@@ -2,7 +2,7 @@
 // of `trace`: drivers inline the field wherever it is called, and their compile time grows with it.
 
 // Where a ray along which the eye sees has ended.
-struct Meeting {
+struct SurfaceHit {
     trace: Trace,
     // Where it met something.
     surface: Surface,
@@ -14,61 +14,61 @@ struct Meeting {
     evaluations: u32,
 }
 
-fn meet(sight: Ray, found: Trace) -> Meeting {
-    var met: Meeting;
-    met.trace = found;
-    met.evaluations = found.evaluations;
+fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
+    var hit: SurfaceHit;
+    hit.trace = found;
+    hit.evaluations = found.evaluations;
     if found.status == HIT {
-        met.surface = surface_at(sight, found.t);
+        hit.surface = surface_at(view_ray, found.t);
         var ambient = view.ambient;
         if OCCLUSION {
-            ambient *= open_part(met.surface.point, met.surface.normal);
-            met.evaluations += OCCLUSION_SAMPLES;
+            ambient *= unoccluded_fraction(hit.surface.point, hit.surface.normal);
+            hit.evaluations += OCCLUSION_SAMPLES;
         }
-        met.color = ambient_part(met.surface, ambient);
+        hit.color = ambient_light(hit.surface, ambient);
         if FOG {
-            met.clear = exp(-view.fog_density * found.t);
-            met.color = mix(haze(sight.direction), met.color, met.clear);
+            hit.clear = exp(-view.fog_density * found.t);
+            hit.color = mix(fog_color_at(view_ray.direction), hit.color, hit.clear);
         }
     } else {
-        met.color = behind(sight.direction);
+        hit.color = background_color(view_ray.direction);
     }
-    return met;
+    return hit;
 }
 
 // The part of a lamp's light that a ray to it lets through.
-fn unshaded(light: Light, found: Trace) -> f32 {
-    var part = 1.0;
+fn light_visibility(light: Light, found: Trace) -> f32 {
+    var fraction = 1.0;
     if SOFT_SHADOWS {
         if light.shadow == SHADOW_SOFT {
-            part = smoothstep(0.0, 1.0, light.sharpness * clearance);
+            fraction = smoothstep(0.0, 1.0, light.sharpness * clearance);
         }
     }
-    return select(part, 0.0, found.status == HIT);
+    return select(fraction, 0.0, found.status == HIT);
 }
 
 fn picture(pixel: vec2u) -> Pixel {
     // The ray along which the eye sees, and the one that is traced.
-    var sight = camera_ray(pixel);
-    var ray = sight;
+    var view_ray = camera_ray(pixel);
+    var ray = view_ray;
     var first: Trace;
-    var met: Meeting;
+    var hit: SurfaceHit;
     var color = vec3f();
     var evaluations = 0u;
     // What is seen along the sight counts by this factor.
     var weight = 1.0;
-    var mirrors = 0u;
+    var reflections = 0u;
     // How many lights were asked what they shed on the surface. The ray leads to the last of them, or along the sight.
-    var asked = 0u;
-    var lamp_part = vec3f();
+    var lights_done = 0u;
+    var pending_light = vec3f();
     let light_count = min(view.light_count, MAX_LIGHTS);
     loop {
         if SOFT_SHADOWS {
-            watched = asked > 0u && view.lights[max(asked, 1u) - 1u].shadow == SHADOW_SOFT;
+            records_clearance = lights_done > 0u && view.lights[max(lights_done, 1u) - 1u].shadow == SHADOW_SOFT;
         }
         var found: Trace;
         if CULLED {
-            found = trace_listed(ray, asked == 0u && mirrors == 0u);
+            found = trace_culled(ray, lights_done == 0u && reflections == 0u);
         } else {
             found = trace(ray);
         }
@@ -78,63 +78,63 @@ fn picture(pixel: vec2u) -> Pixel {
             }
         }
         if SHADOWS {
-            if asked > 0u {
-                color += lamp_part * unshaded(view.lights[asked - 1u], found);
+            if lights_done > 0u {
+                color += pending_light * light_visibility(view.lights[lights_done - 1u], found);
                 evaluations += found.evaluations;
             } else {
-                met = meet(sight, found);
-                color += weight * met.color;
-                evaluations += met.evaluations;
+                hit = shade_hit(view_ray, found);
+                color += weight * hit.color;
+                evaluations += hit.evaluations;
             }
         } else {
-            met = meet(sight, found);
-            color += weight * met.color;
-            evaluations += met.evaluations;
+            hit = shade_hit(view_ray, found);
+            color += weight * hit.color;
+            evaluations += hit.evaluations;
         }
-        if met.trace.status == HIT {
+        if hit.trace.status == HIT {
             var through = weight;
             if FOG {
-                through *= met.clear;
+                through *= hit.clear;
             }
             if SHADOWS {
-                var leads = false;
-                while asked < light_count && !leads {
-                    let light = view.lights[asked];
-                    asked++;
-                    let lamp = lamp_at(light, met.surface.point);
-                    lamp_part = through * light_part(met.surface, lamp);
-                    leads = light.shadow != SHADOW_OFF && any(lamp_part > vec3f());
-                    if leads {
-                        ray = shadow_ray(met.surface, sight, met.trace.t, lamp);
+                var needs_ray = false;
+                while lights_done < light_count && !needs_ray {
+                    let light = view.lights[lights_done];
+                    lights_done++;
+                    let incoming = light_at(light, hit.surface.point);
+                    pending_light = through * reflected_light(hit.surface, incoming);
+                    needs_ray = light.shadow != SHADOW_OFF && any(pending_light > vec3f());
+                    if needs_ray {
+                        ray = shadow_ray(hit.surface, view_ray, hit.trace.t, incoming);
                     } else {
-                        color += lamp_part;
+                        color += pending_light;
                     }
                 }
-                if leads {
+                if needs_ray {
                     continue;
                 }
             } else {
                 for (var i = 0u; i < light_count; i++) {
-                    let lamp = lamp_at(view.lights[i], met.surface.point);
-                    color += through * light_part(met.surface, lamp);
+                    let incoming = light_at(view.lights[i], hit.surface.point);
+                    color += through * reflected_light(hit.surface, incoming);
                 }
             }
             if REFLECTIONS {
-                if mirrors < min(view.reflections, MAX_REFLECTIONS) {
-                    mirrors++;
-                    asked = 0u;
+                if reflections < min(view.reflections, MAX_REFLECTIONS) {
+                    reflections++;
+                    lights_done = 0u;
                     weight = through * view.reflection_strength;
-                    sight = mirrored_ray(met.surface, sight, met.trace.t);
-                    ray = sight;
+                    view_ray = reflected_ray(hit.surface, view_ray, hit.trace.t);
+                    ray = view_ray;
                     continue;
                 }
             }
         }
         break;
     }
-    var seen = met.trace;
+    var primary = hit.trace;
     if REFLECTIONS {
-        seen = first;
+        primary = first;
     }
-    return pixel_of(seen, color, evaluations);
+    return pixel_of(primary, color, evaluations);
 }

@@ -9,7 +9,7 @@ struct Pixel {
 }
 
 // Where a ray ran out of steps the background is drawn, as where it missed.
-fn pixel_of(seen: Trace, color: vec3f, evaluations: u32) -> Pixel {
-    let depth = select(seen.t, view.t_max, seen.t > view.t_max);
-    return Pixel(vec4f(color, 1.0), depth, seen.status, evaluations, seen.evaluations);
+fn pixel_of(primary: Trace, color: vec3f, evaluations: u32) -> Pixel {
+    let depth = select(primary.t, view.t_max, primary.t > view.t_max);
+    return Pixel(vec4f(color, 1.0), depth, primary.status, evaluations, primary.evaluations);
 }

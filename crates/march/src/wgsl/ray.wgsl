@@ -46,7 +46,7 @@ fn footprint(ray: Ray, t: f32) -> f32 {
 }
 
 // A part of the footprint's width, but no finer than what rounding allows.
-fn part_of_footprint(ray: Ray, t: f32) -> f32 {
+fn footprint_tolerance(ray: Ray, t: f32) -> f32 {
     return max(2.0 * ray.tolerance * footprint(ray, t), rounding(ray, t));
 }
 

@@ -6,7 +6,7 @@
 const RELAXATION: f32 = 1.2;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
@@ -24,7 +24,7 @@ fn trace(ray: Ray) -> Trace {
             relaxation = 1.0;
             continue;
         }
-        passed(next, distance);
+        record_sample(next, distance);
         t = next;
         radius = distance;
         if distance < tolerance(ray, t) {
@@ -33,7 +33,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t + distance <= ray.t_max) {
             return Trace(t + distance, MISS, step + 1u);
         }
-        stride = min(paced(relaxation * distance, distance), ray.t_max - t);
+        stride = min(limited_step(relaxation * distance, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

@@ -1,5 +1,5 @@
 // The first row of the target is the topmost, as in WebGPU, Vulkan, Metal and DirectX.
 
-fn pixel_at(place: vec2f) -> vec2u {
-    return view.tile_origin + vec2u(place);
+fn pixel_at(position: vec2f) -> vec2u {
+    return view.tile_origin + vec2u(position);
 }

@@ -7,34 +7,34 @@
 const GROWTH: f32 = 2.0;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
     var bracket: Bracket;
     var t = 0.0;
-    var stretch = ray.t_max;
+    var segment = ray.t_max;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        passed(t, distance);
+        record_sample(t, distance);
         let near = tolerance(ray, t);
         // A ray that starts inside, or at a surface, is at its hit.
         if step == 0u && distance < hit_within(ray, t, near) {
             return Trace(t, HIT, 1u);
         }
-        bracket = narrowed(bracket, t, distance);
+        bracket = with_sample(bracket, t, distance);
         if bracket.crossed {
             if width(bracket) < hit_within(ray, t, near) {
                 return Trace(bracket.inside.x, HIT, step + 1u);
             }
-            t = between(bracket);
+            t = false_position(bracket);
         } else {
-            let end = min(t + stretch, ray.t_max);
+            let end = min(t + segment, ray.t_max);
             let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);
             // Not less than the tolerance: what is thinner along the ray is less than a quarter of a pixel.
-            let free = paced(distance / max(-slopes.x, 1e-6), distance);
+            let free = limited_step(distance / max(-slopes.x, 1e-6), distance);
             let stride = clamp(free, near, max(end - t, near));
-            stretch = GROWTH * stride;
+            segment = GROWTH * stride;
             t += stride;
             if !(t <= ray.t_max) {
                 return Trace(t, MISS, step + 1u);

@@ -1,13 +1,13 @@
 // What both ways of shading share.
 
 // Linear colour of what nothing paints.
-const UNPAINTED = vec3f(0.8);
+const DEFAULT_COLOR = vec3f(0.8);
 
 // Outward, of unit length; towards the eye where the field has no slope.
 fn normal_at(p: vec3f, toward_eye: vec3f) -> vec3f {
     let gradient = field_gradient(p);
     let square = dot(gradient, gradient);
-    sloped(square);
+    record_slope(square);
     if square > 0.0 {
         return gradient * inverseSqrt(square);
     }

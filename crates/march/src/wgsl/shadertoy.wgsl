@@ -3,7 +3,7 @@
 
 const PI: f32 = 3.14159265;
 // A dragged camera stops short of straight above.
-const MOST_PITCH: f32 = 1.5;
+const MAX_PITCH: f32 = 1.5;
 
 struct Camera {
     eye: vec3f,
@@ -36,18 +36,18 @@ fn camera() -> Camera {
 }
 
 // The camera turned about the middle: by one turn over the picture's width, by half a turn over its height.
-fn orbited(still: Camera, mouse: vec2f) -> Camera {
-    let offset = still.eye - still.center;
+fn orbited(camera_at_rest: Camera, mouse: vec2f) -> Camera {
+    let offset = camera_at_rest.eye - camera_at_rest.center;
     let radius = length(offset);
-    let turn = vec2f(2.0 * PI, PI) * (vec2f(0.5) - mouse);
-    let yaw = atan2(offset.x, offset.z) + turn.x;
-    let pitch = clamp(asin(offset.y / radius) + turn.y, -MOST_PITCH, MOST_PITCH);
+    let angles = vec2f(2.0 * PI, PI) * (vec2f(0.5) - mouse);
+    let yaw = atan2(offset.x, offset.z) + angles.x;
+    let pitch = clamp(asin(offset.y / radius) + angles.y, -MAX_PITCH, MAX_PITCH);
     let direction = vec3f(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
-    return Camera(still.center + radius * direction, still.center, still.up, still.lens);
+    return Camera(camera_at_rest.center + radius * direction, camera_at_rest.center, camera_at_rest.up, camera_at_rest.lens);
 }
 
 // Looking along `up`: what lies behind is at the bottom then, as on a map.
-fn sideways(forward: vec3f, up: vec3f) -> vec3f {
+fn camera_right(forward: vec3f, up: vec3f) -> vec3f {
     let right = cross(forward, normalize(up));
     if length(right) > 1e-6 {
         return normalize(right);
@@ -56,17 +56,17 @@ fn sideways(forward: vec3f, up: vec3f) -> vec3f {
     return normalize(cross(forward, select(vec3f(0.0, 0.0, forward.y), vec3f(0.0, 1.0, 0.0), level)));
 }
 
-fn look(seen_by: Camera, size: vec2f) {
-    var half_height = 0.5 * seen_by.lens;
+fn set_view(shown: Camera, size: vec2f) {
+    var half_height = 0.5 * shown.lens;
     if PARALLEL {
     } else {
         half_height = tan(half_height);
     }
-    let forward = normalize(seen_by.center - seen_by.eye);
-    let right = sideways(forward, seen_by.up);
+    let forward = normalize(shown.center - shown.eye);
+    let right = camera_right(forward, shown.up);
     // Rays reach as far as they did from where the eye was.
-    view.t_max += distance(seen_by.eye, view.eye);
-    view.eye = seen_by.eye;
+    view.t_max += distance(shown.eye, view.eye);
+    view.eye = shown.eye;
     view.forward = forward;
     view.right = half_height * (size.x / size.y) * right;
     view.up = half_height * cross(right, forward);
@@ -76,7 +76,7 @@ fn look(seen_by: Camera, size: vec2f) {
 
 // The light of a scene that states none comes from the eye.
 fn load_headlight() {
-    view.lights[0].place = -view.forward;
+    view.lights[0].position = -view.forward;
 }
 
 // IEC 61966-2-1.
@@ -86,23 +86,23 @@ fn srgb(linear: vec3f) -> vec3f {
 }
 
 // The colour at a place, in pixels from the picture's lower left. The mouse turns the camera once it was dragged.
-fn image(place: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
+fn image(position: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
     load_time(now);
     load_count(count);
     load_frame();
     load_view();
-    var seen_by = camera();
+    var shown = camera();
     if any(mouse > vec2f(0.0)) {
-        seen_by = orbited(seen_by, mouse / size);
+        shown = orbited(shown, mouse / size);
     }
-    look(seen_by, size);
+    set_view(shown, size);
     load_headlight();
-    let pixel = vec2u(place);
-    let seen = picture(vec2u(pixel.x, view.size.y - 1u - pixel.y));
-    return vec4f(srgb(seen.color.rgb), 1.0);
+    let pixel = vec2u(position);
+    let result = picture(vec2u(pixel.x, view.size.y - 1u - pixel.y));
+    return vec4f(srgb(result.color.rgb), 1.0);
 }
 
 @fragment
-fn anchor(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    return image(place.xy, vec2f(1.0), vec2f(0.0), 0.0, 0.0);
+fn anchor(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return image(position.xy, vec2f(1.0), vec2f(0.0), 0.0, 0.0);
 }

@@ -2,14 +2,14 @@
 // away on what the pixel cannot show. B. Keinert et al., Enhanced sphere tracing (STAG 2014).
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
-    return part_of_footprint(ray, t);
+    return footprint_tolerance(ray, t);
 }
 
 fn trace(ray: Ray) -> Trace {
     var t = 0.0;
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
-        passed(t, distance);
+        record_sample(t, distance);
         if distance < tolerance(ray, t) {
             return Trace(t, HIT, step + 1u);
         }

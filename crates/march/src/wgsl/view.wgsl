@@ -11,7 +11,7 @@ const SHADOW_SOFT: u32 = 2;
 
 struct Light {
     // Towards a sun, of unit length; where any other light stands.
-    place: vec3f,
+    position: vec3f,
     kind: u32,
     // Of a light at a point, at distance 1.
     color: vec3f,
@@ -58,8 +58,8 @@ fn camera_ray(pixel: vec2u) -> Ray {
 
 // The ray through a place in the picture, in pixels.
 fn ray_through(pixels: vec2f) -> Ray {
-    let place = 2.0 * pixels / vec2f(view.size) - 1.0;
-    let aside = place.x * view.right - place.y * view.up;
+    let position = 2.0 * pixels / vec2f(view.size) - 1.0;
+    let aside = position.x * view.right - position.y * view.up;
     var ray = Ray(view.eye, 0.0, view.forward, 0.0, view.t_max, view.epsilon, view.tolerance, view.steps);
     if PARALLEL {
         ray.origin += aside;

@@ -27,7 +27,7 @@ use crate::stats::milliseconds_since;
 use crate::{
     Clock, Footprint, Frame, Image, OnProgress, Progress, RenderError, RenderOptions, Tile, View,
     ViewLight, ViewOcclusion, ViewShadow,
-    frame::unwatched,
+    frame::no_progress,
     image::{HIT, check_size},
     tiles::Tiler,
 };
@@ -130,7 +130,7 @@ impl CpuScene {
         method: &str,
     ) -> Result<Image, RenderError> {
         let wave = self.wave::<T>(view, frame, self.method(method)?, false);
-        Ok(self.draw(view, &RenderOptions::default(), &mut unwatched, &wave)?.image)
+        Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
     }
 
     fn method(&self, name: &str) -> Result<Method, RenderError> {
@@ -158,7 +158,11 @@ impl CpuScene {
                 watched: false,
             },
             field: prepare(&self.field),
-            ahead: self.ahead.as_ref().filter(|_| method.looks_ahead()).map(|a| a.prepare(frame)),
+            ahead: self
+                .ahead
+                .as_ref()
+                .filter(|_| method.pre_intersects())
+                .map(|a| a.prepare(frame)),
             range: self.range.as_ref().map(|tape| tape.prepare(frame)),
             gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
             material: self.material.as_ref().filter(|_| shaded).map(prepare),
@@ -189,7 +193,7 @@ impl CpuScene {
                 return Err(RenderError::Cancelled);
             }
         }
-        Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles, evaluated_before: 0 })
+        Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles, culling_evaluations: 0 })
     }
 }
 

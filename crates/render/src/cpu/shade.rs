@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::surroundings::Lamp;
 
 /// Linear colour of what nothing paints.
-const UNPAINTED: DVec3 = DVec3::splat(0.8);
+const DEFAULT_COLOR: DVec3 = DVec3::splat(0.8);
 /// Reflectance of a dielectric seen straight on.
 const DIELECTRIC: f64 = 0.04;
 /// The highlight of a smoother surface would be thinner than a pixel.
@@ -50,7 +50,7 @@ impl Paint {
         };
         let [color, emission] = [color, emission].map(|[x, y, z, _]| DVec3::new(x, y, z));
         Some(Self {
-            color: UNPAINTED + (color - UNPAINTED) * coverage[0],
+            color: DEFAULT_COLOR + (color - DEFAULT_COLOR) * coverage[0],
             roughness: roughness[0].clamp(LEAST_ROUGHNESS, 1.0),
             metallic: metallic[0],
             emission,
@@ -74,7 +74,7 @@ impl Surface {
                 let returned = paint.albedo_everywhere(self.facing());
                 ambient * returned * paint.occlusion + paint.emission
             }
-            None => ambient * UNPAINTED,
+            None => ambient * DEFAULT_COLOR,
         }
     }
 
@@ -86,7 +86,7 @@ impl Surface {
         }
         let reflectance = match self.paint {
             Some(paint) => paint.reflectance(self, lamp.direction),
-            None => UNPAINTED,
+            None => DEFAULT_COLOR,
         };
         lamp.color * incidence * reflectance
     }

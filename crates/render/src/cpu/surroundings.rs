@@ -22,9 +22,9 @@ impl Lamp {
     pub(super) fn seen_from(point: DVec3, light: &ViewLight) -> Self {
         match light.source {
             ViewSource::Sun(direction) => Self { direction, reach: None, color: light.color },
-            ViewSource::Point(place) => Self::at(place, point, light.color),
-            ViewSource::Spot { place, axis, rim: [inner, outer] } => {
-                let lamp = Self::at(place, point, light.color);
+            ViewSource::Point(position) => Self::at(position, point, light.color),
+            ViewSource::Spot { position, axis, rim: [inner, outer] } => {
+                let lamp = Self::at(position, point, light.color);
                 let cosine = -axis.dot(lamp.direction);
                 let share = fade((cosine - outer) / (inner - outer));
                 Self { color: lamp.color * share, ..lamp }
@@ -33,8 +33,8 @@ impl Lamp {
     }
 
     /// Light thins out with the square of the distance.
-    fn at(place: DVec3, point: DVec3, color: DVec3) -> Self {
-        let way = place - point;
+    fn at(position: DVec3, point: DVec3, color: DVec3) -> Self {
+        let way = position - point;
         let reach = way.length().max(LEAST_REACH);
         Self { direction: way / reach, reach: Some(reach), color: color / (reach * reach) }
     }

@@ -9,7 +9,7 @@ use sdfc_march::PixelBlock;
 use crate::{Footprint, RenderError, Tile};
 #[cfg(feature = "files")]
 pub use file::Animation;
-pub use samples::{MAX_SAMPLES, sample_places};
+pub use samples::{MAX_SAMPLES, sample_offsets};
 
 /// Longest side of a picture in pixels.
 pub const MAX_SIDE: u32 = 16_384;

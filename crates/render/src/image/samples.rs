@@ -18,7 +18,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// # Errors
 ///
 /// [`RenderError::Samples`] for none and for more than [`MAX_SAMPLES`].
-pub fn sample_places(count: u32) -> Result<Vec<[f64; 2]>, RenderError> {
+pub fn sample_offsets(count: u32) -> Result<Vec<[f64; 2]>, RenderError> {
     if !(1..=MAX_SAMPLES).contains(&count) {
         return Err(RenderError::Samples(count));
     }
@@ -67,16 +67,16 @@ mod tests {
 
     #[test]
     fn one_ray_passes_through_the_centre() {
-        assert_eq!(sample_places(1), Ok(vec![[0.0, 0.0]]));
+        assert_eq!(sample_offsets(1), Ok(vec![[0.0, 0.0]]));
         for wrong in [0, MAX_SAMPLES + 1] {
-            assert_eq!(sample_places(wrong), Err(RenderError::Samples(wrong)));
+            assert_eq!(sample_offsets(wrong), Err(RenderError::Samples(wrong)));
         }
     }
 
     #[test]
     fn places_are_spread_about_the_centre() {
         for count in [2, 3, 4, 8, 16, 64, MAX_SAMPLES] {
-            let places = sample_places(count).unwrap();
+            let places = sample_offsets(count).unwrap();
             for axis in 0..2 {
                 let mut along: Vec<f64> = places.iter().map(|place| place[axis]).collect();
                 let mean = along.iter().sum::<f64>() / f64::from(count);

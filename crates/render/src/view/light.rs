@@ -25,12 +25,12 @@ pub struct ViewLight {
 pub enum ViewSource {
     /// From infinitely far away: a unit vector towards it.
     Sun(DVec3),
-    /// From a place, in all directions.
+    /// From a position, in all directions.
     Point(DVec3),
-    /// From a place, in a cone.
+    /// From a position, in a cone.
     Spot {
         /// Where it stands.
-        place: DVec3,
+        position: DVec3,
         /// Unit vector along the middle of the cone.
         axis: DVec3,
         /// Cosines of angles from the axis: all light within the first, none outside the second.
@@ -62,10 +62,14 @@ impl ViewLight {
         };
         let any = LightBlock { color, shadow, sharpness, ..LightBlock::default() };
         match self.source {
-            ViewSource::Sun(direction) => LightBlock { place: single(direction), kind: SUN, ..any },
-            ViewSource::Point(place) => LightBlock { place: single(place), kind: POINT, ..any },
-            ViewSource::Spot { place, axis, rim } => LightBlock {
-                place: single(place),
+            ViewSource::Sun(direction) => {
+                LightBlock { position: single(direction), kind: SUN, ..any }
+            }
+            ViewSource::Point(position) => {
+                LightBlock { position: single(position), kind: POINT, ..any }
+            }
+            ViewSource::Spot { position, axis, rim } => LightBlock {
+                position: single(position),
                 kind: SPOT,
                 axis: single(axis),
                 rim: rim.map(|cosine| cosine as f32),
@@ -117,16 +121,16 @@ fn source(
         }
         LightSource::Point { position: node } => Ok(ViewSource::Point(position(node)?)),
         LightSource::Spot { position: node, target, angle } => {
-            let place = position(node)?;
+            let position = position(node)?;
             let target = finite(value(target), "a spot light's target")?;
-            let nowhere = || ViewError::SpotIsTarget(place.to_array());
-            let axis = (target - place).try_normalize().ok_or_else(nowhere)?;
+            let nowhere = || ViewError::SpotIsTarget(position.to_array());
+            let axis = (target - position).try_normalize().ok_or_else(nowhere)?;
             let angle = value(angle)[0];
             if !(angle > 0.0 && angle < std::f64::consts::FRAC_PI_2) {
                 return Err(ViewError::SpotAngle(angle));
             }
             let rim = [((1.0 - RIM) * angle).cos(), angle.cos()];
-            Ok(ViewSource::Spot { place, axis, rim })
+            Ok(ViewSource::Spot { position, axis, rim })
         }
     }
 }

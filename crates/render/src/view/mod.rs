@@ -12,7 +12,7 @@ use sdfc_graph::{
     Fog, March, NodeId, Occlusion, Program, Settings, Sky,
     eval::{FrameValues, evaluate_frame},
 };
-use sdfc_march::{Knob, LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, ViewBlock};
+use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, MethodParameter, ViewBlock};
 
 use crate::tiles::Tile;
 pub use error::ViewError;
@@ -165,7 +165,9 @@ impl View {
         for light in &mut self.lights {
             match &mut light.source {
                 ViewSource::Sun(_) => {}
-                ViewSource::Point(place) | ViewSource::Spot { place, .. } => *place -= origin,
+                ViewSource::Point(position) | ViewSource::Spot { position, .. } => {
+                    *position -= origin
+                }
             }
         }
         self
@@ -211,30 +213,30 @@ impl View {
         })
     }
 
-    /// The value of a knob.
-    pub fn knob(&self, knob: Knob) -> f64 {
-        match knob {
-            Knob::Steps => f64::from(self.steps),
-            Knob::Epsilon => self.epsilon,
-            Knob::Tolerance => self.tolerance,
+    /// The value of a method parameter.
+    pub fn parameter(&self, parameter: MethodParameter) -> f64 {
+        match parameter {
+            MethodParameter::Steps => f64::from(self.steps),
+            MethodParameter::Epsilon => self.epsilon,
+            MethodParameter::Tolerance => self.tolerance,
         }
     }
 
-    /// The view with another value of a knob; steps are whole, and at least one.
-    pub fn with_knob(&self, knob: Knob, value: f64) -> Self {
+    /// The view with another value of a method parameter; steps are rounded, and at least 1.
+    pub fn with_parameter(&self, parameter: MethodParameter, value: f64) -> Self {
         let mut view = self.clone();
-        match knob {
-            Knob::Steps => view.steps = value.round().max(1.0) as u32,
-            Knob::Epsilon => view.epsilon = value,
-            Knob::Tolerance => view.tolerance = value,
+        match parameter {
+            MethodParameter::Steps => view.steps = value.round().max(1.0) as u32,
+            MethodParameter::Epsilon => view.epsilon = value,
+            MethodParameter::Tolerance => view.tolerance = value,
         }
         view
     }
 
-    /// The view with a knob, where there is one, at a part or a multiple of its value.
-    pub fn with_part(&self, knob: Option<Knob>, part: f64) -> Self {
-        match knob {
-            Some(knob) => self.with_knob(knob, part * self.knob(knob)),
+    /// The view with a method parameter scaled by a factor; unchanged without a parameter.
+    pub fn with_scaled_parameter(&self, parameter: Option<MethodParameter>, factor: f64) -> Self {
+        match parameter {
+            Some(own) => self.with_parameter(own, factor * self.parameter(own)),
             None => self.clone(),
         }
     }
@@ -337,7 +339,7 @@ struct Limits {
 impl Limits {
     fn new(march: &March, pose: &Pose, bounds: Option<Bounds>) -> Result<Self, ViewError> {
         let reach = (pose.target - pose.eye).length();
-        let steps = march.steps.unwrap_or(Knob::Steps.default_value() as u32);
+        let steps = march.steps.unwrap_or(MethodParameter::Steps.default_value() as u32);
         if steps == 0 {
             return Err(ViewError::NotPositive("march's steps", 0.0));
         }
@@ -345,9 +347,9 @@ impl Limits {
             t_max: stated(march.distance, "march's distance")?
                 .unwrap_or_else(|| derived_distance(pose.eye, reach, bounds)),
             epsilon: stated(march.epsilon, "march's epsilon")?
-                .unwrap_or(Knob::Epsilon.default_value() * reach),
+                .unwrap_or(MethodParameter::Epsilon.default_value() * reach),
             tolerance: stated(march.tolerance, "march's tolerance")?
-                .unwrap_or(Knob::Tolerance.default_value()),
+                .unwrap_or(MethodParameter::Tolerance.default_value()),
             steps,
         })
     }
@@ -610,7 +612,7 @@ mod tests {
         let tile = Tile { origin: [4, 2], size: [3, 1] };
         let block = fixture.view(None, [10, 10]).unwrap().block(tile);
         assert_eq!(block.light_count, 1);
-        assert_eq!((block.lights[0].place, block.lights[0].kind), ([0.0, 1.0, 0.0], SUN));
+        assert_eq!((block.lights[0].position, block.lights[0].kind), ([0.0, 1.0, 0.0], SUN));
         assert_eq!(block.lights[0].color, [1.0, 0.5, 0.25]);
         assert_eq!(block.lights[0].shadow, SHADOW_HARD);
         assert_eq!((block.tile_origin, block.tile_size), ([4, 2], [3, 1]));

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use sdfc_analyze::{LoopStrategy, cost, prepare_with};
-use sdfc_codegen::{FieldSource, counted_module, measured_module};
+use sdfc_codegen::{FieldSource, benchmark_module, instrumented_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
 use sdfc_render::{
@@ -377,7 +377,7 @@ impl<'a> Heat<'a> {
             Err(inexpressible) => return Ok(Err(inexpressible)),
         };
         let shader =
-            measured_module(program, &self.options.method, kind.field(self.options.baselines))?;
+            benchmark_module(program, &self.options.method, kind.field(self.options.baselines))?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, turns) = match &data {
@@ -441,14 +441,14 @@ impl<'a> Heat<'a> {
         if rounds != self.scene.report().leaves {
             return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
         }
-        let shader = counted_module(program, &self.options.method)?;
+        let shader = instrumented_module(program, &self.options.method)?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
         // In one piece: lists of parts of a picture repeat what is asked for wide tiles.
         let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
         let frame = counted.draw(&pipeline, &self.view, uniforms, &options)?;
         counted.drawn -= 1;
         let visited = EvaluationCounts::of(&frame.image).mean;
-        let before = frame.evaluated_before as f64 / frame.image.pixels().len() as f64;
+        let before = frame.culling_evaluations as f64 / frame.image.pixels().len() as f64;
         Ok(LeafEvaluations { mean: Some(visited + before), ..LeafEvaluations::default() })
     }
 

@@ -3,7 +3,7 @@
 
 use libtest_mimic::Failed;
 use sdfc::render::{CpuScene, Difference, HIT, Image, View, compare};
-use sdfc::{Backend, FrameValues, PictureOptions, Scene, compile, unwatched};
+use sdfc::{Backend, FrameValues, PictureOptions, Scene, compile, no_progress};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -43,7 +43,7 @@ pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
         let samples = Some(1);
         let options =
             PictureOptions { size: [SIDE; 2], method, backend, samples, ..Default::default() };
-        scene.render(&options, &mut unwatched)
+        scene.render(&options, &mut no_progress)
     };
     let (gpu, cpu) = (picture(Backend::Gpu)?.image, picture(Backend::Cpu)?.image);
     let Depths { double, limit, .. } = Depths::of(scene)?;

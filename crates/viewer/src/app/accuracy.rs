@@ -282,7 +282,7 @@ fn mark(ui: &Ui, session: &Session, judgement: &Judgement, figures: &Figures, at
 
 fn described(figures: &Figures, judgement: &Judgement) -> String {
     let Figures { method: name, part, metrics, operations, milliseconds } = figures;
-    let knob = method(name).and_then(|method| method.knob);
+    let knob = method(name).and_then(|method| method.parameter);
     let setting = knob.map_or(String::new(), |knob| format!(", {} ×{part}", knob.name()));
     let [width, height] = judgement.size;
     format!(

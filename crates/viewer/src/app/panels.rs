@@ -1,7 +1,7 @@
 //! The bar above the picture, and the knobs beside it.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc::march::{Knob, METHODS};
+use sdfc::march::{METHODS, MethodParameter};
 
 use super::menu::{self, Choice};
 use super::params::{self, drag};
@@ -48,9 +48,9 @@ pub fn bar(
 fn tolerance(ui: &mut Ui, session: &mut Session) {
     let Some(knob) = session.model.as_ref().and_then(|model| model.knob()) else { return };
     let what = match knob {
-        Knob::Steps => "How many steps a ray may take",
-        Knob::Epsilon => "How near to the surface a hit is, in scene units",
-        Knob::Tolerance => "How near to the surface a hit is, in widths of a pixel",
+        MethodParameter::Steps => "How many steps a ray may take",
+        MethodParameter::Epsilon => "How near to the surface a hit is, in scene units",
+        MethodParameter::Tolerance => "How near to the surface a hit is, in widths of a pixel",
     };
     let speed = session.tolerance * 0.02;
     let drag = drag(&mut session.tolerance).range(1e-3..=1e3).speed(speed).prefix("×");

@@ -5,7 +5,7 @@
 use embed_wgpu::{Camera, Renderer, SCENES, open};
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::render::testing;
-use sdfc::{Backend, PictureOptions, Scene, unwatched};
+use sdfc::{Backend, PictureOptions, Scene, no_progress};
 
 #[path = "../examples/slice.rs"]
 #[allow(dead_code, reason = "its main is not called")]
@@ -48,7 +48,7 @@ fn same_picture() -> Result<(), Failed> {
     frame.time = 2.0;
     let backend = Backend::Gpu;
     let options = PictureOptions { size: SIZE, backend, frame: Some(frame), ..Default::default() };
-    let expected = scene.render(&options, &mut unwatched)?.image.to_srgb8();
+    let expected = scene.render(&options, &mut no_progress)?.image.to_srgb8();
 
     let far = drawn
         .chunks_exact(4)

@@ -1,8 +1,8 @@
 // What is known of a ray before it is marched: what it meets without steps, and where it passes the rest.
 
-struct Ahead {
+struct PreIntersection {
     // Where the ray meets something without steps; FAR where it does not.
-    met: f32,
+    hit: f32,
     // Where the march begins and ends; it ends before it begins where there is nothing to march.
     start: f32,
     end: f32,
@@ -13,44 +13,44 @@ const FAR: f32 = 1e30;
 // The end of a march that there is no need of.
 const NO_MARCH: f32 = -1.0;
 
-fn look_ahead(ray: Ray) -> Ahead {
-    var ahead = Ahead(FAR, 0.0, ray.t_max);
-    if CLOSED {
-        ahead.met = hits(ray.origin, ray.direction);
-        ahead.end = min(ray.t_max, ahead.met);
+fn pre_intersect(ray: Ray) -> PreIntersection {
+    var known = PreIntersection(FAR, 0.0, ray.t_max);
+    if ANALYTIC {
+        known.hit = analytic_hit(ray.origin, ray.direction);
+        known.end = min(ray.t_max, known.hit);
     }
     if SOFT_SHADOWS {
-        if watched {
+        if records_clearance {
             // Such a ray is marched through all there is, to see how narrowly it passes; not where it ends anyway.
-            ahead.end = select(ray.t_max, NO_MARCH, ahead.met <= ray.t_max);
-            return ahead;
+            known.end = select(ray.t_max, NO_MARCH, known.hit <= ray.t_max);
+            return known;
         }
     }
     if MARCHED {
         if CLIPPED {
-            let way = clip(ray.origin, ray.direction);
-            ahead.start = max(way.x, 0.0);
-            ahead.end = min(ahead.end, way.y);
+            let box = clip_interval(ray.origin, ray.direction);
+            known.start = max(box.x, 0.0);
+            known.end = min(known.end, box.y);
         }
     } else {
-        ahead.end = NO_MARCH;
+        known.end = NO_MARCH;
     }
-    return ahead;
+    return known;
 }
 
 // Distance to what a ray is marched through.
-fn along(p: vec3f) -> f32 {
+fn marched_field(p: vec3f) -> f32 {
     var distance: f32;
-    if CLOSED {
+    if ANALYTIC {
         if MARCHED {
-            distance = marched(p);
+            distance = marched_distance(p);
             if SOFT_SHADOWS {
-                if watched {
-                    distance = min(distance, closed(p));
+                if records_clearance {
+                    distance = min(distance, analytic_distance(p));
                 }
             }
         } else {
-            distance = closed(p);
+            distance = analytic_distance(p);
         }
     } else {
         distance = field(p);
@@ -59,7 +59,7 @@ fn along(p: vec3f) -> f32 {
 }
 
 // The ray from one of its places on. Far from the eye its places are known better when they are counted from there.
-fn moved(ray: Ray, t: f32) -> Ray {
+fn advanced(ray: Ray, t: f32) -> Ray {
     var rest = ray;
     rest.origin = ray_point(ray, t);
     rest.radius = footprint(ray, t);
@@ -68,17 +68,17 @@ fn moved(ray: Ray, t: f32) -> Ray {
 }
 
 // What a ray has met that was marched from where the march begins or had no need of it. Looking ahead counts as one evaluation.
-fn met_in_all(ray: Ray, ahead: Ahead, found: Trace) -> Trace {
-    var all = found;
-    all.t += ahead.start;
-    all.evaluations++;
-    if found.status == MISS {
+fn combined(ray: Ray, known: PreIntersection, marched: Trace) -> Trace {
+    var result = marched;
+    result.t += known.start;
+    result.evaluations++;
+    if marched.status == MISS {
         // Where the field is no number, so is the place, and both comparisons fail.
-        if found.t > ahead.end - ahead.start && ahead.met <= ray.t_max {
-            all = Trace(ahead.met, HIT, all.evaluations);
-        } else if found.t <= ray.t_max {
-            all.t = ray.t_max;
+        if marched.t > known.end - known.start && known.hit <= ray.t_max {
+            result = Trace(known.hit, HIT, result.evaluations);
+        } else if marched.t <= ray.t_max {
+            result.t = ray.t_max;
         }
     }
-    return all;
+    return result;
 }

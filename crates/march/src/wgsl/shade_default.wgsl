@@ -11,11 +11,11 @@ fn surface_at(ray: Ray, t: f32) -> Surface {
 }
 
 // What the surface gives off, and returns of light from everywhere.
-fn ambient_part(surface: Surface, ambient: vec3f) -> vec3f {
-    return ambient * UNPAINTED;
+fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
+    return ambient * DEFAULT_COLOR;
 }
 
 // What the surface returns of a lamp's light: its colour times the cosine of the angle of incidence.
-fn light_part(surface: Surface, lamp: Lamp) -> vec3f {
-    return lamp.color * UNPAINTED * max(dot(surface.normal, lamp.direction), 0.0);
+fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {
+    return light.color * DEFAULT_COLOR * max(dot(surface.normal, light.direction), 0.0);
 }

@@ -5,97 +5,97 @@
 // Wide tiles come first, and a tile asks only for the rounds that can matter to the wider one that it is part of. Those of wide tiles
 // are marked; those of the narrowest are listed.
 
-@group(0) @binding(4) var<storage, read_write> visits: array<u32>;
+@group(0) @binding(4) var<storage, read_write> active_lists: array<u32>;
 // For each loop and tile of each level from 1 on, a bit for each round that can matter. Then for each tile of level 0 what is kept of
 // rounds while it is listed: two words, the number, and where the round matters.
-@group(0) @binding(5) var<storage, read_write> marks: array<u32>;
+@group(0) @binding(5) var<storage, read_write> masks: array<u32>;
 // The level at hand. The tiles of level 0 have lists, those of each other, which have marks, are two by two of the one below.
 @group(0) @binding(6) var<uniform> level: u32;
 // How much of the cells' lists is filled; how many operands were evaluated; then for each loop and group of cells the least operand
 // there, as a word that is ordered as it is.
-@group(0) @binding(7) var<storage, read_write> tally: array<atomic<u32>>;
+@group(0) @binding(7) var<storage, read_write> counters: array<atomic<u32>>;
 
 const FILLED: u32 = 0;
 const EVALUATED: u32 = 1;
-const LEAST: u32 = 2;
+const LEAST_OPERANDS: u32 = 2;
 
-const HIGHEST: u32 = 4;
+const TOP_LEVEL: u32 = 4;
 const WIDER_BITS: u32 = 1;
 
 // Supplied by the scene, as many as it has loops: how far a point is from where a round can matter to a ray, or less; the round's operand
 // less what blends reach; the operand.
 
-fn reach_0(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_1(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_1(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_2(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_2(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_3(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_3(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_4(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_4(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_5(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_5(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_6(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_6(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-fn reach_7(round: f32, p: vec3f) -> vec3f {
+fn culling_bounds_7(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
 // How many operands were evaluated, where that is counted.
 var<private> evaluated: u32;
 
-fn reach(which: u32, round: f32, p: vec3f) -> vec3f {
-    if COUNTED {
+fn culling_bounds(loop_index: u32, iteration: f32, p: vec3f) -> vec3f {
+    if INSTRUMENTED {
         evaluated++;
     }
-    switch which {
+    switch loop_index {
         case 0u: {
-            return reach_0(round, p);
+            return culling_bounds_0(iteration, p);
         }
         case 1u: {
-            return reach_1(round, p);
+            return culling_bounds_1(iteration, p);
         }
         case 2u: {
-            return reach_2(round, p);
+            return culling_bounds_2(iteration, p);
         }
         case 3u: {
-            return reach_3(round, p);
+            return culling_bounds_3(iteration, p);
         }
         case 4u: {
-            return reach_4(round, p);
+            return culling_bounds_4(iteration, p);
         }
         case 5u: {
-            return reach_5(round, p);
+            return culling_bounds_5(iteration, p);
         }
         case 6u: {
-            return reach_6(round, p);
+            return culling_bounds_6(iteration, p);
         }
         default: {
-            return reach_7(round, p);
+            return culling_bounds_7(iteration, p);
         }
     }
 }
 
 // At the end of each stage.
-fn tell_evaluated() {
-    if COUNTED {
-        atomicAdd(&tally[EVALUATED], evaluated);
+fn add_evaluated() {
+    if INSTRUMENTED {
+        atomicAdd(&counters[EVALUATED], evaluated);
     }
 }
 
@@ -118,7 +118,7 @@ struct Margin {
 // Part of its width that a cone is made wider by, so that marches along it end.
 const SLACK: f32 = 0.1;
 // An operand that is not told by so many steps can matter from there on.
-const MOST_STEPS: u32 = 32;
+const MAX_STEPS: u32 = 32;
 
 fn side_of(at: u32) -> u32 {
     return TILE << (WIDER_BITS * at);
@@ -129,8 +129,8 @@ fn counts_of(at: u32) -> vec2u {
     return (view.tile_size + (side - 1u)) / side;
 }
 
-fn cone_around(place: vec2u) -> Cone {
-    let corner = view.tile_origin + side_of(level) * place;
+fn cone_around(tile: vec2u) -> Cone {
+    let corner = view.tile_origin + side_of(level) * tile;
     let side = f32(side_of(level));
     let middle = ray_through(vec2f(corner) + 0.5 * side);
     let margin = Margin(2.0 * middle.radius, 2.0 * middle.spread);
@@ -146,17 +146,17 @@ fn cone_around(place: vec2u) -> Cone {
 }
 
 // How far a round is from mattering to the cone at a place along it; less than 0 where it is so near that steps would not end, or no number.
-fn free_at(cone: Cone, which: u32, round: f32, t: f32) -> f32 {
+fn distance_at(cone: Cone, loop_index: u32, iteration: f32, t: f32) -> f32 {
     let wide = cone.radius + cone.spread * t;
-    let free = reach(which, round, cone.origin + t * cone.direction).x - wide;
+    let free = culling_bounds(loop_index, iteration, cone.origin + t * cone.direction).x - wide;
     return select(-1.0, free, free > SLACK * wide + ROUNDING * (length(cone.origin) + t));
 }
 
 // Where a round begins to matter to the cone, or a place beyond the end of rays where it does not.
-fn entry(cone: Cone, which: u32, round: f32) -> f32 {
+fn entry(cone: Cone, loop_index: u32, iteration: f32) -> f32 {
     var t = 0.0;
-    for (var step = 0u; step < MOST_STEPS && t <= view.t_max; step++) {
-        let free = free_at(cone, which, round, t);
+    for (var step = 0u; step < MAX_STEPS && t <= view.t_max; step++) {
+        let free = distance_at(cone, loop_index, iteration, t);
         if free < 0.0 {
             break;
         }
@@ -167,12 +167,12 @@ fn entry(cone: Cone, which: u32, round: f32) -> f32 {
 
 // Where it begins to, and where it ceases to, which is looked for from the end of rays back. One call of `free_at`: drivers inline it
 // wherever it is called.
-fn stretch(cone: Cone, which: u32, round: f32) -> vec2f {
+fn active_interval(cone: Cone, loop_index: u32, iteration: f32) -> vec2f {
     var ends = vec2f(0.0, view.t_max);
     var is_back = false;
     var steps = 0u;
-    while steps < MOST_STEPS && ends.x < ends.y {
-        let free = free_at(cone, which, round, select(ends.x, ends.y, is_back));
+    while steps < MAX_STEPS && ends.x < ends.y {
+        let free = distance_at(cone, loop_index, iteration, select(ends.x, ends.y, is_back));
         steps++;
         if !is_back && free >= 0.0 {
             ends.x += free / (1.0 + cone.spread);
@@ -181,7 +181,7 @@ fn stretch(cone: Cone, which: u32, round: f32) -> vec2f {
         if is_back && free >= 0.0 {
             ends.y -= free;
         }
-        if free < 0.0 || steps == MOST_STEPS {
+        if free < 0.0 || steps == MAX_STEPS {
             if is_back {
                 break;
             }
@@ -193,59 +193,59 @@ fn stretch(cone: Cone, which: u32, round: f32) -> vec2f {
 }
 
 // Where the marks of a tile are: those of level 1 come first.
-fn words_of(at: u32, place: vec2u, which: u32) -> u32 {
+fn mask_words(at: u32, tile: vec2u, loop_index: u32) -> u32 {
     var before = 0u;
     for (var below = 1u; below < at; below++) {
         let counts = counts_of(below);
-        before += visits[LOOPS] * counts.x * counts.y;
+        before += active_lists[LOOPS] * counts.x * counts.y;
     }
     let counts = counts_of(at);
-    return (before + (which * counts.y + place.y) * counts.x + place.x) * visits[MOST_WORDS];
+    return (before + (loop_index * counts.y + tile.y) * counts.x + tile.x) * active_lists[MAX_WORDS];
 }
 
 @compute @workgroup_size(64)
 fn mark(@builtin(global_invocation_id) id: vec3u) {
     let word = id.x;
-    let which = id.z;
-    let all = visits[WHOLE + 2u * which];
+    let loop_index = id.z;
+    let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
     let counts = counts_of(level);
-    if id.y >= counts.x * counts.y || 32u * word >= all {
+    if id.y >= counts.x * counts.y || 32u * word >= count_all {
         return;
     }
     load_frame();
-    let place = vec2u(id.y % counts.x, id.y / counts.x);
-    let cone = cone_around(place);
-    var asked = 0xffffffffu >> (32u - min(32u, all - 32u * word));
-    if level < HIGHEST {
-        asked = marks[words_of(level + 1u, place >> vec2u(WIDER_BITS), which) + word];
+    let tile = vec2u(id.y % counts.x, id.y / counts.x);
+    let cone = cone_around(tile);
+    var candidates = 0xffffffffu >> (32u - min(32u, count_all - 32u * word));
+    if level < TOP_LEVEL {
+        candidates = masks[mask_words(level + 1u, tile >> vec2u(WIDER_BITS), loop_index) + word];
     }
     var bits = 0u;
-    while asked != 0u {
-        let i = firstTrailingBit(asked);
-        asked &= asked - 1u;
-        if entry(cone, which, f32(32u * word + i)) <= view.t_max {
+    while candidates != 0u {
+        let i = firstTrailingBit(candidates);
+        candidates &= candidates - 1u;
+        if entry(cone, loop_index, f32(32u * word + i)) <= view.t_max {
             bits |= 1u << i;
         }
     }
-    marks[words_of(level, place, which) + word] = bits;
-    tell_evaluated();
+    masks[mask_words(level, tile, loop_index) + word] = bits;
+    add_evaluated();
 }
 
 // A stretch of rays in one word, as parts of their length: no less than it is.
-const PARTS: f32 = 65535.0;
+const FRACTION_STEPS: f32 = 65535.0;
 
-fn word_of_stretch(own: vec2f) -> u32 {
-    let ends = PARTS / view.t_max * own;
-    return u32(clamp(floor(ends.x), 0.0, PARTS)) | (u32(clamp(ceil(ends.y), 0.0, PARTS)) << 16u);
+fn packed_interval(interval: vec2f) -> u32 {
+    let ends = FRACTION_STEPS / view.t_max * interval;
+    return u32(clamp(floor(ends.x), 0.0, FRACTION_STEPS)) | (u32(clamp(ceil(ends.y), 0.0, FRACTION_STEPS)) << 16u);
 }
 
-fn stretch_of_word(word: u32) -> vec2f {
-    return vec2f(vec2u(word & 0xffffu, word >> 16u)) * (view.t_max / PARTS);
+fn unpacked_interval(word: u32) -> vec2f {
+    return vec2f(vec2u(word & 0xffffu, word >> 16u)) * (view.t_max / FRACTION_STEPS);
 }
 
 // Rays are cut into a slice for each so many rounds that can matter to their tile.
-const WORTH: u32 = 4;
-const MOST_LOOPS: u32 = 8;
+const ITERATIONS_PER_SLICE: u32 = 4;
+const MAX_LOOPS: u32 = 8;
 
 // First it is found where the rounds matter that do; then, slice by slice, they are listed.
 @compute @workgroup_size(64)
@@ -255,77 +255,77 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     load_frame();
-    let place = vec2u(id.x % tiles.x, id.x / tiles.x);
-    let cone = cone_around(place);
-    let loops = visits[LOOPS];
-    let most_kept = visits[MOST_KEPT];
-    let kept = words_of(HIGHEST + 1u, vec2u(), 0u) + id.x * 2u * most_kept;
+    let tile = vec2u(id.x % tiles.x, id.x / tiles.x);
+    let cone = cone_around(tile);
+    let loops = active_lists[LOOPS];
+    let max_scratch = active_lists[MAX_SCRATCH];
+    let scratch = mask_words(TOP_LEVEL + 1u, vec2u(), 0u) + id.x * 2u * max_scratch;
     var near = view.t_max;
     var far = 0.0;
     var count = 0u;
     // How many there are when those of a loop have been counted.
-    var counts: array<u32, MOST_LOOPS>;
-    for (var which = 0u; which < loops; which++) {
-        let all = visits[WHOLE + 2u * which];
-        let words = words_of(1u, place >> vec2u(WIDER_BITS), which);
-        for (var word = 0u; 32u * word < all; word++) {
-            var bits = marks[words + word];
+    var counts: array<u32, MAX_LOOPS>;
+    for (var loop_index = 0u; loop_index < loops; loop_index++) {
+        let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
+        let words = mask_words(1u, tile >> vec2u(WIDER_BITS), loop_index);
+        for (var word = 0u; 32u * word < count_all; word++) {
+            var bits = masks[words + word];
             while bits != 0u {
-                let round = 32u * word + firstTrailingBit(bits);
+                let iteration = 32u * word + firstTrailingBit(bits);
                 bits &= bits - 1u;
-                let own = stretch(cone, which, f32(round));
-                if own.x <= view.t_max {
-                    if count < most_kept {
-                        marks[kept + 2u * count] = round;
-                        marks[kept + 2u * count + 1u] = word_of_stretch(own);
+                let interval = active_interval(cone, loop_index, f32(iteration));
+                if interval.x <= view.t_max {
+                    if count < max_scratch {
+                        masks[scratch + 2u * count] = iteration;
+                        masks[scratch + 2u * count + 1u] = packed_interval(interval);
                     }
-                    near = min(near, own.x);
-                    far = max(far, own.x);
+                    near = min(near, interval.x);
+                    far = max(far, interval.x);
                     count++;
                 }
             }
         }
-        counts[which] = count;
+        counts[loop_index] = count;
     }
-    let slices = clamp(count / WORTH, 1u, MOST_SLICES);
+    let slices = clamp(count / ITERATIONS_PER_SLICE, 1u, MAX_SLICES);
     let slice_length = max(far - near, 0.0) / f32(slices);
-    let record = visits[FIRST_RECORD] + id.x * visits[RECORD_STRIDE];
-    let capacity = visits[CAPACITY];
-    var listed: array<u32, MOST_LOOPS>;
+    let record = active_lists[FIRST_RECORD] + id.x * active_lists[RECORD_STRIDE];
+    let capacity = active_lists[CAPACITY];
+    var listed: array<u32, MAX_LOOPS>;
     for (var slice = 0u; slice < slices; slice++) {
         // A gradient by differences is taken a little beyond a slice.
         var ends = slice_ends(slice, slices, near, slice_length);
         let beyond = cone.margin.radius + cone.margin.spread * ends.y;
         ends += vec2f(-beyond, beyond);
         var index = 0u;
-        for (var which = 0u; which < loops; which++) {
-            let list = record + FIRST_SLICE + 2u * MOST_SLICES * loops + which * capacity;
-            let first = listed[which];
+        for (var loop_index = 0u; loop_index < loops; loop_index++) {
+            let list = record + FIRST_SLICE + 2u * MAX_SLICES * loops + loop_index * capacity;
+            let first = listed[loop_index];
             var next = first;
-            while index < min(counts[which], most_kept) {
-                let stretch = stretch_of_word(marks[kept + 2u * index + 1u]);
-                if stretch.x <= ends.y && stretch.y >= ends.x {
+            while index < min(counts[loop_index], max_scratch) {
+                let interval = unpacked_interval(masks[scratch + 2u * index + 1u]);
+                if interval.x <= ends.y && interval.y >= ends.x {
                     if next < capacity {
-                        visits[list + next] = marks[kept + 2u * index];
+                        active_lists[list + next] = masks[scratch + 2u * index];
                     }
                     next++;
                 }
                 index++;
             }
-            let at = record + FIRST_SLICE + 2u * (slice * loops + which);
+            let at = record + FIRST_SLICE + 2u * (slice * loops + loop_index);
             // Where there is no room, all rounds are visited.
-            if counts[which] <= most_kept && next <= capacity {
-                visits[at] = next - first;
-                visits[at + 1u] = list + first;
-                listed[which] = next;
+            if counts[loop_index] <= max_scratch && next <= capacity {
+                active_lists[at] = next - first;
+                active_lists[at + 1u] = list + first;
+                listed[loop_index] = next;
             } else {
-                visits[at] = visits[WHOLE + 2u * which];
-                visits[at + 1u] = visits[WHOLE + 2u * which + 1u];
+                active_lists[at] = active_lists[ALL_ITERATIONS + 2u * loop_index];
+                active_lists[at + 1u] = active_lists[ALL_ITERATIONS + 2u * loop_index + 1u];
             }
         }
     }
-    visits[record + SLICE_COUNT] = slices;
-    visits[record + NEAR] = bitcast<u32>(near);
-    visits[record + SLICE_LENGTH] = bitcast<u32>(slice_length);
-    tell_evaluated();
+    active_lists[record + SLICE_COUNT] = slices;
+    active_lists[record + NEAR] = bitcast<u32>(near);
+    active_lists[record + SLICE_LENGTH] = bitcast<u32>(slice_length);
+    add_evaluated();
 }

@@ -22,9 +22,9 @@ struct Material {
 // Reflectance of a dielectric seen straight on: an index of refraction of 1.5.
 const DIELECTRIC: f32 = 0.04;
 // The highlight of a smoother surface would be thinner than pixels.
-const LEAST_ROUGHNESS: f32 = 0.1;
+const MIN_ROUGHNESS: f32 = 0.1;
 // Cosines of directions along the surface, or below it where a normal is not quite right.
-const LEAST_COSINE: f32 = 1e-4;
+const MIN_COSINE: f32 = 1e-4;
 
 struct Surface {
     point: vec3f,
@@ -45,18 +45,18 @@ fn surface_at(ray: Ray, t: f32) -> Surface {
     let toward_eye = -ray.direction;
     let normal = normal_at(point, toward_eye);
     var paint = material(point);
-    paint.color = mix(UNPAINTED, paint.color, paint.coverage);
-    paint.roughness = clamp(paint.roughness, LEAST_ROUGHNESS, 1.0);
-    return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), LEAST_COSINE), paint);
+    paint.color = mix(DEFAULT_COLOR, paint.color, paint.coverage);
+    paint.roughness = clamp(paint.roughness, MIN_ROUGHNESS, 1.0);
+    return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), MIN_COSINE), paint);
 }
 
 // What is mirrored straight on.
-fn mirrored_color(paint: Material) -> vec3f {
+fn specular_color(paint: Material) -> vec3f {
     return mix(vec3f(DIELECTRIC), paint.color, paint.metallic);
 }
 
 // What the layer below the interface scatters.
-fn matt_color(paint: Material) -> vec3f {
+fn diffuse_color(paint: Material) -> vec3f {
     return (1.0 - paint.metallic) * paint.color;
 }
 
@@ -76,39 +76,39 @@ fn highlight(surface: Surface, halfway: vec3f, incidence: f32) -> f32 {
     let peak = alpha / (dot(across, across) + along * along);
     let square = alpha * alpha;
     let rest = 1.0 - square;
-    let lamp_side = surface.facing * sqrt(incidence * incidence * rest + square);
+    let light_side = surface.facing * sqrt(incidence * incidence * rest + square);
     let eye_side = incidence * sqrt(surface.facing * surface.facing * rest + square);
-    return 0.5 * peak * peak / (lamp_side + eye_side);
+    return 0.5 * peak * peak / (light_side + eye_side);
 }
 
 // The part of light from everywhere that microfacets mirror towards the eye: a fit to its integral.
 // B. Karis, Physically based shading on mobile (Unreal Engine, 2014).
-fn mirrored_everywhere(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f {
+fn ambient_specular(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a = min(r.x * r.x, exp2(-9.28 * facing)) * r.x + r.y;
     return max(straight_on * (r.z - 1.04 * a) + (r.w + 1.04 * a), vec3f());
 }
 
 // What the surface gives off, and returns of light from everywhere.
-fn ambient_part(surface: Surface, ambient: vec3f) -> vec3f {
+fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     let paint = surface.material;
-    let mirrored = mirrored_everywhere(mirrored_color(paint), paint.roughness, surface.facing);
-    let lost = mirrored_everywhere(vec3f(DIELECTRIC), paint.roughness, surface.facing);
-    return ambient * paint.occlusion * (mirrored + (1.0 - lost) * matt_color(paint)) + paint.emission;
+    let mirrored = ambient_specular(specular_color(paint), paint.roughness, surface.facing);
+    let lost = ambient_specular(vec3f(DIELECTRIC), paint.roughness, surface.facing);
+    return ambient * paint.occlusion * (mirrored + (1.0 - lost) * diffuse_color(paint)) + paint.emission;
 }
 
 // What the surface returns of a lamp's light: highlight and, past the interface twice, Lambert's law.
-fn light_part(surface: Surface, lamp: Lamp) -> vec3f {
-    let incidence = dot(surface.normal, lamp.direction);
+fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {
+    let incidence = dot(surface.normal, light.direction);
     if incidence <= 0.0 {
         return vec3f();
     }
-    let halfway = normalize(lamp.direction + surface.toward_eye);
-    let tilt = saturate(dot(lamp.direction, halfway));
+    let halfway = normalize(light.direction + surface.toward_eye);
+    let tilt = saturate(dot(light.direction, halfway));
     let paint = surface.material;
-    let mirrored = fresnel(mirrored_color(paint), tilt) * highlight(surface, halfway, incidence);
+    let mirrored = fresnel(specular_color(paint), tilt) * highlight(surface, halfway, incidence);
     let dielectric = vec3f(DIELECTRIC);
-    let let_in = 1.0 - fresnel(dielectric, incidence);
-    let let_out = 1.0 - fresnel(dielectric, surface.facing);
-    return lamp.color * incidence * (mirrored + let_in * let_out * matt_color(paint));
+    let transmitted_in = 1.0 - fresnel(dielectric, incidence);
+    let transmitted_out = 1.0 - fresnel(dielectric, surface.facing);
+    return light.color * incidence * (mirrored + transmitted_in * transmitted_out * diffuse_color(paint));
 }

@@ -25,7 +25,7 @@ fn trace(ray: Ray) -> Trace {
             break;
         }
         distance = field(ray_point(ray, t));
-        passed(t, distance);
+        record_sample(t, distance);
         steps++;
     }
     return Trace(t, select(MISS, CAPPED, steps == MOST_STEPS), steps);

@@ -1,6 +1,6 @@
 // What is seen where nothing is met.
 
-fn behind(direction: vec3f) -> vec3f {
+fn background_color(direction: vec3f) -> vec3f {
     var color = view.background;
     if SKY {
         // The colour changes fastest near the horizon.
@@ -11,12 +11,12 @@ fn behind(direction: vec3f) -> vec3f {
 }
 
 // What a surface seen in this direction fades to.
-fn haze(direction: vec3f) -> vec3f {
+fn fog_color_at(direction: vec3f) -> vec3f {
     var color: vec3f;
     if FOG_COLOR {
         color = view.fog_color;
     } else {
-        color = behind(direction);
+        color = background_color(direction);
     }
     return color;
 }

@@ -6,18 +6,18 @@
 const FIRST_RECORD: u32 = 0;
 const RECORD_STRIDE: u32 = 1;
 const CAPACITY: u32 = 2;
-const MOST_WORDS: u32 = 3;
+const MAX_WORDS: u32 = 3;
 const LOOPS: u32 = 4;
 const CELLS: u32 = 5;
-const MOST_KEPT: u32 = 6;
+const MAX_SCRATCH: u32 = 6;
 // What stands in a record for a slice, by which all rounds are visited.
-const WHOLE: u32 = 7;
+const ALL_ITERATIONS: u32 = 7;
 
 const SLICE_COUNT: u32 = 0;
 const NEAR: u32 = 1;
 const SLICE_LENGTH: u32 = 2;
 const FIRST_SLICE: u32 = 3;
-const MOST_SLICES: u32 = 16;
+const MAX_SLICES: u32 = 16;
 
 // The sides of a tile, which has lists of its own: a workgroup's.
 const TILE: u32 = 8;

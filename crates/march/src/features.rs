@@ -1,0 +1,111 @@
+//! Which optional parts of a picture's shader a scene needs.
+
+use crate::stubs;
+
+/// The optional parts of a shader that a scene needs.
+///
+/// Each is an override of `features.wgsl` on which the WGSL files branch. The linker takes one side
+/// of each branch and drops the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Features {
+    /// The scene has materials.
+    pub materials: bool,
+    /// A part of the scene is intersected analytically.
+    pub analytic: bool,
+    /// A part of the scene is marched.
+    pub marched: bool,
+    /// The marched part lies in a box, to which rays are clipped.
+    pub clipped: bool,
+    /// The marched part consists of copies that are intersected analytically, a few at a time.
+    pub copies: bool,
+    /// A light casts a shadow.
+    pub shadows: bool,
+    /// A light casts a soft shadow.
+    pub soft_shadows: bool,
+    /// A light has a position: it is a point light or a spot light.
+    pub positional_lights: bool,
+    /// A light is a spot light.
+    pub spot_lights: bool,
+    /// Surfaces reflect each other.
+    pub reflections: bool,
+    /// Ambient light is occluded.
+    pub occlusion: bool,
+    /// The background is a sky: its colour depends on the direction.
+    pub sky: bool,
+    /// There is fog.
+    pub fog: bool,
+    /// The fog has a colour of its own.
+    pub fog_color: bool,
+    /// Camera rays are parallel.
+    pub parallel: bool,
+    /// Camera rays run only those iterations of loops that can affect them.
+    pub culled: bool,
+    /// A pixel's `evaluations` counts iterations of loops instead of evaluations of the field.
+    pub instrumented: bool,
+}
+
+impl Features {
+    /// Returns true if secondary rays are culled too: they run only the iterations that matter in
+    /// the grid cell that they are in.
+    pub fn culls_by_cell(self) -> bool {
+        self.culled && (self.shadows || self.reflections || self.occlusion)
+    }
+
+    /// Returns true if some rays step by the distance.
+    pub fn steps(self) -> bool {
+        self.soft_shadows || !self.copies
+    }
+
+    /// The overrides of `features.wgsl` and their values.
+    pub fn overrides(self) -> [(&'static str, bool); 19] {
+        // Destructured so that a new feature does not compile until it is handled here. Materials
+        // have a file of their own.
+        let Self {
+            materials: _,
+            analytic,
+            marched,
+            clipped,
+            copies,
+            shadows,
+            soft_shadows,
+            positional_lights,
+            spot_lights,
+            reflections,
+            occlusion,
+            sky,
+            fog,
+            fog_color,
+            parallel,
+            culled,
+            instrumented,
+        } = self;
+        [
+            ("ANALYTIC", analytic),
+            ("MARCHED", marched),
+            ("CLIPPED", clipped),
+            ("COPIES", copies),
+            ("PRE_INTERSECTS", analytic || clipped),
+            ("ANY_MARCHED", marched || soft_shadows),
+            ("SHADOWS", shadows),
+            ("SOFT_SHADOWS", soft_shadows),
+            ("POSITIONAL_LIGHTS", positional_lights),
+            ("SPOT_LIGHTS", spot_lights),
+            ("REFLECTIONS", reflections),
+            ("OCCLUSION", occlusion),
+            ("SKY", sky),
+            ("FOG", fog),
+            ("FOG_COLOR", fog_color),
+            ("PARALLEL", parallel),
+            ("CULLED", culled),
+            ("CULLED_BY_CELL", self.culls_by_cell()),
+            ("INSTRUMENTED", instrumented),
+        ]
+    }
+
+    /// The functions whose calls the linker drops because nothing reads what they record.
+    pub fn unused(self) -> Vec<&'static str> {
+        let recorders =
+            [(stubs::RECORD_SAMPLE, self.soft_shadows), (stubs::RECORD_SLOPE, self.occlusion)];
+        recorders.into_iter().filter(|recorder| !recorder.1).map(|recorder| recorder.0).collect()
+    }
+}

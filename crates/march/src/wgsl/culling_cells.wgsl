@@ -1,0 +1,175 @@
+// Before a frame: which rounds of the scene's loops can matter in each cell of a grid, to the value of the loop: those whose operand,
+// less what blends reach, may be as little as the least of all in some place of the cell. First for groups of cells, then for each cell
+// among those of its group.
+
+// Where more rounds of a loop than this can matter in a cell, all are visited.
+const MAX_PER_CELL: u32 = 1024;
+// Part of a cell's width that a round is kept beyond, for rounding.
+const CELL_SLACK: f32 = 1e-3;
+
+struct Ball {
+    center: vec3f,
+    radius: f32,
+}
+
+// The ball around so many cells.
+fn ball_around(cells: Cells, corner: vec3u, side: u32) -> Ball {
+    let half = 0.5 * f32(side) / cells.per_unit;
+    return Ball(cells.low + vec3f(corner) / cells.per_unit + half, length(half));
+}
+
+fn group_position(group: u32) -> vec3u {
+    return vec3u(group, group / GROUP_SIDE, group / (GROUP_SIDE * GROUP_SIDE)) % GROUP_SIDE;
+}
+
+fn ball_around_group(cells: Cells, group: u32) -> Ball {
+    return ball_around(cells, cells.group * group_position(group), cells.group);
+}
+
+// Operands that are at most this at the center of a ball can matter within it.
+fn limit_of(ball: Ball, least: f32) -> f32 {
+    return least + (2.0 + CELL_SLACK) * ball.radius + 8.0 * ROUNDING * length(ball.center);
+}
+
+fn groups() -> u32 {
+    return GROUP_SIDE * GROUP_SIDE * GROUP_SIDE;
+}
+
+fn ordered_word(value: f32) -> u32 {
+    let bits = bitcast<u32>(value);
+    return bits ^ select(0x80000000u, 0xffffffffu, (bits >> 31u) == 1u);
+}
+
+fn ordered_value(word: u32) -> f32 {
+    return bitcast<f32>(word ^ select(0xffffffffu, 0x80000000u, (word >> 31u) == 1u));
+}
+
+fn group_words(loop_index: u32, group: u32) -> u32 {
+    return (loop_index * groups() + group) * active_lists[MAX_WORDS];
+}
+
+// One invocation for each group (x), 32 rounds (y) and loop (z).
+@compute @workgroup_size(64)
+fn least_of_groups(@builtin(global_invocation_id) id: vec3u) {
+    let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
+    if id.x >= groups() || 32u * id.y >= count_all {
+        return;
+    }
+    load_frame();
+    let ball = ball_around_group(read_cells(active_lists[CELLS]), id.x);
+    var least = 1e30;
+    for (var i = 32u * id.y; i < min(32u * id.y + 32u, count_all); i++) {
+        least = min(least, culling_bounds(id.z, f32(i), ball.center).z);
+    }
+    atomicMin(&counters[LEAST_OPERANDS + id.z * groups() + id.x], ordered_word(least));
+    add_evaluated();
+}
+
+// The same.
+@compute @workgroup_size(64)
+fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
+    let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
+    if id.x >= groups() || 32u * id.y >= count_all {
+        return;
+    }
+    load_frame();
+    let ball = ball_around_group(read_cells(active_lists[CELLS]), id.x);
+    let limit = limit_of(ball, ordered_value(atomicLoad(&counters[LEAST_OPERANDS + id.z * groups() + id.x])));
+    var bits = 0u;
+    for (var i = 0u; i < min(32u, count_all - 32u * id.y); i++) {
+        // Also where it is no number.
+        if !(culling_bounds(id.z, f32(32u * id.y + i), ball.center).y > limit) {
+            bits |= 1u << i;
+        }
+    }
+    masks[group_words(id.z, id.x) + id.y] = bits;
+    add_evaluated();
+}
+
+// Whether the rounds that can matter in a group can matter in the cell at hand, a bit for each; of rounds past these they do.
+const MAX_MASKED: u32 = 1024;
+var<private> kept_bits: array<u32, 32>;
+
+// One invocation for each cell, those of a group together.
+@compute @workgroup_size(64)
+fn list_cells(@builtin(global_invocation_id) id: vec3u) {
+    let cells = read_cells(active_lists[CELLS]);
+    let side = cells.group;
+    let group = id.x / max(side * side * side, 1u);
+    if cells.loops == 0u || group >= groups() {
+        return;
+    }
+    load_frame();
+    let position = vec3u(id.x, id.x / side, id.x / (side * side)) % side;
+    let cell = side * group_position(group) + position;
+    let ball = ball_around(cells, cell, 1u);
+    let record = record_of_cell(cells, cell);
+    var distance = 1e30;
+    for (var loop_index = 0u; loop_index < cells.loops; loop_index++) {
+        distance = min(distance, list_cell(cells, ball, loop_index, group_words(loop_index, group), record + 2u * loop_index));
+    }
+    active_lists[record + 2u * cells.loops] = bitcast<u32>(distance);
+    add_evaluated();
+}
+
+// Lists the rounds of a loop that can matter in a ball, among those that are marked, and gives how far its middle is from where any can
+// matter to a ray.
+fn list_cell(cells: Cells, ball: Ball, loop_index: u32, first_word: u32, record: u32) -> f32 {
+    let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
+    let words = (count_all + 31u) / 32u;
+    var distance = 1e30;
+    var least = 1e30;
+    for (var word = 0u; word < words; word++) {
+        var bits = masks[first_word + word];
+        while bits != 0u {
+            let bounds = culling_bounds(loop_index, f32(32u * word + firstTrailingBit(bits)), ball.center);
+            bits &= bits - 1u;
+            distance = min(distance, bounds.x);
+            least = min(least, bounds.z);
+        }
+    }
+    let limit = limit_of(ball, least);
+    for (var i = 0u; i < MAX_MASKED / 32u; i++) {
+        kept_bits[i] = 0u;
+    }
+    var position_in_group = 0u;
+    var count = 0u;
+    for (var word = 0u; word < words; word++) {
+        var bits = masks[first_word + word];
+        while bits != 0u {
+            let iteration = f32(32u * word + firstTrailingBit(bits));
+            bits &= bits - 1u;
+            if position_in_group >= MAX_MASKED {
+                count++;
+            } else if !(culling_bounds(loop_index, iteration, ball.center).y > limit) {
+                kept_bits[position_in_group / 32u] |= 1u << (position_in_group % 32u);
+                count++;
+            }
+            position_in_group++;
+        }
+    }
+    var next = cells.lists_end;
+    if count <= MAX_PER_CELL {
+        next = cells.lists + atomicAdd(&counters[FILLED], count);
+    }
+    if next + count > cells.lists_end {
+        active_lists[record] = count_all;
+        active_lists[record + 1u] = active_lists[ALL_ITERATIONS + 2u * loop_index + 1u];
+        return distance;
+    }
+    active_lists[record] = count;
+    active_lists[record + 1u] = next;
+    position_in_group = 0u;
+    for (var word = 0u; word < words; word++) {
+        var bits = masks[first_word + word];
+        while bits != 0u {
+            if position_in_group >= MAX_MASKED || (kept_bits[position_in_group / 32u] >> (position_in_group % 32u) & 1u) == 1u {
+                active_lists[next] = 32u * word + firstTrailingBit(bits);
+                next++;
+            }
+            bits &= bits - 1u;
+            position_in_group++;
+        }
+    }
+    return distance;
+}
