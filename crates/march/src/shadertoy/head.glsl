@@ -1,2 +1,2 @@
-// A whole shader for shadertoy.com: paste it into a new one. The params of the scene come first, as constants to
-// be edited; dragging the mouse turns the camera.
+// A whole shader for shadertoy.com: paste it into a new one. The params of the scene come first, as
+// constants that you can edit; dragging the mouse turns the camera.

@@ -1,10 +1,12 @@
-// Steps to where the ball of free space there would touch the ball here, were the surface as flat as the last two
-// distances tell. Where the balls do not meet, the step is taken back to the end of the first one.
-// Cs. Balint, G. Valasek, Accelerating sphere tracing (Eurographics 2018 short papers).
+// Accelerated sphere tracing. A step leads to where the next empty sphere would touch this one if
+// the surface were as flat as the last two distances suggest. If the spheres do not touch, the step
+// is taken back to the end of the first one. Cs. Balint, G. Valasek, Accelerating sphere tracing
+// (Eurographics 2018 short papers).
 
-// Part of the ball ahead that a step covers.
+// Fraction of the next sphere's radius that a step covers.
 const TRUST: f32 = 0.95;
-// Straight away from a surface there is no end to the ball ahead; this bounds it.
+// Lower bound of the divisor: on a ray that leads straight away from a surface the next sphere
+// would be infinite.
 const MIN_APPROACH: f32 = 0.1;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
@@ -13,20 +15,20 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 
 fn trace(ray: Ray) -> Trace {
     var t = 0.0;
-    // Distance at t, and the step to take from there.
+    // The distance at t, and the step to take from there.
     var radius = 0.0;
     var stride = 0.0;
     for (var step = 0u; step < ray.steps; step++) {
         let next = t + stride;
         let distance = field(ray_point(ray, next));
-        // A step as long as the distance is never taken back.
+        // A step no longer than the distance is never taken back.
         if stride > radius + abs(distance) {
             stride = radius;
             continue;
         }
         record_sample(next, distance);
-        // Beside a plane the distance r falls by the same slope s all along; the ball that touches this one
-        // has the radius r (1 - s) / (1 + s).
+        // Beside a plane the distance r falls by a constant slope s along the ray; the sphere that
+        // touches this one has the radius r (1 - s) / (1 + s).
         var ahead = 0.0;
         if stride > 0.0 {
             let slope = (radius - distance) / stride;

@@ -1,20 +1,22 @@
-// Which rounds of the scene's loops are visited: by rays from the eye those that can matter to a workgroup's pixels, by others, which go
-// anywhere, those that can matter in the cell that they are in; or all.
+// Which iterations of the scene's loops are run. Camera rays run those that can affect the pixels
+// of their workgroup; secondary rays, which lead anywhere, those that can affect the cell that they
+// are in; otherwise all are run.
 
 @group(0) @binding(4) var<storage, read> active_lists: array<u32>;
 
-// The record of the tile.
+// Index of the tile's record.
 var<private> tile_record: u32;
 
-// How many rounds of each loop to visit, and where the number of the first stands; the scene's functions read these. Kept here,
-// since reading them from the buffer at each place takes as long as visiting a round.
+// For each loop, the number of iterations to run and the index of the first one's number in
+// `active_lists`. The scene's functions read this. It is kept in private memory, since reading it
+// from the buffer for each sample takes as long as running an iteration.
 var<private> active_spans: array<vec2u, 8>;
 
 fn span_at(record: u32, loop_index: u32) -> vec2u {
     return vec2u(active_lists[record + 2u * loop_index], active_lists[record + 2u * loop_index + 1u]);
 }
 
-// Spans of loops that the scene does not have are read by nothing, and go when it is compiled.
+// The spans of loops that the scene does not have are never read, and removed by the compiler.
 fn use_lists(record: u32) {
     active_spans[0] = span_at(record, 0u);
     active_spans[1] = span_at(record, 1u);
@@ -26,31 +28,34 @@ fn use_lists(record: u32) {
     active_spans[7] = span_at(record, 7u);
 }
 
-// What is left out of the rounds that are visited is no nearer than this to the place at hand.
+// A lower bound on the distance from the sample point to what the lists leave out.
 const NOTHING_INACTIVE: f32 = 1e30;
 var<private> inactive_distance: f32 = NOTHING_INACTIVE;
 
-// Whether the rays at hand go by cells, and up to what the distance must be known, and not only that it is no less.
+// True if the current rays select lists by cell. Distances up to `exact_up_to` must be exact;
+// farther away a lower bound is enough.
 var<private> selects_by_cell: bool;
 var<private> exact_up_to: f32;
 
 var<private> cells: Cells;
 
-// How many rounds the scene's functions have visited, where that is counted.
+// The number of iterations that the scene's functions have run, if that is counted.
 var<private> iterations_run: u32;
 
-// Before a pixel.
+// Call before the first ray of a pixel; `position` is relative to the tile of the picture.
 fn start_pixel(position: vec2u) {
     let tile = position / TILE;
     tile_record = active_lists[FIRST_RECORD] + (tile.y * tile_counts().x + tile.x) * active_lists[RECORD_STRIDE];
     if CULLED_BY_CELL {
         cells = read_cells(active_lists[CELLS]);
-        // Nothing roams yet: this keeps the function until the scene's functions call it.
+        // Nothing selects lists by cell yet: this call keeps the function alive until the scene's
+        // functions, which call it, replace their stubs.
         select_lists(vec3f());
     }
 }
 
-// What a ray meets: one from the eye, slice after slice, each by its own lists; another by what can matter where it is.
+// Traces a ray. A camera ray is traced slice by slice, each slice with its own lists; other rays
+// use the lists of the cells that they pass.
 fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
     var slices = 1u;
     var near = 0.0;
@@ -67,7 +72,8 @@ fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
             use_cells(0.0);
             if SOFT_SHADOWS {
                 if records_clearance {
-                    // Where it is asked how narrowly it passes decides what is found.
+                    // The clearance of the ray depends on where it is sampled, so nothing may be
+                    // left out.
                     use_all();
                 }
             }
@@ -87,7 +93,7 @@ fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
         }
         let hit = trace(segment);
         found = Trace(start + hit.t, hit.status, found.evaluations + hit.evaluations);
-        // Nor does a ray go on where the field is no number.
+        // The negation also ends a ray whose t is not a number.
         if hit.status != MISS || !(hit.t >= segment.t_max) {
             break;
         }
@@ -95,7 +101,8 @@ fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
     return found;
 }
 
-// Before any other, and before distances up to some are asked for elsewhere.
+// Call before tracing a secondary ray or sampling the field elsewhere. Distances up to `up_to` will
+// be exact.
 fn use_cells(up_to: f32) {
     use_all();
     selects_by_cell = cells.loops > 0u;
@@ -107,18 +114,20 @@ fn use_all() {
     use_everywhere();
 }
 
-// What is visited is the same everywhere.
+// Uses the same lists everywhere.
 fn use_everywhere() {
     inactive_distance = NOTHING_INACTIVE;
     selects_by_cell = false;
 }
 
-// The scene's functions call this before they read what to visit.
+// Selects the lists for a sample point. The scene's functions call this before they run their
+// loops.
 fn select_lists(p: vec3f) {
     if CULLED_BY_CELL {
         if selects_by_cell {
             var record = cells.outside;
-            // How near what the loops are of can be; the box of that is some way from the border of the cells.
+            // A lower bound on the distance to the loops' surfaces; their box keeps some distance
+            // from the border of the cells.
             var free = length(max(max(cells.box_low - p, p - cells.box_high), vec3f()));
             var record_here = ALL_ITERATIONS;
             var required = 0.0;

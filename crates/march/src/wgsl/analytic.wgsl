@@ -1,27 +1,29 @@
-// What the scene supplies of rays. The bodies are replaced when the scene is linked. Directions are of unit length.
+// The functions that the scene supplies for the analytic intersection of rays. Their bodies are
+// replaced when the shader is linked. Directions are unit vectors.
 
-// Where a ray is first inside what needs no march: 0 for one that starts there, FAR for one that never is.
+// Where a ray first enters the analytic part of the scene: 0 if it starts inside, FAR if it never
+// does.
 fn analytic_hit(origin: vec3f, direction: vec3f) -> f32 {
     return 0.0;
 }
 
-// Signed distance to what needs no march.
+// Signed distance to the analytic part of the scene.
 fn analytic_distance(p: vec3f) -> f32 {
     return 0.0;
 }
 
-// Signed distance to all else.
+// Signed distance to the marched part of the scene.
 fn marched_distance(p: vec3f) -> f32 {
     return 0.0;
 }
 
-// Where a ray enters and leaves a box around what is marched; the first above the second where it misses it.
+// Where a ray enters and leaves a box around the marched part; x > y if it misses the box.
 fn clip_interval(origin: vec3f, direction: vec3f) -> vec2f {
     return vec2f();
 }
 
-// Where a ray is first inside of what is sampled at its origin, FAR where it never is; and how far from the origin nothing else
-// is marched.
+// x: where a ray first enters a copy that is sampled at its origin, FAR if it never does. y: the
+// distance from the origin within which nothing else needs marching.
 fn intersect_copies(origin: vec3f, direction: vec3f) -> vec2f {
     return vec2f();
 }

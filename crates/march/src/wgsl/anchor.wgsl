@@ -1,4 +1,5 @@
-// Keeps the ray method and what asks it while what nothing reaches is dropped, and is dropped then itself.
+// An entry point that keeps the ray method and `intersect` alive while unreachable functions are
+// removed; then it is removed itself.
 
 @compute @workgroup_size(1)
 fn anchor() {

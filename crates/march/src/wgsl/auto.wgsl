@@ -1,17 +1,20 @@
-// Steps as long as those of `auto-relaxed`, to a part of a pixel, wherever on the ray that is. That near to a surface the ray
-// closes in by secants, so that a ray that only passes by an edge is not taken for a hit on it; where the field led
-// through the surface it closes in on the bracket. What the scene meets without steps is not marched (`ahead.wgsl`).
+// The method `auto`: relaxed steps as in `auto-relaxed`, up to a fraction of a pixel from the
+// surface. From there the ray approaches by secant steps, so that a ray that only passes an edge is
+// not taken for a hit on it; after a change of sign it closes in on the bracket. Analytic parts of
+// the scene are intersected without marching (`pre_intersection.wgsl`).
 
-// A ray may take so many times the steps that it has by other methods: the few that do graze a floor on their way to the horizon.
+// Factor of the step budget compared to other methods: a few rays graze a floor on their way to the
+// horizon.
 const STEP_BUDGET_FACTOR: u32 = 4;
-// Weight of the last step's slope in the mean.
+// Weight of the last step's slope in the running mean.
 const SLOPE_WEIGHT: f32 = 0.5;
-// Steps are at most so many distances: straight away from a surface there is no end to them.
+// Upper bound of a step in distances: a ray that leads straight away from a surface would have no
+// limit.
 const MAX_RELAXATION: f32 = 4.0;
-// A secant is at most the inverse of this times the distance, or that part of the tolerance.
+// Bounds of a secant step: the distance divided by this slope, or this fraction of the tolerance.
 const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
-// What is left of the way at a hit is at most the inverse of this times the distance.
+// Bound of the last secant, which places the hit: the distance divided by this slope.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
@@ -43,10 +46,11 @@ fn trace(ray: Ray) -> Trace {
     return found;
 }
 
-// Copies are met in closed form, a few at a time: those that are sampled at a place, as far from there as there are no others.
+// Intersects copies analytically, a few at a time: at each position those that are sampled there.
+// No other copy lies within the distance that `intersect_copies` returns.
 fn march_copies(ray: Ray, end: f32) -> Trace {
     if SOFT_SHADOWS {
-        // How narrowly a ray passes is known from the distance alone.
+        // The clearance of a ray follows from distances alone.
         if records_clearance {
             return march(ray, end);
         }
@@ -67,23 +71,25 @@ fn march_copies(ray: Ray, end: f32) -> Trace {
 
 fn march(ray: Ray, end: f32) -> Trace {
     var bracket: Bracket;
-    // From the last place outside to the next one.
+    // The step from the last sample outside.
     var stride = 0.0;
-    // What the distance gains per unit of length, in the mean: straight towards a surface at first.
+    // The running mean of the field's slope along the ray; at first as if straight towards a
+    // surface.
     var slope = -1.0;
-    // Whether the last place is nearer to a surface than the tolerance.
+    // True if the last sample is nearer to a surface than the tolerance.
     var close = false;
     for (var step = 0u; step < STEP_BUDGET_FACTOR * ray.steps; step++) {
         let last = bracket.outside;
         let t = last.x + stride;
         let distance = marched_field(ray_point(ray, t));
-        // A ray that starts inside is at its hit.
+        // A ray that starts inside hits at its origin.
         if step == 0u && distance < 0.0 {
             return Trace(t, HIT, 1u);
         }
         let near = tolerance(ray, t);
         let hit = hit_within(ray, t, near);
-        // The balls of free space do not meet: something may lie between them. A secant is short enough without that.
+        // The empty spheres around both ends of the step do not meet: something may lie between
+        // them. A secant step is short enough without this check.
         if !bracket.crossed && !close && stride > last.y + max(distance, 0.0) + hit {
             stride = last.y;
             slope = -1.0;
@@ -102,7 +108,7 @@ fn march(ray: Ray, end: f32) -> Trace {
             stride = false_position(bracket) - bracket.outside.x;
             continue;
         }
-        // Only the distance is known to be free.
+        // Only the sphere of the distance is known to be empty.
         let free = t + distance;
         if !(free <= end) {
             return Trace(free, MISS, step + 1u);
@@ -111,12 +117,12 @@ fn march(ray: Ray, end: f32) -> Trace {
         close = distance < near;
         if close {
             stride = distance / max(-gain, MIN_SLOPE);
-            // Along a surface, and hardly towards it: what is that short does not matter.
+            // A ray along the surface need not take shorter steps.
             if gain > -MIN_SLOPE {
                 stride = max(stride, MIN_STEP_FRACTION * near);
             }
         } else {
-            // Two balls touch at a step z = r + (r + slope z).
+            // Two spheres touch at a step z = r + (r + slope z).
             stride = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0) * distance;
         }
         stride = min(limited_step(stride, distance), end - t);

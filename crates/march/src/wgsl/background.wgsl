@@ -1,4 +1,4 @@
-// What is seen where nothing is met.
+// The colour behind the scene.
 
 fn background_color(direction: vec3f) -> vec3f {
     var color = view.background;
@@ -10,7 +10,7 @@ fn background_color(direction: vec3f) -> vec3f {
     return color;
 }
 
-// What a surface seen in this direction fades to.
+// The colour of the fog in a direction.
 fn fog_color_at(direction: vec3f) -> vec3f {
     var color: vec3f;
     if FOG_COLOR {

@@ -1,17 +1,17 @@
-// Closing in on where a ray goes in, once a place outside and one inside are known.
+// Root finding once a sample outside and one inside the surface are known.
 
-// A hit is nearer than this part of the tolerance.
+// A sample within this fraction of the tolerance is a hit.
 const HIT_FRACTION: f32 = 0.00390625;
 
 struct Bracket {
-    // Last place outside and first place inside, as (t, distance).
+    // The last sample outside and the first one inside, as (t, distance).
     outside: vec2f,
     inside: vec2f,
-    // Whether there is a place inside.
+    // True if there is a sample inside.
     crossed: bool,
 }
 
-// With one more place.
+// The bracket with one more sample.
 fn with_sample(bracket: Bracket, t: f32, distance: f32) -> Bracket {
     var next = bracket;
     if distance < 0.0 {
@@ -23,12 +23,13 @@ fn with_sample(bracket: Bracket, t: f32, distance: f32) -> Bracket {
     return next;
 }
 
-// How near to the surface a hit is.
+// The distance from the surface below which a sample is a hit.
 fn hit_within(ray: Ray, t: f32, near: f32) -> f32 {
     return max(HIT_FRACTION * near, rounding(ray, t));
 }
 
-// Where to look next: false position, kept off the ends so that the bracket always shrinks.
+// The next position to sample, by false position. It keeps away from both ends, so that the bracket
+// always shrinks.
 fn false_position(bracket: Bracket) -> f32 {
     let fraction = clamp(bracket.outside.y / (bracket.outside.y - bracket.inside.y), 0.1, 0.9);
     return mix(bracket.outside.x, bracket.inside.x, fraction);

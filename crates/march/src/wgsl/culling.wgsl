@@ -1,18 +1,21 @@
-// Before a picture: which rounds of the scene's loops can matter to the rays through each tile's pixels. A round can where its operand,
-// less what it reaches beyond its surface, is not above 0 somewhere in a cone around the rays. The operand is itself
-// marched along the middle of the cone, which is as sound as a field's march.
+// Runs before a picture: finds which iterations of the scene's loops can affect the rays through
+// each tile's pixels. An iteration can if its operand, minus the distance that it reaches beyond
+// its surface, is at most 0 somewhere in a cone around the rays. The operand itself is marched
+// along the axis of the cone, which is as safe as marching a field.
 //
-// Wide tiles come first, and a tile asks only for the rounds that can matter to the wider one that it is part of. Those of wide tiles
-// are marked; those of the narrowest are listed.
+// Wide tiles come first. A tile tests only the iterations that can affect the wider tile that it is
+// part of. Wide tiles have bit masks; the narrowest have lists.
 
 @group(0) @binding(4) var<storage, read_write> active_lists: array<u32>;
-// For each loop and tile of each level from 1 on, a bit for each round that can matter. Then for each tile of level 0 what is kept of
-// rounds while it is listed: two words, the number, and where the round matters.
+// For each loop and each tile of every level from 1 on: one bit per iteration that can affect the
+// tile. Then, for each tile of level 0, scratch space while its lists are made: two words per
+// iteration, its number and the packed interval in which it matters.
 @group(0) @binding(5) var<storage, read_write> masks: array<u32>;
-// The level at hand. The tiles of level 0 have lists, those of each other, which have marks, are two by two of the one below.
+// The current level. Tiles of level 0 have lists. A tile of any other level has masks and covers
+// two by two tiles of the level below.
 @group(0) @binding(6) var<uniform> level: u32;
-// How much of the cells' lists is filled; how many operands were evaluated; then for each loop and group of cells the least operand
-// there, as a word that is ordered as it is.
+// The filled length of the cells' lists; the number of operands evaluated; then, for each loop and
+// group of cells, the least operand there, as a word with the same order.
 @group(0) @binding(7) var<storage, read_write> counters: array<atomic<u32>>;
 
 const FILLED: u32 = 0;
@@ -22,8 +25,8 @@ const LEAST_OPERANDS: u32 = 2;
 const TOP_LEVEL: u32 = 4;
 const WIDER_BITS: u32 = 1;
 
-// Supplied by the scene, as many as it has loops: how far a point is from where a round can matter to a ray, or less; the round's operand
-// less what blends reach; the operand.
+// Supplied by the scene, one for each of its loops. x: lower bound on the distance to where the
+// iteration can affect a ray. y: the operand minus the blend radius. z: the operand.
 
 fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
@@ -57,7 +60,7 @@ fn culling_bounds_7(iteration: f32, p: vec3f) -> vec3f {
     return vec3f();
 }
 
-// How many operands were evaluated, where that is counted.
+// The number of operands evaluated, if that is counted.
 var<private> evaluated: u32;
 
 fn culling_bounds(loop_index: u32, iteration: f32, p: vec3f) -> vec3f {
@@ -92,21 +95,21 @@ fn culling_bounds(loop_index: u32, iteration: f32, p: vec3f) -> vec3f {
     }
 }
 
-// At the end of each stage.
+// Call at the end of each entry point.
 fn add_evaluated() {
     if INSTRUMENTED {
         atomicAdd(&counters[EVALUATED], evaluated);
     }
 }
 
-// Rays that start and lead near others: those through the pixels of a tile.
+// A cone around rays that start and lead close together: those through the pixels of a tile.
 struct Cone {
     origin: vec3f,
-    // How far from the middle they are where they start, and what that gains per unit of length.
+    // Distance of the rays from the axis at their origin, and its growth per unit of length.
     radius: f32,
     direction: vec3f,
     spread: f32,
-    // What of that is added, since what is hit is nearer than a pixel.
+    // The part of radius and spread that was added because a hit is less than a pixel away.
     margin: Margin,
 }
 
@@ -115,9 +118,9 @@ struct Margin {
     spread: f32,
 }
 
-// Part of its width that a cone is made wider by, so that marches along it end.
+// Margin by which a cone is widened, as a fraction of its width, so that marches along it end.
 const SLACK: f32 = 0.1;
-// An operand that is not told by so many steps can matter from there on.
+// If this many steps do not decide where an operand can matter, it counts from there on.
 const MAX_STEPS: u32 = 32;
 
 fn side_of(at: u32) -> u32 {
@@ -145,14 +148,16 @@ fn cone_around(tile: vec2u) -> Cone {
     return cone;
 }
 
-// How far a round is from mattering to the cone at a place along it; less than 0 where it is so near that steps would not end, or no number.
+// The distance at position t of the cone's axis within which the iteration cannot affect the cone;
+// negative if it is too small for steps to end, or not a number.
 fn distance_at(cone: Cone, loop_index: u32, iteration: f32, t: f32) -> f32 {
     let wide = cone.radius + cone.spread * t;
     let free = culling_bounds(loop_index, iteration, cone.origin + t * cone.direction).x - wide;
     return select(-1.0, free, free > SLACK * wide + ROUNDING * (length(cone.origin) + t));
 }
 
-// Where a round begins to matter to the cone, or a place beyond the end of rays where it does not.
+// The position where an iteration begins to affect the cone; beyond the end of rays if it never
+// does.
 fn entry(cone: Cone, loop_index: u32, iteration: f32) -> f32 {
     var t = 0.0;
     for (var step = 0u; step < MAX_STEPS && t <= view.t_max; step++) {
@@ -165,8 +170,8 @@ fn entry(cone: Cone, loop_index: u32, iteration: f32) -> f32 {
     return t;
 }
 
-// Where it begins to, and where it ceases to, which is looked for from the end of rays back. One call of `free_at`: drivers inline it
-// wherever it is called.
+// The interval in which an iteration can affect the cone; its end is searched for from the end of
+// rays backwards. There is one call of `distance_at`: drivers inline it wherever it is called.
 fn active_interval(cone: Cone, loop_index: u32, iteration: f32) -> vec2f {
     var ends = vec2f(0.0, view.t_max);
     var is_back = false;
@@ -192,7 +197,7 @@ fn active_interval(cone: Cone, loop_index: u32, iteration: f32) -> vec2f {
     return vec2f(ends.x, max(ends.x, ends.y));
 }
 
-// Where the marks of a tile are: those of level 1 come first.
+// Index of a tile's masks; those of level 1 come first.
 fn mask_words(at: u32, tile: vec2u, loop_index: u32) -> u32 {
     var before = 0u;
     for (var below = 1u; below < at; below++) {
@@ -231,7 +236,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     add_evaluated();
 }
 
-// A stretch of rays in one word, as parts of their length: no less than it is.
+// An interval in one word, its ends as fractions of the rays' length, rounded outwards.
 const FRACTION_STEPS: f32 = 65535.0;
 
 fn packed_interval(interval: vec2f) -> u32 {
@@ -243,11 +248,12 @@ fn unpacked_interval(word: u32) -> vec2f {
     return vec2f(vec2u(word & 0xffffu, word >> 16u)) * (view.t_max / FRACTION_STEPS);
 }
 
-// Rays are cut into a slice for each so many rounds that can matter to their tile.
+// Rays are cut into one slice per this many iterations that can affect their tile.
 const ITERATIONS_PER_SLICE: u32 = 4;
 const MAX_LOOPS: u32 = 8;
 
-// First it is found where the rounds matter that do; then, slice by slice, they are listed.
+// Finds the interval of each iteration that matters first; then lists the iterations slice by
+// slice.
 @compute @workgroup_size(64)
 fn list(@builtin(global_invocation_id) id: vec3u) {
     let tiles = tile_counts();
@@ -263,7 +269,7 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
     var near = view.t_max;
     var far = 0.0;
     var count = 0u;
-    // How many there are when those of a loop have been counted.
+    // The running number of iterations after each loop.
     var counts: array<u32, MAX_LOOPS>;
     for (var loop_index = 0u; loop_index < loops; loop_index++) {
         let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
@@ -293,7 +299,7 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
     let capacity = active_lists[CAPACITY];
     var listed: array<u32, MAX_LOOPS>;
     for (var slice = 0u; slice < slices; slice++) {
-        // A gradient by differences is taken a little beyond a slice.
+        // A gradient by differences samples a little beyond the slice.
         var ends = slice_ends(slice, slices, near, slice_length);
         let beyond = cone.margin.radius + cone.margin.spread * ends.y;
         ends += vec2f(-beyond, beyond);
@@ -313,7 +319,7 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
                 index++;
             }
             let at = record + FIRST_SLICE + 2u * (slice * loops + loop_index);
-            // Where there is no room, all rounds are visited.
+            // If the lists do not fit, all iterations are run.
             if counts[loop_index] <= max_scratch && next <= capacity {
                 active_lists[at] = next - first;
                 active_lists[at + 1u] = list + first;

@@ -1,10 +1,11 @@
-// Before a frame: which rounds of the scene's loops can matter in each cell of a grid, to the value of the loop: those whose operand,
-// less what blends reach, may be as little as the least of all in some place of the cell. First for groups of cells, then for each cell
-// among those of its group.
+// Runs before a frame: finds which iterations of the scene's loops can affect the loop's value in
+// each cell of a grid. An iteration can if its operand minus the blend radius may be as small as
+// the minimum of all operands somewhere in the cell. The search runs for groups of cells first,
+// then for each cell among its group's iterations.
 
-// Where more rounds of a loop than this can matter in a cell, all are visited.
+// If more iterations of a loop can affect a cell, all are run there.
 const MAX_PER_CELL: u32 = 1024;
-// Part of a cell's width that a round is kept beyond, for rounding.
+// Margin for rounding, as a fraction of the cell's width.
 const CELL_SLACK: f32 = 1e-3;
 
 struct Ball {
@@ -12,7 +13,7 @@ struct Ball {
     radius: f32,
 }
 
-// The ball around so many cells.
+// The ball around a cube of `side` cells.
 fn ball_around(cells: Cells, corner: vec3u, side: u32) -> Ball {
     let half = 0.5 * f32(side) / cells.per_unit;
     return Ball(cells.low + vec3f(corner) / cells.per_unit + half, length(half));
@@ -26,7 +27,7 @@ fn ball_around_group(cells: Cells, group: u32) -> Ball {
     return ball_around(cells, cells.group * group_position(group), cells.group);
 }
 
-// Operands that are at most this at the center of a ball can matter within it.
+// An operand can matter in the ball if its value at the centre is at most this.
 fn limit_of(ball: Ball, least: f32) -> f32 {
     return least + (2.0 + CELL_SLACK) * ball.radius + 8.0 * ROUNDING * length(ball.center);
 }
@@ -48,7 +49,7 @@ fn group_words(loop_index: u32, group: u32) -> u32 {
     return (loop_index * groups() + group) * active_lists[MAX_WORDS];
 }
 
-// One invocation for each group (x), 32 rounds (y) and loop (z).
+// One invocation for each group (x), 32 iterations (y) and loop (z).
 @compute @workgroup_size(64)
 fn least_of_groups(@builtin(global_invocation_id) id: vec3u) {
     let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
@@ -65,7 +66,7 @@ fn least_of_groups(@builtin(global_invocation_id) id: vec3u) {
     add_evaluated();
 }
 
-// The same.
+// One invocation for each group (x), 32 iterations (y) and loop (z).
 @compute @workgroup_size(64)
 fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     let count_all = active_lists[ALL_ITERATIONS + 2u * id.z];
@@ -77,7 +78,7 @@ fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     let limit = limit_of(ball, ordered_value(atomicLoad(&counters[LEAST_OPERANDS + id.z * groups() + id.x])));
     var bits = 0u;
     for (var i = 0u; i < min(32u, count_all - 32u * id.y); i++) {
-        // Also where it is no number.
+        // The negation also keeps an operand that is not a number.
         if !(culling_bounds(id.z, f32(32u * id.y + i), ball.center).y > limit) {
             bits |= 1u << i;
         }
@@ -86,11 +87,12 @@ fn mark_groups(@builtin(global_invocation_id) id: vec3u) {
     add_evaluated();
 }
 
-// Whether the rounds that can matter in a group can matter in the cell at hand, a bit for each; of rounds past these they do.
+// For the iterations that can matter in a group, one bit each: can it matter in the current cell?
+// Iterations beyond the capacity are kept.
 const MAX_MASKED: u32 = 1024;
 var<private> kept_bits: array<u32, 32>;
 
-// One invocation for each cell, those of a group together.
+// One invocation for each cell; those of a group are neighbours.
 @compute @workgroup_size(64)
 fn list_cells(@builtin(global_invocation_id) id: vec3u) {
     let cells = read_cells(active_lists[CELLS]);
@@ -112,8 +114,9 @@ fn list_cells(@builtin(global_invocation_id) id: vec3u) {
     add_evaluated();
 }
 
-// Lists the rounds of a loop that can matter in a ball, among those that are marked, and gives how far its middle is from where any can
-// matter to a ray.
+// Lists the iterations of a loop that can matter in a ball, among those whose mask bit is set.
+// Returns a lower bound on the distance from the ball's centre to where any iteration can affect a
+// ray.
 fn list_cell(cells: Cells, ball: Ball, loop_index: u32, first_word: u32, record: u32) -> f32 {
     let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
     let words = (count_all + 31u) / 32u;

@@ -1,35 +1,37 @@
-// What a scene needs beyond the least. Known when it is linked: of a branch on one of these, the side that is taken
-// stays and the other goes, with all that only it reached.
+// The optional parts of the shader that a scene needs. The values are known when the shader is
+// linked: of a branch on one of these only one side is kept, with the functions that it reaches.
 
-// Some of the scene is met without marching; some is left to march; that lies in a box.
+// A part of the scene is intersected analytically; a part is marched; the marched part lies in a
+// box.
 override ANALYTIC: bool;
 override MARCHED: bool;
 override CLIPPED: bool;
-// All of that is met in closed form, as far as it is sampled at a place.
+// The marched part consists of copies that are intersected analytically, a few at a time.
 override COPIES: bool;
-// Either of the first and the last; some rays are marched, be it to see how narrowly they pass.
+// Rays are intersected analytically or clipped before they are marched; some rays are marched, if
+// only to measure how narrowly they pass things.
 override PRE_INTERSECTS: bool;
 override ANY_MARCHED: bool;
-// Some light throws a shadow; some light's shadow is soft.
+// A light casts a shadow; a light casts a soft shadow.
 override SHADOWS: bool;
 override SOFT_SHADOWS: bool;
-// Some light stands at a point; some of those shine in a cone.
+// A light has a position; a light is a spot light.
 override POSITIONAL_LIGHTS: bool;
 override SPOT_LIGHTS: bool;
-// Surfaces mirror each other.
+// Surfaces reflect each other.
 override REFLECTIONS: bool;
-// Light from everywhere does not reach everything.
+// Ambient light is occluded.
 override OCCLUSION: bool;
-// The background changes with the direction.
+// The background is a sky, whose colour depends on the direction.
 override SKY: bool;
-// What is far away fades, and to a colour of its own.
+// There is fog; the fog has a colour of its own.
 override FOG: bool;
 override FOG_COLOR: bool;
-// Rays from the eye are parallel.
+// Camera rays are parallel.
 override PARALLEL: bool;
-// Rays from the eye visit only those rounds of loops that can matter to them.
+// Camera rays run only those iterations of loops that can affect them.
 override CULLED: bool;
-// There are others then.
+// There are secondary rays as well then, which select their iterations by cell.
 override CULLED_BY_CELL: bool;
-// What is asked for is not how often the field was evaluated, but how many rounds of loops were visited.
+// Pixels count iterations of loops instead of evaluations of the field.
 override INSTRUMENTED: bool;

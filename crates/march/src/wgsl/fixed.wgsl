@@ -1,5 +1,5 @@
-// Constant steps until the sign changes, then halving towards the crossing. Parts thinner than a
-// step may be stepped over.
+// Steps of constant length until the sign of the field changes, then bisection. Parts thinner than
+// a step may be missed.
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return ray.epsilon;
@@ -14,7 +14,8 @@ fn trace(ray: Ray) -> Trace {
         let distance = field(ray_point(ray, t));
         record_sample(t, distance);
         let inside = distance < 0.0;
-        // A ray that starts inside is at its hit; so is one whose bracket has closed on a jump.
+        // A ray that starts inside hits at its origin; so does a ray whose bracket has closed on a
+        // jump.
         if abs(distance) < near || stride < near || (inside && step == 0u) {
             return Trace(t, HIT, step + 1u);
         }

@@ -1,4 +1,4 @@
-// The entry points: a triangle over the whole target, and the colour of one of its pixels.
+// The entry points: a triangle that covers the target, and the colour of a pixel.
 
 @vertex
 fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4f {

@@ -1,6 +1,6 @@
-// What the scene supplies. The body is replaced when the scene is linked.
+// Supplied by the scene: the body is replaced when the shader is linked.
 
-// Copies what is known per frame from its uniform buffer to private variables, once for each
-// invocation: reading the buffer in the loop of a ray is slower.
+// Copies the per-frame values from their uniform buffer to private variables, once per invocation:
+// reading the buffer inside the loop of a ray is slower.
 fn load_frame() {
 }

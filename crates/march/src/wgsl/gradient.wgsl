@@ -1,4 +1,4 @@
-// What the scene supplies. The body is replaced when the scene is linked.
+// Supplied by the scene: the body is replaced when the shader is linked.
 
 // Spatial derivative of `field`.
 fn field_gradient(p: vec3f) -> vec3f {

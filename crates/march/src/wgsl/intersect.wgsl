@@ -1,13 +1,15 @@
-// What a host asks that has no footprint of its own: where a ray first meets the surface between two places.
+// Intersection for hosts: the first hit of a ray between two positions, for rays without a pixel.
 
-// A hit is nearer than this part of the way from the ray's origin to it.
+// A hit is nearer than this fraction of its distance from the ray's origin.
 const ACCURACY: f32 = 1e-4;
-// A hit is nearer than this, absolute, by methods that know no footprint.
+// Absolute tolerance, for methods that do not use the footprint.
 const EPSILON: f32 = 1e-4;
-// At most so many steps.
+// The step budget of a ray.
 const MAX_STEPS: u32 = 256u;
 
-// `t` of the result is counted from `origin`; `direction` is a unit vector, both places are finite. A place inside is a hit.
+// Returns the first hit of a ray between `t_min` and `t_max`. `direction` is a unit vector and both
+// ends are finite; `t` of the result is counted from `origin`. A ray that starts inside hits at its
+// start.
 fn intersect(origin: vec3f, direction: vec3f, t_min: f32, t_max: f32) -> Trace {
     if !(t_min <= t_max) {
         return Trace(t_min, MISS, 0u);

@@ -1,14 +1,15 @@
-// Proof by rejection and cutting. A stretch on which the field is nowhere 0 is free; any other is cut and its nearer part is
-// looked at first, down to a part of the tolerance, where the sign behind it tells whether the ray went in. So the first hit is
-// found whatever the field promises, jumps included. Nothing is kept of the parts that wait: the stretch after a free one
-// is as long as the field is high there, or twice as long as the last. After A. Knoll et al., Fast Ray Tracing of Arbitrary Implicit Surfaces
-// with Interval and Affine Arithmetic (2009).
+// Interval tracing. A ray segment on which the field is proven to be nonzero is skipped; any other
+// is cut, and its nearer part is examined first, down to a fraction of the tolerance, where the
+// sign of the field behind the segment decides. So the first hit is found whatever the field
+// promises, even if it jumps. No stack of segments is kept: after a segment that is skipped the
+// next one is as long as the distance there, or twice as long as the last one. After A. Knoll et
+// al., Fast Ray Tracing of Arbitrary Implicit Surfaces with Interval and Affine Arithmetic (2009).
 
-// No stretch is cut shorter than this part of it; nor, of a ray that has spent its steps, than so many tolerances: bounds of what
-// jumps stay wide however short the stretch is.
+// The shortest segment, as a fraction of the tolerance. It grows up to COARSEST tolerances as a ray
+// spends its steps: near a jump the bounds stay wide however short the segment is.
 const FINEST: f32 = 0.0625;
 const COARSEST: f32 = 4.0;
-// Of what is not free this part at most is looked at next, and this part at least.
+// Bounds on the fraction of a segment that is examined next.
 const MAX_FRACTION: f32 = 0.9;
 const MIN_FRACTION: f32 = 0.0625;
 
@@ -17,16 +18,16 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 }
 
 fn trace(ray: Ray) -> Trace {
-    // The ray is free up to the last place outside.
+    // The ray is free of the surface up to the last sample outside.
     var bracket: Bracket;
     var t = 0.0;
     var segment = ray.t_max;
-    // Of the field's range; a sample at the end of a stretch belongs to it.
+    // Evaluations of the field's range; the sample at the end of a segment counts as part of it.
     var evaluations = 0u;
     while evaluations < ray.steps {
         let distance = field(ray_point(ray, t));
         record_sample(t, distance);
-        // A ray that starts inside, or at a surface, is at its hit.
+        // A ray that starts inside or on a surface hits at its origin.
         if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {
             return Trace(t, HIT, 1u);
         }
@@ -56,7 +57,7 @@ fn trace(ray: Ray) -> Trace {
                 t = end;
                 break;
             }
-            // As far as the field would stay above 0 if it fell evenly to its least value.
+            // As far as the field would stay positive if it fell linearly to its lower bound.
             let fraction = clamp(MAX_FRACTION * distance / max(distance - least, 1e-30), MIN_FRACTION, MAX_FRACTION);
             segment = max(fraction * (end - free), finest);
             shortened = true;

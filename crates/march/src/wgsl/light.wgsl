@@ -1,15 +1,15 @@
-// Lights as a point sees them.
+// Lights as seen from a point.
 
 struct IncomingLight {
-    // Towards it, of unit length.
+    // Unit vector towards the light.
     direction: vec3f,
-    // How far away it is, or where rays end.
+    // Distance to the light; for a sun, the length of rays.
     distance: f32,
-    // Linear colour of what arrives.
+    // Linear colour of the light that arrives.
     color: vec3f,
 }
 
-// A lamp is never taken to be nearer than the root of this.
+// Lower bound of the squared distance to a light.
 const MIN_SQUARE: f32 = 1e-12;
 
 fn light_at(light: Light, point: vec3f) -> IncomingLight {

@@ -1,5 +1,5 @@
-// The place where a ray from the eye has met something, and the normal there, in place of a colour: what a picture's normals are
-// measured by. A file of its own, so that pictures carry no normals about.
+// Writes the position and the normal of the hit in place of a colour; accuracy charts measure
+// normals by them. This is a file of its own so that pictures need not carry normals.
 
 fn picture(pixel: vec2u) -> Pixel {
     let ray = camera_ray(pixel);
@@ -20,8 +20,8 @@ fn picture(pixel: vec2u) -> Pixel {
     return pixel_out;
 }
 
-// A direction on the faces of an octahedron, its lower half turned outward: two numbers for three.
-// Q. Meyer et al., On Floating-Point Normal Vectors (EGSR 2010).
+// Octahedral encoding of a unit vector: the lower half of the octahedron is folded outwards, so
+// that two numbers hold a direction. Q. Meyer et al., On Floating-Point Normal Vectors (EGSR 2010).
 fn octahedral(direction: vec3f) -> vec2f {
     let on_face = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
     let side = select(vec2f(-1.0), vec2f(1.0), on_face.xy >= vec2f());

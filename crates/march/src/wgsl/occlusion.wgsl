@@ -1,26 +1,26 @@
-// How much of the light from everywhere reaches a surface, from how far above it the field falls behind the height.
-// A. Evans, Fast approximations for global illumination on dynamic scenes (SIGGRAPH 2006).
+// Ambient occlusion, from how far the field falls behind the height above the surface. A. Evans,
+// Fast approximations for global illumination on dynamic scenes (SIGGRAPH 2006).
 
 const OCCLUSION_SAMPLES: u32 = 5;
 
-// Length of the gradient where the last normal was taken: a field that is steeper or flatter than a distance is
-// measured by it.
+// Length of the gradient at the last normal: distances are divided by it, for fields that are
+// steeper or flatter than a distance.
 var<private> slope: f32;
 
-// After each gradient, its square.
+// Called after each gradient with its squared length.
 fn record_slope(square: f32) {
     slope = select(1.0, sqrt(square), square > 0.0);
 }
 
 fn unoccluded_fraction(point: vec3f, normal: vec3f) -> f32 {
     if CULLED {
-        // What does not matter to a ray from the eye may be near.
+        // Parts that do not affect a camera ray may still be near.
         use_cells(view.occlusion_radius);
     }
     var occluded = 0.0;
     var total = 0.0;
     var weight = 1.0;
-    // The nearer, the more it counts.
+    // The nearer the sample, the more it counts.
     for (var i = 1u; i <= OCCLUSION_SAMPLES; i++) {
         let height = view.occlusion_radius * f32(i) / f32(OCCLUSION_SAMPLES);
         let distance = field(point + height * normal) / slope;

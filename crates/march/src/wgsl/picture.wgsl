@@ -1,14 +1,14 @@
-// Colour of a pixel. The ray from the eye, what becomes of it at mirrors, and the rays to lamps pass through one call
-// of `trace`: drivers inline the field wherever it is called, and their compile time grows with it.
+// The colour of a pixel. The camera ray, its reflections and the shadow rays share one call of
+// `trace`: drivers inline the field wherever it is called, and their compile time grows with that.
 
-// Where a ray along which the eye sees has ended.
+// Where a camera ray or a reflection has ended.
 struct SurfaceHit {
     trace: Trace,
-    // Where it met something.
+    // The surface, if something was hit.
     surface: Surface,
-    // The part of the surface's light that comes through the fog.
+    // The fraction of the surface's light that is left after the fog.
     clear: f32,
-    // Light that does not come from a lamp.
+    // Ambient and emitted light, or the background.
     color: vec3f,
     // Evaluations of the field.
     evaluations: u32,
@@ -36,7 +36,7 @@ fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
     return hit;
 }
 
-// The part of a lamp's light that a ray to it lets through.
+// The fraction of a light that a ray towards it lets through.
 fn light_visibility(light: Light, found: Trace) -> f32 {
     var fraction = 1.0;
     if SOFT_SHADOWS {
@@ -48,17 +48,18 @@ fn light_visibility(light: Light, found: Trace) -> f32 {
 }
 
 fn picture(pixel: vec2u) -> Pixel {
-    // The ray along which the eye sees, and the one that is traced.
+    // The ray along which the camera looks, and the one that is traced.
     var view_ray = camera_ray(pixel);
     var ray = view_ray;
     var first: Trace;
     var hit: SurfaceHit;
     var color = vec3f();
     var evaluations = 0u;
-    // What is seen along the sight counts by this factor.
+    // Factor of the light along the current view ray.
     var weight = 1.0;
     var reflections = 0u;
-    // How many lights were asked what they shed on the surface. The ray leads to the last of them, or along the sight.
+    // The number of lights handled for the current surface. The ray leads to the last of them, or
+    // is the view ray.
     var lights_done = 0u;
     var pending_light = vec3f();
     let light_count = min(view.light_count, MAX_LIGHTS);

@@ -1,4 +1,4 @@
-// What comes out of a pixel. The layout is that of `PixelBlock`.
+// The output for a pixel. The layout is that of `PixelBlock`.
 
 struct Pixel {
     color: vec4f,
@@ -8,7 +8,7 @@ struct Pixel {
     primary_evaluations: u32,
 }
 
-// Where a ray ran out of steps the background is drawn, as where it missed.
+// A ray that ran out of steps shows the background, as one that missed.
 fn pixel_of(primary: Trace, color: vec3f, evaluations: u32) -> Pixel {
     let depth = select(primary.t, view.t_max, primary.t > view.t_max);
     return Pixel(vec4f(color, 1.0), depth, primary.status, evaluations, primary.evaluations);

@@ -1,16 +1,17 @@
-// What is known of a ray before it is marched: what it meets without steps, and where it passes the rest.
+// The analytic pre-intersection of a ray: where it hits the analytic part of the scene, and the
+// interval in which the rest has to be marched.
 
 struct PreIntersection {
-    // Where the ray meets something without steps; FAR where it does not.
+    // The hit on the analytic part of the scene; FAR if there is none.
     hit: f32,
-    // Where the march begins and ends; it ends before it begins where there is nothing to march.
+    // The interval to march; empty (end < start) if there is nothing to march.
     start: f32,
     end: f32,
 }
 
-// A ray that meets nothing meets it there.
+// The hit position of a ray that hits nothing.
 const FAR: f32 = 1e30;
-// The end of a march that there is no need of.
+// The end of an empty interval.
 const NO_MARCH: f32 = -1.0;
 
 fn pre_intersect(ray: Ray) -> PreIntersection {
@@ -21,7 +22,8 @@ fn pre_intersect(ray: Ray) -> PreIntersection {
     }
     if SOFT_SHADOWS {
         if records_clearance {
-            // Such a ray is marched through all there is, to see how narrowly it passes; not where it ends anyway.
+            // Such a ray is marched through the whole scene, to measure how narrowly it passes
+            // things, unless it is blocked anyway.
             known.end = select(ray.t_max, NO_MARCH, known.hit <= ray.t_max);
             return known;
         }
@@ -38,7 +40,7 @@ fn pre_intersect(ray: Ray) -> PreIntersection {
     return known;
 }
 
-// Distance to what a ray is marched through.
+// Distance to the part of the scene that the ray is marched through.
 fn marched_field(p: vec3f) -> f32 {
     var distance: f32;
     if ANALYTIC {
@@ -58,7 +60,8 @@ fn marched_field(p: vec3f) -> f32 {
     return distance;
 }
 
-// The ray from one of its places on. Far from the eye its places are known better when they are counted from there.
+// The rest of a ray from t on. Far from the eye, positions counted from the new origin have smaller
+// rounding errors.
 fn advanced(ray: Ray, t: f32) -> Ray {
     var rest = ray;
     rest.origin = ray_point(ray, t);
@@ -67,13 +70,14 @@ fn advanced(ray: Ray, t: f32) -> Ray {
     return rest;
 }
 
-// What a ray has met that was marched from where the march begins or had no need of it. Looking ahead counts as one evaluation.
+// Combines the hit of the march with the analytic hit. The pre-intersection counts as one
+// evaluation.
 fn combined(ray: Ray, known: PreIntersection, marched: Trace) -> Trace {
     var result = marched;
     result.t += known.start;
     result.evaluations++;
     if marched.status == MISS {
-        // Where the field is no number, so is the place, and both comparisons fail.
+        // Where the field is NaN so is t, and both comparisons are false.
         if marched.t > known.end - known.start && known.hit <= ray.t_max {
             result = Trace(known.hit, HIT, result.evaluations);
         } else if marched.t <= ray.t_max {

@@ -1,13 +1,13 @@
-// What the scene supplies for methods that look at a stretch of the ray at once. The bodies are replaced when the scene is
-// linked.
+// Supplied by the scene for methods that need bounds along a ray segment: the bodies are replaced
+// when the shader is linked.
 
-// The least and the greatest of `field` from one point to another.
+// Lower and upper bound of `field` on the segment from a to b.
 fn field_range(a: vec3f, b: vec3f) -> vec2f {
     return vec2f();
 }
 
-// The least and the greatest slope of `field` from one point to another, along a unit vector that leads there.
-// Where the field may jump they are -1e15 and 1e15.
+// Lower and upper bound of the slope of `field` on the segment from a to b, along `direction`, the
+// unit vector from a to b. Where the field may jump they are -1e15 and 1e15.
 fn field_slope_range(a: vec3f, b: vec3f, direction: vec3f) -> vec2f {
     return vec2f();
 }

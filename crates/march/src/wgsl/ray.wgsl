@@ -1,6 +1,6 @@
-// What every ray method takes and gives: `fn trace(ray: Ray) -> Trace`.
-// Each method states beside it how near to the surface its hits are: `fn tolerance(ray: Ray, t: f32) -> f32`, and tells
-// `passed` of each sample that it keeps.
+// The interface of a ray method: `fn trace(ray: Ray) -> Trace` finds the first hit of a ray, and
+// `fn tolerance(ray: Ray, t: f32) -> f32` tells how near to the surface its hits are. A method
+// calls `record_sample` for each sample that it keeps.
 
 const MISS: u32 = 0;
 const HIT: u32 = 1;
@@ -12,45 +12,45 @@ struct Ray {
     radius: f32,
     // A unit vector.
     direction: vec3f,
-    // What the radius gains per unit of length.
+    // Growth of the radius per unit of length.
     spread: f32,
-    // The ray ends here.
+    // Length of the ray.
     t_max: f32,
-    // A hit is nearer than this, absolute (`fixed`, `sphere`).
+    // Absolute distance below which a point is a hit (`fixed`, `sphere`).
     epsilon: f32,
-    // A hit is nearer than this, in widths of the footprint there (all others).
+    // Distance below which a point is a hit, in widths of the footprint there (all other methods).
     tolerance: f32,
-    // At most so many steps.
+    // The step budget.
     steps: u32,
 }
 
 struct Trace {
-    // Distance of the hit, or where the ray was left. NaN where the field is.
+    // Distance to the hit, or to where the ray ended. NaN where the field is NaN.
     t: f32,
-    // MISS, HIT or CAPPED.
+    // MISS, HIT or CAPPED (out of steps).
     status: u32,
     // Evaluations of the field.
     evaluations: u32,
 }
 
-// Eight units in the last place of numbers that large: sums of a few of them are no better.
+// Relative rounding error of a position: eight units in the last place, for sums of a few terms.
 const ROUNDING: f32 = 1e-6;
 
 fn ray_point(ray: Ray, t: f32) -> vec3f {
     return ray.origin + t * ray.direction;
 }
 
-// Radius of the ray's footprint at a distance: half a pixel for rays from the eye.
+// Radius of the ray's footprint at t: half a pixel's width for camera rays.
 fn footprint(ray: Ray, t: f32) -> f32 {
     return ray.radius + ray.spread * t;
 }
 
-// A part of the footprint's width, but no finer than what rounding allows.
+// The tolerance as a fraction of the footprint's width, but no finer than rounding allows.
 fn footprint_tolerance(ray: Ray, t: f32) -> f32 {
     return max(2.0 * ray.tolerance * footprint(ray, t), rounding(ray, t));
 }
 
-// What rounding alone may do to a point on the ray.
+// How far rounding alone may move a point of the ray.
 fn rounding(ray: Ray, t: f32) -> f32 {
     return ROUNDING * (length(ray.origin) + t);
 }

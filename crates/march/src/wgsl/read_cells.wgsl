@@ -1,4 +1,4 @@
-// What tells of the cells, where it stands.
+// Reads the description of the cells from `active_lists`.
 
 fn read_vec3(start: u32) -> vec3f {
     return bitcast<vec3f>(vec3u(active_lists[start], active_lists[start + 1u], active_lists[start + 2u]));

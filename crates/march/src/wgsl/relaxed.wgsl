@@ -1,8 +1,9 @@
-// Steps longer than the distance. Where the balls of free space about both ends of a step do not meet, something
-// may lie between them: the step is taken back to the end of the first ball, and the ray goes on by plain
-// steps. B. Keinert et al., Enhanced sphere tracing (STAG 2014).
+// Over-relaxed sphere tracing: steps longer than the distance. Where the empty spheres around both
+// ends of a step do not meet, something may lie between them: the step is taken back to the end of
+// the first sphere, and the ray goes on by plain steps. B. Keinert et al., Enhanced sphere tracing
+// (STAG 2014).
 
-// Steps as long as so many distances.
+// Length of a step in distances.
 const RELAXATION: f32 = 1.2;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
@@ -11,14 +12,14 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 
 fn trace(ray: Ray) -> Trace {
     var t = 0.0;
-    // Distance at t, and the step to take from there.
+    // The distance at t, and the step to take from there.
     var radius = 0.0;
     var stride = 0.0;
     var relaxation = RELAXATION;
     for (var step = 0u; step < ray.steps; step++) {
         let next = t + stride;
         let distance = field(ray_point(ray, next));
-        // A step as long as the distance is never taken back.
+        // A step no longer than the distance is never taken back.
         if stride > radius + abs(distance) {
             stride = radius;
             relaxation = 1.0;

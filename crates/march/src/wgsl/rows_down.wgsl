@@ -1,4 +1,4 @@
-// The first row of the target is the topmost, as in WebGPU, Vulkan, Metal and DirectX.
+// The target's first row is the topmost, as in WebGPU, Vulkan, Metal and DirectX.
 
 fn pixel_at(position: vec2f) -> vec2u {
     return view.tile_origin + vec2u(position);

@@ -1,4 +1,4 @@
-// The first row of the target is the lowest, as in OpenGL and WebGL.
+// The target's first row is the lowest, as in OpenGL and WebGL.
 
 fn pixel_at(position: vec2f) -> vec2u {
     let pixel = view.tile_origin + vec2u(position);

@@ -1,9 +1,9 @@
-// Segment tracing: a step is as long as the field can stay above 0, at the steepest that it falls anywhere on the stretch of
-// the ray that the step lies in. The stretch grows with the steps that are made. Where the sign changes the ray closes in on
-// the bracket. After E. Galin et al., Segment Tracing Using Local Lipschitz Bounds (2020); there the bound is of the slope's
-// magnitude, here of how steeply the field falls.
+// Segment tracing: a step is as long as the field can stay positive at the steepest slope by which
+// it falls anywhere on the segment of the ray ahead. The segment grows with the steps. After a
+// change of sign the ray closes in on the bracket. After E. Galin et al., Segment Tracing Using
+// Local Lipschitz Bounds (2020); there the slope's magnitude is bounded, here its downward part.
 
-// The next stretch is so many times as long as the step made.
+// Length of the next segment as a multiple of the last step.
 const GROWTH: f32 = 2.0;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
@@ -18,7 +18,7 @@ fn trace(ray: Ray) -> Trace {
         let distance = field(ray_point(ray, t));
         record_sample(t, distance);
         let near = tolerance(ray, t);
-        // A ray that starts inside, or at a surface, is at its hit.
+        // A ray that starts inside or on a surface hits at its origin.
         if step == 0u && distance < hit_within(ray, t, near) {
             return Trace(t, HIT, 1u);
         }
@@ -31,7 +31,8 @@ fn trace(ray: Ray) -> Trace {
         } else {
             let end = min(t + segment, ray.t_max);
             let slopes = field_slope_range(ray_point(ray, t), ray_point(ray, end), ray.direction);
-            // Not less than the tolerance: what is thinner along the ray is less than a quarter of a pixel.
+            // At least the tolerance: what is thinner along the ray is less than a quarter of a
+            // pixel.
             let free = limited_step(distance / max(-slopes.x, 1e-6), distance);
             let stride = clamp(free, near, max(end - t, near));
             segment = GROWTH * stride;

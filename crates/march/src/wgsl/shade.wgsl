@@ -1,9 +1,9 @@
 // What both ways of shading share.
 
-// Linear colour of what nothing paints.
+// Linear colour of surfaces without a material.
 const DEFAULT_COLOR = vec3f(0.8);
 
-// Outward, of unit length; towards the eye where the field has no slope.
+// The outward unit normal; the direction towards the eye if the field has no slope.
 fn normal_at(p: vec3f, toward_eye: vec3f) -> vec3f {
     let gradient = field_gradient(p);
     let square = dot(gradient, gradient);

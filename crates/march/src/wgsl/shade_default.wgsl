@@ -1,4 +1,4 @@
-// A scene that paints nothing: one colour, Lambert's law.
+// Shading of scenes without materials: one colour, Lambert's law.
 
 struct Surface {
     point: vec3f,
@@ -10,12 +10,13 @@ fn surface_at(ray: Ray, t: f32) -> Surface {
     return Surface(point, normal_at(point, -ray.direction));
 }
 
-// What the surface gives off, and returns of light from everywhere.
+// The ambient light that the surface reflects.
 fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     return ambient * DEFAULT_COLOR;
 }
 
-// What the surface returns of a lamp's light: its colour times the cosine of the angle of incidence.
+// The light that the surface reflects from a light source: its colour times the cosine of the angle
+// of incidence.
 fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {
     return light.color * DEFAULT_COLOR * max(dot(surface.normal, light.direction), 0.0);
 }

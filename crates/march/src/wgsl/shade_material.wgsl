@@ -1,15 +1,16 @@
-// A scene with materials: metals and dielectrics of some roughness. The interface mirrors a part of the
-// light at microfacets; what passes through it, in and out again, is scattered evenly below, save in metals.
-// Units are such that white paper under a lamp shows the lamp's colour: reflectances are pi times the usual.
+// Shading of scenes with materials: metals and dielectrics of some roughness. The interface
+// reflects a part of the light at microfacets; the light that passes it, in and out again, is
+// scattered evenly below, except in metals. Units are such that white paper under a light shows the
+// light's colour: reflectances are pi times the usual.
 //
-// Slopes of microfacets: T. S. Trowbridge, K. P. Reitz, Average irregularity representation of a rough surface
-// for ray reflection (J. Opt. Soc. Am. 65, 1975), which B. Walter et al. call GGX (EGSR 2007).
-// Facets that hide each other: E. Heitz, Understanding the masking-shadowing function in microfacet-based
-// BRDFs (JCGT 3, 2014), the height-correlated form of Smith's.
-// Fresnel: C. Schlick, An inexpensive BRDF model for physically-based rendering (Eurographics 1994).
-// Colour, metallic and alpha = roughness^2: B. Burley, Physically-based shading at Disney (SIGGRAPH 2012).
+// Microfacet slopes: T. S. Trowbridge, K. P. Reitz, Average irregularity representation of a rough
+// surface for ray reflection (J. Opt. Soc. Am. 65, 1975), which B. Walter et al. call GGX (EGSR
+// 2007). Masking and shadowing: E. Heitz, Understanding the masking-shadowing function in
+// microfacet-based BRDFs (JCGT 3, 2014), the height-correlated form of Smith's. Fresnel: C.
+// Schlick, An inexpensive BRDF model for physically-based rendering (Eurographics 1994). Colour,
+// metallic and alpha = roughness^2: B. Burley, Physically-based shading at Disney (SIGGRAPH 2012).
 
-// In the order of `MaterialField::ALL`.
+// The fields are in the order of `MaterialField::ALL`.
 struct Material {
     color: vec3f,
     coverage: f32,
@@ -19,11 +20,11 @@ struct Material {
     occlusion: f32,
 }
 
-// Reflectance of a dielectric seen straight on: an index of refraction of 1.5.
+// Reflectance of a dielectric at normal incidence, for an index of refraction of 1.5.
 const DIELECTRIC: f32 = 0.04;
-// The highlight of a smoother surface would be thinner than pixels.
+// The highlight of a smoother surface would be narrower than a pixel.
 const MIN_ROUGHNESS: f32 = 0.1;
-// Cosines of directions along the surface, or below it where a normal is not quite right.
+// Lower bound of cosines, for directions along the surface or, with an inexact normal, below it.
 const MIN_COSINE: f32 = 1e-4;
 
 struct Surface {
@@ -35,7 +36,7 @@ struct Surface {
     material: Material,
 }
 
-// Supplied by the scene.
+// Supplied by the scene: the material at a point of the surface.
 fn material(p: vec3f) -> Material {
     return Material();
 }
@@ -50,12 +51,12 @@ fn surface_at(ray: Ray, t: f32) -> Surface {
     return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), MIN_COSINE), paint);
 }
 
-// What is mirrored straight on.
+// Specular reflectance at normal incidence.
 fn specular_color(paint: Material) -> vec3f {
     return mix(vec3f(DIELECTRIC), paint.color, paint.metallic);
 }
 
-// What the layer below the interface scatters.
+// Reflectance of the scattering layer below the interface.
 fn diffuse_color(paint: Material) -> vec3f {
     return (1.0 - paint.metallic) * paint.color;
 }
@@ -81,15 +82,15 @@ fn highlight(surface: Surface, halfway: vec3f, incidence: f32) -> f32 {
     return 0.5 * peak * peak / (light_side + eye_side);
 }
 
-// The part of light from everywhere that microfacets mirror towards the eye: a fit to its integral.
-// B. Karis, Physically based shading on mobile (Unreal Engine, 2014).
+// The fraction of ambient light that microfacets reflect towards the eye: a fit to the integral. B.
+// Karis, Physically based shading on mobile (Unreal Engine, 2014).
 fn ambient_specular(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a = min(r.x * r.x, exp2(-9.28 * facing)) * r.x + r.y;
     return max(straight_on * (r.z - 1.04 * a) + (r.w + 1.04 * a), vec3f());
 }
 
-// What the surface gives off, and returns of light from everywhere.
+// The light that the surface emits, and the ambient light that it reflects.
 fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     let paint = surface.material;
     let mirrored = ambient_specular(specular_color(paint), paint.roughness, surface.facing);
@@ -97,7 +98,8 @@ fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     return ambient * paint.occlusion * (mirrored + (1.0 - lost) * diffuse_color(paint)) + paint.emission;
 }
 
-// What the surface returns of a lamp's light: highlight and, past the interface twice, Lambert's law.
+// The light that the surface reflects from a light source: a highlight and, through the interface
+// twice, Lambert's law.
 fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {
     let incidence = dot(surface.normal, light.direction);
     if incidence <= 0.0 {

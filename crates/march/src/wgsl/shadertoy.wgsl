@@ -1,16 +1,17 @@
-// A picture without buffers, for a place that gives a shader no more than the size of the picture, the mouse and
-// the clock: camera, limits and lights are set by functions. Its entry point is there only to reach `image`.
+// A picture without buffers, for hosts that give a shader only the picture's size, the mouse and
+// the clock: functions set the camera, the limits and the lights. The entry point is there only to
+// keep `image`.
 
 const PI: f32 = 3.14159265;
-// A dragged camera stops short of straight above.
+// Largest pitch of a dragged camera, in radians: just short of straight above.
 const MAX_PITCH: f32 = 1.5;
 
 struct Camera {
     eye: vec3f,
-    // What is in the middle of the picture.
+    // The point in the middle of the picture.
     center: vec3f,
     up: vec3f,
-    // Vertical field of view, in radians; of parallel rays the height of the picture.
+    // Vertical field of view in radians; for parallel rays, the height of the picture.
     lens: f32,
 }
 
@@ -26,16 +27,17 @@ fn load_count(count: f32) {
     frame = count;
 }
 
-// Supplied by the scene: limits, lights, and where the eye was when they were chosen.
+// Supplied by the scene: limits, lights, and the eye for which the limits were chosen.
 fn load_view() {
 }
 
-// Supplied by the scene.
+// Supplied by the scene: the scene's camera.
 fn camera() -> Camera {
     return Camera();
 }
 
-// The camera turned about the middle: by one turn over the picture's width, by half a turn over its height.
+// The camera orbited around the centre: a full turn over the picture's width, half a turn over its
+// height.
 fn orbited(camera_at_rest: Camera, mouse: vec2f) -> Camera {
     let offset = camera_at_rest.eye - camera_at_rest.center;
     let radius = length(offset);
@@ -46,7 +48,8 @@ fn orbited(camera_at_rest: Camera, mouse: vec2f) -> Camera {
     return Camera(camera_at_rest.center + radius * direction, camera_at_rest.center, camera_at_rest.up, camera_at_rest.lens);
 }
 
-// Looking along `up`: what lies behind is at the bottom then, as on a map.
+// The unit vector to the right. If the camera looks along `up`, what lies behind is at the bottom
+// of the picture, as on a map.
 fn camera_right(forward: vec3f, up: vec3f) -> vec3f {
     let right = cross(forward, normalize(up));
     if length(right) > 1e-6 {
@@ -64,7 +67,7 @@ fn set_view(shown: Camera, size: vec2f) {
     }
     let forward = normalize(shown.center - shown.eye);
     let right = camera_right(forward, shown.up);
-    // Rays reach as far as they did from where the eye was.
+    // Rays reach as far as they did from the original eye.
     view.t_max += distance(shown.eye, view.eye);
     view.eye = shown.eye;
     view.forward = forward;
@@ -74,18 +77,19 @@ fn set_view(shown: Camera, size: vec2f) {
     view.size = vec2u(size);
 }
 
-// The light of a scene that states none comes from the eye.
+// A scene without lights is lit from the eye.
 fn load_headlight() {
     view.lights[0].position = -view.forward;
 }
 
-// IEC 61966-2-1.
+// The sRGB transfer function (IEC 61966-2-1).
 fn srgb(linear: vec3f) -> vec3f {
     let light = saturate(linear);
     return select(1.055 * pow(light, vec3f(1.0 / 2.4)) - 0.055, 12.92 * light, light <= vec3f(0.0031308));
 }
 
-// The colour at a place, in pixels from the picture's lower left. The mouse turns the camera once it was dragged.
+// The colour at a position in pixels from the picture's lower left. The mouse orbits the camera
+// once it was dragged.
 fn image(position: vec2f, size: vec2f, mouse: vec2f, now: f32, count: f32) -> vec4f {
     load_time(now);
     load_count(count);

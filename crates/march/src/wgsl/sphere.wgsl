@@ -1,5 +1,5 @@
-// Sphere tracing: the distance is free space in all directions, so also along the ray.
-// J. C. Hart, Sphere tracing (The Visual Computer 12, 1996).
+// Sphere tracing: the sphere of the distance is empty, so a step along the ray may be as long. J.
+// C. Hart, Sphere tracing (The Visual Computer 12, 1996).
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return ray.epsilon;
@@ -10,7 +10,8 @@ fn trace(ray: Ray) -> Trace {
     for (var step = 0u; step < ray.steps; step++) {
         let distance = field(ray_point(ray, t));
         record_sample(t, distance);
-        // Below zero too: a field that overestimates leads through the surface, not to it.
+        // Negative distances count too: a field that overestimates leads through the surface, not
+        // to it.
         if distance < tolerance(ray, t) {
             return Trace(t, HIT, step + 1u);
         }

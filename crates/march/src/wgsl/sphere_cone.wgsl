@@ -1,5 +1,6 @@
-// Sphere tracing that ends where the surface comes into the cone that the pixel sees, so that no work is spent far
-// away on what the pixel cannot show. B. Keinert et al., Enhanced sphere tracing (STAG 2014).
+// Cone tracing: sphere tracing that stops where the surface enters the cone that the pixel sees, so
+// that no work is spent on detail that the pixel cannot show. B. Keinert et al., Enhanced sphere
+// tracing (STAG 2014).
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return footprint_tolerance(ray, t);

@@ -1,4 +1,5 @@
-// Camera, limits and lights of one picture, in `view`. The layouts are those of `ViewBlock` and `LightBlock`.
+// The camera, limits and lights of one picture. The layouts are those of `ViewBlock` and
+// `LightBlock`, where the members are described.
 
 const MAX_LIGHTS: u32 = 8;
 const MAX_REFLECTIONS: u32 = 8;
@@ -10,16 +11,16 @@ const SHADOW_OFF: u32 = 0;
 const SHADOW_SOFT: u32 = 2;
 
 struct Light {
-    // Towards a sun, of unit length; where any other light stands.
+    // The light's position; for a sun, the unit vector towards it.
     position: vec3f,
     kind: u32,
-    // Of a light at a point, at distance 1.
+    // Linear colour; for a light with a position, as received at distance 1.
     color: vec3f,
     shadow: u32,
-    // Along the middle of a spot light's cone, of unit length.
+    // Unit vector along the axis of a spot light's cone.
     axis: vec3f,
     sharpness: f32,
-    // Cosines of angles from the axis: all light within the first, none outside the second.
+    // Cosines of two angles from the axis: full light within the first, none outside the second.
     rim: vec2f,
     pad: vec2f,
 }
@@ -56,7 +57,7 @@ fn camera_ray(pixel: vec2u) -> Ray {
     return ray_through(vec2f(pixel) + 0.5);
 }
 
-// The ray through a place in the picture, in pixels.
+// The ray through a position in the picture, in pixels.
 fn ray_through(pixels: vec2f) -> Ray {
     let position = 2.0 * pixels / vec2f(view.size) - 1.0;
     let aside = position.x * view.right - position.y * view.up;

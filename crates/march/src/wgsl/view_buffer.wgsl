@@ -1,3 +1,3 @@
-// The view comes from a buffer.
+// The view is in a uniform buffer.
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -74,7 +74,7 @@ impl Method {
     }
 
     /// Whether it asks what is known of rays before they are marched.
-    pub(super) fn looks_ahead(self) -> bool {
+    pub(super) fn pre_intersects(self) -> bool {
         match self {
             Self::Sphere | Self::Interval => false,
             Self::Auto => true,

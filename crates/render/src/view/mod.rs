@@ -233,7 +233,7 @@ impl View {
         view
     }
 
-    /// The view with a method parameter scaled by a factor; unchanged without a parameter.
+    /// The view with the method parameter, if there is one, multiplied by a factor.
     pub fn with_scaled_parameter(&self, parameter: Option<MethodParameter>, factor: f64) -> Self {
         match parameter {
             Some(own) => self.with_parameter(own, factor * self.parameter(own)),

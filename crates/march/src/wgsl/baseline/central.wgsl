@@ -1,5 +1,5 @@
-// The gradient as a classroom practical takes it: central differences along the three axes, of a length that
-// rounding swallows where coordinates are large.
+// The gradient of the naive marcher: central differences along the three axes with a fixed offset,
+// which rounding swallows where coordinates are large.
 
 const OFFSET: f32 = 0.001;
 

@@ -1,8 +1,8 @@
-// The gradient of any field by central differences at the corners of a tetrahedron, so that a scene's own
-// field and an interpreter are asked for a normal in the same way: by four evaluations.
-// I. Quilez, "Normals for an SDF".
+// The gradient of any field by central differences at the corners of a tetrahedron. Benchmarks use
+// it for scenes and interpreters alike, so that a normal costs four evaluations in both. I. Quilez,
+// "Normals for an SDF".
 
-// Shorter, and rounding shows; longer, and creases do.
+// With a shorter offset rounding shows, with a longer one creases do.
 const TAP: f32 = 5e-4;
 
 fn field_gradient(p: vec3f) -> vec3f {

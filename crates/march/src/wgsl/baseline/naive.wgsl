@@ -1,5 +1,5 @@
-// The march of a classroom practical as it stands, to compare with. Its faults are kept: docs/faults.md says
-// what becomes of them.
+// The naive marcher of a classroom exercise, kept with its faults to compare with: docs/faults.md
+// shows what they cause.
 
 // A hit is nearer than this, whatever the scale of the scene.
 const LEAST_DISTANCE: f32 = 0.001;
@@ -12,14 +12,14 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
 fn trace(ray: Ray) -> Trace {
     var t = 0.0;
     var steps = 0u;
-    // Leads to where the ray starts.
+    // The initial value makes the first sample the ray's origin.
     var distance = LEAST_DISTANCE;
-    // A sample below 0 ends the loop before it is looked at.
+    // A negative sample ends the loop before it is examined.
     while distance >= 0.0 && steps < MOST_STEPS {
         if distance < LEAST_DISTANCE {
             return Trace(t, HIT, steps);
         }
-        // What is taken off keeps the next distance from falling below the least one.
+        // The subtraction keeps the next distance from falling below LEAST_DISTANCE.
         t += distance - LEAST_DISTANCE;
         if t > ray.t_max {
             break;

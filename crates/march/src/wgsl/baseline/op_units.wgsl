@@ -1,5 +1,6 @@
-// The interpreter of a classroom practical: a scene is a list of units, each an operation on two primitives
-// from tables, and its distance is the least of the units'. What a unit is, is looked up at every evaluation.
+// An interpreter of op units, as in a classroom exercise: a scene is a list of units, each an
+// operation on two primitives from tables, and the distance is the minimum over the units. Each
+// evaluation decodes every unit.
 
 const PLANE: u32 = 0;
 const SPHERE: u32 = 1;
@@ -10,17 +11,17 @@ const SUBTRACTION: u32 = 1;
 const INTERSECTION: u32 = 2;
 const SMOOTH_UNION: u32 = 3;
 
-// Farther than anything.
+// A distance greater than any in a scene.
 const FAR: f32 = 1e30;
 
 struct Unit {
-    // Which table each operand is in, and where.
+    // The table and the index of each operand.
     type_a: u32,
     id_a: u32,
     type_b: u32,
     id_b: u32,
     operation: u32,
-    // Width of a smooth union, above 0.
+    // Width of a smooth union, greater than 0.
     width: f32,
     pad0: u32,
     pad1: u32,
@@ -32,7 +33,7 @@ struct Box {
 }
 
 @group(0) @binding(3) var<storage, read> units: array<Unit>;
-// Unit normal, then the distance of the plane from the origin along it.
+// Unit normal, then the plane's distance from the origin along it.
 @group(0) @binding(4) var<storage, read> planes: array<vec4f>;
 // Centre, then radius.
 @group(0) @binding(5) var<storage, read> spheres: array<vec4f>;

@@ -1,13 +1,16 @@
-// A stack machine: one instruction after the other from a buffer, for any formula of its operations. Values
-// are four lanes wide; a number is the same in all of them, a vector's unused lanes hold anything.
-// The topmost value is kept apart from the stack, an instruction may have its second operand in itself or in a
-// local and its operands the wrong way round, and stack and locals are one array, so that an instruction reads and writes it once: such an array
-// is memory, and costs more than arithmetic.
+// A stack machine that runs one instruction after the other from a buffer, for any formula of its
+// operations. Values are four lanes wide; a number is the same in all of them, a vector's unused
+// lanes hold anything.
+//
+// The topmost value is kept apart from the stack; an instruction may have its second operand in
+// itself or in a local, and its operands swapped; stack and locals are one array, which an
+// instruction reads and writes once. Such an array is memory, and costs more than arithmetic.
 
 // Push the point, or the second operand.
 const POINT: u32 = 0;
 const PUSH: u32 = 1;
-// From the topmost value. SQRT, SIN and COS are of numbers. STORE copies it to the local.
+// Unary operations on the topmost value. SQRT, SIN and COS take numbers. STORE copies the value to
+// the local.
 const LANE: u32 = 2;
 const ABS: u32 = 3;
 const FLOOR: u32 = 4;
@@ -16,9 +19,9 @@ const SIN: u32 = 6;
 const COS: u32 = 7;
 const LENGTH: u32 = 8;
 const STORE: u32 = 9;
-// Takes the topmost value off the stack and keeps whether it is not 0, for the next CHOOSE.
+// Pops the topmost value and keeps whether it is not 0, for the next CHOOSE.
 const TEST: u32 = 10;
-// From two operands a and b.
+// Binary operations on two operands a and b.
 const ADD: u32 = 11;
 const SUB: u32 = 12;
 const MUL: u32 = 13;
@@ -30,12 +33,14 @@ const LESS: u32 = 18;
 const INSERT: u32 = 19;
 const CHOOSE: u32 = 20;
 
-// Where the second operand is: on top of the stack, in the instruction, or in the first local or one after it.
+// Where the second operand is: on top of the stack, in the instruction, or in the first or a later
+// local.
 const ON_STACK: u32 = 0;
 const CONSTANT: u32 = 1;
 const LOCAL: u32 = 2;
 
-// The encoder keeps within both. A stack that is full has its topmost value elsewhere, and one place to spare.
+// The encoder keeps within both. The topmost value of a full stack is elsewhere, and one entry is
+// spare.
 const STACK_SIZE: u32 = 16;
 const LOCAL_COUNT: u32 = 16;
 
@@ -43,17 +48,18 @@ const LANES = vec4u(0, 1, 2, 3);
 
 struct Instruction {
     operation: u32,
-    // Index of a lane (LANE, INSERT), or the number of lanes (LENGTH, DOT).
+    // Index of a lane (LANE, INSERT), or number of lanes (LENGTH, DOT).
     index: u32,
     second: u32,
-    // 1 where the second operand is a, the first b.
+    // 1 if the second operand is a and the first is b.
     reversed: u32,
     constant: vec4f,
 }
 
 @group(0) @binding(3) var<storage, read> tape: array<Instruction>;
 
-// The stack, then the locals. Private, so that it is cleared once for each invocation and not at each evaluation.
+// The stack, then the locals. Private, so that they are cleared once per invocation and not for
+// each evaluation.
 var<private> memory: array<vec4f, STACK_SIZE + 1 + LOCAL_COUNT>;
 
 fn first_lanes(value: vec4f, count: u32) -> vec4f {
@@ -61,7 +67,7 @@ fn first_lanes(value: vec4f, count: u32) -> vec4f {
 }
 
 fn field(p: vec3f) -> f32 {
-    // How many values lie below the topmost.
+    // The number of values below the topmost.
     var depth = 0u;
     var top = vec4f();
     var chosen = false;
@@ -70,7 +76,7 @@ fn field(p: vec3f) -> f32 {
         let operation = instruction.operation;
         let second = instruction.second;
         let local = STACK_SIZE + 1u + second - LOCAL;
-        // Harmless where nothing is pushed or stored: there is nothing above the stack.
+        // Harmless if nothing is pushed or stored: there is nothing above the stack.
         memory[select(depth, local, operation == STORE)] = top;
         let found = memory[select(max(depth, 1u) - 1u, local, second >= LOCAL)];
         var a = top;
