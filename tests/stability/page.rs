@@ -16,16 +16,25 @@ use crate::case::Case;
 const HEAD: &str = "\
 # Where ray methods fail, and `auto` holds
 
-<!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc-tests --test stability`; change the scenes' comments or the test. -->
+<!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc-tests --test stability`. To change it, change
+     the comments of the scenes, or the test. -->
 
-Each row is a scene of [tests/stability](../tests/stability) or [examples/faults](../examples/faults), made so that some way of marching
-it goes wrong; its comment says what fails and why. Every ray method draws it at 160x120 with its usual settings, at each of the scene's frames, and
-each picture is compared with the [oracle](accuracy.md).
+This page shows what every ray method does on scenes that are made to break one of them, and where
+`auto` holds. Each row is a scene of [tests/stability](../tests/stability) or
+[examples/faults](../examples/faults). The comment in the scene says what fails and why. Every ray
+method draws the scene at 160x120 with its usual settings, at each frame of the scene, and each
+picture is compared with the [oracle](accuracy.md#the-oracle).
 
-Figures are parts of the pixels in percent, to two digits, and left out where they are 0:
-**M** led through a surface, **F** ended where there is none, **C** out of steps, **N** not a number. **D** is the error in depth that 99 of
-100 pixels keep, in widths of a pixel; left out up to 0.05. Of several frames the shares are taken over all, and D is the worst.
-*good* is a row without any.
+Values are percentages of all pixels, to two significant digits; zeros are omitted.
+
+- **M**, missed: the ray passed through a surface.
+- **F**, false: the ray ended where there is no surface.
+- **C**, capped: the ray ran out of steps.
+- **N**: the result is not a number.
+- **D**: the depth error of 99 of 100 pixels, in pixel widths; omitted up to 0.05.
+- *good*: none of these.
+
+For several frames, the percentages cover all frames, and D is that of the worst frame.
 
 ";
 
@@ -148,7 +157,7 @@ impl Page {
                 let _ = writeln!(text, "{row}");
             }
         }
-        text += "\n## Scenes with bounds of their own\n\nNothing is promised of a field that is uncertified, or finer than numbers of 32 bits.\n\n";
+        text += "\n## Scenes with bounds of their own\n\nNo bound holds for an uncertified field, or for details finer than 32-bit numbers.\n\n";
         for case in cases {
             if let Some(why) = &case.exempt {
                 let _ = writeln!(text, "{}", exempt(case, why));
@@ -173,5 +182,5 @@ fn line(case: &Case, row: &[Figures]) -> String {
 
 fn exempt(case: &Case, why: &str) -> String {
     let bounds = case.text.lines().find_map(|line| line.strip_prefix("// Auto: "));
-    format!("- `{}`: {why}. `auto` holds: {}", case.name, bounds.unwrap_or_default())
+    format!("- `{}`: {why}.\n  `auto` holds: {}", case.name, bounds.unwrap_or_default())
 }
