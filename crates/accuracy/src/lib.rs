@@ -39,7 +39,7 @@
 //! A ray on which [`Prober::BUDGET`] evaluations prove nothing is [`Verdict::Undecided`], as is one that
 //! touches a surface without crossing it, to within 1e-9 of the distance. Both are counted and shown.
 //! Stretches with jumps are decided by rejection and signs alone, each way through the jumps apart
-//! ([`Path`](sdfc_graph::eval::Path)); a jump through zero counts as surface.
+//! ([`BranchPath`](sdfc_graph::eval::BranchPath)); a jump through zero counts as surface.
 
 pub mod chart;
 mod edges;

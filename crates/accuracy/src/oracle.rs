@@ -1,7 +1,7 @@
 //! The first root of the field along a ray, isolated by intervals.
 
 use sdfc_graph::Program;
-use sdfc_graph::eval::{Evaluator, FrameValues, Interval, Number, Path, Tape, TapeError};
+use sdfc_graph::eval::{BranchPath, Evaluator, FrameValues, Interval, Number, Tape, TapeError};
 
 /// A stretch this short, in parts of the distance, is not cut again.
 const FINEST: f64 = 1e-9;
@@ -109,7 +109,7 @@ impl Oracle {
         Prober {
             range: self.field.prepare(frame),
             slopes: self.gradient.as_ref().map(|tape| tape.prepare(frame)),
-            path: Path::default(),
+            path: BranchPath::default(),
             value: self.field.prepare(frame),
             gradient: self.gradient.as_ref().map(|tape| tape.prepare(frame)),
             evaluations: 0,
@@ -122,7 +122,7 @@ impl Oracle {
 pub struct Prober<'o> {
     range: Evaluator<'o, Interval>,
     slopes: Option<Evaluator<'o, Interval>>,
-    path: Path,
+    path: BranchPath,
     value: Evaluator<'o, f64>,
     gradient: Option<Evaluator<'o, f64>>,
     evaluations: u32,

@@ -26,11 +26,11 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
         match graph.stage(node) {
             Stage::Const => {}
             Stage::Frame => cost.per_frame += 1,
-            Stage::Point if graph.loops(node) > 0 => {} // counted with its loop
+            Stage::Point if graph.loops_around(node) > 0 => {} // counted with its loop
             Stage::Point => cost.operations += 1,
         }
     }
-    let outside = nodes.into_iter().filter(|&node| graph.loops(node) == 0);
+    let outside = nodes.into_iter().filter(|&node| graph.loops_around(node) == 0);
     cost.operations += in_loops(graph, outside);
     cost
 }
@@ -47,11 +47,11 @@ fn in_loops(graph: &Graph, nodes: impl Iterator<Item = NodeId>) -> usize {
 
 /// Operations of all rounds of a loop.
 fn in_loop(graph: &Graph, id: LoopId) -> usize {
-    let body = graph.body(id);
-    let nodes: Vec<NodeId> = body.condition.into_iter().chain(body.round).collect();
+    let body = graph.loop_body(id);
+    let nodes: Vec<NodeId> = body.condition.into_iter().chain(body.step).collect();
     let own = nodes.iter().filter(|&&node| is_arithmetic(&graph.node(node))).count();
     let rest = in_loops(graph, nodes.into_iter());
-    own.saturating_add(rest).saturating_mul(graph.repeated(id).cap as usize)
+    own.saturating_add(rest).saturating_mul(graph.loop_at(id).max_iterations as usize)
 }
 
 fn is_arithmetic(node: &Node) -> bool {

@@ -128,7 +128,7 @@ pub fn prepare_with(
         ..Program::default()
     };
     let report = match scene.root {
-        Some(root) => flatten(&mut program, root, scene.painted, writing)?,
+        Some(root) => flatten(&mut program, root, scene.has_materials, writing)?,
         None => Report::default(),
     };
     program.uniforms = uniforms(&program.graph, &program.roots());
@@ -171,13 +171,13 @@ fn flatten(
     program.distance = Some(distance);
     program.material = material.try_into().ok();
     program.gradient = Some(gradient(graph, distance, own_point));
-    program.visits = visits(graph, &fields, steepest);
-    if !program.visits.is_empty() && has_secondary_rays(&program.settings) {
-        program.within = within(graph, &mut bounds, root);
+    program.cullable_loops = visits(graph, &fields, steepest);
+    if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
+        program.loop_bounds = within(graph, &mut bounds, root);
     }
     let asked = asked_of_rays(graph, &mut expander, &mut bounds, &apart)?;
     program.rays = rays(&apart, &fields, asked);
-    let Rays { hits, marched, clip, copies, .. } = program.rays;
+    let Rays { first_hit: hits, marched, clip, copies, .. } = program.rays;
     let asked: Vec<NodeId> = hits.into_iter().chain(clip).collect();
     Ok(Report {
         loops: rolled,

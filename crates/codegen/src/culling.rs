@@ -2,7 +2,7 @@
 
 use naga::{Function, GlobalVariable, Handle, Module};
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Inert, Program, Visit};
+use sdfc_graph::{CullableLoop, Program, SkipCondition};
 use sdfc_march::{Features, culling_source, stubs};
 
 use crate::inputs::declare_slots;
@@ -34,8 +34,9 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     if !features.culled {
         return Ok(None);
     }
-    let visits: Vec<&Visit> = program.visits.iter().take(stubs::CULLING_BOUNDS.len()).collect();
-    let roots: Vec<_> = visits.iter().map(|visit| visit.ends).collect();
+    let visits: Vec<&CullableLoop> =
+        program.cullable_loops.iter().take(stubs::CULLING_BOUNDS.len()).collect();
+    let roots: Vec<_> = visits.iter().map(|visit| visit.culling_bounds).collect();
     let used = used_slots(program, roots.clone());
     let mut module = skeleton(&culling_source(), features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
@@ -50,8 +51,8 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     }
     let parts = Parts { lists: inputs.tables.into_buffer(), ..Parts::default() };
     let shader = Shader::new(module, parts, features)?;
-    let iterations = visits.iter().map(|visit| visit.rounds).collect();
-    let is_joined = || visits.iter().map(|visit| visit.is_joined).collect();
+    let iterations = visits.iter().map(|visit| visit.iterations).collect();
+    let is_joined = || visits.iter().map(|visit| visit.is_union_operand).collect();
     Ok(Some(Culling { shader, iterations, cells: features.culls_by_cell().then(is_joined) }))
 }
 
@@ -67,7 +68,7 @@ pub(crate) struct Visits {
     /// What sets that for a place, and how near what is left out can be there; none: it is the same everywhere.
     pub(crate) at: Option<(Handle<Function>, Handle<GlobalVariable>)>,
     /// The place of each loop's span.
-    loops: FxHashMap<Inert, u32>,
+    loops: FxHashMap<SkipCondition, u32>,
 }
 
 impl Visits {
@@ -78,13 +79,13 @@ impl Visits {
         let visited = link::find_variable(module, stubs::ITERATIONS_RUN);
         let free = link::find_variable(module, stubs::INACTIVE_DISTANCE);
         let at = link::find_function(module, stubs::SELECT_LISTS).zip(free);
-        let loops = program.visits.iter().map(|visit| visit.inert).zip(0..);
+        let loops = program.cullable_loops.iter().map(|visit| visit.skip).zip(0..);
         let loops = loops.take(stubs::CULLING_BOUNDS.len()).collect();
         Some(Self { lists, spans, visited, at, loops })
     }
 
     /// The place of a loop's span, by what it says of its rounds.
-    pub(crate) fn number(&self, inert: Option<Inert>) -> Option<u32> {
+    pub(crate) fn number(&self, inert: Option<SkipCondition>) -> Option<u32> {
         self.loops.get(&inert?).copied()
     }
 }

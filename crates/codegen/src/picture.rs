@@ -132,7 +132,7 @@ fn measured(
 /// not: what they know of a stretch holds all rounds.
 fn is_culled(program: &Program, method: &MethodDefinition) -> bool {
     let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
-    !program.visits.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
+    !program.cullable_loops.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
 }
 
 /// The stages of a picture's shader.
@@ -381,7 +381,7 @@ pub(crate) fn ahead(program: &Program, features: Features) -> Vec<Filling> {
     if !features.analytic && !features.clipped && !features.copies {
         return Vec::new();
     }
-    let Rays { hits, closed, marched, clip, copies } = program.rays;
+    let Rays { first_hit: hits, analytic: closed, marched, clip, copies } = program.rays;
     let closed = closed.filter(|_| features.soft_shadows);
     let marched = marched.filter(|_| features.analytic && features.steps());
     let of_ray =
@@ -433,7 +433,7 @@ pub(crate) fn skeleton(
 
 /// What of a scene's rays is known before they are marched, for a method that asks for it.
 pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features {
-    let Rays { hits, closed: _, marched, clip, copies } = program.rays;
+    let Rays { first_hit: hits, analytic: _, marched, clip, copies } = program.rays;
     Features {
         analytic: pre_intersects && hits.is_some(),
         marched: !pre_intersects || hits.is_none() || marched.is_some(),

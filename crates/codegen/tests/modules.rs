@@ -37,7 +37,7 @@ fn scenes() -> Vec<Program> {
 fn every_method_links_with_every_kind_of_scene() {
     for method in METHODS {
         for scene in scenes() {
-            let scene = scene.enclosed(true, true);
+            let scene = scene.with_segment_bounds(true, true);
             let shader = render_module(&scene, method.name).expect("links");
             common::check(&shader.wgsl().expect("is written"));
             common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");

@@ -83,7 +83,7 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
         .into_iter()
         .flat_map(|method| [(method, shadowed.clone()), (method, featured(painted(), unoccluded))])
     {
-        let all = all.enclosed(true, true);
+        let all = all.with_segment_bounds(true, true);
         let shader = render_module(&all, method.name).expect("links");
         let text = shader.wgsl().expect("is written");
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();

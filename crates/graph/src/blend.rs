@@ -1,46 +1,50 @@
-//! Blends that end: the lesser of two values where these differ by some width or more.
+//! Recognition of blends of finite width: smooth minima that equal the plain minimum where their
+//! operands differ by at least a width.
 
 use rustc_hash::FxHashMap;
 
-use crate::{Binary, Graph, Node, NodeId, Stage, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Stage, Unary};
 
-/// The blends that were looked at.
+/// A cache of the blends found so far, by node.
 pub type Blends = FxHashMap<NodeId, Option<Blend>>;
 
-/// The lesser of two values, and less than that where they differ by less than a width.
+/// A smooth minimum: below the lesser of two values where they differ by less than a width, equal
+/// to it elsewhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Blend {
-    /// The two.
+    /// The two operands.
     pub values: [NodeId; 2],
-    /// Per frame or constant.
+    /// Width of the blend, known per frame or constant.
     pub width: NodeId,
-    /// Whether nothing but how much they differ tells how far it is from the lesser.
-    is_even: bool,
+    /// True if the depth of the blend depends on the difference of the operands only.
+    is_symmetric: bool,
 }
 
 impl Blend {
-    /// Its values, that of a blend, or of a loop that a chain of blends may have become, before that of another thing.
-    pub fn in_order(self, graph: &Graph, blends: &mut Blends) -> [NodeId; 2] {
+    /// The operands, reordered so that an operand that is itself a blend, or a loop that may stand
+    /// for a chain of blends, comes first.
+    pub fn ordered_values(self, graph: &Graph, blends: &mut Blends) -> [NodeId; 2] {
         let [a, b] = self.values;
-        let mut goes_on =
+        let mut is_chain =
             |id| matches!(graph.node(id), Node::Loop(..)) || blend_at(graph, blends, id).is_some();
-        if !goes_on(a) && goes_on(b) { [b, a] } else { [a, b] }
+        if !is_chain(a) && is_chain(b) { [b, a] } else { [a, b] }
     }
 
-    /// How far it may lie below the lesser of its values, per frame; `id` is the node that it ends in. `None` where that is
-    /// not known.
+    /// The maximum by which the blend lies below the lesser operand, known per frame. `id` is the
+    /// node of the blend. `None` if it is not known.
     pub fn depth(self, graph: &mut Graph, id: NodeId) -> Option<NodeId> {
-        // A product of powers of one factor is farthest from 0 where the factor is: at equal values.
+        // A product of powers of one factor is largest where the factor is: at equal operands.
         let [a, b] = self.values;
         let zero = graph.number(0.0);
-        let at_equal = rebuilt(graph, id, &[(a, zero), (b, zero)]);
+        let at_equal = substitute(graph, id, &[(a, zero), (b, zero)]);
         let below = graph.neg(at_equal);
         let depth = graph.max(below, zero);
-        (self.is_even && graph.stage(depth) < Stage::Point).then_some(depth)
+        (self.is_symmetric && graph.stage(depth) < Stage::Point).then_some(depth)
     }
 }
 
-/// The blend that ends in a node; `None` if that is none, or has no end that is known per frame.
+/// The blend that a node computes; `None` if it is no blend of known width.
 pub fn blend_at(graph: &Graph, blends: &mut Blends, id: NodeId) -> Option<Blend> {
     *blends.entry(id).or_insert_with(|| blend(graph, id))
 }
@@ -48,20 +52,21 @@ pub fn blend_at(graph: &Graph, blends: &mut Blends, id: NodeId) -> Option<Blend>
 /// `min(a, b) + r` or `min(a, b) - r`, where r has a factor `max(width - |a - b|, 0)`.
 fn blend(graph: &Graph, id: NodeId) -> Option<Blend> {
     let Node::Binary(op, x, y) = graph.node(id) else { return None };
-    let tries = [
+    let orders = [
         matches!(op, Binary::Add | Binary::Sub).then_some((x, y)),
         matches!(op, Binary::Add).then_some((y, x)),
     ];
-    tries.into_iter().flatten().find_map(|(lesser, rest)| {
+    orders.into_iter().flatten().find_map(|(lesser, rest)| {
         let Node::Binary(Binary::Min, a, b) = graph.node(lesser) else { return None };
-        let (width, is_even) = width(graph, rest, [a, b])?;
-        Some(Blend { values: [a, b], width, is_even })
+        let (width, is_symmetric) = width(graph, rest, [a, b])?;
+        Some(Blend { values: [a, b], width, is_symmetric })
     })
 }
 
-/// The width of which a product has the factor, and whether its other factors are that one again or per-frame.
+/// The width in the factor `max(width - |a - b|, 0)` of a product. The flag is true if the other
+/// factors are per-frame or the same factor again.
 fn width(graph: &Graph, product: NodeId, values: [NodeId; 2]) -> Option<(NodeId, bool)> {
-    let (mut found, mut is_even) = (None, true);
+    let (mut found, mut is_symmetric) = (None, true);
     let mut pending = vec![product];
     while let Some(id) = pending.pop() {
         let node = graph.node(id);
@@ -71,27 +76,27 @@ fn width(graph: &Graph, product: NodeId, values: [NodeId; 2]) -> Option<(NodeId,
             pending.push(a);
         } else if let Node::Binary(Binary::Div, a, b) = node {
             pending.push(a);
-            is_even &= graph.stage(b) < Stage::Point;
-        } else if let Some(width) = faded(graph, node, values) {
-            is_even &= found.is_none_or(|other| other == width);
+            is_symmetric &= graph.stage(b) < Stage::Point;
+        } else if let Some(width) = clamped_width(graph, node, values) {
+            is_symmetric &= found.is_none_or(|other| other == width);
             found = found.or(Some(width));
         } else {
-            is_even &= graph.stage(id) < Stage::Point;
+            is_symmetric &= graph.stage(id) < Stage::Point;
         }
     }
-    found.map(|width| (width, is_even))
+    found.map(|width| (width, is_symmetric))
 }
 
 /// The width of `max(width - |a - b|, 0)`
-fn faded(graph: &Graph, node: Node, values: [NodeId; 2]) -> Option<NodeId> {
+fn clamped_width(graph: &Graph, node: Node, values: [NodeId; 2]) -> Option<NodeId> {
     let Node::Binary(Binary::Max, a, b) = node else { return None };
     let is_zero = |id| graph.as_number(id) == Some(0.0);
     let fades = if is_zero(b) { Some(a) } else { is_zero(a).then_some(b) };
-    fading(graph, fades?, values)
+    width_minus_difference(graph, fades?, values)
 }
 
 /// `width - |a - b|`
-fn fading(graph: &Graph, node: NodeId, [a, b]: [NodeId; 2]) -> Option<NodeId> {
+fn width_minus_difference(graph: &Graph, node: NodeId, [a, b]: [NodeId; 2]) -> Option<NodeId> {
     let Node::Binary(Binary::Sub, width, away) = graph.node(node) else { return None };
     let Node::Unary(Unary::Abs, difference) = graph.node(away) else { return None };
     let Node::Binary(Binary::Sub, x, y) = graph.node(difference) else { return None };
@@ -99,8 +104,8 @@ fn fading(graph: &Graph, node: NodeId, [a, b]: [NodeId; 2]) -> Option<NodeId> {
     (same && graph.stage(width) < Stage::Point).then_some(width)
 }
 
-/// A node over other values in place of some that it depends on: few nodes should lie between.
-pub fn rebuilt(graph: &mut Graph, id: NodeId, new: &[(NodeId, NodeId)]) -> NodeId {
+/// The node with some of its inputs replaced by other nodes. Meant for few nodes in between.
+pub fn substitute(graph: &mut Graph, id: NodeId, new: &[(NodeId, NodeId)]) -> NodeId {
     let mut done: FxHashMap<NodeId, NodeId> = new.iter().copied().collect();
     let mut pending = vec![id];
     while let Some(&id) = pending.last() {

@@ -1,13 +1,15 @@
-//! What the point of a formula is multiplied by, and what is added to it.
+//! Coefficients of affine maps of the point.
 
-use crate::{Graph, NodeId};
+use crate::graph::Graph;
+use crate::node::NodeId;
 
-/// A coefficient of an affine map, known before the point is. Numbers stay out of the arena: most are only steps to others.
+/// A coefficient of an affine map, independent of the point. Numbers stay out of the arena, since
+/// most are only intermediate results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coefficient {
-    /// A finite number.
+    /// A number, finite.
     Number(f64),
-    /// A scalar that the point does not move.
+    /// A scalar that does not depend on the point.
     Node(NodeId),
 }
 
@@ -17,12 +19,12 @@ impl Coefficient {
     /// 1.
     pub const ONE: Self = Self::Number(1.0);
 
-    /// Of a scalar node.
+    /// The coefficient that equals a scalar node.
     pub fn of(graph: &Graph, node: NodeId) -> Self {
         graph.as_number(node).map_or(Self::Node(node), Self::Number)
     }
 
-    /// As a node.
+    /// The coefficient as a node.
     pub fn node(self, graph: &mut Graph) -> NodeId {
         match self {
             Self::Number(value) => graph.number(value),
@@ -30,7 +32,7 @@ impl Coefficient {
         }
     }
 
-    /// The number that it is, if it is one.
+    /// The number, if it is known when the scene compiles.
     pub fn number(self) -> Option<f64> {
         match self {
             Self::Number(value) => Some(value),
@@ -38,7 +40,7 @@ impl Coefficient {
         }
     }
 
-    /// Whether it is that number.
+    /// True if the coefficient is this number.
     pub fn is(self, value: f64) -> bool {
         self == Self::Number(value)
     }
@@ -81,7 +83,7 @@ impl Coefficient {
         Self::join(graph, [self, other], |x, y| x / y, Graph::div)
     }
 
-    /// What `of_nodes` makes of both, which is `of_numbers` of two numbers where that is finite.
+    /// Combines two numbers by `of_numbers` where that is finite, else two nodes by `of_nodes`.
     fn join(
         graph: &mut Graph,
         [a, b]: [Self; 2],

@@ -1,33 +1,35 @@
-//! Derivatives by one reverse sweep.
+//! Derivatives by one reverse sweep (reverse-mode differentiation).
 //!
-//! A scalar's derivatives with respect to any number of nodes take one walk from the scalar down to them: each
-//! node collects the derivative of the root with respect to it, its adjoint, from what uses it, and hands
-//! parts of it on to its arguments. So the emitted gradient costs about three times the field's
-//! operations for all its components together, where a forward derivative costs that for each.
+//! One walk from a scalar down to any number of nodes gives the scalar's derivatives with respect
+//! to all of them. Each node sums up the derivative of the root with respect to it, its *adjoint*,
+//! from the nodes that use it, and passes contributions on to its arguments. So the gradient costs
+//! about three times the field's operations for all its components together; forward
+//! differentiation costs that for each.
 //!
-//! At points without a derivative the rules are definite:
+//! At points without a derivative these rules hold:
 //!
 //! | operation | derivative |
 //! |---|---|
 //! | `length`, `normalize`, `sqrt` at 0 | 0 |
 //! | `abs` at 0 | +1 |
-//! | `min`, `max`, `clamp`, `saturate`, `select` | that of the argument selected; on a tie the first |
-//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, `hash`, comparisons, the number of a loop's rounds | 0 |
+//! | `min`, `max`, `clamp`, `saturate`, `select` | of the selected argument; the first on a tie |
+//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, `hash`, comparisons, a loop's iteration count | 0 |
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
-mod repeat;
+mod loops;
 mod rules;
 
 pub(crate) use rules::TINY;
 
+use crate::graph::Graph;
 use crate::ids::{IdMap, IdSet};
+use crate::node::{Binary, NodeId, Type};
 use crate::walk::computed_where;
-use crate::{Binary, Graph, NodeId, Type};
 
-/// Derivatives of a scalar root with respect to nodes: for each of `wrt` a node of its type.
+/// Derivatives of a scalar root with respect to nodes: for each of `wrt`, a node of its type.
 ///
-/// The nodes of `wrt` count as independent of each other: nothing is carried through one to the next. Samples
-/// that are not in `wrt` count as constants.
+/// The nodes of `wrt` count as independent of each other: no derivative is passed through one to
+/// the next. Samples that are not in `wrt` count as constants.
 ///
 /// ```
 /// use sdfc_graph::eval::{FrameValues, evaluate_frame};
@@ -49,10 +51,10 @@ pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> 
     let live = live_nodes(graph, &order, &inputs);
     let mut sweep = Sweep { graph, live, adjoints: IdMap::default() };
     let one = sweep.graph.number(1.0);
-    sweep.give(root, one);
+    sweep.accumulate(root, one);
     for &id in order.iter().rev().filter(|&&id| !inputs.contains(id)) {
         if let Some(adjoint) = sweep.take(id) {
-            sweep.hand_down(id, adjoint);
+            sweep.propagate(id, adjoint);
         }
     }
     wrt.iter().map(|&id| sweep.total(id)).collect()
@@ -61,20 +63,20 @@ pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> 
 /// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
 pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
     let found = adjoints(graph, root, &[point]);
-    match repeat::merged(graph, &found)[..] {
+    match loops::merged(graph, &found)[..] {
         [gradient] => gradient,
         _ => zero(graph, graph.ty(point)),
     }
 }
 
-/// The nodes whose value moves with one of the inputs.
+/// The nodes whose value depends on one of the inputs.
 fn live_nodes(graph: &Graph, order: &[NodeId], inputs: &IdSet) -> IdSet {
     let mut live = IdSet::default();
     for &id in order {
-        let moves = inputs.contains(id)
+        let is_live = inputs.contains(id)
             || (rules::passes_derivatives(graph, id)
                 && graph.inputs(id).into_iter().any(|input| live.contains(input)));
-        if moves {
+        if is_live {
             live.insert(id);
         }
     }
@@ -85,8 +87,8 @@ pub(crate) fn zero(graph: &mut Graph, ty: Type) -> NodeId {
     graph.constant(ty, &[0.0; 4])
 }
 
-/// What a node has been given so far. Parts given to single components are kept apart, so that a sum
-/// over components needs no vectors of zeros.
+/// The contributions that a node has received so far. Contributions to single components are stored
+/// separately, so that their sum needs no vectors of zeros.
 #[derive(Clone, Copy, Default)]
 struct Adjoint {
     whole: Option<NodeId>,
@@ -100,43 +102,43 @@ struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Adds to a node's adjoint; `part` has the node's type.
-    fn give(&mut self, id: NodeId, part: NodeId) {
-        if !self.live.contains(id) || self.is_zero(part) {
+    /// Adds to a node's adjoint. `contribution` has the node's type.
+    fn accumulate(&mut self, id: NodeId, contribution: NodeId) {
+        if !self.live.contains(id) || self.is_zero(contribution) {
             return;
         }
         let whole = self.adjoints.get(id).and_then(|adjoint| adjoint.whole);
-        let sum = whole.map_or(part, |whole| self.graph.add(whole, part));
-        self.adjoints.slot(id).get_or_insert_default().whole = Some(sum);
+        let sum = whole.map_or(contribution, |whole| self.graph.add(whole, contribution));
+        self.adjoints.entry(id).get_or_insert_default().whole = Some(sum);
     }
 
     /// Adds to the adjoint of one component.
-    fn give_lane(&mut self, id: NodeId, lane: u8, part: NodeId) {
+    fn accumulate_lane(&mut self, id: NodeId, lane: u8, contribution: NodeId) {
         if self.graph.ty(id).width() == 1 {
-            return self.give(id, part);
+            return self.accumulate(id, contribution);
         }
-        if !self.live.contains(id) || self.is_zero(part) {
+        if !self.live.contains(id) || self.is_zero(contribution) {
             return;
         }
         let lane = usize::from(lane);
         let before = self.adjoints.get(id).and_then(|adjoint| adjoint.lanes[lane]);
-        let sum = before.map_or(part, |before| self.graph.add(before, part));
-        self.adjoints.slot(id).get_or_insert_default().lanes[lane] = Some(sum);
+        let sum = before.map_or(contribution, |before| self.graph.add(before, contribution));
+        self.adjoints.entry(id).get_or_insert_default().lanes[lane] = Some(sum);
     }
 
     fn is_zero(&self, id: NodeId) -> bool {
-        self.graph.as_uniform(id) == Some(0.0)
+        self.graph.as_splat_number(id) == Some(0.0)
     }
 
-    /// All that a node was given, as one node; `None` for nothing.
+    /// The sum of a node's contributions, which are taken out; `None` if there are none.
     fn take(&mut self, id: NodeId) -> Option<NodeId> {
-        let Adjoint { whole, lanes } = self.adjoints.slot(id).take()?;
+        let Adjoint { whole, lanes } = self.adjoints.entry(id).take()?;
         if lanes == [None; 4] {
             return whole;
         }
-        let nothing = self.graph.number(0.0);
+        let zero_lane = self.graph.number(0.0);
         let width = self.graph.ty(id).width();
-        let parts = lanes.map(|lane| lane.unwrap_or(nothing));
+        let parts = lanes.map(|lane| lane.unwrap_or(zero_lane));
         let composed = self.graph.compose(&parts[..width]);
         Some(whole.map_or(composed, |whole| self.graph.binary(Binary::Add, whole, composed)))
     }

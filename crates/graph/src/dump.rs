@@ -1,16 +1,18 @@
-//! A readable text of nodes, and counts of them.
+//! Printing and counting nodes.
 
 use std::fmt::Write;
 
 use rustc_hash::FxHashMap;
 
+use crate::graph::Graph;
 use crate::ids::IdSet;
+use crate::node::{Const, LoopVar, Node, NodeId, Stage, Type};
 use crate::walk::reachable;
-use crate::{Const, Graph, Node, NodeId, Place, Stage, Type};
 
-/// The nodes that the roots are computed from, one a line, numbered from 0 in an order that depends on the
-/// roots alone: `%3 = add %1 %2 : vec3`. Constants stand where they are used. The last lines name the roots.
-/// Nodes that are known once a frame starts are marked `frame`.
+/// The nodes that the roots are computed from as text, one per line: `%3 = add %1 %2 : vec3`.
+///
+/// The numbers start at 0, and their order depends on the roots only. Constants are written where
+/// they are used. Per-frame nodes are marked `frame`. The last lines name the roots.
 ///
 /// ```
 /// use sdfc_graph::{Dim, Graph, dump};
@@ -49,7 +51,7 @@ pub fn dump(graph: &Graph, roots: &[(&str, NodeId)]) -> String {
     text
 }
 
-/// Arguments before uses, left to right, whatever the ids are.
+/// Nodes with arguments before uses, from left to right, independent of the ids.
 fn first_use_order(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut done = IdSet::default();
     let mut order = Vec::new();
@@ -121,10 +123,10 @@ fn operation(graph: &Graph, id: NodeId, reference: impl Fn(NodeId) -> String) ->
             return format!("{}.{letters}", reference(a));
         }
         Node::Transform(..) => "transform".to_owned(),
-        Node::Variable(depth, Place::Round, _) => format!("round {depth}"),
-        Node::Variable(depth, Place::State(position), _) => format!("state {depth}.{position}"),
-        Node::Loop(repeated, position, _) => {
-            format!("loop {}.{position}", graph.repeated(repeated).cap)
+        Node::Variable(depth, LoopVar::Index, _) => format!("iteration {depth}"),
+        Node::Variable(depth, LoopVar::State(position), _) => format!("state {depth}.{position}"),
+        Node::Loop(loop_, position, _) => {
+            format!("loop {}.{position}", graph.loop_at(loop_).max_iterations)
         }
         Node::Element(table, ..) => format!("element {}", table.index()),
         Node::Sample(shape, _) => {
@@ -148,8 +150,8 @@ fn type_name(ty: Type) -> &'static str {
     }
 }
 
-/// How many operations a point costs: nodes of stage `Point` that compute something. Points, swizzles, splats
-/// and composed vectors are free; an operation on vectors counts once.
+/// Number of operations per point: nodes of stage `Point` that compute something. Points, swizzles,
+/// splats and composed vectors are free; an operation on vectors counts once.
 pub fn operation_count(graph: &Graph, roots: &[NodeId]) -> usize {
     let counts = |id: &NodeId| graph.stage(*id) == Stage::Point && is_operation(&graph.node(*id));
     reachable(graph, roots).iter().filter(|id| counts(id)).count()

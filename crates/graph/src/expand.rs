@@ -1,9 +1,9 @@
-//! From shape instances to flat math.
+//! Expansion: from shape instances to flat math.
 //!
-//! An instance's formula is written in the point of its level and samples other shapes. Expanding it at a
-//! point replaces its point by that one and each sample by the sampled shape's formula, expanded at the
-//! sample's point. A shape of level L sees the points of the formulas around it: sampled at q where
-//! those points are E, its own are E\[0..L\] and q.
+//! An instance's formula is written in the point of its level and samples other shapes. Expanding
+//! it at a point replaces its point by that point, and each sample by the sampled shape's formula,
+//! expanded at the sample's point. A shape of level L sees the points of the formulas around it: if
+//! it is sampled at q where those points are E, its own points are E\[0..L\] and q.
 
 mod environment;
 mod material;
@@ -13,20 +13,21 @@ use rustc_hash::FxHashMap;
 
 use self::environment::{Env, Environments};
 use self::names::Names;
-use crate::{Graph, MaterialField, Node, NodeId, ShapeId, Stage};
+use crate::graph::Graph;
+use crate::node::{MaterialField, Node, NodeId, ShapeId, Stage};
 
-/// At most so many nodes in one arena, and so many (node, points) pairs in one [`Expander`].
+/// Maximum number of nodes in one arena, and of (node, points) pairs in one [`Expander`].
 pub const NODE_LIMIT: usize = 1_000_000;
 
-/// Why shapes could not be expanded.
+/// The reason why shapes could not be expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExpandError {
-    /// The arena, or the work, has grown beyond the limit.
+    /// The arena or the number of expanded nodes exceeds the limit.
     TooManyNodes {
         /// [`NODE_LIMIT`], unless the expander was given another.
         limit: usize,
     },
-    /// A formula mentions a point of this level, which nothing around it has.
+    /// A formula uses a point of this level, but no formula around it has one.
     MissingPoint {
         /// The level.
         level: u16,
@@ -37,10 +38,10 @@ impl std::fmt::Display for ExpandError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::TooManyNodes { limit } => {
-                write!(f, "the expanded scene passes {limit} nodes")
+                write!(f, "the expanded scene has more than {limit} nodes")
             }
             Self::MissingPoint { level } => {
-                write!(f, "a formula mentions a point of level {level}, which it does not have")
+                write!(f, "a formula uses a point of level {level}, which it does not have")
             }
         }
     }
@@ -48,8 +49,8 @@ impl std::fmt::Display for ExpandError {
 
 impl std::error::Error for ExpandError {}
 
-/// Expands shapes of one arena. What was expanded once is remembered, so an expander must not be used
-/// with another arena.
+/// Expands shapes of one arena. Expansions are cached, so an expander must not be used with another
+/// arena.
 ///
 /// ```
 /// use sdfc_graph::{Contract, Dim, Expander, Graph, MaterialRule, Shape, dump};
@@ -63,8 +64,8 @@ impl std::error::Error for ExpandError {}
 ///     args: Vec::new(),
 ///     formula,
 ///     contract: Contract::default(),
-///     hits: Vec::new(),
-///     material: MaterialRule::Shares(formula),
+///     intersect: Vec::new(),
+///     material: MaterialRule::Weighted(formula),
 ///     children: children.to_vec(),
 ///     depth: 1,
 ///     name: None,
@@ -96,7 +97,7 @@ pub struct Expander {
     done: FxHashMap<(NodeId, Env), NodeId>,
     materials: FxHashMap<ShapeId, [NodeId; 6]>,
     names: Names,
-    /// The arguments of the node at hand and what they became.
+    /// The arguments of the current node, with their expansions.
     arguments: Vec<(NodeId, NodeId)>,
     limit: usize,
 }
@@ -129,7 +130,7 @@ impl Expander {
         Self::default()
     }
 
-    /// With another limit than [`NODE_LIMIT`].
+    /// An expander with another limit than [`NODE_LIMIT`].
     pub fn with_limit(limit: usize) -> Self {
         Self { limit, ..Self::default() }
     }
@@ -147,7 +148,8 @@ impl Expander {
         self.field_under(graph, shape, &[], point)
     }
 
-    /// The distance of a shape at a point, under the points of the formulas around it, outermost first.
+    /// The distance of a shape at a point. `outer` are the points of the formulas around the shape,
+    /// outermost first.
     ///
     /// # Errors
     /// Where a limit is passed or a point is missing.
@@ -180,7 +182,7 @@ impl Expander {
         Ok(fields)
     }
 
-    /// A node of a formula, where the points of levels 0, 1, … are these.
+    /// Expands a node of a formula. `points` are the points of levels 0, 1, ….
     ///
     /// # Errors
     /// Where a limit is passed or a point is missing.
@@ -194,37 +196,38 @@ impl Expander {
         self.expand(graph, (node, env))
     }
 
-    /// Names for the expanded nodes: of each the scene's name for the first shape whose distance it
+    /// Names for the expanded nodes: the scene's name for the first shape whose distance the node
     /// is, else that shape's definition. Constants and points have none.
     pub fn names(&self) -> FxHashMap<NodeId, String> {
         self.names.to_map()
     }
 
-    /// Names the flat value of a shape that a caller expanded in parts.
+    /// Names the flat value of a shape whose parts a caller expanded itself.
     pub fn name(&mut self, graph: &Graph, value: NodeId, shape: ShapeId) {
         self.names.record(graph, value, shape);
     }
 
-    /// Expands what was asked of a shape at a point that is already expanded.
+    /// Expands a sample of a shape at a point that is already expanded.
     fn under(
         &mut self,
         graph: &mut Graph,
         shape: ShapeId,
         outer: &[NodeId],
         point: NodeId,
-        asked: NodeId,
+        sample: NodeId,
     ) -> Result<NodeId, ExpandError> {
         let inner = self.environments.of(outer);
         let env = self.inside(graph, shape, inner, point)?;
-        let formula = self.formula_of(graph, asked);
+        let formula = self.formula_of(graph, sample);
         let result = self.expand(graph, (formula, env))?;
-        if let Node::Sample(..) = graph.node(asked) {
+        if let Node::Sample(..) = graph.node(sample) {
             self.names.record(graph, result, shape);
         }
         Ok(result)
     }
 
-    /// The points that a shape's formula sees, sampled at `point` where the points are `env`.
+    /// The points that a shape's formula sees when it is sampled at `point` in the environment
+    /// `env`.
     fn inside(
         &mut self,
         graph: &Graph,
@@ -240,9 +243,9 @@ impl Expander {
         Ok(self.environments.push(outer, point))
     }
 
-    /// What stands for a sample, in the sampled shape's own point.
-    fn formula_of(&mut self, graph: &mut Graph, asked: NodeId) -> NodeId {
-        match graph.node(asked) {
+    /// The formula that replaces a sample, in the sampled shape's own point.
+    fn formula_of(&mut self, graph: &mut Graph, sample: NodeId) -> NodeId {
+        match graph.node(sample) {
             Node::Sample(shape, _) => graph.shape(shape).formula,
             Node::MaterialAt(shape, _, field) => {
                 let fields = match self.materials.get(&shape) {
@@ -267,7 +270,7 @@ impl Expander {
             | Node::Transform(..)
             | Node::Variable(..)
             | Node::Loop(..)
-            | Node::Element(..) => asked,
+            | Node::Element(..) => sample,
         }
     }
 
@@ -290,7 +293,7 @@ impl Expander {
         self.lookup(graph, task).ok_or(ExpandError::TooManyNodes { limit: self.limit })
     }
 
-    /// Expands a node whose arguments are expanded, or puts those that are not on the stack.
+    /// Expands a node whose arguments are expanded, or pushes the missing arguments on the stack.
     fn step(
         &mut self,
         graph: &mut Graph,
@@ -342,25 +345,25 @@ impl Expander {
     fn step_into(
         &mut self,
         graph: &mut Graph,
-        asked: NodeId,
+        sample: NodeId,
         shape: ShapeId,
         (point, env): Task,
         stack: &mut Vec<Task>,
     ) -> Result<Step, ExpandError> {
         let at = self.lookup(graph, (point, env)).unwrap_or(point);
         let inner = self.inside(graph, shape, env, at)?;
-        let formula = self.formula_of(graph, asked);
+        let formula = self.formula_of(graph, sample);
         let Some(result) = self.lookup(graph, (formula, inner)) else {
             stack.push((formula, inner));
             return Ok(Step::Wait);
         };
-        if let Node::Sample(..) = graph.node(asked) {
+        if let Node::Sample(..) = graph.node(sample) {
             self.names.record(graph, result, shape);
         }
         Ok(Step::Done(result))
     }
 
-    /// Nodes that see fewer points than there are share one expansion.
+    /// Nodes that depend on fewer points than the environment has share one expansion.
     fn key(&self, graph: &Graph, node: NodeId, env: Env) -> Task {
         (node, self.environments.prefix(env, graph.levels(node)))
     }

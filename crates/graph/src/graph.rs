@@ -1,33 +1,35 @@
-//! The arena: interning, types, stages.
+//! The arena: interned nodes with their types, stages and ranges, and shape instances.
 
 use std::hash::{BuildHasher, BuildHasherDefault, Hash, Hasher};
 
 use hashbrown::HashTable;
 use rustc_hash::{FxHashMap, FxHasher};
 
-use crate::range::{Range, range_of};
-use crate::repeat::{Loop, Table};
-use crate::{
-    Arg, Binary, Const, LoopId, Node, NodeId, Shape, ShapeId, Stage, TableId, Ternary, Type, Unary,
+use crate::loops::{Loop, Table};
+use crate::node::{
+    Binary, Const, LoopId, Node, NodeId, ShapeId, Stage, TableId, Ternary, Type, Unary,
 };
+use crate::range::{Range, range_of};
+use crate::shape::{Arg, Shape};
 
-/// What is known of a node beside its operation.
+/// Properties of a node that follow from its operation and its arguments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Facts {
     ty: Type,
     stage: Stage,
     range: Range,
-    /// One more than the highest level of a point that it depends on; 0 for none.
+    /// One more than the highest level of the points that it depends on; 0 for none.
     levels: u16,
-    /// The loops whose variables it depends on, one bit by depth.
+    /// The loops whose variables it depends on, one bit per depth.
     loops: u8,
 }
 
-/// What the author of a function states of its result: it changes by at most `lipschitz` where each of
-/// the arguments changes by at most 1, vectors by Euclidean length.
+/// A Lipschitz constant that the author of a function claims: the result changes by at most
+/// `lipschitz` where each of the arguments changes by at most 1. Vectors are measured by Euclidean
+/// length.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Claim {
-    /// A scalar known before the point is.
+pub struct LipschitzClaim {
+    /// The constant, a scalar that does not depend on the point.
     pub lipschitz: NodeId,
     /// The arguments that depend on a point.
     pub arguments: Vec<NodeId>,
@@ -38,11 +40,12 @@ pub struct Claim {
 pub struct Graph {
     nodes: Vec<Node>,
     facts: Vec<Facts>,
-    /// By the node's hash, half of which stands beside the id, so that few nodes are looked up.
+    /// Ids by the nodes' hashes. Half of the hash is stored beside the id, so that lookups rarely
+    /// have to read the node.
     ids: HashTable<(u32, NodeId)>,
     shapes: Vec<Shape>,
     shape_ids: FxHashMap<u64, Vec<ShapeId>>,
-    claims: FxHashMap<NodeId, Claim>,
+    claims: FxHashMap<NodeId, LipschitzClaim>,
     loops: Vec<Loop>,
     loop_ids: FxHashMap<Loop, LoopId>,
     tables: Vec<Table>,
@@ -53,17 +56,17 @@ pub struct Graph {
 #[derive(Clone, Debug)]
 pub struct Arguments<'g> {
     own: std::iter::Take<std::array::IntoIter<NodeId, 4>>,
-    /// Of a loop, what is left of its arguments.
-    repeated: Option<(&'g Loop, usize)>,
+    /// For a loop: the loop, and the position of its next argument.
+    loop_: Option<(&'g Loop, usize)>,
 }
 
 impl Iterator for Arguments<'_> {
     type Item = NodeId;
 
     fn next(&mut self) -> Option<NodeId> {
-        let Some((repeated, position)) = &mut self.repeated else { return self.own.next() };
+        let Some((loop_, position)) = &mut self.loop_ else { return self.own.next() };
         *position += 1;
-        repeated.argument(*position - 1)
+        loop_.argument(*position - 1)
     }
 }
 
@@ -73,12 +76,12 @@ impl Graph {
         Self::default()
     }
 
-    /// How many nodes there are.
+    /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Whether there are none.
+    /// True if there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -88,33 +91,34 @@ impl Graph {
         self.nodes[id.index()]
     }
 
-    /// The node's arguments in order. Those of a loop are all that it mentions, its body's roots among them.
+    /// The node's arguments in order. A loop's arguments are all nodes that it refers to, the roots
+    /// of its body among them.
     pub fn arguments(&self, id: NodeId) -> Arguments<'_> {
         self.arguments_of(&self.node(id))
     }
 
     fn arguments_of(&self, node: &Node) -> Arguments<'_> {
-        let repeated =
-            if let Node::Loop(id, ..) = *node { Some((self.repeated(id), 0)) } else { None };
-        Arguments { own: node.own_arguments(), repeated }
+        let loop_ = if let Node::Loop(id, ..) = *node { Some((self.loop_at(id), 0)) } else { None };
+        Arguments { own: node.own_arguments(), loop_ }
     }
 
-    /// The loop.
-    pub fn repeated(&self, id: LoopId) -> &Loop {
+    /// The loop with this id.
+    pub fn loop_at(&self, id: LoopId) -> &Loop {
         &self.loops[id.0 as usize]
     }
 
-    /// The list.
+    /// The table with this id.
     pub fn table(&self, id: TableId) -> &Table {
         &self.tables[id.index()]
     }
 
-    /// The loops whose bodies the node lies in, one bit by depth: those whose variables it depends on.
-    pub fn loops(&self, id: NodeId) -> u8 {
+    /// The loops whose bodies the node lies in, because it depends on their variables: one bit per
+    /// depth.
+    pub fn loops_around(&self, id: NodeId) -> u8 {
         self.facts[id.index()].loops
     }
 
-    /// The shape and the place of a sample; `None` of any other node.
+    /// The shape and the point of a sample; `None` for any other node.
     pub fn as_sample(&self, id: NodeId) -> Option<(ShapeId, NodeId)> {
         if let Node::Sample(shape, place) = self.node(id) { Some((shape, place)) } else { None }
     }
@@ -129,32 +133,32 @@ impl Graph {
         self.facts[id.index()].stage
     }
 
-    /// Between which values every component of the node lies.
+    /// The range that contains every component of the node.
     pub fn range(&self, id: NodeId) -> Range {
         self.facts[id.index()].range
     }
 
-    /// States between which values a per-frame input lies. To be called before anything is built on it.
+    /// Sets the range of a per-frame input. Must be called before any node is built on it.
     pub fn assume_range(&mut self, id: NodeId, range: Range) {
         self.facts[id.index()].range = range;
     }
 
-    /// One more than the highest level of a point that the node depends on; 0 for none.
+    /// One more than the highest level of the points that the node depends on; 0 for none.
     pub fn levels(&self, id: NodeId) -> u16 {
         self.facts[id.index()].levels
     }
 
-    /// All ids in order: arguments before their uses.
+    /// All ids in ascending order: arguments before their uses.
     pub fn ids(&self) -> impl Iterator<Item = NodeId> + use<> {
         (0..self.nodes.len() as u32).map(NodeId)
     }
 
-    /// All shape ids in order: children before parents.
+    /// All shape ids in ascending order: children before parents.
     pub fn shape_ids(&self) -> impl Iterator<Item = ShapeId> + use<> {
         (0..self.shapes.len() as u32).map(ShapeId)
     }
 
-    /// The shape.
+    /// The shape with this id.
     pub fn shape(&self, id: ShapeId) -> &Shape {
         &self.shapes[id.index()]
     }
@@ -169,19 +173,20 @@ impl Graph {
         self.const_at(id).copied()
     }
 
-    /// The constant in its place: nodes are large to copy.
+    /// A reference to the constant, since nodes are large to copy.
     pub(crate) fn const_at(&self, id: NodeId) -> Option<&Const> {
         if let Node::Const(value) = &self.nodes[id.index()] { Some(value) } else { None }
     }
 
-    /// The number that every component is, if the node is a constant of equal components.
-    pub fn as_uniform(&self, id: NodeId) -> Option<f64> {
+    /// The value of every component, if the node is a constant of equal components.
+    pub fn as_splat_number(&self, id: NodeId) -> Option<f64> {
         let value = self.const_at(id)?;
         let lanes = value.lanes();
         lanes[1..value.ty().width()].iter().all(|&lane| lane == lanes[0]).then_some(lanes[0])
     }
 
-    /// The id of a node exactly as given: no folding. Callers use the typed builders.
+    /// The id of a node exactly as given, without folding. Callers outside this crate use the typed
+    /// builders.
     pub(crate) fn intern(&mut self, node: Node) -> NodeId {
         let half = half_hash_of(&node);
         let known = self
@@ -203,17 +208,17 @@ impl Graph {
         for argument in self.arguments_of(node) {
             stage = stage.max(self.stage(argument));
             levels = levels.max(self.levels(argument));
-            loops |= self.loops(argument);
+            loops |= self.loops_around(argument);
         }
         match *node {
             Node::Variable(depth, ..) => (stage, loops) = (Stage::Point, 1 << depth),
-            Node::Loop(id, ..) => (stage, loops) = (Stage::Point, loops & !self.repeated(id).bit()),
+            Node::Loop(id, ..) => (stage, loops) = (Stage::Point, loops & !self.loop_at(id).bit()),
             Node::Point(level, _) => (stage, levels) = (Stage::Point, level + 1),
             Node::Frame(..) => stage = Stage::Frame,
             Node::Sample(shape, _) | Node::MaterialAt(shape, ..) => {
-                // The shape's own arguments may depend on outer points.
+                // A shape's own arguments may depend on outer points.
                 levels = levels.max(self.shape(shape).level);
-                loops |= self.loops(self.shape(shape).formula);
+                loops |= self.loops_around(self.shape(shape).formula);
                 stage = Stage::Point;
             }
             Node::Const(_)
@@ -231,18 +236,18 @@ impl Graph {
         Facts { ty, stage, range, levels, loops }
     }
 
-    /// The loop equal to this one.
-    pub(crate) fn add_loop(&mut self, repeated: Loop) -> LoopId {
+    /// Interns a loop.
+    pub(crate) fn intern_loop(&mut self, loop_: Loop) -> LoopId {
         let next = LoopId(self.loops.len() as u32);
-        let id = *self.loop_ids.entry(repeated.clone()).or_insert(next);
+        let id = *self.loop_ids.entry(loop_.clone()).or_insert(next);
         if id == next {
-            self.loops.push(repeated);
+            self.loops.push(loop_);
         }
         id
     }
 
-    /// The list equal to this one.
-    pub(crate) fn add_table(&mut self, table: Table) -> TableId {
+    /// Interns a table.
+    pub(crate) fn intern_table(&mut self, table: Table) -> TableId {
         let next = TableId(self.tables.len() as u32);
         let id = *self.table_ids.entry(table.clone()).or_insert(next);
         if id == next {
@@ -251,8 +256,8 @@ impl Graph {
         id
     }
 
-    /// The instance equal to this one in definition, dimension, level and arguments, or this one as
-    /// a new instance. Its name, if given, is kept by the first.
+    /// Adds a shape instance. An instance that is equal in definition, dimension, level and
+    /// arguments is returned instead if there is one; it keeps its name.
     pub fn add_shape(&mut self, shape: Shape) -> ShapeId {
         let key = shape_key(&shape.definition, shape.dim, shape.level, &shape.args);
         if let Some(id) = self.find(key, &shape.definition, shape.dim, shape.level, &shape.args) {
@@ -268,7 +273,7 @@ impl Graph {
     pub fn find_shape(
         &self,
         definition: &str,
-        dim: crate::Dim,
+        dim: crate::node::Dim,
         level: u16,
         args: &[Arg],
     ) -> Option<ShapeId> {
@@ -279,7 +284,7 @@ impl Graph {
         &self,
         key: u64,
         definition: &str,
-        dim: crate::Dim,
+        dim: crate::node::Dim,
         level: u16,
         args: &[Arg],
     ) -> Option<ShapeId> {
@@ -293,9 +298,10 @@ impl Graph {
         })
     }
 
-    /// Records what is stated of a node, and what follows for the part of it that varies: simplification
-    /// moves signs, offsets and factors out of a node, and would leave the claim behind. The first claim stays.
-    pub fn claim(&mut self, node: NodeId, mut claim: Claim) {
+    /// Records a Lipschitz claim about a node, and what follows from it for the varying part of the
+    /// node: simplification moves signs, offsets and factors out of a node, and would leave the
+    /// claim behind. The first claim about a node stays.
+    pub fn claim_lipschitz(&mut self, node: NodeId, mut claim: LipschitzClaim) {
         for argument in &mut claim.arguments {
             *argument = self.unshifted(*argument);
         }
@@ -311,14 +317,14 @@ impl Graph {
         }
     }
 
-    /// What is stated of a node holds of another that equals its negative.
+    /// Copies the claim about a node to another node that equals its negative.
     pub(crate) fn carry_claim(&mut self, node: NodeId, negative: NodeId) {
         if let Some(claim) = self.claims.get(&node).cloned() {
-            self.claim(negative, claim);
+            self.claim_lipschitz(negative, claim);
         }
     }
 
-    /// A node without its sign and offsets: it changes as fast.
+    /// The node without its sign and offsets, which changes as fast as the node.
     fn unshifted(&self, mut node: NodeId) -> NodeId {
         while let Some((inner, 1.0)) = self.varying_part(node) {
             node = inner;
@@ -326,8 +332,8 @@ impl Graph {
         node
     }
 
-    /// The part of `-x`, `x + c`, `x - c`, `c - x`, `x * c` that depends on the point, and by how much the whole
-    /// changes faster than it.
+    /// The part x of `-x`, `x + c`, `x - c`, `c - x` or `x * c` that depends on the point, and the
+    /// factor by which the node changes faster than x.
     fn varying_part(&self, node: NodeId) -> Option<(NodeId, f64)> {
         let fixed = |id: NodeId| self.stage(id) < Stage::Point;
         match self.node(node) {
@@ -335,7 +341,7 @@ impl Graph {
             Node::Binary(Binary::Add | Binary::Sub, x, c) if fixed(c) => Some((x, 1.0)),
             Node::Binary(Binary::Add | Binary::Sub, c, x) if fixed(c) => Some((x, 1.0)),
             Node::Binary(Binary::Mul, x, c) => {
-                let factor = self.as_uniform(c)?.abs();
+                let factor = self.as_splat_number(c)?.abs();
                 (factor > 0.0).then_some((x, factor))
             }
             Node::Const(_)
@@ -356,29 +362,29 @@ impl Graph {
         }
     }
 
-    /// What is stated of a node.
-    pub fn claim_of(&self, node: NodeId) -> Option<&Claim> {
+    /// The Lipschitz claim about a node.
+    pub fn lipschitz_claim(&self, node: NodeId) -> Option<&LipschitzClaim> {
         self.claims.get(&node)
     }
 
-    /// Gives a shape another material; what has been expanded keeps the one that it had.
-    pub fn set_material(&mut self, id: ShapeId, material: crate::MaterialRule) {
+    /// Replaces a shape's material. Nodes that were expanded before keep the old one.
+    pub fn set_material(&mut self, id: ShapeId, material: crate::shape::MaterialRule) {
         self.shapes[id.index()].material = material;
     }
 
-    /// States where a ray is inside an instance: intervals along it, as [`Shape::hits`] says.
-    pub fn set_hits(&mut self, id: ShapeId, hits: Vec<[NodeId; 2]>) {
-        self.shapes[id.index()].hits = hits;
+    /// Sets the intervals along a ray that lie inside a shape: see [`Shape::intersect`].
+    pub fn set_intersect(&mut self, id: ShapeId, intervals: Vec<[NodeId; 2]>) {
+        self.shapes[id.index()].intersect = intervals;
     }
 
-    /// Names a shape after the scene's `let`; the first name stays.
+    /// Names a shape after the scene's `let`. The first name stays.
     pub fn name_shape(&mut self, id: ShapeId, name: &str) {
         let shape = &mut self.shapes[id.index()];
         shape.name.get_or_insert_with(|| name.to_owned());
     }
 }
 
-/// The type of a node, given those of its arguments.
+/// The type of a node, given the types of its arguments.
 pub(crate) fn result_type(node: &Node, ty: impl Fn(NodeId) -> Type) -> Type {
     match *node {
         Node::Const(value) => value.ty(),
@@ -423,12 +429,12 @@ fn half_hash_of(node: &Node) -> u32 {
     (hash ^ (hash >> 32)) as u32
 }
 
-/// A hash as the table wants it, which reads its highest and its lowest bits.
+/// The hash that the table uses, which reads its highest and its lowest bits.
 fn whole_hash(half: u32) -> u64 {
     u64::from(half) << 32 | u64::from(half)
 }
 
-fn shape_key(definition: &str, dim: crate::Dim, level: u16, args: &[Arg]) -> u64 {
+fn shape_key(definition: &str, dim: crate::node::Dim, level: u16, args: &[Arg]) -> u64 {
     let mut hasher = FxHasher::default();
     (definition, dim, level, args).hash(&mut hasher);
     hasher.finish()

@@ -1,6 +1,7 @@
-//! Sets and maps of nodes, in pages: as quick as arrays, as large as what they hold.
+//! Sets and maps keyed by node ids. They are split into pages, so that they are as fast as arrays
+//! and only as large as what they hold.
 
-use crate::NodeId;
+use crate::node::NodeId;
 
 const SET_PAGE: usize = 1024;
 const MAP_PAGE: usize = 64;
@@ -9,14 +10,14 @@ const MAP_PAGE: usize = 64;
 #[derive(Clone, Debug, Default)]
 pub struct IdSet {
     pages: Vec<Option<Box<[u64; SET_PAGE / 64]>>>,
-    /// The pages that there are: few, also of a large arena, where a set is small.
+    /// Indices of the allocated pages: a small set in a large arena has few.
     used: Vec<usize>,
 }
 
 impl IdSet {
-    /// Adds a node; whether it was not there before.
+    /// Adds a node. Returns true if it was not there before.
     pub fn insert(&mut self, id: NodeId) -> bool {
-        let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
+        let (page, bit) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);
         }
@@ -25,20 +26,20 @@ impl IdSet {
             used.push(page);
             Box::default()
         });
-        let (word, bit) = (&mut words[place / 64], 1 << (place % 64));
+        let (word, bit) = (&mut words[bit / 64], 1 << (bit % 64));
         let new = *word & bit == 0;
         *word |= bit;
         new
     }
 
-    /// Whether the node is there.
+    /// True if the set contains the node.
     pub fn contains(&self, id: NodeId) -> bool {
-        let (page, place) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
+        let (page, bit) = (id.index() / SET_PAGE, id.index() % SET_PAGE);
         let page = self.pages.get(page).and_then(Option::as_ref);
-        page.is_some_and(|words| words[place / 64] >> (place % 64) & 1 == 1)
+        page.is_some_and(|words| words[bit / 64] >> (bit % 64) & 1 == 1)
     }
 
-    /// All, ascending.
+    /// All members in ascending order.
     pub fn to_vec(&self) -> Vec<NodeId> {
         let mut ids = Vec::new();
         let mut used = self.used.clone();
@@ -48,8 +49,8 @@ impl IdSet {
             for (i, word) in words.enumerate() {
                 let mut rest = *word;
                 while rest != 0 {
-                    let place = page * SET_PAGE + i * 64 + rest.trailing_zeros() as usize;
-                    ids.push(NodeId(place as u32));
+                    let index = page * SET_PAGE + i * 64 + rest.trailing_zeros() as usize;
+                    ids.push(NodeId(index as u32));
                     rest &= rest - 1;
                 }
             }
@@ -68,7 +69,7 @@ impl FromIterator<NodeId> for IdSet {
     }
 }
 
-/// Values of nodes of one arena.
+/// A map from the nodes of one arena to values.
 #[derive(Clone, Debug)]
 pub struct IdMap<T> {
     pages: Vec<Option<Box<[Option<T>; MAP_PAGE]>>>,
@@ -87,18 +88,18 @@ impl<T: Copy> IdMap<T> {
         page[id.index() % MAP_PAGE]
     }
 
-    /// Gives the node a value.
+    /// Sets the node's value.
     pub fn insert(&mut self, id: NodeId, value: T) {
-        *self.slot(id) = Some(value);
+        *self.entry(id) = Some(value);
     }
 
-    /// Takes the node's value away.
+    /// Removes the node's value.
     pub fn remove(&mut self, id: NodeId) {
-        self.slot(id).take();
+        self.entry(id).take();
     }
 
-    /// The place of a node's value.
-    pub fn slot(&mut self, id: NodeId) -> &mut Option<T> {
+    /// The entry of a node, `None` if it has no value yet.
+    pub fn entry(&mut self, id: NodeId) -> &mut Option<T> {
         let page = id.index() / MAP_PAGE;
         if self.pages.len() <= page {
             self.pages.resize(page + 1, None);
@@ -121,7 +122,7 @@ impl<T: Copy> FromIterator<(NodeId, T)> for IdMap<T> {
 #[cfg(test)]
 mod tests {
     use super::{IdMap, IdSet};
-    use crate::NodeId;
+    use crate::node::NodeId;
 
     #[test]
     fn a_set_holds_what_was_put_in() {

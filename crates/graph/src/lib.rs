@@ -1,20 +1,23 @@
 //! Shape instances and typed math in one hash-consed arena, with its evaluators.
 //!
-//! # What
-//!
-//! A [`Graph`] holds nodes of typed math ([`Node`]) and, above them, shape instances ([`Shape`]), each a formula in
-//! its own point that may sample other shapes. Equal nodes are one node. The operations are a closed set: the
-//! derivative, every evaluator and the lowering match it exhaustively.
+//! # What it holds//!
+//! A [`Graph`] holds nodes of typed math ([`Node`]) and, above them, shape instances ([`Shape`]). A
+//! shape is a formula in its own point that may sample other shapes. Equal nodes are stored once.
+//! The operations are a closed set: the derivative, every evaluator and the lowering match them
+//! exhaustively.
 //!
 //! # How
 //!
-//! 1. Nodes are made by typed builders ([`Graph::add`], [`Graph::unary`], …), which fold constants and simplify.
-//! 2. An [`Expander`] turns a shape at a point into flat math, its distance and its material.
+//! 1. Typed builders ([`Graph::add`], [`Graph::unary`], …) make nodes; they fold constants and
+//!    simplify.
+//! 2. An [`Expander`] turns a shape at a point into flat math: its distance and its material.
 //! 3. [`fold_transforms`] turns chains of affine maps into one map.
-//! 4. [`gradient`] derives the field in one reverse sweep; [`adjoints`] gives the shares of a shape's parts.
-//! 5. [`uniforms`] lists what is computed once per frame, [`dump`] shows what there is.
+//! 4. [`gradient`] differentiates the field in one reverse sweep; [`adjoints`] gives the weights by
+//!    which materials mix.
+//! 5. [`uniforms`] lists what is computed once per frame; [`dump`] prints nodes as text.
 //!
-//! The result, a [`Program`], is evaluated by [`eval`] or lowered to a shader.
+//! [`eval`] evaluates the result, a [`Program`], and the crate `sdfc-codegen` lowers it to a
+//! shader.
 //!
 //! ```
 //! use sdfc_graph::eval::{FrameValues, Tape};
@@ -38,56 +41,58 @@
 //!
 //! # Limits
 //!
-//! Simplification is exact over the reals, not bit by bit: `x / 3` becomes `x * (1 / 3)`. Expansion stops at
-//! [`NODE_LIMIT`] nodes. Passes over nodes do not recurse; those over shapes recurse as deep as shapes are nested, on a stack
-//! that grows.
+//! Simplification is exact over the reals, not bit by bit: `x / 3` becomes `x * (1 / 3)`. Expansion
+//! stops at [`NODE_LIMIT`] nodes. Passes over nodes do not recurse. Passes over shapes recurse as
+//! deep as shapes are nested, on a stack that grows.
 
 mod blend;
 mod bounds;
-mod build;
+mod builders;
 mod coefficient;
-mod continuation;
 mod derive;
 mod dump;
 mod enclose;
 pub mod eval;
 mod expand;
+mod extension;
 mod graph;
-mod hoist;
 mod ids;
+mod loop_body;
+mod loops;
 mod node;
 mod polynomial;
 mod program;
 mod range;
-mod repeat;
 mod scene;
 mod shape;
 mod simplify;
 mod transforms;
+mod uniforms;
 mod walk;
 
-pub use blend::{Blend, Blends, blend_at, rebuilt};
+pub use blend::{Blend, Blends, blend_at, substitute};
 pub use bounds::{Bounds, bounds};
 pub use coefficient::Coefficient;
 pub use derive::{adjoints, gradient};
 pub use dump::{dump, operation_count};
 pub use enclose::{enclosure, slope_enclosure};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
-pub use graph::{Arguments, Claim, Graph};
-pub use hoist::uniforms;
+pub use graph::{Arguments, Graph, LipschitzClaim};
 pub use ids::{IdMap, IdSet};
+pub use loop_body::LoopBody;
+pub use loops::{Loop, MAX_LOOP_DEPTH, SkipCondition, Table};
 pub use node::{
-    Binary, Const, Dim, FrameInput, LoopId, MaterialField, Node, NodeId, Place, ShapeId, Stage,
+    Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId, Stage,
     TableId, Ternary, Type, Unary,
 };
-pub use polynomial::{Polynomial, common_square};
-pub use program::{Program, Rays, Visit};
+pub use polynomial::{Polynomial, similarity_scale_squared};
+pub use program::{CullableLoop, Program, Rays};
 pub use range::Range;
-pub use repeat::{Inert, Loop, LoopBody, MAX_LOOP_DEPTH, Table};
 pub use scene::{
     Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
     Settings, Shadow, Sky,
 };
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};
+pub use uniforms::uniforms;
 pub use walk::{reachable, reachable_where};

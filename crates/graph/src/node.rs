@@ -1,13 +1,15 @@
-//! The closed set of operations. A new one does not compile until every evaluator, the
-//! derivative and the lowering have it: none of them has a wildcard arm.
+//! The nodes of the graph: a closed set of operations on typed values.
+//!
+//! No match over the operations has a wildcard arm, so a new operation does not compile until every
+//! evaluator, the derivative and the lowering handle it.
 
-/// A node of the arena. Arguments always have smaller ids than what uses them, so
-/// walking ids upwards visits arguments first.
+/// A handle to a node of the arena. Arguments always have smaller ids than the nodes that use them,
+/// so a loop over ascending ids visits arguments first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct NodeId(pub(crate) u32);
 
 impl NodeId {
-    /// Position in the arena.
+    /// Index in the arena.
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -23,7 +25,7 @@ pub enum Dim {
 }
 
 impl Dim {
-    /// Type of a point of that dimension.
+    /// The type of a point of this dimension.
     pub fn point_type(self) -> Type {
         match self {
             Self::Two => Type::Vec2,
@@ -48,7 +50,7 @@ pub enum Type {
 }
 
 impl Type {
-    /// How many numbers (1 for a truth value).
+    /// Number of lanes (1 for a truth value).
     pub fn width(self) -> usize {
         match self {
             Self::Bool | Self::Scalar => 1,
@@ -58,7 +60,7 @@ impl Type {
         }
     }
 
-    /// The number or vector type of a width from 1 to 4.
+    /// The scalar or vector type of a width from 1 to 4.
     pub fn of_width(width: usize) -> Option<Self> {
         match width {
             1 => Some(Self::Scalar),
@@ -70,7 +72,7 @@ impl Type {
     }
 }
 
-/// A constant: f64 lanes compared by their bits; unused lanes are zero. A truth value is 0 or 1.
+/// A constant: f64 lanes, compared by their bits. Unused lanes are zero. A truth value is 0 or 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Const {
     ty: Type,
@@ -78,7 +80,7 @@ pub struct Const {
 }
 
 impl Const {
-    /// A constant of a type; lanes beyond the type's width are ignored, -0 becomes 0.
+    /// A constant of a type. Lanes beyond the type's width are ignored, and -0 becomes 0.
     pub fn new(ty: Type, lanes: &[f64]) -> Self {
         let mut bits = [0; 4];
         for (bit, lane) in bits.iter_mut().zip(lanes).take(ty.width()) {
@@ -92,29 +94,30 @@ impl Const {
         self.ty
     }
 
-    /// Its lanes; those beyond the width are 0.
+    /// Its lanes; lanes beyond the width are 0.
     pub fn lanes(&self) -> [f64; 4] {
         self.bits.map(f64::from_bits)
     }
 
-    /// The number, if it is one number.
+    /// The number, if the constant is a scalar.
     pub fn scalar(&self) -> Option<f64> {
         (self.ty == Type::Scalar).then(|| self.lanes()[0])
     }
 }
 
-/// Something known once a frame starts.
+/// An input whose value is known once a frame starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FrameInput {
-    /// A param of the scene, by position.
+    /// A param of the scene, by index.
     Param(u32),
     /// Seconds.
     Time,
-    /// Whole number of the frame.
+    /// Number of the frame, a whole number.
     Frame,
 }
 
-/// When a node's value is known; a node's stage is the latest of its arguments'.
+/// The evaluation rate of a node (its binding time): when its value is known. A node's stage is the
+/// latest stage of its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Stage {
     /// When the scene compiles.
@@ -131,11 +134,11 @@ pub enum Stage {
 pub enum Unary {
     Neg,
     Abs,
-    /// -1, 0 or 1.
+    /// -1, 0 or 1
     Sign,
     Floor,
     Ceil,
-    /// Halves to even.
+    /// To the nearest whole number, halves to even
     Round,
     Trunc,
     /// `x - floor(x)`
@@ -159,9 +162,9 @@ pub enum Unary {
     Saturate,
     /// Euclidean length of a vector; a scalar. Its derivative at 0 is 0.
     Length,
-    /// A vector divided by its length; 0 stays 0.
+    /// A vector divided by its length; the zero vector stays zero.
     Normalize,
-    /// Of a truth value.
+    /// Logical negation of a truth value.
     Not,
 }
 
@@ -173,24 +176,25 @@ pub enum Binary {
     Sub,
     Mul,
     Div,
-    /// Floored: `x - y * floor(x / y)`.
+    /// The remainder of a floored division: `x - y * floor(x / y)`.
     Rem,
-    /// On a tie the first argument (matters to derivatives and materials).
+    /// The first argument on a tie, which matters to derivatives and materials.
     Min,
-    /// On a tie the first argument.
+    /// The first argument on a tie.
     Max,
     Pow,
     /// `atan2(y, x)`
     Atan2,
     /// `step(edge, x)`: 0 where `x < edge`, else 1.
     Step,
-    /// `hash(state, x)`: a whole number of 24 bits from another and the whole part of x. Jumps.
+    /// `hash(state, x)`: a whole number of 24 bits, from another one and `floor(x)`. See
+    /// [`crate::eval::hash`].
     Hash,
     /// Scalar product of two vectors.
     Dot,
-    /// Of two 3-vectors.
+    /// Vector product of two 3-vectors.
     Cross,
-    /// Comparisons are of two scalars (or truth values for `Eq`, `Ne`) and give a truth value.
+    /// Comparisons of two scalars (`Eq` and `Ne` also of two truth values) give a truth value.
     Lt,
     Le,
     Eq,
@@ -209,24 +213,24 @@ pub enum Ternary {
     Clamp,
     /// `smoothstep(lo, hi, x)`, componentwise.
     Smoothstep,
-    /// `select(condition, yes, no)`: the condition is one truth value, first.
+    /// `select(condition, yes, no)`; the condition is a single truth value.
     Select,
 }
 
-/// What can be asked of a material. `Color`, `Emission` are 3-vectors, the others scalars.
+/// The properties of a material. `Color` and `Emission` are 3-vectors, the others scalars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum MaterialField {
-    /// Linear base colour.
+    /// Base colour, linear.
     Color,
-    /// 0 unpainted to 1 painted.
+    /// How far a material is set, from 0 (the default material) to 1.
     Coverage,
-    /// 0 mirror to 1 matt.
+    /// From 0 (mirror) to 1 (matt).
     Roughness,
-    /// 0 dielectric to 1 metal.
+    /// From 0 (dielectric) to 1 (metal).
     Metallic,
-    /// Light given off.
+    /// Emitted light, linear.
     Emission,
-    /// 0 dark to 1 open.
+    /// From 0 (no ambient light reaches the surface) to 1 (all of it does).
     Occlusion,
 }
 
@@ -241,13 +245,13 @@ impl MaterialField {
         Self::Occlusion,
     ];
 
-    /// Position in [`MaterialField::ALL`].
+    /// Index in [`MaterialField::ALL`].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// Its value where nothing is painted: light grey, half rough, no metal, no light of its own.
-    pub fn unpainted(self) -> [f64; 4] {
+    /// The value in the default material: light grey, half rough, not metallic, not emissive.
+    pub fn default_value(self) -> [f64; 4] {
         match self {
             Self::Color => [0.8, 0.8, 0.8, 0.0],
             Self::Coverage | Self::Metallic | Self::Emission => [0.0; 4],
@@ -265,38 +269,38 @@ impl MaterialField {
     }
 }
 
-/// A shape instance of the arena.
+/// A handle to a shape instance of the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ShapeId(pub(crate) u32);
 
 impl ShapeId {
-    /// Position in the arena.
+    /// Index in the arena.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A loop of the arena.
+/// A handle to a loop of the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LoopId(pub(crate) u32);
 
-/// A list of constants of the arena.
+/// A handle to a table of constants of the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TableId(pub(crate) u32);
 
 impl TableId {
-    /// Position in the arena.
+    /// Index in the arena.
     pub fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// What a variable of a loop's body stands for.
+/// The meaning of a variable in a loop's body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Place {
-    /// The number of the round, from 0.
-    Round,
-    /// A part of the state as the round finds it, by position.
+pub enum LoopVar {
+    /// The iteration index, from 0.
+    Index,
+    /// A part of the state before the iteration, by index.
     State(u16),
 }
 
@@ -305,7 +309,8 @@ pub enum Place {
 pub enum Node {
     /// A constant.
     Const(Const),
-    /// The point of a formula. A shape built inside another's formula has the next level.
+    /// The point of a formula at a level. A shape that is built inside another shape's formula has
+    /// the next level.
     Point(u16, Dim),
     /// A per-frame input and its type.
     Frame(FrameInput, Type),
@@ -315,28 +320,29 @@ pub enum Node {
     Binary(Binary, NodeId, NodeId),
     /// An operation on three arguments.
     Ternary(Ternary, [NodeId; 3]),
-    /// A vector of equal parts.
+    /// A vector whose lanes are all equal to one scalar.
     Splat(Type, NodeId),
-    /// A vector from its scalar parts; unused places repeat the first.
+    /// A vector composed of scalars; unused entries repeat the first.
     Compose(Type, [NodeId; 4]),
-    /// Components of a vector by index; a scalar for one. Unused places are 0.
+    /// Components of a vector by index; a single component is a scalar. Unused entries are 0.
     Swizzle(Type, NodeId, [u8; 4]),
-    /// `c0 * v.x + c1 * v.y + c2 * v.z` for 3-vectors: columns, then `v`.
+    /// `c0 * v.x + c1 * v.y + c2 * v.z` for 3-vectors: the columns of a matrix, then `v`.
     Transform([NodeId; 3], NodeId),
-    /// A variable in the body of a loop that so many others are around.
-    Variable(u8, Place, Type),
-    /// A part of a loop's state after its last round, by position.
+    /// A variable in the body of the loop that is nested in this many others.
+    Variable(u8, LoopVar, Type),
+    /// A part of a loop's state after its last iteration, by index.
     Loop(LoopId, u16, Type),
-    /// The element of a list at a position, rounded down; before the first the first, past the last the last.
+    /// The element of a table at an index, which is rounded down and clamped to the table.
     Element(TableId, NodeId, Type),
-    /// Distance of a shape at a point; gone after expansion.
+    /// Distance of a shape at a point. Expansion removes it.
     Sample(ShapeId, NodeId),
-    /// Material of a shape at a point; gone after expansion.
+    /// A material property of a shape at a point. Expansion removes it.
     MaterialAt(ShapeId, NodeId, MaterialField),
 }
 
 impl Node {
-    /// Its arguments in order; those of a loop are the loop's ([`crate::Graph::arguments`]).
+    /// The arguments that the node stores itself, in order. A loop's arguments are stored with the
+    /// loop: see [`crate::Graph::arguments`].
     pub(crate) fn own_arguments(&self) -> std::iter::Take<std::array::IntoIter<NodeId, 4>> {
         let unused = NodeId(0);
         let (list, count) = match *self {

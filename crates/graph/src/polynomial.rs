@@ -1,19 +1,23 @@
-//! Polynomials in sines, cosines and other per-frame atoms, reduced by sin² = 1 - cos²: enough to see
-//! that a matrix made of turns by params is a rotation at every value of the params.
+//! Polynomials in sines, cosines and other per-frame atoms, reduced by sin² = 1 - cos². They show
+//! that a matrix built from rotations by params is a rotation for every value of the params.
 
 use std::collections::BTreeMap;
 
-use crate::{Binary, Graph, Node, NodeId, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Unary};
 
-/// More terms than any product of three turns needs; beyond it the question is given up.
+/// Maximum number of terms: more than any product of three rotations needs. Beyond it the analysis
+/// gives up.
 const MAX_TERMS: usize = 256;
-/// Deeper coefficients than three turns in a row make are taken as atoms.
+/// Maximum depth of a coefficient: more than three rotations in a row make. Deeper nodes are taken
+/// as atoms.
 const MAX_DEPTH: u32 = 32;
 
-/// Coefficients of three turns have some dozens of nodes; shared ones count each time they are met.
+/// Maximum number of visited nodes. Coefficients of three rotations have some dozens; shared ones
+/// count each time they are met.
 const MAX_VISITS: u32 = 1024;
 
-/// What a polynomial is made of.
+/// An indeterminate of a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Atom {
     Cos(NodeId),
@@ -21,13 +25,13 @@ enum Atom {
     Other(NodeId),
 }
 
-/// Atoms with their powers, in order.
+/// A product of atoms with their powers.
 type Monomial = BTreeMap<Atom, u32>;
 
-/// What rounding may leave of numbers that cancel, relative to their magnitudes.
+/// Rounding error left where numbers cancel, relative to their magnitudes.
 const ROUNDING: f64 = 1e-12;
 
-/// A coefficient, and the magnitudes of all that was summed into it.
+/// A coefficient, and the sum of the magnitudes of its terms.
 #[derive(Clone, Copy, Debug)]
 struct Coefficient {
     value: f64,
@@ -47,13 +51,14 @@ impl Coefficient {
         Self { value: self.value * other.value, size: self.size * other.size }
     }
 
-    /// Whether it is 0 but for rounding. Params can be as large as they like, so no coefficient is small by itself.
+    /// True if the coefficient is 0 up to rounding. Params can be arbitrarily large, so no
+    /// coefficient is small by itself.
     fn is_zero(self) -> bool {
         self.value.abs() <= ROUNDING * self.size
     }
 }
 
-/// A sum of monomials with coefficients; in lowest terms, so equal polynomials compare equal.
+/// A sum of monomials with coefficients, in normal form, so that equal polynomials compare equal.
 #[derive(Clone, Debug, Default)]
 pub struct Polynomial {
     terms: BTreeMap<Monomial, Coefficient>,
@@ -81,7 +86,7 @@ impl Polynomial {
         Self { terms: BTreeMap::from([(Monomial::from([(atom, 1)]), one)]) }
     }
 
-    /// The polynomial of a scalar node; `None` if it grows too large.
+    /// The polynomial that a scalar node computes; `None` if it grows too large.
     pub fn of(graph: &Graph, node: NodeId) -> Option<Self> {
         Self::of_within(graph, node, MAX_DEPTH, &mut { MAX_VISITS })
     }
@@ -117,7 +122,7 @@ impl Polynomial {
         }
     }
 
-    /// The number, if there is no atom left.
+    /// The number, if the polynomial has no atoms.
     pub fn constant(&self) -> Option<f64> {
         let mut value = 0.0;
         for (monomial, coefficient) in &self.terms {
@@ -134,8 +139,8 @@ impl Polynomial {
     pub fn plus(&self, other: &Self) -> Self {
         let mut sum = self.clone();
         for (monomial, coefficient) in &other.terms {
-            let place = sum.terms.entry(monomial.clone()).or_insert(Coefficient::new(0.0));
-            *place = place.plus(*coefficient);
+            let entry = sum.terms.entry(monomial.clone()).or_insert(Coefficient::new(0.0));
+            *entry = entry.plus(*coefficient);
         }
         sum.terms.retain(|_, coefficient| coefficient.value != 0.0);
         sum
@@ -166,9 +171,10 @@ impl Polynomial {
     }
 }
 
-/// The squared length of the rows of a matrix, if all have the same and any two are orthogonal, whatever the values of the
-/// atoms: the square of the factor of a similarity.
-pub fn common_square(rows: &[[Polynomial; 3]]) -> Option<Polynomial> {
+/// The square of the scale factor of a similarity: the squared length of the matrix's rows, if all
+/// rows have the same length and any two are orthogonal, whatever the values of the atoms. `None`
+/// for other matrices.
+pub fn similarity_scale_squared(rows: &[[Polynomial; 3]]) -> Option<Polynomial> {
     let product = |a: &[Polynomial; 3], b: &[Polynomial; 3]| -> Option<Polynomial> {
         (0..3).try_fold(Polynomial::zero(), |sum, i| Some(sum.plus(&a[i].times(&b[i])?)))
     };
@@ -212,10 +218,10 @@ fn reduced(monomial: Monomial, coefficient: Coefficient) -> Option<Polynomial> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FrameInput, Type};
+    use crate::node::{FrameInput, Type};
 
     #[test]
-    fn coefficients_that_share_nodes_without_end_are_given_up() {
+    fn coefficients_with_too_many_shared_nodes_are_rejected() {
         let mut graph = Graph::new();
         let input = |graph: &mut Graph, i| graph.frame_input(FrameInput::Param(i), Type::Scalar);
         let (mut a, mut b) = (input(&mut graph, 0), input(&mut graph, 1));
@@ -226,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_coefficient_is_not_nothing() {
+    fn a_small_coefficient_is_not_zero() {
         let mut graph = Graph::new();
         let k = graph.frame_input(FrameInput::Param(0), Type::Scalar);
         let small = graph.number(1e-10);
@@ -236,11 +242,11 @@ mod tests {
         let one = Polynomial::number(1.0);
         let rows = [[one.clone(), shear], [Polynomial::zero(), one]]
             .map(|[x, y]| [x, y, Polynomial::zero()]);
-        assert!(common_square(&rows).is_none());
+        assert!(similarity_scale_squared(&rows).is_none());
     }
 
     #[test]
-    fn a_turn_by_a_param_has_rows_of_length_one() {
+    fn a_rotation_by_a_param_has_rows_of_length_one() {
         let mut graph = Graph::new();
         let angle = graph.frame_input(FrameInput::Param(0), Type::Scalar);
         let (c, s) = (graph.unary(Unary::Cos, angle), graph.unary(Unary::Sin, angle));

@@ -1,73 +1,91 @@
-//! A scene ready to be lowered: flat math over one point, nothing left to look up.
+//! A scene ready to be lowered: flat math over one point, without shapes.
 
 use rustc_hash::FxHashMap;
 
-use crate::{Dim, Graph, Inert, NodeId, Param, Settings, enclosure, slope_enclosure, uniforms};
+use crate::enclose::{enclosure, slope_enclosure};
+use crate::graph::Graph;
+use crate::loops::SkipCondition;
+use crate::node::{Dim, NodeId};
+use crate::scene::{Param, Settings};
+use crate::uniforms::uniforms;
 
-/// What of a scene rays meet without marching, and what is left to march. Functions of a ray have its origin as
-/// `Point(0, Dim::Three)` and its direction, of unit length, as `Point(1, Dim::Three)`.
+/// Functions of a ray: what it hits without marching, and what is left to march.
+///
+/// The ray's origin is `Point(0, Dim::Three)`, its direction, of unit length,
+/// `Point(1, Dim::Three)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rays {
-    /// Of a ray: where it is first inside what needs no march, [`crate::FAR`] for nowhere. `None`: all is marched.
-    pub hits: Option<NodeId>,
-    /// Signed distance to what `hits` is about.
-    pub closed: Option<NodeId>,
-    /// Signed distance to all else; `None`: nothing is left. Without `hits` that is `distance`, whatever stands here.
+    /// Distance along the ray to the first analytic hit, [`crate::FAR`] if there is none. `None`:
+    /// everything is marched.
+    pub first_hit: Option<NodeId>,
+    /// Signed distance to the shapes that `first_hit` covers.
+    pub analytic: Option<NodeId>,
+    /// Signed distance to all other shapes; `None` if there are none. Ignored without `first_hit`:
+    /// then `distance` of the program is marched.
     pub marched: Option<NodeId>,
-    /// Of a ray: a vector of where it enters and leaves a box around what is left to march, the first above
-    /// the second where it misses the box. `None`: there is no box.
+    /// `[t_enter, t_leave]` of a box around everything that is marched; `t_enter > t_leave` if the
+    /// ray misses the box. `None`: there is no box.
     pub clip: Option<NodeId>,
-    /// Of a ray: a vector of where it is first inside of what is sampled at its origin, [`crate::FAR`] for nowhere, and of how far
-    /// from the origin nothing else is left to march. `None`: that is not known of all that is left.
+    /// `[t_hit, t_free]`: the first hit with the copies that are sampled at the ray's origin
+    /// ([`crate::FAR`] if none), and the distance within which nothing else needs marching. `None`
+    /// if this is not known for everything that is marched.
     pub copies: Option<NodeId>,
 }
 
-/// A loop of which rays visit only the rounds that can matter to them.
+/// A loop whose iterations can be culled: a ray runs only those that can affect it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Visit {
-    /// What the loop, and those that carry derivatives of it, say of their rounds.
-    pub inert: Inert,
-    /// Three numbers over the round's variable of depth 0, none of which changes by more than the point moves. How far a point is
-    /// from where the round can matter to a ray, or less: where this is above 0 all along a ray, the ray meets the same without the
-    /// round. The round's operand, and before it the operand less what blends reach: where that is above the operand of another
-    /// round, the loop's result is the same without this one.
-    pub ends: NodeId,
-    /// How many rounds there are.
-    pub rounds: u32,
-    /// Whether all between the loop and the field are minima and blends.
-    pub is_joined: bool,
+pub struct CullableLoop {
+    /// The skip condition of the loop and of the loops that carry its derivatives.
+    pub skip: SkipCondition,
+    /// A vec3 of functions of the point and of the iteration index at depth 0, each 1-Lipschitz in
+    /// the point.
+    ///
+    /// `x`: a lower bound on the distance to where the iteration can affect a ray; if it is
+    /// positive all along a ray, the ray hits the same without this iteration. `y`: the operand
+    /// minus the blend radius; where it exceeds another iteration's `z`, the loop's result is the
+    /// same without this iteration. `z`: the operand.
+    pub culling_bounds: NodeId,
+    /// Number of iterations.
+    pub iterations: u32,
+    /// True if only minima and blends lie between the loop and the field.
+    pub is_union_operand: bool,
 }
 
-/// Flat math of one scene. No `Sample`, no `MaterialAt` is reachable from any of the roots;
-/// the only point is `Point(0, Dim::Three)`, but for `range` and `slope_range`.
+/// Flat math of one scene.
+///
+/// No `Sample` and no `MaterialAt` is reachable from any of the roots. The only point is
+/// `Point(0, Dim::Three)`, except in `rays`, `range` and `slope_range`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     /// The arena.
     pub graph: Graph,
-    /// Where in the scene the point of its math is 0. Settings are in the scene's own coordinates.
+    /// The scene position that the math's origin stands for. Settings are in scene coordinates.
     pub origin: [f64; 3],
-    /// Signed distance, already divided where it must be. `None`: nothing is drawn.
+    /// Signed distance, already divided by Lipschitz constants where needed. `None`: nothing is
+    /// drawn.
     pub distance: Option<NodeId>,
-    /// Spatial gradient of `distance`, a 3-vector.
+    /// Gradient of `distance`, a 3-vector.
     pub gradient: Option<NodeId>,
-    /// How rays meet it other than by marching `distance`.
+    /// How rays intersect the scene other than by marching `distance`.
     pub rays: Rays,
-    /// The least and the greatest of `distance` on the stretch from `Point(0, Dim::Three)` to `Point(1, Dim::Three)`, a
-    /// 2-vector; `None` unless [`Program::enclosed`].
+    /// Lower and upper bound of `distance` on the segment from `Point(0, Dim::Three)` to
+    /// `Point(1, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.
     pub range: Option<NodeId>,
-    /// The least and the greatest slope of `distance` on such a stretch along `Point(2, Dim::Three)`, a 2-vector; `None`
-    /// unless [`Program::enclosed`].
+    /// Lower and upper bound of the slope of `distance` on such a segment along the direction
+    /// `Point(2, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.
     pub slope_range: Option<NodeId>,
     /// Material fields in the order of `MaterialField::ALL`; `None` without materials.
     pub material: Option<[NodeId; 6]>,
-    /// Loops of which not all rounds need be visited.
-    pub visits: Vec<Visit>,
-    /// Corners of a box around the surfaces that loops are part of, known per frame, where the scene's own bounds are not that.
-    pub within: Option<[NodeId; 2]>,
-    /// Per-frame nodes that per-point nodes or settings use: evaluated on the CPU, one uniform slot each,
-    /// in this order. As [`crate::uniforms`] lists them: a per-frame `Splat` has none, its argument has.
+    /// Loops whose iterations can be culled.
+    pub cullable_loops: Vec<CullableLoop>,
+    /// Corners of a box around the surfaces that loops are part of, known per frame. `None` where
+    /// the scene's own bounds serve.
+    pub loop_bounds: Option<[NodeId; 2]>,
+    /// Per-frame nodes that per-point nodes or settings use. The CPU evaluates them; each has one
+    /// uniform slot, in this order. See [`crate::uniforms`]: a per-frame `Splat` has no slot, its
+    /// argument has.
     pub uniforms: Vec<NodeId>,
-    /// Names for the generated text, from the script's `let`s and definitions.
+    /// Names for the generated shader source, from the script's `let`s and definitions.
     pub names: FxHashMap<NodeId, String>,
     /// The scene's params.
     pub params: Vec<Param>,
@@ -76,13 +94,14 @@ pub struct Program {
 }
 
 impl Program {
-    /// The program with `range`, with `slope_range`, or with both. Nothing changes where there is no distance.
-    pub fn enclosed(&self, range: bool, slope: bool) -> Self {
+    /// The program with `range` if `value` is set and with `slope_range` if `slope` is set.
+    /// Unchanged if there is no distance.
+    pub fn with_segment_bounds(&self, value: bool, slope: bool) -> Self {
         let mut program = self.clone();
         let Some(distance) = self.distance else { return program };
         let graph = &mut program.graph;
         let [a, b, direction] = [0, 1, 2].map(|level| graph.point(level, Dim::Three));
-        if range {
+        if value {
             let ends = enclosure(graph, distance, a, [a, b]);
             program.range = ends.map(|ends| graph.compose(&ends));
         }
@@ -94,14 +113,14 @@ impl Program {
         program
     }
 
-    /// Everything that a shader of the program computes at its points.
+    /// All nodes that a shader of the program computes per point.
     pub fn roots(&self) -> Vec<NodeId> {
-        // Taken apart so that a new function does not compile until it is thought of here.
-        let Rays { hits, closed, marched, clip, copies } = self.rays;
+        // Destructured so that a new function does not compile until it is handled here.
+        let Rays { first_hit, analytic, marched, clip, copies } = self.rays;
         let fields = [self.distance, self.gradient, self.range, self.slope_range];
-        let rays = [hits, closed, marched, clip, copies];
+        let rays = [first_hit, analytic, marched, clip, copies];
         let material = self.material.into_iter().flatten();
-        let visits = self.visits.iter().map(|visit| visit.ends);
-        fields.into_iter().chain(rays).flatten().chain(material).chain(visits).collect()
+        let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);
+        fields.into_iter().chain(rays).flatten().chain(material).chain(culling_bounds).collect()
     }
 }

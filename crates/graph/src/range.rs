@@ -1,24 +1,24 @@
-//! Conservative ranges of values, in real arithmetic: enough to decide comparisons and selections whose
-//! outcome no point can change.
+//! Conservative ranges of values in real arithmetic. They decide comparisons and selections whose
+//! outcome does not depend on the point.
 
-use crate::eval::HASHES;
-use crate::{Binary, Const, Node, NodeId, Place, Ternary, Unary};
+use crate::eval::HASH_COUNT;
+use crate::node::{Binary, Const, LoopVar, Node, NodeId, Ternary, Unary};
 
-/// Every component lies in `lo..=hi`; infinite ends are open.
+/// An interval `lo..=hi` that contains every component; infinite ends are open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Nothing is less.
+    /// Lower bound.
     pub lo: f64,
-    /// Nothing is greater.
+    /// Upper bound.
     pub hi: f64,
 }
 
 impl Range {
-    /// Nothing is known.
+    /// All numbers.
     pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
-    const POSITIVE: Self = Self { lo: 0.0, hi: f64::INFINITY };
+    const NON_NEGATIVE: Self = Self { lo: 0.0, hi: f64::INFINITY };
 
-    /// Between two ends; where one is not a number, nothing is known.
+    /// The interval between two ends; all numbers if they are out of order or NaN.
     pub fn new(lo: f64, hi: f64) -> Self {
         if lo <= hi { Self { lo, hi } } else { Self::ALL }
     }
@@ -37,7 +37,7 @@ impl Range {
     }
 
     fn mul(self, other: Self) -> Self {
-        // An end is approached, not reached: infinity times 0 is 0 here.
+        // An infinite end is never reached, so infinity times 0 is 0 here.
         let product = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
         let ends = [
             product(self.lo, other.lo),
@@ -55,7 +55,7 @@ impl Range {
         if self.lo > 0.0 || self.hi < 0.0 {
             Self::new(1.0 / self.hi, 1.0 / self.lo)
         } else if self.lo == 0.0 {
-            Self::POSITIVE
+            Self::NON_NEGATIVE
         } else {
             Self::ALL
         }
@@ -89,11 +89,11 @@ fn hull(ranges: impl IntoIterator<Item = Range>) -> Range {
     joined.unwrap_or(Range::ALL)
 }
 
-/// The range of a node, given those of its arguments.
+/// The range of a node, given the ranges of its arguments.
 pub(crate) fn range_of(node: &Node, of: impl Fn(NodeId) -> Range, width: usize) -> Range {
     match *node {
         Node::Const(value) => Range::of_const(&value),
-        Node::Variable(_, Place::Round, _) => Range::POSITIVE,
+        Node::Variable(_, LoopVar::Index, _) => Range::NON_NEGATIVE,
         Node::Point(..)
         | Node::Frame(..)
         | Node::Variable(..)
@@ -105,7 +105,7 @@ pub(crate) fn range_of(node: &Node, of: impl Fn(NodeId) -> Range, width: usize) 
         Node::Binary(op, a, b) => {
             if a == b && matches!(op, Binary::Mul | Binary::Dot) {
                 let square = of(a).abs().map(|x| x * x);
-                return if op == Binary::Dot { Range::POSITIVE } else { square };
+                return if op == Binary::Dot { Range::NON_NEGATIVE } else { square };
             }
             binary(op, of(a), of(b))
         }
@@ -129,8 +129,8 @@ fn unary(op: Unary, a: Range) -> Range {
         Unary::Trunc => a.map(f64::trunc),
         Unary::Fract | Unary::Not => Range::new(0.0, 1.0),
         Unary::Sqrt => a.max(Range::new(0.0, 0.0)).map(f64::sqrt),
-        Unary::InverseSqrt | Unary::Length => Range::POSITIVE,
-        Unary::Exp | Unary::Exp2 => Range::POSITIVE,
+        Unary::InverseSqrt | Unary::Length => Range::NON_NEGATIVE,
+        Unary::Exp | Unary::Exp2 => Range::NON_NEGATIVE,
         Unary::Sin | Unary::Cos | Unary::Tanh | Unary::Normalize => unit,
         Unary::Asin | Unary::Atan => Range::new(-quarter, quarter),
         Unary::Acos => Range::new(0.0, 2.0 * quarter),
@@ -154,10 +154,10 @@ fn binary(op: Binary, a: Range, b: Range) -> Range {
         Binary::Min => a.min(b),
         Binary::Max => a.max(b),
         Binary::Rem if b.lo >= 0.0 => Range::new(0.0, b.hi),
-        Binary::Pow if a.lo >= 0.0 => Range::POSITIVE,
+        Binary::Pow if a.lo >= 0.0 => Range::NON_NEGATIVE,
         Binary::Atan2 => Range::new(-std::f64::consts::PI, std::f64::consts::PI),
         Binary::Rem | Binary::Pow | Binary::Dot | Binary::Cross => Range::ALL,
-        Binary::Hash => Range::new(0.0, HASHES - 1.0),
+        Binary::Hash => Range::new(0.0, HASH_COUNT - 1.0),
         Binary::Step
         | Binary::Lt
         | Binary::Le

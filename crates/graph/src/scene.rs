@@ -1,19 +1,20 @@
-//! A scene: the graph, what is drawn, and how.
+//! A scene: its graph, its root shape, its params and its settings.
 
-use crate::{Graph, NodeId, ShapeId, Type};
+use crate::graph::Graph;
+use crate::node::{NodeId, ShapeId, Type};
 
 /// A param of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
     /// Its name.
     pub name: String,
-    /// What kind of value it takes.
+    /// Kind of its value.
     pub kind: ParamKind,
     /// Type of its node.
     pub ty: Type,
-    /// Its default, as lanes of its type; a choice by its index.
+    /// Its default, as lanes of its type; for a choice, the index.
     pub default: [f64; 4],
-    /// Lowest and highest value where it has a range.
+    /// Lowest and highest value, if it has a range.
     pub range: Option<[f64; 2]>,
     /// Names of the choices.
     pub choices: Vec<String>,
@@ -38,40 +39,40 @@ pub enum ParamKind {
     Choice,
 }
 
-/// How the scene is drawn. Nodes are of stage `Const` or `Frame`, colours linear.
+/// Rendering settings. Nodes are of stage `Const` or `Frame`, colours linear.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// None: fitted to the bounds.
+    /// The camera; `None`: fitted to the bounds.
     pub camera: Option<Camera>,
-    /// None at all: a head light.
+    /// The lights; if empty, a head light.
     pub lights: Vec<Light>,
-    /// Colour of light from everywhere (strength applied).
+    /// Ambient light: colour times strength.
     pub ambient: Option<NodeId>,
-    /// Colour behind everything.
+    /// Background colour.
     pub background: Option<NodeId>,
-    /// Colours behind everything, by direction.
+    /// Background colours by direction.
     pub sky: Option<Sky>,
-    /// What is far away fades.
+    /// Fog.
     pub fog: Option<Fog>,
-    /// Light from everywhere does not reach everything.
+    /// Ambient occlusion.
     pub occlusion: Option<Occlusion>,
-    /// Mirror reflections; none: surfaces show lamps alone.
+    /// Mirror reflections; `None`: surfaces show lights only.
     pub reflections: Option<Reflections>,
-    /// Rays from the eye for each pixel.
+    /// Camera rays per pixel.
     pub samples: Option<u32>,
-    /// How rays are marched.
+    /// Settings of the ray marcher.
     pub march: March,
 }
 
 impl Settings {
-    /// Whether rays from the eye are parallel.
+    /// True if camera rays are parallel (an orthographic camera).
     pub fn is_parallel(&self) -> bool {
         matches!(self.camera.map(|camera| camera.lens), Some(Lens::Height(_)))
     }
 
-    /// All nodes that the settings are made of.
+    /// All nodes that the settings use.
     pub fn nodes(&self) -> Vec<NodeId> {
-        // Taken apart so that a new setting does not compile until it is thought of here.
+        // Destructured so that a new setting does not compile until it is handled here.
         let Self {
             camera,
             lights,
@@ -126,59 +127,59 @@ impl Settings {
 pub struct Camera {
     /// Position, 3-vector.
     pub eye: NodeId,
-    /// What is in the middle of the picture, 3-vector.
+    /// Position in the middle of the picture, 3-vector.
     pub target: NodeId,
     /// Upward direction, 3-vector.
     pub up: NodeId,
-    /// How its rays spread.
+    /// Projection.
     pub lens: Lens,
 }
 
-/// How a camera's rays spread.
+/// A camera's projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lens {
-    /// From one point; vertical field of view, radians.
+    /// Perspective; vertical field of view in radians.
     Fov(NodeId),
-    /// Not at all; height of the picture.
+    /// Orthographic; height of the picture in scene units.
     Height(NodeId),
 }
 
 /// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where its light comes from.
+    /// Kind and position.
     pub source: LightSource,
-    /// Linear colour times strength, 3-vector: of a sun anywhere, of others at distance 1.
+    /// Linear colour times strength, 3-vector: for a sun anywhere, for other lights at distance 1.
     pub color: NodeId,
-    /// Its shadow.
+    /// Kind of its shadow.
     pub shadow: Shadow,
 }
 
-/// Where a light comes from.
+/// Kind and position of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightSource {
-    /// From infinitely far away.
+    /// A directional light, infinitely far away.
     Sun {
-        /// Towards the light, 3-vector, of any length.
+        /// Direction towards the light, 3-vector of any length.
         direction: NodeId,
     },
-    /// From a point, in all directions.
+    /// A point light.
     Point {
-        /// 3-vector.
+        /// Position, 3-vector.
         position: NodeId,
     },
-    /// From a point, in a cone.
+    /// A spot light.
     Spot {
-        /// 3-vector.
+        /// Position, 3-vector.
         position: NodeId,
-        /// A point on the middle of the cone, 3-vector.
+        /// A point on the axis of the cone, 3-vector.
         target: NodeId,
-        /// From the middle of the cone to its edge, radians.
+        /// Angle from the axis of the cone to its edge, in radians.
         angle: NodeId,
     },
 }
 
-/// What is seen where nothing is met.
+/// Background colours by direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sky {
     /// Colour straight up, 3-vector.
@@ -187,71 +188,72 @@ pub struct Sky {
     pub horizon: NodeId,
 }
 
-/// What is far away fades.
+/// Fog, which fades distant surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fog {
-    /// Per length: after a length of 1 / density, 1 / e of a surface's light is left.
+    /// Density per unit of length: after a length of `1 / density`, `1 / e` of a surface's light is
+    /// left.
     pub density: NodeId,
-    /// Colour that it fades to, 3-vector; none: what lies behind.
+    /// Colour that surfaces fade to, 3-vector; `None`: what lies behind.
     pub color: Option<NodeId>,
 }
 
-/// How much of the light from everywhere reaches a surface.
+/// Ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// What is farther away takes no light.
+    /// Occluders farther away than this have no effect.
     pub radius: NodeId,
-    /// 0 for none to 1 for all of it.
+    /// From 0 (no occlusion) to 1 (full).
     pub strength: NodeId,
 }
 
-/// What surfaces mirror of each other.
+/// Mirror reflections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reflections {
-    /// A ray from the eye is mirrored at most so often.
+    /// Maximum number of reflections of a camera ray.
     pub count: u32,
-    /// What is seen after n mirrors counts by the n-th power of this number.
+    /// Light seen after n reflections is multiplied by the n-th power of this number.
     pub strength: NodeId,
 }
 
 /// How a light's shadow is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shadow {
-    /// None.
+    /// No shadow.
     #[default]
     Off,
-    /// Without penumbra.
+    /// A shadow without penumbra.
     Hard,
-    /// Penumbra; the node is its sharpness.
+    /// A shadow with a penumbra; the node is its sharpness.
     Soft(NodeId),
 }
 
-/// `march(...)`: `None` leaves the choice to the compiler.
+/// Settings of the ray marcher, `march(...)` in a scene. `None` leaves the choice to the compiler.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct March {
-    /// At most so many steps a ray.
+    /// Maximum number of steps per ray.
     pub steps: Option<u32>,
-    /// A hit is nearer than this (`fixed`, `sphere`).
+    /// Distance below which a step is a hit (methods `fixed` and `sphere`).
     pub epsilon: Option<f64>,
-    /// A hit is nearer than this, in widths of a pixel there (all other methods).
+    /// Distance below which a step is a hit, in pixel widths at the hit (all other methods).
     pub tolerance: Option<f64>,
-    /// Rays end here.
+    /// Length of a ray.
     pub distance: Option<f64>,
     /// Name of the method.
     pub method: Option<String>,
 }
 
-/// What elaboration yields.
+/// The result of elaborating a script.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Shapes and math.
+    /// The shapes and the math.
     pub graph: Graph,
-    /// All that is drawn, as one solid; `None` if the file draws nothing.
+    /// The union of everything that is drawn; `None` if the file draws nothing.
     pub root: Option<ShapeId>,
-    /// In order of declaration; `FrameInput::Param` counts in it.
+    /// The params in order of declaration; `FrameInput::Param` is an index into them.
     pub params: Vec<Param>,
-    /// Camera, lights, method.
+    /// Camera, lights and ray marcher.
     pub settings: Settings,
-    /// Whether anything states a material: without, no material code is emitted.
-    pub painted: bool,
+    /// True if any shape has a material; otherwise no material code is emitted.
+    pub has_materials: bool,
 }

@@ -1,14 +1,14 @@
 //! Shape instances: the upper level of the arena.
 
-use crate::{Dim, NodeId, ShapeId};
+use crate::node::{Dim, NodeId, ShapeId};
 
-/// Where a ray ends that does not end, in place of infinity, which shaders need not know.
+/// The end of a ray that does not end: a stand-in for infinity, which shaders need not support.
 pub const FAR: f64 = 1e30;
 
-/// What a shape instance was made from; equal arguments make the same instance.
+/// An argument of a shape instance; equal arguments make the same instance.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Arg {
-    /// A number, vector, truth value.
+    /// A number, vector or truth value.
     Node(NodeId),
     /// A shape.
     Shape(ShapeId),
@@ -16,49 +16,53 @@ pub enum Arg {
     List(Vec<Arg>),
     /// A string.
     Text(String),
-    /// A function value; the number is unique to the closure.
+    /// A function value; the number identifies the closure.
     Function(u32),
 }
 
-/// What a field promises on one side of its surface, conditions being truth-valued nodes of
-/// stage `Const` or `Frame`. `None`: not stated.
+/// The promises of a field on one side of its surface. Conditions are truth values of stage `Const`
+/// or `Frame`. `None`: nothing is promised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct SidePromise {
-    /// |f| is the distance.
+    /// `|f|` equals the distance.
     pub exact: Option<NodeId>,
-    /// |f| never exceeds the distance.
+    /// `|f|` never exceeds the distance.
     pub bound: Option<NodeId>,
 }
 
-/// What an instance's clauses state, given exact / bound / 1-Lipschitz children.
+/// What the clauses of an instance state, assuming that its children are exact, bounds or
+/// 1-Lipschitz.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Contract {
-    /// Where the field is positive.
+    /// Promises where the field is positive.
     pub outside: SidePromise,
-    /// Where it is negative.
+    /// Promises where the field is negative.
     pub inside: SidePromise,
-    /// The Lipschitz constant, to be multiplied by max(1, the largest child's).
+    /// The Lipschitz constant, to be multiplied by the maximum of 1 and the children's constants.
     pub lipschitz: Option<NodeId>,
-    /// Whether the constant is stated to hold beyond the bounds too.
+    /// True if the constant is stated to hold beyond the bounds too.
     pub everywhere: bool,
-    /// Whether the constant was found from bounds, so that it holds within those of the shape.
+    /// True if the constant was computed from bounds, so that it holds only within the bounds of
+    /// the shape.
     pub is_local: bool,
-    /// Whether the formula is continued beyond the bounds ([`crate::Graph::continued`]), so that the constant holds there too.
-    pub is_continued: bool,
-    /// Lowest and highest point; `lo > hi` nowhere, infinities allowed.
+    /// True if the formula is extended beyond the bounds ([`crate::Graph::lipschitz_extension`]),
+    /// so that the constant holds there too.
+    pub is_extended: bool,
+    /// Lowest and highest corner of the bounds; `lo > hi` for an empty shape, infinities allowed.
     pub bounds: Option<[NodeId; 2]>,
-    /// Whether the formula is the least of samples, each by itself or cut by its own bounds, and of a value than which nothing that
-    /// is not sampled there is nearer.
+    /// True if the formula is `min(sample..., limit)`: each sample may be intersected with its
+    /// bounds, and `limit` bounds the distance to every copy that is not sampled from below.
     pub copies: bool,
 }
 
-/// Where an instance's material comes from. Fields are in the order of `MaterialField::ALL`.
+/// The origin of an instance's material. Fields are in the order of `MaterialField::ALL`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MaterialRule {
-    /// The shares ∂f/∂sample of this scalar (the formula itself unless stated otherwise).
-    Shares(NodeId),
-    /// Stated field by field, in terms of the instance's point and `MaterialAt` nodes.
-    Stated([NodeId; 6]),
+    /// The samples' materials, weighted by ∂f/∂sample of this scalar (the formula itself unless
+    /// stated otherwise).
+    Weighted(NodeId),
+    /// Stated field by field, over the instance's point and `MaterialAt` nodes.
+    Explicit([NodeId; 6]),
 }
 
 /// One shape instance.
@@ -66,26 +70,29 @@ pub enum MaterialRule {
 pub struct Shape {
     /// Name of its definition.
     pub definition: String,
-    /// Its dimension.
+    /// Dimension of its point.
     pub dim: Dim,
-    /// Level of the `Point` node that its formula is written in.
+    /// Level of the `Point` node of its formula.
     pub level: u16,
     /// Its arguments.
     pub args: Vec<Arg>,
     /// A scalar in `Point(level, dim)`, constants, per-frame inputs and samples.
     pub formula: NodeId,
-    /// What its clauses state.
+    /// Promises of its clauses.
     pub contract: Contract,
-    /// Where it states that a ray is inside: pairs of scalars, enter and exit, in `Point(level)` for the ray's origin and
-    /// `Point(level + 1)` for its direction, of unit length; ends that lie nowhere are at -[`FAR`] and [`FAR`]. The
-    /// ray is inside nowhere else, and nowhere in a pair whose first is above its second. Empty: not stated.
-    pub hits: Vec<[NodeId; 2]>,
+    /// The intervals along a ray that lie inside the shape, as its clause `intersect` states them:
+    /// pairs of scalars, enter and exit.
+    ///
+    /// They are functions of the ray's origin `Point(level)` and its direction `Point(level + 1)`,
+    /// of unit length. Open ends are -[`FAR`] and [`FAR`]. The ray is inside nowhere else, and a
+    /// pair whose first is above its second is empty. No pairs at all: not stated.
+    pub intersect: Vec<[NodeId; 2]>,
     /// Its material.
     pub material: MaterialRule,
     /// The shapes that its formula samples, in order of first use.
     pub children: Vec<ShapeId>,
-    /// Longest chain of children, itself included.
+    /// Length of the longest chain of nested shapes, itself included.
     pub depth: u32,
-    /// The name that the scene gave it by `let`, if one did.
+    /// The name that the scene gave it with `let`, if any.
     pub name: Option<String>,
 }

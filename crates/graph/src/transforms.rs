@@ -1,16 +1,17 @@
-//! Chains of affine maps become one map.
+//! A pass that folds chains of affine maps into one map.
 //!
-//! The pass looks at cones: a node that something other than an affine operation uses, or that several cones use, is
-//! a head; the affine operations that only lead to one head are its cone. What a cone computes is, over the up to
-//! three numbers that it starts from (most often one vector's), a matrix and an offset, whose coefficients are
-//! known before the points. The cheapest form of that replaces the cone, where it is cheaper than the cone:
+//! A node is the *head* of a cone if an operation that is not affine, or several cones, use it. The
+//! affine operations that only lead to one head form its *cone*. A cone computes a matrix times up
+//! to three numbers (most often the components of one vector) plus an offset. The coefficients do
+//! not depend on the point. The cheapest form of that map replaces the cone if it is cheaper:
 //!
-//! - components picked and scaled, and an offset: translations, scales, rotations by right angles;
+//! - selected and scaled components, and an offset: translations, scales, rotations by right
+//!   angles;
 //! - sums of scaled components, row by row: rotations about one axis;
 //! - a `Transform` and an offset: everything else.
 //!
-//! Cost counts operations on single numbers; a `Transform` counts 9, since its additions fuse with its
-//! multiplications. What is shared is a head, hence computed once and never folded into its uses.
+//! Costs count scalar operations; a `Transform` counts 9, since its additions fuse with its
+//! multiplications. A shared node is a head, hence computed once and never folded into its uses.
 
 mod affine;
 mod cone;
@@ -20,20 +21,21 @@ use rustc_hash::FxHashMap;
 
 use self::affine::Affine;
 use self::cone::Cones;
+use crate::graph::Graph;
 use crate::ids::IdMap;
+use crate::node::{Node, NodeId, Stage};
 use crate::walk::reachable;
-use crate::{Graph, Node, NodeId, Stage};
 
-/// Roots after a pass, and what became of the nodes that they were computed from.
+/// The roots after a pass, and the map from old to new nodes.
 #[derive(Clone, Debug, Default)]
 pub struct Rewritten {
-    /// In the order of the roots given.
+    /// The new roots, in the order of the old ones.
     pub roots: Vec<NodeId>,
     nodes: IdMap<NodeId>,
 }
 
 impl Rewritten {
-    /// Names of the old nodes, carried over to the new ones. Constants and points have none.
+    /// Names of the old nodes, transferred to the new ones. Constants and points have none.
     pub fn names(
         &self,
         graph: &Graph,
@@ -52,8 +54,8 @@ impl Rewritten {
     }
 }
 
-/// Replaces every chain of affine maps of one vector by one map, where that takes fewer operations. Best
-/// before the gradient is derived, which then goes through the one map too.
+/// Replaces every chain of affine maps of one vector by one map, where that takes fewer operations.
+/// Best done before the gradient is derived, which then uses the one map too.
 ///
 /// ```
 /// use sdfc_graph::{Dim, Graph, Type, dump, fold_transforms};
@@ -90,7 +92,7 @@ pub fn fold_transforms(graph: &mut Graph, roots: &[NodeId]) -> Rewritten {
 struct Pass<'a> {
     graph: &'a mut Graph,
     cones: Cones,
-    /// Of old nodes, over old bases; only in cones of more than one operation.
+    /// The forms of old nodes, over old atoms; only in cones of more than one operation.
     forms: FxHashMap<NodeId, Affine>,
     new: IdMap<NodeId>,
 }
@@ -113,7 +115,8 @@ impl Pass<'_> {
         self.new.insert(id, new);
     }
 
-    /// A node in a cone worth folding, over what the cone starts from.
+    /// The affine form of a node, over the inputs of its cone; `None` if the cone is not worth
+    /// folding.
     fn form(&mut self, id: NodeId) -> Option<Affine> {
         if !self.cones.is_worth_folding(id) {
             return None;
@@ -128,7 +131,7 @@ impl Pass<'_> {
         })
     }
 
-    /// The cheapest form of a head, if it is cheaper than its cone.
+    /// Builds the cheapest form of a head, if it is cheaper than its cone.
     fn fold(&mut self, id: NodeId, form: Affine) -> Option<NodeId> {
         let form = form.sorted(self.graph)?;
         let plan = emit::plan(&form)?;
@@ -140,7 +143,7 @@ impl Pass<'_> {
         Some(plan.build(self.graph, &atoms?))
     }
 
-    /// What an atom became: components are picked from what their vector became.
+    /// The new node of an atom: components are taken from the new node of their vector.
     fn new_atom(&mut self, atom: NodeId) -> Option<NodeId> {
         if let Node::Swizzle(_, vector, lanes) = self.graph.node(atom) {
             let vector = self.new.get(vector)?;

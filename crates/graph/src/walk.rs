@@ -1,7 +1,8 @@
-//! Walking and copying nodes; what every pass is made of.
+//! Traversing and rebuilding nodes: the base of every pass.
 
+use crate::graph::Graph;
 use crate::ids::IdSet;
-use crate::{Const, Graph, Node, NodeId, Ternary};
+use crate::node::{Const, Node, NodeId, Ternary};
 
 /// The nodes that the roots are computed from, the roots included, in ascending order: arguments
 /// come before their uses.
@@ -9,7 +10,7 @@ pub fn reachable(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     reachable_where(graph, roots, |_| true)
 }
 
-/// As [`reachable`], but the arguments of a node for which `enter` is false are not visited through it.
+/// Like [`reachable`], but does not follow the arguments of nodes for which `enter` is false.
 pub fn reachable_where(
     graph: &Graph,
     roots: &[NodeId],
@@ -22,7 +23,8 @@ pub fn reachable_where(
     })
 }
 
-/// As [`reachable_where`], without what loops compute inside: a loop's arguments are what it reads from outside.
+/// Like [`reachable_where`], without the bodies of loops: the arguments of a loop are the nodes
+/// outside it that it reads.
 pub(crate) fn computed_where(
     graph: &Graph,
     roots: &[NodeId],
@@ -35,10 +37,10 @@ pub(crate) fn computed_where(
     })
 }
 
-/// So many nodes are looked through quicker than marked in a set.
+/// Up to this many nodes, a linear search is faster than a set.
 const FEW: usize = 48;
 
-/// Each node that a step from another leads to, once, in ascending order.
+/// All nodes that `step` leads to from the roots, each once, in ascending order.
 fn visited(roots: &[NodeId], step: impl Fn(NodeId, &mut Vec<NodeId>)) -> Vec<NodeId> {
     let mut pending = roots.to_vec();
     let mut few: Vec<NodeId> = Vec::new();
@@ -62,7 +64,7 @@ fn visited(roots: &[NodeId], step: impl Fn(NodeId, &mut Vec<NodeId>)) -> Vec<Nod
 }
 
 impl Graph {
-    /// Whether a node is computed without a constant that is infinite or no number.
+    /// True if no constant that the node is computed from is infinite or NaN.
     pub fn is_finite(&self, id: NodeId) -> bool {
         reachable(self, &[id]).into_iter().all(|node| {
             let finite = |value: Const| value.lanes().iter().all(|lane| lane.is_finite());
@@ -70,12 +72,12 @@ impl Graph {
         })
     }
 
-    /// The node's operation applied to other arguments, through the typed builders: it may fold or
-    /// simplify to another operation.
+    /// Applies the node's operation to other arguments, through the typed builders. The result may
+    /// be folded or simplified to another operation.
     pub fn rebuild(&mut self, id: NodeId, mut map: impl FnMut(NodeId) -> NodeId) -> NodeId {
         match self.node(id) {
             Node::Const(_) | Node::Point(..) | Node::Frame(..) | Node::Variable(..) => id,
-            Node::Loop(repeated, position, _) => self.rebuild_loop(repeated, position, map),
+            Node::Loop(loop_, position, _) => self.rebuild_loop(loop_, position, map),
             Node::Element(table, at, _) => {
                 let at = map(at);
                 self.element(self.table(table).clone(), at)

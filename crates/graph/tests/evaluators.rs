@@ -4,7 +4,7 @@ mod common;
 
 use common::{each_node, graph, steps};
 use proptest::prelude::*;
-use sdfc_graph::eval::{FrameValues, Interval, Number, Packet, Path, Tape};
+use sdfc_graph::eval::{BranchPath, FrameValues, Interval, Number, Packet, Tape};
 use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
 
 /// Coordinates of all sizes, whole and half ones among them.
@@ -113,7 +113,7 @@ proptest! {
             let tape = Tape::new(&graph, &[root]).unwrap();
             let mut evaluator = tape.prepare::<Interval>(&frame(param));
             let region = ranges.map(|[lo, hi]| Interval::new(lo, hi));
-            let (mut path, mut found) = (Path::default(), Vec::new());
+            let (mut path, mut found) = (BranchPath::default(), Vec::new());
             loop {
                 let range = evaluator.scalar_along(region, &mut path);
                 if path.fork(4) {

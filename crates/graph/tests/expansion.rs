@@ -28,8 +28,8 @@ fn shape_at(
         args: vec![Arg::Node(formula)],
         formula,
         contract: Contract::default(),
-        hits: Vec::new(),
-        material: MaterialRule::Shares(formula),
+        intersect: Vec::new(),
+        material: MaterialRule::Weighted(formula),
         children: children.to_vec(),
         depth,
         name: None,
@@ -70,7 +70,7 @@ fn painted(graph: &mut Graph, child: ShapeId, grey: f64) -> ShapeId {
     stated[1] = graph.number(1.0);
     let shape = Shape {
         definition: format!("painted {grey}"),
-        material: MaterialRule::Stated(stated),
+        material: MaterialRule::Explicit(stated),
         ..graph.shape(id).clone()
     };
     graph.add_shape(shape)
@@ -290,7 +290,7 @@ fn what_nothing_paints_shares_one_constant_material() {
     let material = Expander::new().material(&mut graph, blend, p).unwrap();
     for (id, field) in material.into_iter().zip(MaterialField::ALL) {
         let lanes = graph.as_const(id).map(|value| value.lanes());
-        assert_eq!(lanes, Some(field.unpainted()), "{field:?}");
+        assert_eq!(lanes, Some(field.default_value()), "{field:?}");
     }
 }
 

@@ -5,7 +5,7 @@
 use proptest::prelude::*;
 use sdfc_graph::eval::{Dual, FrameValues, Interval, Packet, Tape};
 use sdfc_graph::{
-    Binary, Dim, Expander, FrameInput, Graph, Loop, Node, NodeId, Place, Table, Type, Unary,
+    Binary, Dim, Expander, FrameInput, Graph, Loop, LoopVar, Node, NodeId, Table, Type, Unary,
     fold_transforms, gradient, uniforms,
 };
 
@@ -100,24 +100,24 @@ fn cases() -> Vec<Case> {
             },
             round: |graph, state, round| {
                 let p = point(graph);
-                let inner = graph.variable(1, Place::State(0), Type::Scalar);
-                let step = graph.variable(1, Place::Round, Type::Scalar);
+                let inner = graph.variable(1, LoopVar::State(0), Type::Scalar);
+                let step = graph.variable(1, LoopVar::Index, Type::Scalar);
                 let y = graph.component(p, 1);
                 let sine = graph.unary(Unary::Sin, inner);
                 let mixed = graph.mul(sine, state[0]);
                 let moved = graph.add(mixed, y);
                 let moved = graph.add(moved, step);
                 let next = graph.add(moved, round);
-                let repeated = Loop {
+                let loop_ = Loop {
                     depth: 1,
-                    cap: 3,
+                    max_iterations: 3,
                     count: None,
-                    go_on: None,
-                    start: vec![state[0]],
-                    next: vec![next],
-                    inert: None,
+                    condition: None,
+                    init: vec![state[0]],
+                    step: vec![next],
+                    skip: None,
                 };
-                let within = graph.repeat(repeated);
+                let within = graph.add_loop(loop_);
                 let tenth = graph.number(0.1);
                 (vec![graph.mul(within[0], tenth)], None)
             },
@@ -145,12 +145,20 @@ fn looped(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
     let start = (case.start)(graph);
     let state: Vec<NodeId> = (0..)
         .zip(&start)
-        .map(|(i, &part)| graph.variable(0, Place::State(i), graph.ty(part)))
+        .map(|(i, &part)| graph.variable(0, LoopVar::State(i), graph.ty(part)))
         .collect();
-    let round = graph.variable(0, Place::Round, Type::Scalar);
-    let (next, go_on) = (case.round)(graph, &state, round);
+    let round = graph.variable(0, LoopVar::Index, Type::Scalar);
+    let (next, condition) = (case.round)(graph, &state, round);
     let count = case.counted.then(|| count(graph));
-    graph.repeat(Loop { depth: 0, cap: case.cap, count, go_on, start, next, inert: None })
+    graph.add_loop(Loop {
+        depth: 0,
+        max_iterations: case.cap,
+        count,
+        condition,
+        init: start,
+        step: next,
+        skip: None,
+    })
 }
 
 fn written_out(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
@@ -158,14 +166,14 @@ fn written_out(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
     let mut running = graph.boolean(true);
     for i in 0..case.cap {
         let round = graph.number(f64::from(i));
-        let (next, go_on) = (case.round)(graph, &state, round);
+        let (next, condition) = (case.round)(graph, &state, round);
         if case.counted {
             let count = count(graph);
             let within = graph.lt(round, count);
             running = graph.binary(Binary::And, running, within);
         }
-        if let Some(go_on) = go_on {
-            running = graph.binary(Binary::And, running, go_on);
+        if let Some(condition) = condition {
+            running = graph.binary(Binary::And, running, condition);
         }
         let pairs = next.into_iter().zip(&state);
         state = pairs.map(|(next, &before)| graph.select(running, next, before)).collect();
@@ -364,17 +372,17 @@ fn what_a_round_reads_per_frame_is_a_uniform() {
 fn a_loop_that_changes_nothing_is_its_start() {
     let mut graph = Graph::new();
     let p = point(&mut graph);
-    let variable = graph.variable(0, Place::State(0), Type::Vec3);
+    let variable = graph.variable(0, LoopVar::State(0), Type::Vec3);
     let still = Loop {
         depth: 0,
-        cap: 8,
+        max_iterations: 8,
         count: None,
-        go_on: None,
-        start: vec![p],
-        next: vec![variable],
-        inert: None,
+        condition: None,
+        init: vec![p],
+        step: vec![variable],
+        skip: None,
     };
-    assert_eq!(graph.repeat(still.clone()), [p]);
+    assert_eq!(graph.add_loop(still.clone()), [p]);
     let zero = graph.constant(Type::Vec3, &[0.0; 3]);
-    assert_eq!(graph.repeat(Loop { cap: 0, next: vec![zero], ..still }), [p]);
+    assert_eq!(graph.add_loop(Loop { max_iterations: 0, step: vec![zero], ..still }), [p]);
 }

@@ -91,8 +91,8 @@ const TWO: [TwoRow; 43] = [
     ("hash", Number::hash, Number::hash, [3.0, -1e30], 14_048_042.0),
     ("hash", Number::hash, Number::hash, [3.0, 1e30], 7_598.0),
     ("hash", Number::hash, Number::hash, [3.0, 2_147_483_520.0], 7_598.0),
-    ("direction", Number::direction, Number::direction, [3.0, 4.0], 0.75),
-    ("direction", Number::direction, Number::direction, [0.0, 0.0], 0.0),
+    ("normalize_lane", Number::normalize_lane, Number::normalize_lane, [3.0, 4.0], 0.75),
+    ("normalize_lane", Number::normalize_lane, Number::normalize_lane, [0.0, 0.0], 0.0),
     ("lt", Number::lt, Number::lt, [1.0, 1.0], 0.0),
     ("lt", Number::lt, Number::lt, [1.0, 2.0], 1.0),
     ("le", Number::le, Number::le, [1.0, 1.0], 1.0),
@@ -229,7 +229,7 @@ fn derivatives_agree_with_differences_away_from_kinks() {
         ("pow", Number::pow, Number::pow),
         ("atan2", Number::atan2, Number::atan2),
         ("step", Number::step, Number::step),
-        ("direction", Number::direction, Number::direction),
+        ("normalize_lane", Number::normalize_lane, Number::normalize_lane),
     ];
     for (name, dual, plain) in two {
         for (x, y) in [(0.7, 1.3), (2.3, 0.4), (0.2, -0.9)] {
@@ -265,7 +265,7 @@ fn derivatives_at_kinks_are_those_stated() {
     assert_eq!(at(0.0, 3.0).saturate().partials[0], 3.0);
     assert_eq!(at(2.0, 1.0).floor().partials[0], 0.0);
     assert_eq!(at(0.0, 1.0).atan2(zero).partials[0], 0.0);
-    assert_eq!(at(0.0, 1.0).direction(zero).partials[0], 0.0);
+    assert_eq!(at(0.0, 1.0).normalize_lane(zero).partials[0], 0.0);
     assert_eq!(at(1.0, 0.0).asin().partials[0], 0.0, "an infinite slope of what stands still");
 }
 

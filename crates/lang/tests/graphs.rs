@@ -100,16 +100,16 @@ fn a_shape_built_at_a_point_has_the_next_level() {
 
 #[test]
 fn only_scenes_that_state_a_material_are_painted() {
-    assert!(!elaborated("sphere(1) | box(1)").scene.painted);
-    assert!(elaborated("sphere(1).color(#f00) | box(1)").scene.painted);
-    assert!(!elaborated("let unused = sphere(1).color(#f00)\nbox(1)").scene.painted);
+    assert!(!elaborated("sphere(1) | box(1)").scene.has_materials);
+    assert!(elaborated("sphere(1).color(#f00) | box(1)").scene.has_materials);
+    assert!(!elaborated("let unused = sphere(1).color(#f00)\nbox(1)").scene.has_materials);
 }
 
 #[test]
 fn a_stated_constant_of_a_function_is_kept_with_its_value() {
     let scene = elaborated("union(sphere(1), box(1), blend: smooth(0.2))").scene;
     let union = root(&scene);
-    let claim = scene.graph.claim_of(union.formula).expect("`smooth` states a constant");
+    let claim = scene.graph.lipschitz_claim(union.formula).expect("`smooth` states a constant");
     assert_eq!(scene.graph.as_number(claim.lipschitz), Some(1.0));
     let point = scene.graph.clone().point(0, sdfc_graph::Dim::Three);
     let samples = union.children.iter().map(|&child| scene.graph.clone().sample(child, point));
@@ -119,7 +119,7 @@ fn a_stated_constant_of_a_function_is_kept_with_its_value() {
     let text = "fn wave(q: vec3, by: number) lipschitz 2 * by = by * sin(q.x + q.y)\n\
                 solid it() = length(p) - 1 - wave(p, 0.25)\nit()";
     let scene = elaborated(text).scene;
-    let claims = scene.graph.ids().filter_map(|id| scene.graph.claim_of(id));
+    let claims = scene.graph.ids().filter_map(|id| scene.graph.lipschitz_claim(id));
     let constants: Vec<_> = claims.map(|claim| scene.graph.as_number(claim.lipschitz)).collect();
     // Of the sine, which changes 1 / 0.25 times as much, and of the product.
     assert_eq!(constants, [Some(2.0), Some(0.5)]);

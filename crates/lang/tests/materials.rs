@@ -24,7 +24,7 @@ fn color(text: &str, at: [f64; 3]) -> [f64; 3] {
 }
 
 fn unpainted() -> [f64; 3] {
-    let [r, g, b, _] = MaterialField::Color.unpainted();
+    let [r, g, b, _] = MaterialField::Color.default_value();
     [r, g, b]
 }
 
@@ -38,7 +38,7 @@ fn how_materials_mix_is_told_only_where_something_is_painted() {
     let is_told = |text: &str| {
         let scene = elaborated(text).scene;
         let root = scene.graph.shape(scene.root.expect("the scene draws something"));
-        root.material != MaterialRule::Shares(root.formula)
+        root.material != MaterialRule::Weighted(root.formula)
     };
     assert!(is_told("intersection(box(1).color(#f00), sphere(0.6))"));
     assert!(!is_told("intersection(box(1), sphere(0.6))"));

@@ -77,7 +77,7 @@ fn gpu_and_cpu_agree() -> Outcome {
         common::occluded(1.0),
         common::parallel(4.0),
     ] {
-        let program = program.enclosed(true, false);
+        let program = program.with_segment_bounds(true, false);
         let view = common::view(&program, size);
         let scene = CpuScene::new(&program)?;
         for method in ["sphere", "auto", "interval"] {
@@ -109,7 +109,7 @@ fn gpu_and_cpu_agree() -> Outcome {
 /// Steps of another length meet other places of a ray, from which its shadow is estimated.
 fn soft_shadows_are_the_same() -> Outcome {
     let gpu = Gpu::new()?;
-    let program = common::soft_shadow(4.0).enclosed(true, true);
+    let program = common::soft_shadow(4.0).with_segment_bounds(true, true);
     let (size, frame) = ([96, 64], FrameValues::default());
     let picture = |method| {
         Ok::<_, Failed>(draw(&gpu, &program, &frame, size, method, TileSize::default())?.image)

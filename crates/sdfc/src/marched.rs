@@ -101,5 +101,9 @@ impl Scene {
 pub(crate) fn with_stretches<'p>(program: &'p Program, name: &str) -> Cow<'p, Program> {
     let calls = |stub| method(name).is_some_and(|method| method.calls(stub));
     let (range, slope) = (calls(stubs::RANGE), calls(stubs::SLOPE_RANGE));
-    if range || slope { Cow::Owned(program.enclosed(range, slope)) } else { Cow::Borrowed(program) }
+    if range || slope {
+        Cow::Owned(program.with_segment_bounds(range, slope))
+    } else {
+        Cow::Borrowed(program)
+    }
 }

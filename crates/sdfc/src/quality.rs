@@ -21,7 +21,7 @@ impl Scene {
         let mut reaches = Vec::new();
         for (site, _) in &sites {
             corners.extend(derived.of(&mut graph, site.shape));
-            reaches.push(derived.reach(&mut graph, site.shape));
+            reaches.push(derived.max_offset(&mut graph, site.shape));
         }
         let corners = evaluate_frame(&graph, &corners, &self.defaults());
         let (corners, _) = corners.as_chunks::<2>();

@@ -120,7 +120,7 @@ impl Scene {
             1 => "one loop".to_owned(),
             count => format!("{count} loops"),
         };
-        let visited = match self.program.visits.is_empty() {
+        let visited = match self.program.cullable_loops.is_empty() {
             true => "rays visit all",
             false => "rays visit what they can meet",
         };

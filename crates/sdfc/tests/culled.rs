@@ -179,7 +179,7 @@ fn differing(scene: &Scene, culled: &Program) -> Result<(usize, String), Failed>
 
 /// The same, with all rounds visited.
 fn whole(culled: &Program) -> Program {
-    Program { visits: Vec::new(), ..culled.clone() }
+    Program { cullable_loops: Vec::new(), ..culled.clone() }
 }
 
 /// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
@@ -206,7 +206,7 @@ fn differ(culled: &Image, whole: &Image) -> Result<(usize, String), Failed> {
 
 fn same_picture(text: &str) -> Result<(), Failed> {
     let scene = scene(text);
-    if scene.program().visits.is_empty() {
+    if scene.program().cullable_loops.is_empty() {
         return Err("nothing is left out".into());
     }
     match differing(&scene, scene.program())? {
@@ -220,10 +220,10 @@ fn missing_rounds_show() -> Result<(), Failed> {
     for text in [hard() + OUTSIDE, chain("smooth(0.15)") + OUTSIDE] {
         let scene = scene(&text);
         let mut program = scene.program().clone();
-        for visit in &mut program.visits {
+        for visit in &mut program.cullable_loops {
             let part = program.graph.number(1.0);
             let part = program.graph.splat(Type::Vec3, part);
-            visit.ends = program.graph.add(visit.ends, part);
+            visit.culling_bounds = program.graph.add(visit.culling_bounds, part);
         }
         let (differing, _) = differing(&scene, &program)?;
         if differing == 0 {
@@ -260,10 +260,10 @@ fn broken_lists_show() -> Result<(), Failed> {
 fn visited_rounds_are_counted() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
     let mut all = scene.program().clone();
-    for visit in &mut all.visits {
+    for visit in &mut all.cullable_loops {
         let near = all.graph.number(-1e3);
         let near = all.graph.splat(Type::Vec3, near);
-        visit.ends = all.graph.add(visit.ends, near);
+        visit.culling_bounds = all.graph.add(visit.culling_bounds, near);
     }
     let plain = benchmark_module(&all, "sphere", FieldSource::Distance)?;
     let plain = frame(&scene, &all, plain)?.image;

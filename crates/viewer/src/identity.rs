@@ -188,7 +188,7 @@ fn pass_of(scene: &Scene, shapes: &[ShapeId], from: u32) -> Option<Tape> {
         let (formula, is_leaf) =
             (graph.shape(shape).formula, graph.shape(shape).children.is_empty());
         let rule = match numbers.get(&shape) {
-            None if !is_leaf => MaterialRule::Shares(formula),
+            None if !is_leaf => MaterialRule::Weighted(formula),
             None => painted(&mut graph, 0),
             Some(number) => painted(&mut graph, *number >> from),
         };
@@ -204,7 +204,7 @@ fn pass_of(scene: &Scene, shapes: &[ShapeId], from: u32) -> Option<Tape> {
 /// A material of digits, the lowest first.
 fn painted(graph: &mut Graph, number: usize) -> MaterialRule {
     let mut digits = (0..DIGITS).map(|digit| (number >> digit & 1) as f64);
-    MaterialRule::Stated(MaterialField::ALL.map(|field| -> NodeId {
+    MaterialRule::Explicit(MaterialField::ALL.map(|field| -> NodeId {
         let mut lanes = [0.0; 4];
         for lane in lanes.iter_mut().take(width(field)) {
             *lane = digits.next().unwrap_or(0.0);

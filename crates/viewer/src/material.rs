@@ -24,7 +24,7 @@ impl Material {
     fn of_fields(fields: &[[f64; 4]]) -> Self {
         let field = |field: MaterialField| fields.get(field.index()).copied().unwrap_or_default();
         let coverage = field(MaterialField::Coverage)[0];
-        let bare = MaterialField::Color.unpainted();
+        let bare = MaterialField::Color.default_value();
         let color = field(MaterialField::Color);
         let painted = |lane: usize| bare[lane] + (color[lane] - bare[lane]) * coverage;
         let byte = |linear: f64| linear_to_srgb8(linear as f32);
@@ -69,7 +69,7 @@ impl Materials {
     /// At points, by all threads; `None` stays `None`.
     pub fn at(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<Material>> {
         let Some(tape) = &self.tape else {
-            let bare = Material::of_fields(&MaterialField::ALL.map(MaterialField::unpainted));
+            let bare = Material::of_fields(&MaterialField::ALL.map(MaterialField::default_value));
             return points.iter().map(|point| point.map(|_| bare)).collect();
         };
         in_parallel(points, || {

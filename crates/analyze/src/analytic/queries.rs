@@ -85,10 +85,10 @@ pub(crate) fn rays(apart: &Parts, fields: &[NodeId], asked: Asked) -> Rays {
     let Asked { hits, clip, copies } = asked;
     let (whole, parts) = (fields.first().copied(), fields.get(1..).unwrap_or_default());
     match (apart.closed.is_empty(), apart.open.is_empty()) {
-        (true, _) => Rays { hits, closed: None, marched: whole, clip, copies },
+        (true, _) => Rays { first_hit: hits, analytic: None, marched: whole, clip, copies },
         (false, is_all) => {
             let marched = parts.get(1).copied().filter(|_| !is_all);
-            Rays { hits, closed: parts.first().copied(), marched, clip, copies }
+            Rays { first_hit: hits, analytic: parts.first().copied(), marched, clip, copies }
         }
     }
 }

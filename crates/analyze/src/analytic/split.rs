@@ -146,8 +146,8 @@ pub(crate) fn unnamed(graph: &mut Graph, formula: NodeId, mut children: Vec<Shap
         args: vec![Arg::Node(formula)],
         formula,
         contract: Contract::default(),
-        hits: Vec::new(),
-        material: MaterialRule::Shares(formula),
+        intersect: Vec::new(),
+        material: MaterialRule::Weighted(formula),
         children,
         depth: depth + 1,
         name: None,
@@ -253,7 +253,7 @@ impl Pass<'_> {
                 chain.push((node, blend, a));
                 break closed;
             }
-            let [before, operand] = blend.in_order(self.graph, &mut self.blends);
+            let [before, operand] = blend.ordered_values(self.graph, &mut self.blends);
             chain.push((node, blend, operand));
             node = before;
         };
@@ -306,7 +306,7 @@ impl Pass<'_> {
 
     /// The intervals that a shape states.
     fn stated(&mut self, shape: ShapeId, place: &Place) -> Result<Option<Known>, ExpandError> {
-        let Shape { hits: stated, level, .. } = self.graph.shape(shape);
+        let Shape { intersect: stated, level, .. } = self.graph.shape(shape);
         if stated.is_empty() || !place.is_of(*level) {
             return Ok(None);
         }

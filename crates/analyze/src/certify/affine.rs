@@ -7,8 +7,8 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Coefficient, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, common_square,
-    reachable,
+    Binary, Coefficient, Graph, Node, NodeId, Polynomial, Stage, Type, Unary, reachable,
+    similarity_scale_squared,
 };
 
 const ZERO: Coefficient = Coefficient::ZERO;
@@ -186,7 +186,8 @@ pub(crate) fn linear_part(
 
 /// Whether the point of `level` does not move the node: known before it is, or from the points of formulas around alone.
 pub(crate) fn is_fixed(graph: &Graph, node: NodeId, level: u16) -> bool {
-    graph.stage(node) < Stage::Point || (graph.levels(node) <= level && graph.loops(node) == 0)
+    graph.stage(node) < Stage::Point
+        || (graph.levels(node) <= level && graph.loops_around(node) == 0)
 }
 
 /// The lanes of a fixed node, the last one repeated.
@@ -255,7 +256,7 @@ pub(crate) fn similarity(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
             Some([x?, y?, z?])
         })
         .collect();
-    let square = common_square(&rows?)?;
+    let square = similarity_scale_squared(&rows?)?;
     if let Some(value) = square.constant() {
         return Some(graph.number(value.sqrt()));
     }

@@ -238,6 +238,6 @@ impl Pass<'_> {
         let value = self.expander.node(self.graph, formula, &inner_points)?;
         let inside = self.quotient(shape, value, constant);
         let one = self.graph.number(1.0);
-        Ok(self.graph.continued(point, nearest, inside, one))
+        Ok(self.graph.lipschitz_extension(point, nearest, inside, one))
     }
 }

@@ -5,7 +5,7 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use sdfc_graph::{
-    Binary, Graph, LoopId, Node, NodeId, Place, Polynomial, ShapeId, Stage, Ternary, Unary,
+    Binary, Graph, LoopId, LoopVar, Node, NodeId, Polynomial, ShapeId, Stage, Ternary, Unary,
     reachable,
 };
 
@@ -102,7 +102,7 @@ impl Slopes {
             components: Components::default(),
         };
         for &node in &nodes {
-            if graph.loops(node) == 0 {
+            if graph.loops_around(node) == 0 {
                 slopes.visit(graph, node, level, shapes);
             }
         }
@@ -140,29 +140,29 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Result<Vec<NodeId>, Reason> {
-        let repeated = graph.repeated(id).clone();
-        if repeated.go_on.is_some() {
+        let repeated = graph.loop_at(id).clone();
+        if repeated.condition.is_some() {
             return Err(Reason::Jump("while"));
         }
-        let start = repeated.start.iter().map(|&part| self.constant(part));
+        let start = repeated.init.iter().map(|&part| self.constant(part));
         let mut known: Vec<NodeId> = start.collect::<Result<_, _>>()?;
-        let body = graph.body(id);
-        for _ in 0..repeated.cap.min(MOST_ROUNDS) {
-            for &node in &body.round {
+        let body = graph.loop_body(id);
+        for _ in 0..repeated.max_iterations.min(MOST_ROUNDS) {
+            for &node in &body.step {
                 if let Node::Variable(_, place, _) = graph.node(node) {
                     let constant = match place {
                         // The same at every point.
-                        Place::Round => graph.number(0.0),
-                        Place::State(position) => known[usize::from(position)],
+                        LoopVar::Index => graph.number(0.0),
+                        LoopVar::State(position) => known[usize::from(position)],
                     };
                     self.constants.insert(node, Ok(constant));
                 } else {
                     self.visit(graph, node, level, shapes);
                 }
             }
-            let next = repeated.next.iter().map(|&part| self.constant(part));
+            let next = repeated.step.iter().map(|&part| self.constant(part));
             let next: Vec<NodeId> = next.collect::<Result<_, _>>()?;
-            for node in &body.round {
+            for node in &body.step {
                 self.constants.remove(node);
             }
             let pairs = known.iter().zip(next);
@@ -172,7 +172,11 @@ impl Slopes {
             }
             known = raised;
         }
-        if repeated.cap <= MOST_ROUNDS { Ok(known) } else { Err(Reason::Unbounded("iterate")) }
+        if repeated.max_iterations <= MOST_ROUNDS {
+            Ok(known)
+        } else {
+            Err(Reason::Unbounded("iterate"))
+        }
     }
 
     /// The constant of a node that the roots reach.
@@ -182,7 +186,7 @@ impl Slopes {
 
     /// The derived constant, or the one that the node's function states if that is better.
     fn with_claim(&self, graph: &mut Graph, node: NodeId, derived: Constant) -> Constant {
-        let Some(claim) = graph.claim_of(node).cloned() else { return derived };
+        let Some(claim) = graph.lipschitz_claim(node).cloned() else { return derived };
         let mut largest = graph.number(0.0);
         for argument in claim.arguments {
             match self.constants.get(&argument) {
@@ -422,7 +426,7 @@ fn with_claimed_arguments(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut roots = roots.to_vec();
     loop {
         let order = reachable(graph, &roots);
-        let claims = order.iter().filter_map(|&node| graph.claim_of(node));
+        let claims = order.iter().filter_map(|&node| graph.lipschitz_claim(node));
         let missing: Vec<NodeId> = claims
             .flat_map(|claim| claim.arguments.iter().copied())
             .filter(|argument| order.binary_search(argument).is_err())

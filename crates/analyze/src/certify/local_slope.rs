@@ -6,7 +6,7 @@
 
 use std::collections::BinaryHeap;
 
-use sdfc_graph::eval::{Evaluator, FrameValues, Interval, Path, Tape};
+use sdfc_graph::eval::{BranchPath, Evaluator, FrameValues, Interval, Tape};
 use sdfc_graph::{Expander, Graph, NodeId, Param, ShapeId, gradient};
 
 /// Scalar operations that one shape's search may take.
@@ -65,7 +65,7 @@ pub(crate) fn steepest_within(
     let mut search = Search {
         field: field.prepare_in(&ranges),
         slope: slope.prepare_in(&ranges),
-        path: Path::default(),
+        path: BranchPath::default(),
         axes: dim.point_type().width(),
     };
     let most = search.run(region, boxes)?;
@@ -112,7 +112,7 @@ impl Ord for Part {
 struct Search<'t> {
     field: Evaluator<'t, Interval>,
     slope: Evaluator<'t, Interval>,
-    path: Path,
+    path: BranchPath,
     axes: usize,
 }
 

@@ -221,8 +221,7 @@ impl Qualities {
                 let one =
                     stated.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l >= 1.0));
                 let exact_beyond = outside == Promise::Exact && one;
-                let said =
-                    contract.everywhere || contract.is_continued || contract.bounds.is_none();
+                let said = contract.everywhere || contract.is_extended || contract.bounds.is_none();
                 (stated, children_everywhere && (confirmed || exact_beyond || said))
             }
             None => (derived, children_everywhere),

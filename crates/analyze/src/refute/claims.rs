@@ -1,7 +1,9 @@
 //! What a function states of its result, held against its values where the scene calls it.
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
-use sdfc_graph::{Bounds, Claim, Dim, Expander, Graph, Node, NodeId, Scene, ShapeId, reachable};
+use sdfc_graph::{
+    Bounds, Dim, Expander, Graph, LipschitzClaim, Node, NodeId, Scene, ShapeId, reachable,
+};
 
 use crate::refute::frames::{ParamValues, axes, frames};
 use crate::refute::probe::Random;
@@ -33,9 +35,13 @@ pub struct LipschitzViolation {
 
 /// Looks for two points that refute what is stated of a function's result, a node. Calls within loops and within what is built anew at
 /// each point are passed over.
-pub fn refute_lipschitz(scene: &Scene, value: NodeId, claim: &Claim) -> Option<LipschitzViolation> {
+pub fn refute_lipschitz(
+    scene: &Scene,
+    value: NodeId,
+    claim: &LipschitzClaim,
+) -> Option<LipschitzViolation> {
     let graph = &mut scene.graph.clone();
-    if graph.levels(value) != 1 || graph.loops(value) > 0 {
+    if graph.levels(value) != 1 || graph.loops_around(value) > 0 {
         return None;
     }
     let shapes = callers(graph, scene.root, value);

@@ -83,7 +83,7 @@ fn asked(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
         expander.node(graph, node, &[p, way]).ok()
     };
     let roots = [field, least(samples)?, least(copies.limits)?];
-    Tape::of_rays(graph, &roots).ok()
+    Tape::for_rays(graph, &roots).ok()
 }
 
 struct Sampler<'t> {

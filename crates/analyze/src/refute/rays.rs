@@ -46,7 +46,7 @@ pub fn refute_intersect<N: Number + Into<f64>>(
     frame: &FrameValues,
     rounding: f64,
 ) -> Option<RayViolation> {
-    let stated = scene.graph.shape(shape).hits.clone();
+    let stated = scene.graph.shape(shape).intersect.clone();
     if stated.is_empty() {
         return None;
     }
@@ -57,7 +57,7 @@ pub fn refute_intersect<N: Number + Into<f64>>(
     let distance = expander.field(graph, shape, rays[0]).ok()?;
     let ends: Option<Vec<NodeId>> =
         stated.as_flattened().iter().map(|&end| expander.node(graph, end, &rays).ok()).collect();
-    let (field, hits) = (Tape::new(graph, &[distance]).ok()?, Tape::of_rays(graph, &ends?).ok()?);
+    let (field, hits) = (Tape::new(graph, &[distance]).ok()?, Tape::for_rays(graph, &ends?).ok()?);
     let ends = sdfc_graph::eval::evaluate_frame(graph, &corners, frame);
     let window = [0, 1].map(|end| [0, 1, 2].map(|axis| cut(ends[end][axis], end)));
     let size = (0..3).map(|axis| window[1][axis] - window[0][axis]).fold(0.0, f64::max);

@@ -123,14 +123,14 @@ fn arguments(
         return None;
     }
     if let Some(blend) = blend_at(graph, blends, id) {
-        let [first, second] = blend.in_order(graph, blends);
+        let [first, second] = blend.ordered_values(graph, blends);
         let before = near.before(graph, blend.width);
         let operand = near.of_chain(graph, blend.width);
         return Some(vec![(first, Some(before)), (second, Some(operand))]);
     }
     if let Node::Loop(repeated, ..) = graph.node(id) {
-        let inert = graph.repeated(repeated).inert?;
-        let start = *graph.repeated(repeated).start.first()?;
+        let inert = graph.loop_at(repeated).skip?;
+        let start = *graph.loop_at(repeated).init.first()?;
         let before = match graph.as_number(inert.margin) {
             Some(0.0) => near.inner(graph),
             _ => near.before(graph, inert.margin),

@@ -51,7 +51,7 @@ pub(super) fn chain(graph: &Graph, blends: &mut Blends, end: NodeId) -> Option<C
     let mut steps = Vec::new();
     let mut value = end;
     while let Some(blend) = blend_at(graph, blends, value) {
-        let [before, operand] = blend.in_order(graph, blends);
+        let [before, operand] = blend.ordered_values(graph, blends);
         steps.push(Step { value, before, operand, width: blend.width });
         value = before;
     }

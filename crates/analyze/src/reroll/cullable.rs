@@ -10,7 +10,7 @@
 //! width k asks for values of up to [`WIDTHS`] k. `near` follows the values near which a surface may lie down to the loops; loops
 //! below anything else are visited whole.
 
-use sdfc_graph::{Graph, Inert, Node, NodeId, Visit, reachable};
+use sdfc_graph::{CullableLoop, Graph, Node, NodeId, SkipCondition, reachable};
 
 use crate::reroll::active_range::{Near, Path, near};
 
@@ -19,15 +19,19 @@ const MOST_LOOPS: usize = 8;
 
 /// The loops that the roots are computed from and whose rounds can be left out, those of most rounds first. `steepest` is the most
 /// that their operands change by where the point moves by 1, if that is known.
-pub(crate) fn visits(graph: &mut Graph, roots: &[NodeId], steepest: Option<f64>) -> Vec<Visit> {
+pub(crate) fn visits(
+    graph: &mut Graph,
+    roots: &[NodeId],
+    steepest: Option<f64>,
+) -> Vec<CullableLoop> {
     let Some(steepest) = steepest else { return Vec::new() };
     let needs = near(graph, roots);
-    let mut found: Vec<(Inert, Option<Near>, u32)> = Vec::new();
+    let mut found: Vec<(SkipCondition, Option<Near>, u32)> = Vec::new();
     for id in reachable(graph, roots) {
         let Node::Loop(repeated, ..) = graph.node(id) else { continue };
-        let repeated = graph.repeated(repeated);
-        let (cap, depth) = (repeated.cap, repeated.depth);
-        let Some(inert) = repeated.inert.filter(|_| depth == 0) else { continue };
+        let repeated = graph.loop_at(repeated);
+        let (cap, depth) = (repeated.max_iterations, repeated.depth);
+        let Some(inert) = repeated.skip.filter(|_| depth == 0) else { continue };
         // Of a hard minimum at the root each operand has been divided by its own constant.
         let is_zero = graph.as_number(inert.margin) == Some(0.0);
         let is_slow = |near: &Near| (is_zero && near.path == Path::Hard) || steepest <= 1.0 + 1e-9;
@@ -40,18 +44,24 @@ pub(crate) fn visits(graph: &mut Graph, roots: &[NodeId], steepest: Option<f64>)
             None => {}
         }
     }
-    let known = |(inert, near, rounds): (Inert, Option<Near>, u32)| Some((inert, near?, rounds));
+    let known =
+        |(inert, near, rounds): (SkipCondition, Option<Near>, u32)| Some((inert, near?, rounds));
     let mut found: Vec<_> = found.into_iter().filter_map(known).collect();
     found.sort_by_key(|&(_, _, rounds)| std::cmp::Reverse(rounds));
     found.truncate(MOST_LOOPS);
-    let visit = |(inert, near, rounds): (Inert, Near, u32)| {
+    let visit = |(inert, near, rounds): (SkipCondition, Near, u32)| {
         let all = near.of_chain(graph, inert.margin);
         let blended = graph.sub(all.hi, near.hi);
         let scale = graph.number(near.scale);
         let operand = graph.mul(inert.operand, scale);
         let (reach, least) = (graph.sub(operand, all.hi), graph.sub(operand, blended));
         let ends = graph.compose(&[reach, least, operand]);
-        Visit { inert, ends, rounds, is_joined: near.path <= Path::Joined }
+        CullableLoop {
+            skip: inert,
+            culling_bounds: ends,
+            iterations: rounds,
+            is_union_operand: near.path <= Path::Joined,
+        }
     };
     found.into_iter().map(visit).collect()
 }

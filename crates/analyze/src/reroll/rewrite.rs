@@ -8,7 +8,9 @@
 //! What is recognised are forms of math, not shapes: `chain` tells what a chain is, `template` what is equal up to constants.
 
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Blends, FAR, Graph, IdMap, IdSet, Inert, Loop, NodeId, Place, Type, rebuilt};
+use sdfc_graph::{
+    Blends, FAR, Graph, IdMap, IdSet, Loop, LoopVar, NodeId, SkipCondition, Type, substitute,
+};
 
 use crate::reroll::chain::{self, Chain};
 use crate::reroll::template::{Skeletons, template};
@@ -80,7 +82,7 @@ enum Part {
     /// A step of a blend, written out: what it makes of the value before.
     Step { step: NodeId, before: NodeId, operand: NodeId },
     /// A loop, as [`template`] made it: what a round computes, and when it is inert.
-    Loop { next: NodeId, inert: Option<Inert>, operands: usize, blended: bool },
+    Loop { next: NodeId, inert: Option<SkipCondition>, operands: usize, blended: bool },
 }
 
 impl Part {
@@ -113,7 +115,7 @@ impl Pass<'_> {
             if !visited.insert(id) {
                 continue;
             }
-            let chain = match plain.contains(id) || self.graph.loops(id) != 0 {
+            let chain = match plain.contains(id) || self.graph.loops_around(id) != 0 {
                 true => None,
                 false => {
                     chain::chain(self.graph, &mut blends, id).filter(|chain| chain.len() >= FEWEST)
@@ -174,9 +176,9 @@ impl Pass<'_> {
     }
 
     fn least_loop(&mut self, operand: NodeId, operands: usize) -> Part {
-        let state = self.graph.variable(0, Place::State(0), Type::Scalar);
+        let state = self.graph.variable(0, LoopVar::State(0), Type::Scalar);
         let next = self.graph.min(state, operand);
-        let inert = Some(Inert { operand, margin: self.graph.number(0.0) });
+        let inert = Some(SkipCondition { operand, margin: self.graph.number(0.0) });
         Part::Loop { next, inert, operands, blended: false }
     }
 
@@ -212,7 +214,7 @@ impl Pass<'_> {
         let made = template(self.graph, &self.skeletons, &[&values, &operands], Some(&before))?;
         let [next, operand] = made[..] else { return None };
         let margin = self.widest(run.iter().map(|step| step.width));
-        let inert = margin.map(|margin| Inert { operand, margin });
+        let inert = margin.map(|margin| SkipCondition { operand, margin });
         Some(Part::Loop { next, inert, operands: run.len(), blended: true })
     }
 
@@ -244,16 +246,23 @@ impl Pass<'_> {
                 }
                 Part::Step { step, before, operand } => {
                     let before = (before, value.unwrap_or(before));
-                    rebuilt(self.graph, step, &[before, (operand, mapped(operand))])
+                    substitute(self.graph, step, &[before, (operand, mapped(operand))])
                 }
                 Part::Loop { next, inert, operands, blended } => {
                     let far = self.graph.number(FAR);
                     let start = value.filter(|_| blended).unwrap_or(far);
                     let cap = operands as u32;
                     let (start, next) = (vec![start], vec![next]);
-                    let repeated =
-                        Loop { depth: 0, cap, count: None, go_on: None, start, next, inert };
-                    let result = self.graph.repeat(repeated)[0];
+                    let repeated = Loop {
+                        depth: 0,
+                        max_iterations: cap,
+                        count: None,
+                        condition: None,
+                        init: start,
+                        step: next,
+                        skip: inert,
+                    };
+                    let result = self.graph.add_loop(repeated)[0];
                     match value.filter(|_| !blended) {
                         Some(value) => self.graph.min(value, result),
                         None => result,

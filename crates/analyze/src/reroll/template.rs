@@ -2,7 +2,8 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Const, Graph, IdMap, Node, NodeId, Place, Stage, Table, Ternary, Type, Unary, reachable,
+    Binary, Const, Graph, IdMap, LoopVar, Node, NodeId, Stage, Table, Ternary, Type, Unary,
+    reachable,
 };
 
 /// More places in one formula than any that is worth a loop.
@@ -235,7 +236,7 @@ impl Merging<'_> {
         let mut values: Vec<NodeId> = Vec::with_capacity(self.places.len());
         for place in &self.places {
             values.push(match place {
-                Spot::State => self.graph.variable(0, Place::State(0), Type::Scalar),
+                Spot::State => self.graph.variable(0, LoopVar::State(0), Type::Scalar),
                 Spot::Same(id) => *id,
                 Spot::Column(number) => reads[*number],
                 Spot::Operation(operation, arguments) => {
@@ -262,7 +263,7 @@ impl Merging<'_> {
                 None => rows.push(vec![number]),
             }
         }
-        let round = self.graph.variable(0, Place::Round, Type::Scalar);
+        let round = self.graph.variable(0, LoopVar::Index, Type::Scalar);
         let mut reads = vec![round; self.columns.len()];
         for row in rows {
             let instances = self.columns[row[0]].len();

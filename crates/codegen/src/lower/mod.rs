@@ -153,7 +153,7 @@ impl<'a> Lowering<'a> {
     /// Computes all nodes that the roots need.
     fn visit_all(&mut self) -> Result<(), Error> {
         let graph = &self.program.graph;
-        let outside = self.uses.take_order().into_iter().filter(|&id| graph.loops(id) == 0);
+        let outside = self.uses.take_order().into_iter().filter(|&id| graph.loops_around(id) == 0);
         self.visit(outside)
     }
 

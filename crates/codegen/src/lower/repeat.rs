@@ -4,7 +4,7 @@ use naga::{
     BinaryOperator, Expression, MathFunction, ScalarKind, Statement, SwizzleComponent,
     UnaryOperator, VectorSize,
 };
-use sdfc_graph::{Inert, LoopId, Node, NodeId, Place, TableId, Type};
+use sdfc_graph::{LoopId, LoopVar, Node, NodeId, SkipCondition, TableId, Type};
 
 use super::{Body, Lowering, Value, hint};
 use crate::{Error, types};
@@ -41,12 +41,12 @@ impl Lowering<'_> {
     }
 
     /// What a variable of a body holds in the round at hand.
-    pub(super) fn variable(&self, id: NodeId, depth: u8, place: Place) -> Result<Value, Error> {
+    pub(super) fn variable(&self, id: NodeId, depth: u8, place: LoopVar) -> Result<Value, Error> {
         let round = self.rounds.get(usize::from(depth)).and_then(Option::as_ref);
         let round = round.ok_or(Error::NotFlat(id))?;
         match place {
-            Place::Round => Ok(round.number),
-            Place::State(position) => {
+            LoopVar::Index => Ok(round.number),
+            LoopVar::State(position) => {
                 round.state.get(usize::from(position)).copied().ok_or(Error::NotFlat(id))
             }
         }
@@ -55,20 +55,20 @@ impl Lowering<'_> {
     /// Writes a loop. Its state is in variables, which each round reads first and sets last.
     fn repeat(&mut self, id: LoopId) -> Result<Vec<Value>, Error> {
         let graph = &self.program.graph;
-        let (repeated, body) = (graph.repeated(id).clone(), graph.body(id));
-        let listed = self.listed(repeated.inert);
+        let (repeated, body) = (graph.loop_at(id).clone(), graph.loop_body(id));
+        let listed = self.listed(repeated.skip);
         let (first, limit, ty, name) = match &listed {
             Some(listed) => {
                 (listed.first, listed.end, types::words(self.types, Type::Scalar), "at")
             }
             None => {
-                let limit = self.limit(repeated.cap, repeated.count)?;
+                let limit = self.limit(repeated.max_iterations, repeated.count)?;
                 (self.body.literal(0.0), limit, types::value(self.types, Type::Scalar), "i")
             }
         };
         let counter = self.body.variable("round", ty);
         self.body.store(counter, first);
-        let state = self.state(&repeated.start)?;
+        let state = self.state(&repeated.init)?;
 
         self.body.open_loop();
         let matrices = self.matrices.clone();
@@ -78,20 +78,20 @@ impl Lowering<'_> {
         let is_listed = listed.is_some();
         let visited = listed.and_then(|_| self.listed_round(counted));
         let number = visited.map_or(counted, |(number, _)| number);
-        let listed = visited.map(|(_, word)| (word, repeated.cap));
+        let listed = visited.map(|(_, word)| (word, repeated.max_iterations));
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
         let depth = usize::from(repeated.depth);
         self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
         self.rounds[depth] = Some(Round { number, listed, state: read });
         self.visit_needed(&body.condition)?;
-        if let Some(go_on) = repeated.go_on {
+        if let Some(go_on) = repeated.condition {
             let go_on = self.value(go_on)?;
             let not = Expression::Unary { op: UnaryOperator::LogicalNot, expr: go_on };
             let ends = self.body.compute(not, &[go_on]);
             self.body.break_if(ends);
         }
-        self.visit_needed(&body.round)?;
-        let next = repeated.next.iter().map(|&part| self.value(part));
+        self.visit_needed(&body.step)?;
+        let next = repeated.step.iter().map(|&part| self.value(part));
         let next: Vec<Value> = next.collect::<Result<_, _>>()?;
         for (&(variable, _), next) in state.iter().zip(next) {
             self.body.store(variable, next);
@@ -103,7 +103,7 @@ impl Lowering<'_> {
 
         self.rounds[depth] = None;
         self.matrices = matrices;
-        self.forget(body.condition.iter().chain(&body.round));
+        self.forget(body.condition.iter().chain(&body.step));
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
     }
 
@@ -117,7 +117,7 @@ impl Lowering<'_> {
     }
 
     /// Where the rounds to visit are listed, if they are. Lists tell of places: a function of a whole ray visits all rounds.
-    fn listed(&mut self, inert: Option<Inert>) -> Option<Listed> {
+    fn listed(&mut self, inert: Option<SkipCondition>) -> Option<Listed> {
         let is_of_a_place = self.arguments.len() == 1;
         let visits = self.inputs.visits.as_ref().filter(|_| is_of_a_place)?;
         let (spans, number, visited) = (visits.spans, visits.number(inert)?, visits.visited);
@@ -224,7 +224,7 @@ impl Lowering<'_> {
 
     /// The number of the round at hand as a word, if that is what a node is and it is at most `last`.
     fn word_of_round(&self, at: NodeId, last: u32) -> Option<Value> {
-        let Node::Variable(depth, Place::Round, _) = self.program.graph.node(at) else {
+        let Node::Variable(depth, LoopVar::Index, _) = self.program.graph.node(at) else {
             return None;
         };
         let round = self.rounds.get(usize::from(depth))?.as_ref()?;

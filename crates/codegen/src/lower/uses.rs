@@ -21,7 +21,7 @@ impl Uses {
         let order = needed(graph, roots, inputs);
         let (mut counts, mut kept) = (IdMap::default(), FxHashSet::default());
         let add = |counts: &mut IdMap<u32>, id, times| {
-            *counts.slot(id).get_or_insert_default() += times;
+            *counts.entry(id).get_or_insert_default() += times;
         };
         for &root in roots {
             add(&mut counts, root, 1);
@@ -36,7 +36,7 @@ impl Uses {
                 let as_word =
                     position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
                 add(&mut counts, operand, if as_word { 0 } else { times });
-                if graph.loops(id) & !graph.loops(operand) != 0 {
+                if graph.loops_around(id) & !graph.loops_around(operand) != 0 {
                     keep(graph, operand, &mut kept);
                 }
             }

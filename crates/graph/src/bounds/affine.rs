@@ -1,25 +1,26 @@
-//! Recognising affine maps of the point, and boxes seen through them.
+//! Recognising affine maps of the point, and mapping boxes back through them.
 
 use rustc_hash::FxHashMap;
 
-use super::Deriver;
+use super::deriver::Deriver;
 use super::ends::Ends;
 use super::zone::Zone;
-use crate::polynomial::{Polynomial, common_square};
-use crate::{Binary, Dim, Node, NodeId, Unary, reachable};
+use crate::node::{Binary, Dim, Node, NodeId, Unary};
+use crate::polynomial::{Polynomial, similarity_scale_squared};
+use crate::walk::reachable;
 
-/// `slopes · p + offset`, in scalar nodes that do not depend on p.
+/// `slopes · p + offset`, where slopes and offset are scalars that do not depend on p.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Form {
     slopes: [NodeId; 3],
     offset: NodeId,
 }
 
-/// The forms of a node's lanes, `None` where a lane is not affine.
+/// The affine forms of a node's lanes; `None` where a lane is not affine.
 type Forms = [Option<Form>; 4];
 
 impl Deriver<'_> {
-    /// The point q as an affine map of the point of a level, by lane.
+    /// The node q as an affine map of the point of a level, by lane.
     pub(super) fn affine(&mut self, q: NodeId, level: u16) -> Forms {
         let mut known: FxHashMap<NodeId, Forms> = FxHashMap::default();
         for id in reachable(self.graph, &[q]) {
@@ -52,9 +53,9 @@ impl Deriver<'_> {
             Node::Binary(op, a, b) => self.lanes(width, |this, i| {
                 let (a, b) = (get(a, i)?, get(b, i)?);
                 if op == Binary::Add {
-                    Some(this.summed(a, b))
+                    Some(this.form_sum(a, b))
                 } else if op == Binary::Sub {
-                    Some(this.differing(a, b))
+                    Some(this.form_difference(a, b))
                 } else if op == Binary::Mul {
                     this.product(a, b)
                 } else if op == Binary::Div && this.is_uniform(b) {
@@ -71,7 +72,7 @@ impl Deriver<'_> {
                 let mut sum = this.uniform(zero);
                 for (j, column) in columns.into_iter().enumerate() {
                     let term = this.product(get(column, row)?, get(v, j)?)?;
-                    sum = this.summed(sum, term);
+                    sum = this.form_sum(sum, term);
                 }
                 Some(sum)
             }),
@@ -117,12 +118,12 @@ impl Deriver<'_> {
         self.map(form, |this, part| this.graph.end_product(part, factor))
     }
 
-    fn summed(&mut self, a: Form, b: Form) -> Form {
+    fn form_sum(&mut self, a: Form, b: Form) -> Form {
         let slopes = [0, 1, 2].map(|i| self.graph.end_sum(a.slopes[i], b.slopes[i]));
         Form { slopes, offset: self.graph.end_sum(a.offset, b.offset) }
     }
 
-    fn differing(&mut self, a: Form, b: Form) -> Form {
+    fn form_difference(&mut self, a: Form, b: Form) -> Form {
         let slopes = [0, 1, 2].map(|i| self.graph.end_difference(a.slopes[i], b.slopes[i]));
         Form { slopes, offset: self.graph.end_difference(a.offset, b.offset) }
     }
@@ -137,19 +138,20 @@ impl Deriver<'_> {
         }
     }
 
-    /// Whether each axis of the image follows one axis of the point.
+    /// True if each axis of the image depends on exactly one axis of the point.
     pub(super) fn is_along_axes(&self, rows: &Forms, dim: Dim) -> bool {
-        let is_one = |row: &Option<Form>| row.is_some_and(|form| self.steep(form).count() == 1);
+        let is_one =
+            |row: &Option<Form>| row.is_some_and(|form| self.varying_axes(form).count() == 1);
         rows[..dim.point_type().width()].iter().all(is_one)
     }
 
     /// The axes along which a form changes.
-    fn steep(&self, form: Form) -> impl Iterator<Item = usize> {
+    fn varying_axes(&self, form: Form) -> impl Iterator<Item = usize> {
         (0..3).filter(move |&axis| !self.graph.is_number(form.slopes[axis], 0.0))
     }
 
-    /// A box that holds every p whose image lies in the target. Rows of one slope bound one axis each; a
-    /// square map of more is turned back whole if it is rigid or constant.
+    /// A box that contains every p whose image lies in the target. Rows with one slope bound one
+    /// axis each. A square map with more slopes is inverted as a whole if it is rigid or constant.
     pub(super) fn preimage(&mut self, target: Zone, rows: &Forms, from: Dim, to: Dim) -> Zone {
         let mut zone = Zone::everywhere(self.graph);
         zone.tight = target.tight;
@@ -160,8 +162,8 @@ impl Deriver<'_> {
                 zone.tight = false;
                 continue;
             };
-            let moved = self.shifted(ends, form.offset);
-            let axes: Vec<usize> = self.steep(form).collect();
+            let moved = self.subtracted(ends, form.offset);
+            let axes: Vec<usize> = self.varying_axes(form).collect();
             if let [axis] = axes[..] {
                 let ends = self.divided(moved, form.slopes[axis]);
                 zone.axes[axis] = self.graph.common_ends(zone.axes[axis], ends);
@@ -184,11 +186,11 @@ impl Deriver<'_> {
         }
     }
 
-    fn shifted(&mut self, ends: Ends, offset: NodeId) -> Ends {
+    fn subtracted(&mut self, ends: Ends, offset: NodeId) -> Ends {
         ends.map(|end| self.graph.end_difference(end, offset))
     }
 
-    /// The range over a slope; all numbers where the slope may be 0.
+    /// The interval divided by a slope; all numbers where the slope may be 0.
     fn divided(&mut self, [lo, hi]: Ends, slope: NodeId) -> Ends {
         let range = self.range(slope);
         let (positive, negative) = (range.lo() > 0.0, range.hi() < 0.0);
@@ -205,7 +207,7 @@ impl Deriver<'_> {
         if positive { [a, b] } else { [b, a] }
     }
 
-    /// The rows of the inverse map's linear part.
+    /// The rows of the linear part of the inverse map.
     fn inverse(&mut self, rows: &[Form]) -> Option<Vec<[NodeId; 3]>> {
         let n = rows.len();
         let numbers: Option<Vec<[f64; 3]>> = rows
@@ -224,30 +226,30 @@ impl Deriver<'_> {
         let zero = self.graph.number(0.0);
         let transposed = |i: usize| {
             let mut row = [zero; 3];
-            for (place, form) in row.iter_mut().zip(rows) {
-                *place = form.slopes[i];
+            for (entry, form) in row.iter_mut().zip(rows) {
+                *entry = form.slopes[i];
             }
             row
         };
         self.is_rigid(rows).then(|| (0..n).map(transposed).collect())
     }
 
-    /// Whether the rows are orthonormal whatever the params are.
+    /// True if the rows are orthonormal for all values of the params.
     fn is_rigid(&self, rows: &[Form]) -> bool {
         let polynomials = |row: &Form| {
             let [x, y, z] = row.slopes.map(|slope| Polynomial::of(self.graph, slope));
             Some([x?, y?, z?])
         };
         let rows: Option<Vec<_>> = rows.iter().map(polynomials).collect();
-        let square = rows.and_then(|rows| common_square(&rows)?.constant());
+        let square = rows.and_then(|rows| similarity_scale_squared(&rows)?.constant());
         square.is_some_and(|square| (square - 1.0).abs() < 1e-12)
     }
 
-    /// The box around the target, taken back by the offsets and through a linear map.
+    /// The box around the target, after subtracting the offsets and applying a linear map.
     fn image(&mut self, target: Zone, rows: &[[NodeId; 3]], offsets: [NodeId; 3]) -> Zone {
         let mut zone = Zone::everywhere(self.graph);
         zone.tight = target.tight;
-        let sides = [0, 1, 2].map(|j| self.shifted(target.axes[j], offsets[j]));
+        let sides = [0, 1, 2].map(|j| self.subtracted(target.axes[j], offsets[j]));
         for (axis, row) in zone.axes.iter_mut().zip(rows) {
             let zero = self.graph.number(0.0);
             let mut sum = [zero; 2];
@@ -270,13 +272,13 @@ impl Deriver<'_> {
     }
 }
 
-/// The inverse of a map of 2 or 3 rows, the identity beyond them; `None` if it flattens.
+/// The inverse of a matrix of 2 or 3 rows, padded with the identity; `None` if it is singular.
 fn invert(rows: &[[f64; 3]]) -> Option<[[f64; 3]; 3]> {
     let mut m = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    for (place, row) in m.iter_mut().zip(rows) {
-        *place = *row;
+    for (entry, row) in m.iter_mut().zip(rows) {
+        *entry = *row;
     }
-    // Cofactors, cyclic indices giving their signs.
+    // Cofactors; the cyclic indices give their signs.
     let cofactor = |i: usize, j: usize| {
         let (a, b, c, d) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
         m[a][c] * m[b][d] - m[a][d] * m[b][c]

@@ -1,8 +1,10 @@
-//! Ends of ranges as nodes. Constants may be infinite here, which folding elsewhere leaves alone.
+//! Arithmetic on the ends of intervals, as nodes. Constants may be infinite here, which folding
+//! leaves alone elsewhere.
 
-use crate::{Binary, Graph, Node, NodeId};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId};
 
-/// A range from a lower to an upper end, both scalar nodes.
+/// An interval: its lower and its upper end, both scalar nodes.
 pub(super) type Ends = [NodeId; 2];
 
 impl Graph {
@@ -11,7 +13,7 @@ impl Graph {
         [self.number(f64::NEG_INFINITY), self.number(f64::INFINITY)]
     }
 
-    /// One component of a vector, looking through what it was composed of.
+    /// One component of a vector, looking through `Compose`, `Splat` and constants.
     pub(super) fn lane(&mut self, vector: NodeId, lane: usize) -> NodeId {
         match self.node(vector) {
             Node::Const(value) if value.ty().width() > 1 => self.number(value.lanes()[lane]),
@@ -33,12 +35,12 @@ impl Graph {
         }
     }
 
-    /// Whether the node is this constant.
+    /// True if the node is this constant.
     pub(super) fn is_number(&self, id: NodeId, value: f64) -> bool {
         self.as_number(id) == Some(value)
     }
 
-    /// Whether the node is an infinite constant.
+    /// True if the node is an infinite constant.
     pub(super) fn is_infinite(&self, id: NodeId) -> bool {
         self.as_number(id).is_some_and(f64::is_infinite)
     }
@@ -122,7 +124,7 @@ impl Graph {
         }
     }
 
-    /// What two ranges have in common.
+    /// The intersection of two intervals.
     pub(super) fn common_ends(&mut self, [lo, hi]: Ends, [other_lo, other_hi]: Ends) -> Ends {
         [self.end_max(lo, other_lo), self.end_min(hi, other_hi)]
     }

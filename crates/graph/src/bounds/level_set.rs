@@ -1,33 +1,16 @@
-//! Where a formula does not exceed a level, rule by rule.
+//! The box where a formula does not exceed a limit, rule by rule.
 //!
-//! The level travels down: what of `a - r` lies below c is what of a lies below `c + r`. So operators of
-//! known form are exact, and only leaves and operators without a rule are searched.
+//! The limit travels down: `a - r` is below c where a is below `c + r`. So operators of known form
+//! are exact, and only leaves and operators without a rule are searched.
 
-use super::Deriver;
+use super::deriver::{Deriver, Query, RED_ZONE, STACK_STEP};
 use super::zone::Zone;
-use crate::{Binary, Dim, Node, NodeId, ShapeId, SidePromise, Stage, Ternary, Unary, blend_at};
-
-/// What is asked of a formula. Equal questions have equal answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Question {
-    /// A scalar.
-    pub(super) node: NodeId,
-    /// A scalar that no point of the formula changes.
-    pub(super) limit: NodeId,
-    /// Level of the formula's point.
-    pub(super) level: u16,
-    /// Dimension of the formula's point.
-    pub(super) dim: Dim,
-    /// Asks for the points where the node is not below the limit instead of not above.
-    pub(super) above: bool,
-}
-
-/// Room for one step of the recursion, and what the stack grows by where there is less.
-pub(super) const RED_ZONE: usize = 128 * 1024;
-pub(super) const STACK_STEP: usize = 4 * 1024 * 1024;
+use crate::blend::blend_at;
+use crate::node::{Binary, Node, NodeId, ShapeId, Stage, Ternary, Unary};
+use crate::shape::SidePromise;
 
 impl Deriver<'_> {
-    /// A box that holds the points where a shape's field is not above the limit.
+    /// A box that contains the points where a shape's field is not above the limit.
     pub(super) fn shape_zone(&mut self, shape: ShapeId, limit: NodeId) -> Zone {
         if let Some(&zone) = self.memo.shapes.get(&(shape, limit)) {
             return zone;
@@ -51,10 +34,11 @@ impl Deriver<'_> {
                 return zone.grown(self.graph, limit);
             }
         }
-        self.zone(Question { node: formula, limit, level, dim, above: false })
+        self.zone(Query { node: formula, limit, level, dim, above: false })
     }
 
-    /// Whether a shape's field is the distance for all values of the params, as it states given that its children's are.
+    /// True if a shape's field equals the distance for all values of the params. Shapes state that
+    /// on condition that their children's fields do.
     fn is_exact(&mut self, id: ShapeId) -> bool {
         if let Some(&known) = self.memo.exact.get(&id) {
             return known;
@@ -71,34 +55,32 @@ impl Deriver<'_> {
         is_exact
     }
 
-    /// A box that holds the points that a question asks for.
-    pub(super) fn zone(&mut self, question: Question) -> Zone {
-        if let Some(&zone) = self.memo.questions.get(&question) {
+    /// A box that contains the points that a query asks for.
+    pub(super) fn zone(&mut self, query: Query) -> Zone {
+        if let Some(&zone) = self.memo.queries.get(&query) {
             return zone;
         }
-        let zone = stacker::maybe_grow(RED_ZONE, STACK_STEP, || self.derive(question));
-        self.memo.questions.insert(question, zone);
+        let zone = stacker::maybe_grow(RED_ZONE, STACK_STEP, || self.derive(query));
+        self.memo.queries.insert(query, zone);
         zone
     }
 
-    fn derive(&mut self, question: Question) -> Zone {
-        let Question { node, above, .. } = question;
-        if self.is_fixed(node, question) {
-            return self.fixed(question);
+    fn derive(&mut self, query: Query) -> Zone {
+        let Query { node, above, .. } = query;
+        if self.is_fixed(node, query) {
+            return self.fixed(query);
         }
         match self.graph.node(node) {
             Node::Unary(Unary::Neg, a) => {
-                let limit = self.graph.end_negated(question.limit);
-                self.zone(Question { node: a, limit, above: !above, ..question })
+                let limit = self.graph.end_negated(query.limit);
+                self.zone(Query { node: a, limit, above: !above, ..query })
             }
-            Node::Unary(Unary::Abs, a) if !above => {
-                self.zone(Question { node: a, ..question }).loose()
-            }
-            Node::Unary(..) => self.opaque(question),
-            Node::Binary(op, a, b) => self.binary(question, op, a, b),
+            Node::Unary(Unary::Abs, a) if !above => self.zone(Query { node: a, ..query }).loose(),
+            Node::Unary(..) => self.opaque(query),
+            Node::Binary(op, a, b) => self.binary(query, op, a, b),
             Node::Ternary(Ternary::Select, [condition, yes, no]) => {
-                let yes = self.zone(Question { node: yes, ..question });
-                let no = self.zone(Question { node: no, ..question });
+                let yes = self.zone(Query { node: yes, ..query });
+                let no = self.zone(Query { node: no, ..query });
                 if self.graph.stage(condition) <= Stage::Frame {
                     yes.select(self.graph, condition, no)
                 } else {
@@ -106,12 +88,12 @@ impl Deriver<'_> {
                 }
             }
             Node::Sample(shape, at) if !above => {
-                let zone = self.shape_zone(shape, question.limit);
-                let rows = self.affine(at, question.level);
+                let zone = self.shape_zone(shape, query.limit);
+                let rows = self.affine(at, query.level);
                 let to = self.graph.shape(shape).dim;
-                self.preimage(zone, &rows, question.dim, to)
+                self.preimage(zone, &rows, query.dim, to)
             }
-            Node::Sample(..) => Zone::everywhere(self.graph), // the outside of a shape has no bounds
+            Node::Sample(..) => Zone::everywhere(self.graph), // the outside of a shape is unbounded
             Node::Const(_)
             | Node::Point(..)
             | Node::Frame(..)
@@ -123,17 +105,17 @@ impl Deriver<'_> {
             | Node::Variable(..)
             | Node::Loop(..)
             | Node::Element(..)
-            | Node::MaterialAt(..) => self.opaque(question),
+            | Node::MaterialAt(..) => self.opaque(query),
         }
     }
 
-    fn binary(&mut self, question: Question, op: Binary, a: NodeId, b: NodeId) -> Zone {
-        let (fixed_a, fixed_b) = (self.is_fixed(a, question), self.is_fixed(b, question));
-        let Question { limit, above, .. } = question;
-        let on = |node, limit| Question { node, limit, ..question };
+    fn binary(&mut self, query: Query, op: Binary, a: NodeId, b: NodeId) -> Zone {
+        let (fixed_a, fixed_b) = (self.is_fixed(a, query), self.is_fixed(b, query));
+        let Query { limit, above, .. } = query;
+        let on = |node, limit| Query { node, limit, ..query };
         if op == Binary::Min || op == Binary::Max {
             let (first, second) = (self.zone(on(a, limit)), self.zone(on(b, limit)));
-            // A minimum is below the limit where either is, a maximum where both are.
+            // A minimum is below the limit where either operand is, a maximum where both are.
             return if (op == Binary::Min) == above {
                 first.overlap(self.graph, second)
             } else {
@@ -151,7 +133,7 @@ impl Deriver<'_> {
         }
         if op == Binary::Sub && fixed_a {
             let limit = self.graph.end_difference(a, limit);
-            return self.zone(Question { above: !above, ..on(b, limit) });
+            return self.zone(Query { above: !above, ..on(b, limit) });
         }
         if op == Binary::Mul && (fixed_a || fixed_b) {
             let (rest, factor) = if fixed_b { (a, b) } else { (b, a) };
@@ -159,34 +141,35 @@ impl Deriver<'_> {
             if range.lo() >= 0.0 || range.hi() <= 0.0 {
                 let limit = self.graph.end_quotient(limit, factor);
                 let above = above != (range.lo() < 0.0);
-                return self.zone(Question { above, ..on(rest, limit) });
+                return self.zone(Query { above, ..on(rest, limit) });
             }
         }
         if op == Binary::Div && fixed_b && self.range(b).lo() >= 0.0 {
             let limit = self.graph.end_product(limit, b);
             return self.zone(on(a, limit));
         }
-        if !above && let Some(zone) = self.blended(question) {
+        if !above && let Some(zone) = self.blended(query) {
             return zone;
         }
-        self.opaque(question)
+        self.opaque(query)
     }
 
-    /// Where a blend that ends is not above the limit, either of its values is not above it by more than the blend is deep.
-    fn blended(&mut self, question: Question) -> Option<Zone> {
-        let blend = blend_at(self.graph, &mut self.memo.blends, question.node)?;
-        let depth = blend.depth(self.graph, question.node)?;
-        let limit = self.graph.end_sum(question.limit, depth);
-        let [a, b] = blend.values.map(|node| self.zone(Question { node, limit, ..question }));
+    /// Where a blend of finite width is not above the limit, one of its operands exceeds the limit
+    /// by at most the depth of the blend.
+    fn blended(&mut self, query: Query) -> Option<Zone> {
+        let blend = blend_at(self.graph, &mut self.memo.blends, query.node)?;
+        let depth = blend.depth(self.graph, query.node)?;
+        let limit = self.graph.end_sum(query.limit, depth);
+        let [a, b] = blend.values.map(|node| self.zone(Query { node, limit, ..query }));
         Some(a.hull(self.graph, b).loose())
     }
 
-    /// Whether no point of the formula changes the node.
-    fn is_fixed(&self, node: NodeId, question: Question) -> bool {
-        self.graph.levels(node) <= question.level
+    /// True if the node does not depend on the formula's point.
+    fn is_fixed(&self, node: NodeId, query: Query) -> bool {
+        self.graph.levels(node) <= query.level
     }
 
-    fn fixed(&mut self, Question { node, limit, above, .. }: Question) -> Zone {
+    fn fixed(&mut self, Query { node, limit, above, .. }: Query) -> Zone {
         let (value, limit) = (self.range(node), self.range(limit));
         let never = if above { value.hi() < limit.lo() } else { value.lo() > limit.hi() };
         if never { Zone::nowhere(self.graph) } else { Zone::everywhere(self.graph) }

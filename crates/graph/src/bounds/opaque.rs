@@ -1,48 +1,50 @@
-//! Formulas without a rule: operators by their samples, leaves by search.
+//! Formulas without a rule: operators are bounded by their samples, leaves by search.
 
-use super::Deriver;
-use super::level_set::Question;
+use super::deriver::{Deriver, Query};
 use super::search::{Region, Search};
 use super::zone::Zone;
 use crate::eval::{Interval, Tape};
-use crate::{Node, NodeId, Shape, ShapeId, Type, reachable_where};
+use crate::node::{Node, NodeId, ShapeId, Type};
+use crate::shape::Shape;
+use crate::walk::reachable_where;
 
-/// An operator of more samples is not asked about each of them.
+/// Operators with more samples than this are not analysed for each sample alone.
 const MOST_SINGLE: usize = 4;
 
-/// How far above the limit a sample may have to be: from `2^-12` to `2^40`, found to `2^-10` of that.
+/// Margins above the limit that are tried for samples: from `2^-12` to `2^40`, refined to `2^-10`
+/// of the margin.
 const SMALLEST_MARGIN: i32 = -12;
 const LARGEST_MARGIN: i32 = 40;
 const REFINEMENTS: usize = 10;
 
-/// An operator's formula as a function of what it samples.
+/// An operator's formula as a function of its samples.
 struct Operator {
     tape: Tape,
     samples: Vec<NodeId>,
-    question: Question,
+    query: Query,
     limit: Interval,
 }
 
 impl Deriver<'_> {
-    /// The zone of a formula that no rule fits.
-    pub(super) fn opaque(&mut self, question: Question) -> Zone {
-        let samples = self.samples(question.node);
+    /// The box of a formula that no rule fits.
+    pub(super) fn opaque(&mut self, query: Query) -> Zone {
+        let samples = self.samples(query.node);
         if samples.is_empty() {
-            return self.searched(question);
+            return self.searched(query);
         }
-        match self.operator(question, samples) {
+        match self.operator(query, samples) {
             Some(operator) => self.by_samples(&operator).loose(),
             None => Zone::everywhere(self.graph).loose(),
         }
     }
 
-    /// The distance which all that a shape samples must exceed for the shape to be positive.
+    /// The distance that all samples of a shape must exceed for the shape to be positive.
     pub(super) fn reach(&mut self, shape: ShapeId) -> Option<f64> {
         let limit = self.graph.number(0.0);
         let Shape { formula: node, level, dim, .. } = *self.graph.shape(shape);
-        let question = Question { node, limit, level, dim, above: false };
+        let query = Query { node, limit, level, dim, above: false };
         let samples = Some(self.samples(node)).filter(|samples| !samples.is_empty())?;
-        self.threshold(&self.operator(question, samples)?, |_| true)
+        self.threshold(&self.operator(query, samples)?, |_| true)
     }
 
     fn samples(&self, formula: NodeId) -> Vec<NodeId> {
@@ -52,15 +54,16 @@ impl Deriver<'_> {
         order.into_iter().filter(|&id| is_sample(id)).collect()
     }
 
-    fn operator(&self, question: Question, samples: Vec<NodeId>) -> Option<Operator> {
-        let limit = self.range(question.limit);
+    fn operator(&self, query: Query, samples: Vec<NodeId>) -> Option<Operator> {
+        let limit = self.range(query.limit);
         let first = self.ranges.params.len() as u32;
-        let tape = Tape::of_operator(self.graph, question.node, &samples, first).ok()?;
-        Some(Operator { tape, samples, question, limit })
+        let tape = Tape::for_operator(self.graph, query.node, &samples, first).ok()?;
+        Some(Operator { tape, samples, query, limit })
     }
 
-    /// If the formula exceeds the limit wherever some of its samples exceed a threshold, the zone lies
-    /// where one of those does not. First each sample alone is tried, as of an intersection, then all.
+    /// If the formula exceeds the limit wherever some of its samples exceed a threshold, the box is
+    /// where one of those samples does not exceed it. First each sample is tried alone, which finds
+    /// intersections, then all together.
     fn by_samples(&mut self, operator: &Operator) -> Zone {
         let mut zone: Option<Zone> = None;
         if operator.samples.len() <= MOST_SINGLE {
@@ -89,12 +92,13 @@ impl Deriver<'_> {
 
     fn sample_zone(&mut self, operator: &Operator, sample: NodeId, threshold: f64) -> Zone {
         let limit = self.graph.number(threshold);
-        self.zone(Question { node: sample, limit, above: false, ..operator.question })
+        self.zone(Query { node: sample, limit, above: false, ..operator.query })
     }
 
-    /// The least threshold found above which the chosen samples keep the formula from the limit.
+    /// The least threshold found such that the formula clears the limit wherever the chosen samples
+    /// exceed it.
     fn threshold(&self, operator: &Operator, chosen: impl Fn(NodeId) -> bool) -> Option<f64> {
-        let base = if operator.question.above { 0.0 } else { operator.limit.hi() };
+        let base = if operator.query.above { 0.0 } else { operator.limit.hi() };
         if !base.is_finite() {
             return None;
         }
@@ -104,7 +108,7 @@ impl Deriver<'_> {
         if clears(base) {
             return Some(base);
         }
-        // What holds above one threshold holds above all higher ones.
+        // A threshold that clears implies that all higher ones do.
         if !clears(base + 2_f64.powi(LARGEST_MARGIN)) {
             return None;
         }
@@ -123,8 +127,9 @@ impl Deriver<'_> {
         Some(high)
     }
 
-    /// Whether the formula keeps from the limit while all samples but the others exceed the threshold. What
-    /// a blend does often depends on which sample is less, so the others are split below the threshold.
+    /// True if the formula clears the limit while all samples but the others exceed the threshold.
+    /// A blend often depends on which sample is less, so the ranges of the others are split below
+    /// the threshold.
     fn clears(
         &self,
         operator: &Operator,
@@ -149,20 +154,20 @@ impl Deriver<'_> {
             [other.map_or(Interval::new(threshold, f64::INFINITY), |i| halves[i]); 4]
         }));
         let value = operator.tape.prepare_in(&frame).scalar([Interval::ENTIRE; 3]);
-        if operator.question.above {
+        if operator.query.above {
             value.hi() < operator.limit.lo()
         } else {
             value.lo() > operator.limit.hi()
         }
     }
 
-    /// The zone of a formula without samples, by interval exclusion.
-    fn searched(&mut self, question: Question) -> Zone {
-        let Some(node) = self.flat(question) else { return Zone::everywhere(self.graph).loose() };
-        let limit = self.range(question.limit);
+    /// The box of a formula without samples, by interval exclusion.
+    fn searched(&mut self, query: Query) -> Zone {
+        let Some(node) = self.flat(query) else { return Zone::everywhere(self.graph).loose() };
+        let limit = self.range(query.limit);
         let start = [[f64::NEG_INFINITY, f64::INFINITY]; 3];
-        let above = question.above;
-        let Some(search) = Search::new(self.graph, node, limit, above, question.dim, self.ranges)
+        let above = query.above;
+        let Some(search) = Search::new(self.graph, node, limit, above, query.dim, self.ranges)
         else {
             return Zone::everywhere(self.graph).loose();
         };
@@ -170,17 +175,17 @@ impl Deriver<'_> {
         Zone::of_numbers(self.graph, found)
     }
 
-    /// The question's formula in the outermost point. Nothing is known of the points around it.
-    fn flat(&mut self, question: Question) -> Option<NodeId> {
-        if question.level == 0 {
-            return Some(question.node);
+    /// The query's formula over the outermost point. Nothing is known about the points around it.
+    fn flat(&mut self, query: Query) -> Option<NodeId> {
+        if query.level == 0 {
+            return Some(query.node);
         }
-        let points = self.points(question.level, question.dim);
-        self.memo.expander.node(self.graph, question.node, &points).ok()
+        let points = self.points(query.level, query.dim);
+        self.memo.expander.node(self.graph, query.node, &points).ok()
     }
 
-    /// The points of levels up to this one: unknown, and the outermost point last.
-    fn points(&mut self, level: u16, dim: crate::Dim) -> Vec<NodeId> {
+    /// The points of levels up to this one: unknown ones, and the outermost point last.
+    fn points(&mut self, level: u16, dim: crate::node::Dim) -> Vec<NodeId> {
         // An interval of NaN is everything. Either dimension reads as many lanes as it has.
         let unknown = self.graph.constant(Type::Vec3, &[f64::NAN; 3]);
         let own = self.graph.point(0, dim);
@@ -189,7 +194,7 @@ impl Deriver<'_> {
         points
     }
 
-    /// A shape's bounds found by search, within a box that holds it.
+    /// A shape's bounds, found by search within a box that contains the shape.
     pub(super) fn searched_within(&mut self, id: ShapeId, start: Region) -> Region {
         let (level, dim) = (self.graph.shape(id).level, self.graph.shape(id).dim);
         let points = self.points(level, dim);

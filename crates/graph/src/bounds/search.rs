@@ -1,31 +1,35 @@
-//! Interval exclusion: a box around what cannot be shown to be empty.
+//! Interval exclusion: the search for a box outside which intervals show a formula to clear a
+//! limit.
 
 use crate::eval::{Evaluator, FrameValues, Interval, Tape};
-use crate::{Dim, Graph, NodeId};
+use crate::graph::Graph;
+use crate::node::{Dim, NodeId};
 
-/// Scalar operations that a search may spend, and evaluations that it may in any case and at most.
+/// Scalar operations that a search may spend, and its minimum and maximum number of evaluations.
 const OPERATIONS: usize = 400_000;
 const LEAST_EVALUATIONS: usize = 32;
 const MOST_EVALUATIONS: usize = 8_000;
 
-/// Evaluations that one slab may take to be shown empty, round by round.
+/// Evaluations that may be spent on one slab, per pass.
 const PER_SLAB: [usize; 3] = [16, 48, 160];
 
-/// An open side is closed at a power of two in this range, if at all.
+/// An unbounded side is closed at a power of two in this range, if at all.
 const NEAREST: i32 = -6;
 const FARTHEST: i32 = 40;
 
-/// Faces are moved in steps of more than this fraction of the box, as often as it goes, and at last by each of these.
+/// Faces are moved in steps larger than this fraction of the box, as often as possible, and finally
+/// by each of these fractions.
 const RESOLUTION: f64 = 1.0 / 256.0;
 const FINER: [f64; 2] = [1.0 / 256.0, 1.0 / 512.0];
 
-/// A round that takes away less of every side than this part is the last: rays would not tell what the next finds.
-const WORTH_ANOTHER: f64 = 1.0 / 128.0;
+/// The search ends after a pass that moves every side by less than this fraction: the next one
+/// would not find more that rays notice.
+const MIN_PROGRESS: f64 = 1.0 / 128.0;
 
-/// A box in numbers, lower and upper end by axis; `lo > hi`: nowhere.
+/// A box in numbers, lower and upper end by axis; empty if `lo > hi`.
 pub(super) type Region = [[f64; 2]; 3];
 
-/// A flat formula, about to be shown to keep from a limit here and there.
+/// A flat formula, and the limit that it is shown to clear.
 pub(super) struct Search {
     tape: Tape,
     frame: FrameValues<Interval>,
@@ -35,7 +39,7 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// `None` if the formula is not flat.
+    /// A search; `None` if the formula is not flat.
     pub(super) fn new(
         graph: &Graph,
         node: NodeId,
@@ -48,7 +52,8 @@ impl Search {
         Some(Self { tape, frame: frame.clone(), limit, above, width: dim.point_type().width() })
     }
 
-    /// A box within the given one that holds all that it holds of the zone; `lo > hi` if nothing.
+    /// A box within the given one that contains all of the level set in it; `lo > hi` if it is
+    /// empty.
     pub(super) fn run(&self, start: Region) -> Region {
         if start.iter().any(|[lo, hi]| lo > hi) {
             return [[f64::INFINITY, f64::NEG_INFINITY]; 3];
@@ -57,7 +62,7 @@ impl Search {
             (OPERATIONS / self.tape.operations().max(1)).clamp(LEAST_EVALUATIONS, MOST_EVALUATIONS);
         let evaluator = self.tape.prepare_in(&self.frame);
         let mut work = Work { search: self, evaluator, budget, per_slab: 0, region: start };
-        // A side may close, and give way further, once others have.
+        // A side may close, and move further, once others have closed.
         for _ in PER_SLAB {
             for axis in 0..self.width {
                 work.close(axis, Side::Upper);
@@ -71,7 +76,7 @@ impl Search {
                 work.shave(axis, Side::Upper);
                 work.shave(axis, Side::Lower);
             }
-            // The first has few evaluations for each slab: that it moves nothing says little.
+            // The first pass has few evaluations per slab, so its failure says little.
             if round > 0 && !has_shrunk(before, work.region) {
                 break;
             }
@@ -91,19 +96,19 @@ enum Side {
     Upper,
 }
 
-/// A search under way.
+/// A search in progress.
 struct Work<'s> {
     search: &'s Search,
     evaluator: Evaluator<'s, Interval>,
     /// Evaluations left.
     budget: usize,
-    /// Evaluations that one slab may take.
+    /// Evaluations that may be spent on one slab.
     per_slab: usize,
     region: Region,
 }
 
 impl Work<'_> {
-    /// Bounds an open side by a power of two beyond which, as far as the other sides reach, there is nothing.
+    /// Bounds an unbounded side by a power of two beyond which the rest of the box is empty.
     fn close(&mut self, axis: usize, side: Side) {
         let [lo, hi] = self.region[axis];
         let open = match side {
@@ -117,10 +122,10 @@ impl Work<'_> {
             if self.budget == 0 {
                 return;
             }
-            let place = 2_f64.powi(power);
+            let position = 2_f64.powi(power);
             let (slab, face) = match side {
-                Side::Lower => ([lo, (-place).min(hi)], [-place, hi.max(-place)]),
-                Side::Upper => ([place.max(lo), hi], [lo.min(place), place]),
+                Side::Lower => ([lo, (-position).min(hi)], [-position, hi.max(-position)]),
+                Side::Upper => ([position.max(lo), hi], [lo.min(position), position]),
             };
             if self.is_clear(self.with(axis, slab)) {
                 self.region[axis] = face;
@@ -139,7 +144,7 @@ impl Work<'_> {
         }
     }
 
-    /// Moves a face inwards by what is left of a step.
+    /// Moves a face inwards by the remaining fractions of a step.
     fn polish(&mut self, axis: usize, side: Side) {
         for part in FINER {
             let step = self.size(axis, side) * part;
@@ -149,8 +154,8 @@ impl Work<'_> {
         }
     }
 
-    /// How long the box is along an axis; of one that is open on the other side, how far its face is away. Infinite where the face
-    /// is, which is not to be moved.
+    /// The length of the box along an axis. If the box is unbounded on the other side, the face's
+    /// distance from 0. Infinite if the face is, which is then not moved.
     fn size(&self, axis: usize, side: Side) -> f64 {
         let [lo, hi] = self.region[axis];
         let face = match side {
@@ -160,7 +165,7 @@ impl Work<'_> {
         if face.is_finite() && (hi - lo).is_finite() { hi - lo } else { face.abs().max(1.0) }
     }
 
-    /// Whether a slab so thick was empty; then the box has lost it.
+    /// Removes a slab of this thickness from the box if it is empty. Returns true if it is.
     fn cuts_off(&mut self, axis: usize, side: Side, step: f64) -> bool {
         let [lo, hi] = self.region[axis];
         let (slab, rest) = match side {
@@ -182,7 +187,7 @@ impl Work<'_> {
         region
     }
 
-    /// Whether the formula keeps from the limit all over the region, by one evaluation.
+    /// True if one evaluation shows that the formula clears the limit in all of the region.
     fn is_clear(&mut self, region: Region) -> bool {
         self.budget = self.budget.saturating_sub(1);
         let value = self.evaluator.scalar(region.map(|[lo, hi]| Interval::new(lo, hi)));
@@ -193,7 +198,8 @@ impl Work<'_> {
         }
     }
 
-    /// Whether it does so on parts that the region is cut into, across its longest bounded side.
+    /// True if the formula clears the limit in all of the region, which is split along its longest
+    /// bounded side as needed.
     fn is_empty(&mut self, region: Region) -> bool {
         let mut parts = vec![region];
         let mut left = self.per_slab;
@@ -204,7 +210,7 @@ impl Work<'_> {
             left -= 1;
             if !self.is_clear(part) {
                 if !self.is_clear(part.map(middle)) {
-                    return false; // inside, most likely
+                    return false; // most likely inside the shape
                 }
                 let Some(halves) = self.halves(part) else { return false };
                 parts.extend(halves);
@@ -228,16 +234,16 @@ impl Work<'_> {
     }
 }
 
-/// Whether a side has lost a part that is worth another round.
+/// True if a side has shrunk enough for another pass.
 fn has_shrunk(before: Region, after: Region) -> bool {
     let width = |[lo, hi]: [f64; 2]| hi - lo;
     let mut sides = before.into_iter().zip(after);
-    sides.any(|(before, after)| width(after) < width(before) * (1.0 - WORTH_ANOTHER))
+    sides.any(|(before, after)| width(after) < width(before) * (1.0 - MIN_PROGRESS))
 }
 
-/// The middle of a side; of an open one some place in it.
+/// The middle of a side; for an unbounded one, some number in it.
 fn middle([lo, hi]: [f64; 2]) -> [f64; 2] {
-    let place = if lo.is_finite() && hi.is_finite() { f64::midpoint(lo, hi) } else { 0.0 };
-    // Not `clamp`, which panics where `lo` is above `hi`.
-    [place.max(lo).min(hi); 2]
+    let position = if lo.is_finite() && hi.is_finite() { f64::midpoint(lo, hi) } else { 0.0 };
+    // `clamp` would panic where `lo` is above `hi`.
+    [position.max(lo).min(hi); 2]
 }

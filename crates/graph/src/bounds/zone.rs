@@ -2,14 +2,15 @@
 
 use super::ends::Ends;
 use super::search::Region;
-use crate::{Graph, NodeId};
+use crate::graph::Graph;
+use crate::node::NodeId;
 
-/// A box that holds a set of points. Regions leave the last axis unbounded.
+/// A box that contains a set of points. For 2D shapes the last axis is unbounded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Zone {
-    /// Lower and upper end by axis; `lo > hi` on any: nowhere.
+    /// Lower and upper end by axis; the box is empty if `lo > hi` on any axis.
     pub(super) axes: [Ends; 3],
-    /// Whether nothing was given away: the box need not be tightened.
+    /// True if no precision was lost, so that the box need not be tightened.
     pub(super) tight: bool,
 }
 
@@ -25,7 +26,7 @@ impl Zone {
         Self { axes: [[hi, lo]; 3], tight: true }
     }
 
-    /// Between two corners, as far as they have components.
+    /// The box between two corners; axes beyond their width are unbounded.
     pub(super) fn between(graph: &mut Graph, [lo, hi]: [NodeId; 2], width: usize) -> Self {
         let mut zone = Self::everywhere(graph);
         for (i, ends) in zone.axes.iter_mut().enumerate().take(width) {
@@ -34,30 +35,30 @@ impl Zone {
         zone
     }
 
-    /// A box in numbers.
+    /// A box given in numbers.
     pub(super) fn of_numbers(graph: &mut Graph, region: Region) -> Self {
         let axes = region.map(|side| side.map(|end| graph.number(end)));
         Self { axes, tight: true }
     }
 
-    /// What it says, with doubt.
+    /// The same box, marked as imprecise.
     pub(super) fn loose(self) -> Self {
         Self { tight: false, ..self }
     }
 
-    /// The least box that holds both.
+    /// The smallest box that contains both.
     pub(super) fn hull(self, graph: &mut Graph, other: Self) -> Self {
         self.with(other, |[lo, hi], [other_lo, other_hi]| {
             [graph.end_min(lo, other_lo), graph.end_max(hi, other_hi)]
         })
     }
 
-    /// What both hold.
+    /// The intersection of both.
     pub(super) fn overlap(self, graph: &mut Graph, other: Self) -> Self {
         self.with(other, |ends, other| graph.common_ends(ends, other))
     }
 
-    /// One of two by a condition that no point changes.
+    /// One of two boxes, by a condition that does not depend on the point.
     pub(super) fn select(self, graph: &mut Graph, condition: NodeId, other: Self) -> Self {
         self.with(other, |ends, other_ends| {
             let mut side = |i: usize| {
@@ -68,7 +69,7 @@ impl Zone {
         })
     }
 
-    /// Moved outwards on all sides.
+    /// The box with all faces moved outwards.
     pub(super) fn grown(self, graph: &mut Graph, by: NodeId) -> Self {
         let axes = self.axes.map(|[lo, hi]| [graph.end_difference(lo, by), graph.end_sum(hi, by)]);
         Self { axes, ..self }

@@ -1,13 +1,14 @@
-//! The derivative of each operation: what a node hands down to its arguments.
+//! The derivative rule of each operation: what a node passes on to its arguments.
 
 use super::{Sweep, zero};
-use crate::{Binary, Graph, Node, NodeId, Ternary, Type, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Ternary, Type, Unary};
 
-/// Lengths below this count as 0 where a derivative divides by them. Squares of shorter vectors vanish in
-/// f32, so that nothing shorter has a direction there.
+/// Lengths below this count as 0 where a derivative divides by them. Squares of shorter vectors
+/// underflow in f32, so that they have no direction there.
 pub(crate) const TINY: f64 = 1e-18;
 
-/// Whether a node's value moves with its arguments other than in jumps.
+/// True if a node's value changes continuously with its arguments.
 pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
     match graph.node(id) {
         Node::Const(_)
@@ -42,8 +43,8 @@ pub(super) fn passes_derivatives(graph: &Graph, id: NodeId) -> bool {
 }
 
 impl Sweep<'_> {
-    /// Gives each argument its part of the node's adjoint.
-    pub(super) fn hand_down(&mut self, id: NodeId, adjoint: NodeId) {
+    /// Passes a node's adjoint on to its arguments.
+    pub(super) fn propagate(&mut self, id: NodeId, adjoint: NodeId) {
         match self.graph.node(id) {
             Node::Const(_)
             | Node::Point(..)
@@ -52,23 +53,23 @@ impl Sweep<'_> {
             | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => {}
-            Node::Loop(repeated, position, _) => self.repeat(repeated, position, adjoint),
+            Node::Loop(loop_, position, _) => self.propagate_loop(loop_, position, adjoint),
             Node::Unary(op, a) => {
                 if self.live.contains(a) {
                     let part = self.unary(op, id, a, adjoint);
-                    self.give(a, part);
+                    self.accumulate(a, part);
                 }
             }
             Node::Binary(op, a, b) => self.binary(op, id, [a, b], adjoint),
             Node::Ternary(op, arguments) => self.ternary(op, arguments, adjoint),
             Node::Splat(_, a) => {
                 let sum = self.sum_of_lanes(adjoint);
-                self.give(a, sum);
+                self.accumulate(a, sum);
             }
             Node::Compose(ty, parts) => {
                 for (lane, &part) in (0..).zip(&parts[..ty.width()]) {
                     let component = self.graph.component(adjoint, lane);
-                    self.give(part, component);
+                    self.accumulate(part, component);
                 }
             }
             Node::Swizzle(ty, a, lanes) => self.swizzle(a, &lanes[..ty.width()], adjoint),
@@ -82,11 +83,11 @@ impl Sweep<'_> {
         let back: Option<Vec<u8>> = (0..width).map(|lane| source(lane).map(|i| i as u8)).collect();
         if let Some(back) = back.filter(|_| lanes.len() == width) {
             let turned_back = self.graph.swizzle(adjoint, &back);
-            return self.give(a, turned_back);
+            return self.accumulate(a, turned_back);
         }
         for (i, &lane) in (0..).zip(lanes) {
             let component = self.graph.component(adjoint, i);
-            self.give_lane(a, lane, component);
+            self.accumulate_lane(a, lane, component);
         }
     }
 
@@ -97,13 +98,13 @@ impl Sweep<'_> {
                 self.graph.compose(&parts)
             });
             let part = self.graph.transform(transposed, adjoint);
-            self.give(v, part);
+            self.accumulate(v, part);
         }
         for (lane, column) in (0..).zip(columns) {
             if self.live.contains(column) {
                 let factor = self.graph.component(v, lane);
                 let part = self.graph.mul(adjoint, factor);
-                self.give(column, part);
+                self.accumulate(column, part);
             }
         }
     }
@@ -154,9 +155,9 @@ impl Sweep<'_> {
                 self.graph.mul(adjoint, slope)
             }
             Unary::Saturate => {
-                let (nought, one) = (self.number_like(a, 0.0), self.number_like(a, 1.0));
+                let (zero, one) = (self.number_like(a, 0.0), self.number_like(a, 1.0));
                 let below = self.where_le(adjoint, a, one);
-                self.where_le(below, nought, a)
+                self.where_le(below, zero, a)
             }
             Unary::Length => self.direction(adjoint, id, a),
             Unary::Normalize => {
@@ -173,28 +174,28 @@ impl Sweep<'_> {
     fn binary(&mut self, op: Binary, id: NodeId, [a, b]: [NodeId; 2], adjoint: NodeId) {
         match op {
             Binary::Add => {
-                self.give(a, adjoint);
-                self.give(b, adjoint);
+                self.accumulate(a, adjoint);
+                self.accumulate(b, adjoint);
             }
             Binary::Sub => {
-                self.give(a, adjoint);
-                self.give_with(b, |s| s.graph.neg(adjoint));
+                self.accumulate(a, adjoint);
+                self.accumulate_with(b, |s| s.graph.neg(adjoint));
             }
-            Binary::Mul if a == b => self.give_with(a, |s| s.product(adjoint, a, 2.0)),
+            Binary::Mul if a == b => self.accumulate_with(a, |s| s.product(adjoint, a, 2.0)),
             Binary::Mul => {
-                self.give_with(a, |s| s.graph.mul(adjoint, b));
-                self.give_with(b, |s| s.graph.mul(adjoint, a));
+                self.accumulate_with(a, |s| s.graph.mul(adjoint, b));
+                self.accumulate_with(b, |s| s.graph.mul(adjoint, a));
             }
             Binary::Div => {
-                self.give_with(a, |s| s.graph.div(adjoint, b));
-                self.give_with(b, |s| {
+                self.accumulate_with(a, |s| s.graph.div(adjoint, b));
+                self.accumulate_with(b, |s| {
                     let slope = s.graph.div(id, b);
                     s.product(adjoint, slope, -1.0)
                 });
             }
             Binary::Rem => {
-                self.give(a, adjoint);
-                self.give_with(b, |s| {
+                self.accumulate(a, adjoint);
+                self.accumulate_with(b, |s| {
                     let quotient = s.graph.div(a, b);
                     let whole = s.graph.unary(Unary::Floor, quotient);
                     s.product(adjoint, whole, -1.0)
@@ -204,17 +205,17 @@ impl Sweep<'_> {
             Binary::Max => self.selection([a, b], [b, a], id, adjoint),
             Binary::Pow => self.power(id, [a, b], adjoint),
             Binary::Atan2 => self.angle([a, b], adjoint),
-            Binary::Dot if a == b => self.give_with(a, |s| {
+            Binary::Dot if a == b => self.accumulate_with(a, |s| {
                 let twice = s.scaled(adjoint, 2.0);
                 s.graph.mul(a, twice)
             }),
             Binary::Dot => {
-                self.give_with(a, |s| s.graph.mul(b, adjoint));
-                self.give_with(b, |s| s.graph.mul(a, adjoint));
+                self.accumulate_with(a, |s| s.graph.mul(b, adjoint));
+                self.accumulate_with(b, |s| s.graph.mul(a, adjoint));
             }
             Binary::Cross => {
-                self.give_with(a, |s| s.graph.binary(Binary::Cross, b, adjoint));
-                self.give_with(b, |s| s.graph.binary(Binary::Cross, adjoint, a));
+                self.accumulate_with(a, |s| s.graph.binary(Binary::Cross, b, adjoint));
+                self.accumulate_with(b, |s| s.graph.binary(Binary::Cross, adjoint, a));
             }
             Binary::Step
             | Binary::Hash
@@ -230,12 +231,12 @@ impl Sweep<'_> {
     fn ternary(&mut self, op: Ternary, [a, b, c]: [NodeId; 3], adjoint: NodeId) {
         match op {
             Ternary::Mix => {
-                self.give_with(a, |s| {
-                    let share = s.one_minus(c);
-                    s.graph.mul(adjoint, share)
+                self.accumulate_with(a, |s| {
+                    let weight = s.one_minus(c);
+                    s.graph.mul(adjoint, weight)
                 });
-                self.give_with(b, |s| s.graph.mul(adjoint, c));
-                self.give_with(c, |s| {
+                self.accumulate_with(b, |s| s.graph.mul(adjoint, c));
+                self.accumulate_with(c, |s| {
                     let difference = s.graph.sub(b, a);
                     s.graph.mul(adjoint, difference)
                 });
@@ -244,25 +245,25 @@ impl Sweep<'_> {
                 // min(max(x, lo), hi)
                 let raised = self.graph.max(a, b);
                 let kept = self.where_le(adjoint, raised, c);
-                self.give_with(a, |s| s.where_le(kept, b, a));
-                self.give_with(b, |s| s.unless_le(kept, b, a));
-                self.give_with(c, |s| s.unless_le(adjoint, raised, c));
+                self.accumulate_with(a, |s| s.where_le(kept, b, a));
+                self.accumulate_with(b, |s| s.unless_le(kept, b, a));
+                self.accumulate_with(c, |s| s.unless_le(adjoint, raised, c));
             }
             Ternary::Smoothstep => self.smoothstep([a, b, c], adjoint),
             Ternary::Select => {
-                self.give_with(b, |s| {
-                    let nothing = s.zero_of(adjoint);
-                    s.graph.select(a, adjoint, nothing)
+                self.accumulate_with(b, |s| {
+                    let zero = s.zero_of(adjoint);
+                    s.graph.select(a, adjoint, zero)
                 });
-                self.give_with(c, |s| {
-                    let nothing = s.zero_of(adjoint);
-                    s.graph.select(a, nothing, adjoint)
+                self.accumulate_with(c, |s| {
+                    let zero = s.zero_of(adjoint);
+                    s.graph.select(a, zero, adjoint)
                 });
             }
         }
     }
 
-    /// The adjoint goes to the first argument where `lesser <= greater`, else to the second.
+    /// Passes the adjoint to the first argument where `lesser <= greater`, else to the second.
     fn selection(
         &mut self,
         [first, second]: [NodeId; 2],
@@ -270,19 +271,19 @@ impl Sweep<'_> {
         id: NodeId,
         adjoint: NodeId,
     ) {
-        // Where the other argument is 0, a factor equal to the selection vanishes wherever this one is not
-        // selected: it needs no mask.
+        // Where the other argument is 0, a factor of the adjoint that equals the selected value is
+        // 0 wherever this argument is not selected, so no mask is needed.
         let masked = self.has_factor(adjoint, id);
         let plain = |s: &Self, other: NodeId| masked && s.is_zero(other);
         if plain(self, second) {
-            self.give(first, adjoint);
+            self.accumulate(first, adjoint);
         } else {
-            self.give_with(first, |s| s.where_le(adjoint, lesser, greater));
+            self.accumulate_with(first, |s| s.where_le(adjoint, lesser, greater));
         }
         if plain(self, first) {
-            self.give(second, adjoint);
+            self.accumulate(second, adjoint);
         } else {
-            self.give_with(second, |s| s.unless_le(adjoint, lesser, greater));
+            self.accumulate_with(second, |s| s.unless_le(adjoint, lesser, greater));
         }
     }
 
@@ -300,16 +301,16 @@ impl Sweep<'_> {
         false
     }
 
-    /// `x^y`: `y x^y / x` and `x^y log x`, with x kept off 0.
+    /// `x^y`: the derivatives are `y x^y / x` and `x^y log x`, where x is kept away from 0.
     fn power(&mut self, id: NodeId, [x, y]: [NodeId; 2], adjoint: NodeId) {
         let tiny = self.number_like(x, TINY);
-        self.give_with(x, |s| {
+        self.accumulate_with(x, |s| {
             let above = s.graph.max(x, tiny);
             let ratio = s.graph.div(id, above);
             let slope = s.graph.mul(y, ratio);
             s.graph.mul(adjoint, slope)
         });
-        self.give_with(y, |s| {
+        self.accumulate_with(y, |s| {
             let above = s.graph.max(x, tiny);
             let log = s.graph.unary(Unary::Log, above);
             let slope = s.graph.mul(id, log);
@@ -317,18 +318,19 @@ impl Sweep<'_> {
         });
     }
 
-    /// Of the angle of `[x, y]`: `(x dy - y dx) / (x² + y²)`.
+    /// The derivative of the angle of `[x, y]`: `(x dy - y dx) / (x² + y²)`.
     fn angle(&mut self, [y, x]: [NodeId; 2], adjoint: NodeId) {
         let (xx, yy) = (self.graph.mul(x, x), self.graph.mul(y, y));
         let sum = self.graph.add(xx, yy);
         let floor = self.number_like(sum, TINY * TINY);
         let square = self.graph.max(sum, floor);
         let scale = self.graph.div(adjoint, square);
-        self.give_with(y, |s| s.graph.mul(x, scale));
-        self.give_with(x, |s| s.product(y, scale, -1.0));
+        self.accumulate_with(y, |s| s.graph.mul(x, scale));
+        self.accumulate_with(x, |s| s.product(y, scale, -1.0));
     }
 
-    /// With t = saturate((x - lo) / (hi - lo)): 6 t (1 - t) / (hi - lo), times t - 1 for lo, -t for hi.
+    /// With t = saturate((x - lo) / (hi - lo)): 6 t (1 - t) / (hi - lo), times t - 1 for lo and -t
+    /// for hi.
     fn smoothstep(&mut self, [lo, hi, x]: [NodeId; 3], adjoint: NodeId) {
         let span = self.graph.sub(hi, lo);
         let above = self.graph.sub(x, lo);
@@ -338,20 +340,20 @@ impl Sweep<'_> {
         let bump = self.product(t, rest, 6.0);
         let slope = self.graph.div(bump, span);
         let part = self.graph.mul(adjoint, slope);
-        self.give(x, part);
-        self.give_with(lo, |s| s.product(part, rest, -1.0));
-        self.give_with(hi, |s| s.product(part, t, -1.0));
+        self.accumulate(x, part);
+        self.accumulate_with(lo, |s| s.product(part, rest, -1.0));
+        self.accumulate_with(hi, |s| s.product(part, t, -1.0));
     }
 
-    /// Gives a part that is only built if the argument takes it.
-    fn give_with(&mut self, id: NodeId, part: impl FnOnce(&mut Self) -> NodeId) {
+    /// Passes on a contribution that is built only if the argument needs it.
+    fn accumulate_with(&mut self, id: NodeId, part: impl FnOnce(&mut Self) -> NodeId) {
         if self.live.contains(id) {
             let part = part(self);
-            self.give(id, part);
+            self.accumulate(id, part);
         }
     }
 
-    /// `adjoint * v / |v|`, 0 at 0; `length` is |v|.
+    /// `adjoint * v / |v|`; 0 at 0. `length` is |v|.
     fn direction(&mut self, adjoint: NodeId, length: NodeId, v: NodeId) -> NodeId {
         if self.graph.ty(v).width() == 1 {
             return self.signed_by(adjoint, v);
@@ -368,7 +370,7 @@ impl Sweep<'_> {
         self.graph.div(one, above)
     }
 
-    /// `adjoint / (2 root)`, 0 where the root is.
+    /// `adjoint / (2 root)`; 0 where the root is 0.
     fn half_over_root(&mut self, adjoint: NodeId, root: NodeId) -> NodeId {
         let tiny = self.number_like(root, TINY);
         let half = self.scaled(adjoint, 0.5);
@@ -388,35 +390,35 @@ impl Sweep<'_> {
 
     /// The adjoint where `x >= 0`, its negative elsewhere.
     fn signed_by(&mut self, adjoint: NodeId, x: NodeId) -> NodeId {
-        let nought = self.number_like(x, 0.0);
+        let zero = self.number_like(x, 0.0);
         if self.graph.ty(x).width() == 1 {
             let negative = self.graph.neg(adjoint);
-            let condition = self.graph.le(nought, x);
+            let condition = self.graph.le(zero, x);
             return self.graph.select(condition, adjoint, negative);
         }
-        let mask = self.graph.binary(Binary::Step, nought, x);
+        let mask = self.graph.binary(Binary::Step, zero, x);
         let twice = self.scaled(mask, 2.0);
         let sign = self.offset(twice, -1.0);
         self.graph.mul(adjoint, sign)
     }
 
-    /// The part where `x <= y`, else 0; componentwise.
+    /// The contribution where `x <= y`, else 0; componentwise.
     fn where_le(&mut self, part: NodeId, x: NodeId, y: NodeId) -> NodeId {
         if self.graph.ty(x).width() == 1 {
-            let nothing = self.zero_of(part);
+            let zero = self.zero_of(part);
             let condition = self.graph.le(x, y);
-            return self.graph.select(condition, part, nothing);
+            return self.graph.select(condition, part, zero);
         }
         let mask = self.graph.binary(Binary::Step, x, y);
         self.graph.mul(part, mask)
     }
 
-    /// 0 where `x <= y`, else the part; componentwise.
+    /// 0 where `x <= y`, else the contribution; componentwise.
     fn unless_le(&mut self, part: NodeId, x: NodeId, y: NodeId) -> NodeId {
         if self.graph.ty(x).width() == 1 {
-            let nothing = self.zero_of(part);
+            let zero = self.zero_of(part);
             let condition = self.graph.le(x, y);
-            return self.graph.select(condition, nothing, part);
+            return self.graph.select(condition, zero, part);
         }
         let mask = self.graph.binary(Binary::Step, x, y);
         let opposite = self.one_minus(mask);

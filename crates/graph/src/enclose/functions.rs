@@ -1,70 +1,71 @@
-//! What each operation makes of its arguments' extents: one exhaustive match for each arity.
+//! Bounds of each operation, given its arguments' bounds: one exhaustive match per arity.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::Enclosing;
-use super::extent::{COARSE, Extent, LARGE, ROUNDING, Span, TINY};
-use crate::eval::HASHES;
-use crate::{Binary, NodeId, Ternary, Type, Unary};
+use super::encloser::Encloser;
+use super::values::{COARSE, Interval, LARGE, ROUNDING, TINY, Values};
+use crate::eval::HASH_COUNT;
+use crate::node::{Binary, NodeId, Ternary, Type, Unary};
 
-/// What devices may be off by in the sine, the cosine and the arcs of angles and ratios of ordinary size.
+/// Error of devices in sine, cosine and the inverse trigonometric functions for arguments of
+/// ordinary size.
 const ANGLE: f64 = 1.0 / 65_536.0;
-/// Slack in turns when crests of a wave are looked for.
+/// Slack, in periods, when looking for the maxima and minima of sine and cosine.
 const TURN: f64 = 1.0 / 16_384.0;
-/// e to the power of so much is more than twice [`LARGE`].
+/// e to this power exceeds twice [`LARGE`].
 const LARGEST_POWER: f64 = 36.0;
 
-impl Enclosing<'_> {
-    pub(super) fn unary(&mut self, op: Unary, x: Extent) -> Extent {
-        if let Extent::Fixed(value) = x {
-            return Extent::Fixed(self.graph.unary(op, value));
+impl Encloser<'_> {
+    pub(super) fn unary(&mut self, op: Unary, x: Values) -> Values {
+        if let Values::Constant(value) = x {
+            return Values::Constant(self.graph.unary(op, value));
         }
         match op {
             Unary::Neg => self.negative(x),
             Unary::Abs => self.magnitudes(x),
             Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc => {
-                let x = self.span(x);
+                let x = self.interval(x);
                 self.monotone(op, x).into()
             }
             Unary::Saturate => {
-                let x = self.span(x);
-                Span { wild: false, ..self.monotone(op, x) }.into()
+                let x = self.interval(x);
+                Interval { may_overflow: false, ..self.monotone(op, x) }.into()
             }
-            Unary::Fract => self.by_lane([x], |s, [x]| s.fraction(x)),
+            Unary::Fract => self.per_lane([x], |s, [x]| s.fraction(x)),
             Unary::Sqrt => {
-                let x = self.span(x);
+                let x = self.interval(x);
                 let (lo, hi) = (self.above_zero(x.lo), self.above_zero(x.hi));
-                let x = Span { lo, hi, ..x };
+                let x = Interval { lo, hi, ..x };
                 let root = self.monotone(op, x);
-                let root = self.widened(root, COARSE);
-                self.endless_as(root, &[x]).into()
+                let root = self.widen_relative(root, COARSE);
+                self.overflow_monotone(root, &[x]).into()
             }
             Unary::InverseSqrt => {
-                let x = self.span(x);
+                let x = self.interval(x);
                 let (lo, hi) = (self.at_least(x.hi, TINY), self.at_least(x.lo, TINY));
-                let result = self.monotone(op, Span::new(lo, hi));
-                let result = self.widened(result, COARSE);
-                let result = self.endless_below(result, x);
-                self.cut(result).into()
+                let result = self.monotone(op, Interval::new(lo, hi));
+                let result = self.widen_relative(result, COARSE);
+                let result = self.overflow_reciprocal(result, x);
+                self.clamp_to_large(result).into()
             }
             Unary::Exp => self.power_of(op, x, LARGEST_POWER),
             Unary::Exp2 => self.power_of(op, x, LARGEST_POWER / std::f64::consts::LN_2),
-            Unary::Log | Unary::Log2 => self.by_lane([x], |s, [x]| s.logarithm(op, x)),
-            Unary::Sin => self.by_lane([x], |s, [x]| s.wave(op, x, FRAC_PI_2, -FRAC_PI_2)),
-            Unary::Cos => self.by_lane([x], |s, [x]| s.wave(op, x, 0.0, PI)),
-            Unary::Tan => self.by_lane([x], |s, [x]| s.tangent(x)),
-            Unary::Asin => self.arc(op, x),
+            Unary::Log | Unary::Log2 => self.per_lane([x], |s, [x]| s.logarithm(op, x)),
+            Unary::Sin => self.per_lane([x], |s, [x]| s.sine_wave(op, x, FRAC_PI_2, -FRAC_PI_2)),
+            Unary::Cos => self.per_lane([x], |s, [x]| s.sine_wave(op, x, 0.0, PI)),
+            Unary::Tan => self.per_lane([x], |s, [x]| s.tangent(x)),
+            Unary::Asin => self.inverse_sine_or_cosine(op, x),
             Unary::Acos => {
                 let x = self.negative(x);
-                let rest = self.arc(Unary::Asin, x);
+                let rest = self.inverse_sine_or_cosine(Unary::Asin, x);
                 let quarter = self.entire(self.ty(x)).lo;
                 let quarter = self.number_like(quarter, FRAC_PI_2);
-                self.sum(Extent::Fixed(quarter), rest)
+                self.sum(Values::Constant(quarter), rest)
             }
             Unary::Atan | Unary::Tanh => {
-                let x = self.span(x);
-                let result = self.monotone(op, Span { wild: false, ..x });
-                self.grown_by(result, ANGLE).into()
+                let x = self.interval(x);
+                let result = self.monotone(op, Interval { may_overflow: false, ..x });
+                self.expand_by(result, ANGLE).into()
             }
             Unary::Sinh => self.hyperbolic(op, x),
             Unary::Cosh => {
@@ -74,16 +75,16 @@ impl Enclosing<'_> {
             Unary::Length => self.length(x),
             Unary::Normalize => self.direction(x),
             Unary::Not => {
-                let Span { lo, hi, .. } = self.span(x);
+                let Interval { lo, hi, .. } = self.interval(x);
                 let ends = [hi, lo].map(|end| self.graph.unary(op, end));
-                Span::new(ends[0], ends[1]).into()
+                Interval::new(ends[0], ends[1]).into()
             }
         }
     }
 
-    pub(super) fn binary(&mut self, op: Binary, x: Extent, y: Extent) -> Extent {
-        if let (Extent::Fixed(x), Extent::Fixed(y)) = (x, y) {
-            return Extent::Fixed(self.graph.binary(op, x, y));
+    pub(super) fn binary(&mut self, op: Binary, x: Values, y: Values) -> Values {
+        if let (Values::Constant(x), Values::Constant(y)) = (x, y) {
+            return Values::Constant(self.graph.binary(op, x, y));
         }
         match op {
             Binary::Add => self.sum(x, y),
@@ -92,23 +93,23 @@ impl Enclosing<'_> {
             Binary::Div => self.quotient(x, y),
             Binary::Rem => self.remainder(x, y),
             Binary::Min | Binary::Max | Binary::And | Binary::Or => {
-                let (x, y) = (self.span(x), self.span(y));
+                let (x, y) = (self.interval(x), self.interval(y));
                 self.monotone2(op, x, y).into()
             }
-            Binary::Pow => self.by_lane([x, y], |s, [x, y]| s.power(x, y)),
-            Binary::Atan2 => self.by_lane([x, y], |s, [y, x]| s.angle(y, x)),
+            Binary::Pow => self.per_lane([x, y], |s, [x, y]| s.power(x, y)),
+            Binary::Atan2 => self.per_lane([x, y], |s, [y, x]| s.angle(y, x)),
             Binary::Step => {
-                let (edge, x) = (self.span(x), self.span(y));
-                let edge = Span { lo: edge.hi, hi: edge.lo, wild: false };
-                self.monotone2(op, edge, Span { wild: false, ..x }).into()
+                let (edge, x) = (self.interval(x), self.interval(y));
+                let edge = Interval { lo: edge.hi, hi: edge.lo, may_overflow: false };
+                self.monotone2(op, edge, Interval { may_overflow: false, ..x }).into()
             }
-            Binary::Hash => self.by_lane([x, y], |s, [state, x]| s.hash(state, x)),
+            Binary::Hash => self.per_lane([x, y], |s, [state, x]| s.hash(state, x)),
             Binary::Dot => self.dot(x, y),
             Binary::Cross => self.cross(x, y),
             Binary::Lt | Binary::Le => {
-                let (x, y) = (self.span(x), self.span(y));
+                let (x, y) = (self.interval(x), self.interval(y));
                 let certain = self.graph.binary(op, x.hi, y.lo);
-                Span::new(certain, self.graph.binary(op, x.lo, y.hi)).into()
+                Interval::new(certain, self.graph.binary(op, x.lo, y.hi)).into()
             }
             Binary::Eq => self.equal(x, y),
             Binary::Ne => {
@@ -118,9 +119,9 @@ impl Enclosing<'_> {
         }
     }
 
-    pub(super) fn ternary(&mut self, op: Ternary, [x, y, z]: [Extent; 3]) -> Extent {
-        if let (Extent::Fixed(x), Extent::Fixed(y), Extent::Fixed(z)) = (x, y, z) {
-            return Extent::Fixed(match op {
+    pub(super) fn ternary(&mut self, op: Ternary, [x, y, z]: [Values; 3]) -> Values {
+        if let (Values::Constant(x), Values::Constant(y), Values::Constant(z)) = (x, y, z) {
+            return Values::Constant(match op {
                 Ternary::Select => self.graph.select(x, y, z),
                 Ternary::Mix | Ternary::Clamp | Ternary::Smoothstep => {
                     self.graph.ternary(op, x, y, z)
@@ -134,113 +135,116 @@ impl Enclosing<'_> {
                 self.binary(Binary::Min, raised, z)
             }
             Ternary::Smoothstep => {
-                let t = self.place_between(x, y, z);
-                self.eased(t)
+                let t = self.position_between(x, y, z);
+                self.smoothstep_of(t)
             }
             Ternary::Select => {
-                if let (Extent::Fixed(choice), Some([yes, no])) = (x, self.lines([y, z])) {
+                if let (Values::Constant(choice), Some([yes, no])) = (x, self.affine_all([y, z])) {
                     let of = |s: &mut Self, yes, no| s.graph.select(choice, yes, no);
                     let ends = [0, 1].map(|end| of(self, yes.ends[end], no.ends[end]));
-                    let size = of(self, yes.size, no.size);
-                    return Extent::Line(super::extent::Line { ends, size });
+                    let size = of(self, yes.magnitude, no.magnitude);
+                    return Values::Affine(super::values::Affine { ends, magnitude: size });
                 }
-                let (truth, yes, no) = (self.span(x), self.span(y), self.span(z));
-                self.chosen(truth, yes, no).into()
+                let (truth, yes, no) = (self.interval(x), self.interval(y), self.interval(z));
+                self.select(truth, yes, no).into()
             }
         }
     }
 
-    fn fraction(&mut self, x: Extent) -> Span {
-        let x = self.span(x);
+    fn fraction(&mut self, x: Values) -> Interval {
+        let x = self.interval(x);
         let first = self.graph.unary(Unary::Floor, x.lo);
         let last = self.graph.unary(Unary::Floor, x.hi);
         let same = self.graph.binary(Binary::Eq, first, last);
-        let moved = Span::new(self.graph.sub(x.lo, first), self.graph.sub(x.hi, first));
+        let moved = Interval::new(self.graph.sub(x.lo, first), self.graph.sub(x.hi, first));
         let unit = self.between(x.lo, 0.0, 1.0);
-        self.chosen(Span::new(same, same), moved, unit)
+        self.select(Interval::new(same, same), moved, unit)
     }
 
-    /// The argument is drawn out by what the device may be off by.
-    fn power_of(&mut self, op: Unary, x: Extent, largest: f64) -> Extent {
-        let x = self.span(x);
-        let x = Span { lo: self.at_most(x.lo, largest), hi: self.at_most(x.hi, largest), ..x };
-        let x = self.widened(x, 4.0 * ROUNDING);
-        let x = self.grown_by(x, 4.0 * ROUNDING);
-        Span { wild: true, ..self.monotone(op, x) }.into()
+    /// The argument is widened by the error of the device.
+    fn power_of(&mut self, op: Unary, x: Values, largest: f64) -> Values {
+        let x = self.interval(x);
+        let x = Interval { lo: self.at_most(x.lo, largest), hi: self.at_most(x.hi, largest), ..x };
+        let x = self.widen_relative(x, 4.0 * ROUNDING);
+        let x = self.expand_by(x, 4.0 * ROUNDING);
+        Interval { may_overflow: true, ..self.monotone(op, x) }.into()
     }
 
-    fn logarithm(&mut self, op: Unary, x: Extent) -> Span {
-        let x = self.span(x);
-        let ends = Span { lo: self.at_least(x.lo, TINY), hi: self.at_least(x.hi, TINY), ..x };
+    fn logarithm(&mut self, op: Unary, x: Values) -> Interval {
+        let x = self.interval(x);
+        let ends = Interval { lo: self.at_least(x.lo, TINY), hi: self.at_least(x.hi, TINY), ..x };
         let result = self.monotone(op, ends);
-        let result = self.widened(result, COARSE);
-        let result = self.grown_by(result, 4.0 * ROUNDING);
+        let result = self.widen_relative(result, COARSE);
+        let result = self.expand_by(result, 4.0 * ROUNDING);
         let (tiny, least) = (self.graph.number(TINY), self.graph.number(-LARGE));
         let meets_zero = self.graph.le(x.lo, tiny);
-        let result = Span::wild(self.graph.select(meets_zero, least, result.lo), result.hi);
-        self.endless_as(result, &[Span { lo: ends.lo, ..x }])
+        let result =
+            Interval::overflowing(self.graph.select(meets_zero, least, result.lo), result.hi);
+        self.overflow_monotone(result, &[Interval { lo: ends.lo, ..x }])
     }
 
-    /// A function of period 2π that falls from 1 at `crest` to -1 at `trough`.
-    fn wave(&mut self, op: Unary, x: Extent, crest: f64, trough: f64) -> Span {
-        let x = self.span(x);
+    /// Bounds sine or cosine: a function of period 2π that falls from 1 at `crest` to -1 at
+    /// `trough`.
+    fn sine_wave(&mut self, op: Unary, x: Values, crest: f64, trough: f64) -> Interval {
+        let x = self.interval(x);
         let size = self.magnitude(x);
         let slack = self.scaled(size, 4.0 * ROUNDING);
         let slack = self.offset(slack, TURN);
         let turns = [x.lo, x.hi].map(|end| self.scaled(end, 1.0 / TAU));
-        let turns = self.grown(Span::new(turns[0], turns[1]), slack);
-        let [crests, troughs] = [crest, trough].map(|place| {
-            let ends = [turns.lo, turns.hi].map(|end| self.offset(end, -place / TAU));
+        let turns = self.expand(Interval::new(turns[0], turns[1]), slack);
+        let [crests, troughs] = [crest, trough].map(|phase| {
+            let ends = [turns.lo, turns.hi].map(|end| self.offset(end, -phase / TAU));
             let last = self.graph.unary(Unary::Floor, ends[1]);
             self.graph.le(ends[0], last)
         });
         let ends = [x.lo, x.hi].map(|end| self.graph.unary(op, end));
         let margin = self.scaled(size, ROUNDING);
         let margin = self.offset(margin, ANGLE);
-        let between = self.around(&ends);
-        let between = self.grown(between, margin);
-        let between = self.clipped(between, -1.0, 1.0);
+        let between = self.hull_of(&ends);
+        let between = self.expand(between, margin);
+        let between = self.clamp(between, -1.0, 1.0);
         let (least, most) = (self.graph.number(-1.0), self.graph.number(1.0));
         let lo = self.graph.select(troughs, least, between.lo);
-        Span::new(lo, self.graph.select(crests, most, between.hi))
+        Interval::new(lo, self.graph.select(crests, most, between.hi))
     }
 
-    fn tangent(&mut self, x: Extent) -> Span {
-        let x = self.span(x);
+    fn tangent(&mut self, x: Values) -> Interval {
+        let x = self.interval(x);
         let ends = [x.lo, x.hi].map(|end| {
             let half_turns = self.scaled(end, 1.0 / PI);
             self.offset(half_turns, 0.5)
         });
-        let turns = self.grown_by(Span::new(ends[0], ends[1]), TURN);
+        let turns = self.expand_by(Interval::new(ends[0], ends[1]), TURN);
         let [first, last] = [turns.lo, turns.hi].map(|end| self.graph.unary(Unary::Floor, end));
         let same = self.graph.binary(Binary::Eq, first, last);
-        let result = self.monotone(Unary::Tan, Span::wild(x.lo, x.hi));
-        let result = self.widened(result, ANGLE);
-        let result = self.grown_by(result, ANGLE);
-        let result = self.cut(result);
+        let result = self.monotone(Unary::Tan, Interval::overflowing(x.lo, x.hi));
+        let result = self.widen_relative(result, ANGLE);
+        let result = self.expand_by(result, ANGLE);
+        let result = self.clamp_to_large(result);
         let entire = self.entire(Type::Scalar);
-        self.chosen(Span::new(same, same), result, entire)
+        self.select(Interval::new(same, same), result, entire)
     }
 
-    fn arc(&mut self, op: Unary, x: Extent) -> Extent {
-        let x = self.span(x);
-        let x = self.clipped(x, -1.0, 1.0);
+    fn inverse_sine_or_cosine(&mut self, op: Unary, x: Values) -> Values {
+        let x = self.interval(x);
+        let x = self.clamp(x, -1.0, 1.0);
         let result = self.monotone(op, x);
-        // Steep at the ends, where rounding of the argument shows.
-        self.grown_by(result, 64.0 * ANGLE).into()
+        // The functions are steep at the ends, where rounding of the argument matters most.
+        self.expand_by(result, 64.0 * ANGLE).into()
     }
 
-    fn hyperbolic(&mut self, op: Unary, x: Extent) -> Extent {
-        let x = self.span(x);
-        let x = self.clipped(x, -LARGEST_POWER, LARGEST_POWER);
+    fn hyperbolic(&mut self, op: Unary, x: Values) -> Values {
+        let x = self.interval(x);
+        let x = self.clamp(x, -LARGEST_POWER, LARGEST_POWER);
         let result = self.monotone(op, x);
-        let result = self.widened(result, ANGLE);
-        Span { wild: true, ..self.grown_by(result, ANGLE) }.into()
+        let result = self.widen_relative(result, ANGLE);
+        Interval { may_overflow: true, ..self.expand_by(result, ANGLE) }.into()
     }
 
-    /// Monotonic in the base and in the exponent apart, so the extremes are at corners. Bases below 0 are not defined.
-    fn power(&mut self, x: Extent, y: Extent) -> Span {
-        let (x, y) = (self.span(x), self.span(y));
+    /// `x^y`, monotonic in the base and in the exponent separately, so the extremes are at corners.
+    /// Undefined for bases below 0.
+    fn power(&mut self, x: Values, y: Values) -> Interval {
+        let (x, y) = (self.interval(x), self.interval(y));
         let rises = self.graph.range(y.lo).lo > 0.0;
         let bases = [x.lo, x.hi]
             .map(|end| if rises { self.above_zero(end) } else { self.at_least(end, TINY) });
@@ -251,69 +255,71 @@ impl Enclosing<'_> {
                 corners.push(self.graph.binary(Binary::Pow, base, y.hi));
             }
         }
-        let result = self.around(&corners);
-        let result = self.clipped(result, 0.0, LARGE);
-        let result = Span { wild: true, ..self.widened(result, ANGLE) };
-        let mut result = self.endless_as(result, &[Span { lo: bases[0], hi: bases[1], ..x }]);
+        let result = self.hull_of(&corners);
+        let result = self.clamp(result, 0.0, LARGE);
+        let result = Interval { may_overflow: true, ..self.widen_relative(result, ANGLE) };
+        let mut result =
+            self.overflow_monotone(result, &[Interval { lo: bases[0], hi: bases[1], ..x }]);
         if !rises {
-            result = self.endless_below(result, x);
-            // 0 to a positive power is 0, which what stands for 0 is not.
-            let (tiny, nought) = (self.graph.number(TINY), self.graph.number(0.0));
+            result = self.overflow_reciprocal(result, x);
+            // 0 to a positive power is 0, but a positive power of [`TINY`], which stands for 0, is
+            // not.
+            let (tiny, zero) = (self.graph.number(TINY), self.graph.number(0.0));
             let meets_zero = self.graph.le(x.lo, tiny);
-            result.lo = self.graph.select(meets_zero, nought, result.lo);
+            result.lo = self.graph.select(meets_zero, zero, result.lo);
         }
         result
     }
 
-    /// `atan2(y, x)`: a box that keeps off the origin and off the cut along negative x is seen under the angles
-    /// between its corners.
-    fn angle(&mut self, y: Extent, x: Extent) -> Span {
-        let (y, x) = (self.span(y), self.span(x));
-        let cut = self.meets_cut(y, x);
+    /// `atan2(y, x)`: the angles of a box that contains neither the origin nor a point of the
+    /// branch cut along negative x lie between the angles of its corners.
+    fn angle(&mut self, y: Values, x: Values) -> Interval {
+        let (y, x) = (self.interval(y), self.interval(x));
+        let cut = self.meets_branch_cut(y, x);
         let mut corner = |y, x| self.graph.binary(Binary::Atan2, y, x);
         let corners =
             [corner(y.lo, x.lo), corner(y.lo, x.hi), corner(y.hi, x.lo), corner(y.hi, x.hi)];
-        let result = self.around(&corners);
-        let result = self.grown_by(result, ANGLE);
+        let result = self.hull_of(&corners);
+        let result = self.expand_by(result, ANGLE);
         let turn = self.between(y.lo, -PI - ANGLE, PI + ANGLE);
-        self.chosen(Span::new(cut, cut), turn, result)
+        self.select(Interval::new(cut, cut), turn, result)
     }
 
-    /// Whether a box may hold the origin or a part of the negative x axis.
-    pub(super) fn meets_cut(&mut self, y: Span, x: Span) -> NodeId {
-        let nought = self.graph.number(0.0);
-        let low = self.graph.le(y.lo, nought);
-        let high = self.graph.le(nought, y.hi);
-        let left = self.graph.le(x.lo, nought);
+    /// True if a box may contain the origin or a point of the negative x axis.
+    pub(super) fn meets_branch_cut(&mut self, y: Interval, x: Interval) -> NodeId {
+        let zero = self.graph.number(0.0);
+        let low = self.graph.le(y.lo, zero);
+        let high = self.graph.le(zero, y.hi);
+        let left = self.graph.le(x.lo, zero);
         let both = self.graph.binary(Binary::And, low, high);
         self.graph.binary(Binary::And, both, left)
     }
 
-    fn hash(&mut self, state: Extent, x: Extent) -> Span {
-        let (state, x) = (self.span(state), self.span(x));
+    fn hash(&mut self, state: Values, x: Values) -> Interval {
+        let (state, x) = (self.interval(state), self.interval(x));
         let first = self.graph.unary(Unary::Floor, x.lo);
         let last = self.graph.unary(Unary::Floor, x.hi);
         let same_state = self.graph.binary(Binary::Eq, state.lo, state.hi);
-        let same_place = self.graph.binary(Binary::Eq, first, last);
-        let same = self.graph.binary(Binary::And, same_state, same_place);
+        let same_input = self.graph.binary(Binary::Eq, first, last);
+        let same = self.graph.binary(Binary::And, same_state, same_input);
         let value = self.graph.binary(Binary::Hash, state.lo, x.lo);
-        let any = self.between(x.lo, 0.0, HASHES - 1.0);
-        self.chosen(Span::new(same, same), Span::new(value, value), any)
+        let any = self.between(x.lo, 0.0, HASH_COUNT - 1.0);
+        self.select(Interval::new(same, same), Interval::new(value, value), any)
     }
 
-    fn equal(&mut self, x: Extent, y: Extent) -> Extent {
-        let (x, y) = (self.span(x), self.span(y));
+    fn equal(&mut self, x: Values, y: Values) -> Values {
+        let (x, y) = (self.interval(x), self.interval(y));
         if self.graph.ty(x.lo) == Type::Bool {
             let certain = self.both_or_neither([x.lo, y.lo], [x.hi, y.hi]);
-            return Span::new(certain, self.both_or_neither([x.hi, y.hi], [x.lo, y.lo])).into();
+            return Interval::new(certain, self.both_or_neither([x.hi, y.hi], [x.lo, y.lo])).into();
         }
         let (below, above) = (self.graph.le(x.lo, y.hi), self.graph.le(y.lo, x.hi));
         let possible = self.graph.binary(Binary::And, below, above);
         let (below, above) = (self.graph.le(x.hi, y.lo), self.graph.le(y.hi, x.lo));
-        Span::new(self.graph.binary(Binary::And, below, above), possible).into()
+        Interval::new(self.graph.binary(Binary::And, below, above), possible).into()
     }
 
-    /// Whether two truth values hold, or two others do not.
+    /// True if the first two truth values are true, or the other two are false.
     fn both_or_neither(&mut self, [a, b]: [NodeId; 2], [c, d]: [NodeId; 2]) -> NodeId {
         let both = self.graph.binary(Binary::And, a, b);
         let (c, d) = (self.graph.unary(Unary::Not, c), self.graph.unary(Unary::Not, d));
@@ -321,38 +327,39 @@ impl Enclosing<'_> {
         self.graph.binary(Binary::Or, both, neither)
     }
 
-    /// Where z lies between two edges, from 0 to 1.
-    pub(super) fn place_between(&mut self, low: Extent, high: Extent, z: Extent) -> Extent {
+    /// The position of z between two edges, clamped to 0 to 1.
+    pub(super) fn position_between(&mut self, low: Values, high: Values, z: Values) -> Values {
         let above = self.difference(z, low);
         let width = self.width_between(low, high);
-        let place = self.quotient(above, width);
-        self.unary(Unary::Saturate, place)
+        let position = self.quotient(above, width);
+        self.unary(Unary::Saturate, position)
     }
 
-    /// How far two edges are apart: what may be 0 is told as what spans it, so that it divides like that.
-    pub(super) fn width_between(&mut self, low: Extent, high: Extent) -> Extent {
+    /// The distance between two edges. If it may be 0 it is returned as an interval that contains
+    /// 0, so that division by it is bounded accordingly.
+    pub(super) fn width_between(&mut self, low: Values, high: Values) -> Values {
         let width = self.difference_of_rounded(high, low);
-        if let Extent::Fixed(node) = width {
-            let apart = |value: crate::Const| {
+        if let Values::Constant(node) = width {
+            let nonzero = |value: crate::node::Const| {
                 value.lanes()[..value.ty().width()].iter().all(|&lane| lane != 0.0)
             };
-            if self.graph.as_const(node).is_some_and(apart) {
+            if self.graph.as_const(node).is_some_and(nonzero) {
                 return width;
             }
         }
-        self.span(width).into()
+        self.interval(width).into()
     }
 
-    /// `t² (3 - 2 t)`, which rises from 0 to 1.
-    fn eased(&mut self, t: Extent) -> Extent {
-        let t = self.span(t);
+    /// `t² (3 - 2 t)`, which increases from 0 to 1.
+    fn smoothstep_of(&mut self, t: Values) -> Values {
+        let t = self.interval(t);
         let ends = [t.lo, t.hi].map(|t| {
             let square = self.graph.mul(t, t);
             let twice = self.scaled(t, -2.0);
             let rest = self.offset(twice, 3.0);
             self.graph.mul(square, rest)
         });
-        let result = self.grown_by(Span::new(ends[0], ends[1]), 4.0 * ROUNDING);
-        self.clipped(result, 0.0, 1.0).into()
+        let result = self.expand_by(Interval::new(ends[0], ends[1]), 4.0 * ROUNDING);
+        self.clamp(result, 0.0, 1.0).into()
     }
 }

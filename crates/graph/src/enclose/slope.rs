@@ -1,41 +1,33 @@
-//! How fast a node changes along a stretch: for each operation the chain rule over extents.
+//! Bounds of the slope of a node along a segment: the chain rule over intervals, per operation.
 //!
-//! Between kinks the slope is the derivative, at a kink all that lies between those on both sides. What may jump within the
-//! stretch has any slope. So values at two places of a stretch never differ by more than the slopes allow.
+//! Between kinks the slope is the derivative. At a kink it covers everything between the
+//! derivatives on both sides. Where the value may jump within the segment, the slope is unbounded.
+//! So two values on a segment never differ by more than the slope bounds allow.
 
-use super::Enclosing;
-use super::extent::{AFFINE, Extent, Line, ROUNDING, Span, TINY};
-use crate::{Binary, Ternary, Type, Unary};
+use super::encloser::Encloser;
+use super::values::{AFFINE, Affine, BoundedValue, Interval, ROUNDING, TINY, Values};
+use crate::node::{Binary, Ternary, Type, Unary};
 
-/// What is known of a node.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
-    pub(super) value: Extent,
-    /// None where it does not change.
-    pub(super) slope: Option<Extent>,
-}
-
-impl Known {
-    pub(super) fn fixed(value: Extent) -> Self {
-        Self { value, slope: None }
-    }
-}
-
-impl Enclosing<'_> {
-    /// The slope of an operation on one argument, given what it yields.
-    pub(super) fn unary_slope(&mut self, op: Unary, x: Known, result: Extent) -> Option<Extent> {
+impl Encloser<'_> {
+    /// The slope of an operation on one argument, given its result.
+    pub(super) fn unary_slope(
+        &mut self,
+        op: Unary,
+        x: BoundedValue,
+        result: Values,
+    ) -> Option<Values> {
         let slope = x.slope?;
         let value = x.value;
         Some(match op {
             Unary::Neg => self.negative(slope),
             Unary::Abs => self.absolute_slope(value, slope),
             Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc => {
-                let whole = self.span(result);
+                let whole = self.interval(result);
                 self.jump(whole)
             }
             Unary::Fract => {
                 let floor = self.unary(Unary::Floor, value);
-                let floor = self.span(floor);
+                let floor = self.interval(floor);
                 let jump = self.jump(floor);
                 self.sum(slope, jump)
             }
@@ -96,8 +88,8 @@ impl Enclosing<'_> {
                 self.product(slope, factor)
             }
             Unary::Saturate => {
-                let (nought, one) = (self.number(value, 0.0), self.number(value, 1.0));
-                self.clamp_slope(x, Known::fixed(nought), Known::fixed(one))?
+                let (zero, one) = (self.number(value, 0.0), self.number(value, 1.0));
+                self.clamp_slope(x, BoundedValue::fixed(zero), BoundedValue::fixed(one))?
             }
             Unary::Length => self.length_slope(value, slope, result),
             Unary::Normalize => {
@@ -114,14 +106,14 @@ impl Enclosing<'_> {
         })
     }
 
-    /// The slope of an operation on two arguments, given what it yields.
+    /// The slope of an operation on two arguments, given its result.
     pub(super) fn binary_slope(
         &mut self,
         op: Binary,
-        x: Known,
-        y: Known,
-        result: Extent,
-    ) -> Option<Extent> {
+        x: BoundedValue,
+        y: BoundedValue,
+        result: Values,
+    ) -> Option<Values> {
         if x.slope.is_none() && y.slope.is_none() {
             return None;
         }
@@ -152,7 +144,7 @@ impl Enclosing<'_> {
                     self.negative(part)
                 });
                 let smooth = self.total(x.slope, second);
-                let whole = self.span(whole);
+                let whole = self.interval(whole);
                 let jump = self.jump(whole);
                 self.total(smooth, Some(jump))
             }
@@ -161,7 +153,7 @@ impl Enclosing<'_> {
             Binary::Pow => self.power_slope(x, y, result),
             Binary::Atan2 => self.angle_slope(x, y),
             Binary::Step | Binary::Hash => {
-                let result = self.span(result);
+                let result = self.interval(result);
                 Some(self.jump(result))
             }
             Binary::Dot => {
@@ -178,16 +170,20 @@ impl Enclosing<'_> {
         }
     }
 
-    /// The slope of an operation on three arguments, given what it yields.
-    pub(super) fn ternary_slope(&mut self, op: Ternary, [x, y, z]: [Known; 3]) -> Option<Extent> {
+    /// The slope of an operation on three arguments.
+    pub(super) fn ternary_slope(
+        &mut self,
+        op: Ternary,
+        [x, y, z]: [BoundedValue; 3],
+    ) -> Option<Values> {
         match op {
             Ternary::Mix => {
                 let rest = self.one_minus(z.value);
                 let first = x.slope.map(|slope| self.product(slope, rest));
                 let second = y.slope.map(|slope| self.product(slope, z.value));
                 let third = z.slope.map(|slope| {
-                    let way = self.difference_of_rounded(y.value, x.value);
-                    self.product(slope, way)
+                    let difference = self.difference_of_rounded(y.value, x.value);
+                    self.product(slope, difference)
                 });
                 let moved = self.total(first, second);
                 self.total(moved, third)
@@ -195,7 +191,7 @@ impl Enclosing<'_> {
             Ternary::Clamp => self.clamp_slope(x, y, z),
             Ternary::Smoothstep => {
                 let width = self.width_between(x.value, y.value);
-                let t = self.place_between(x.value, y.value, z.value);
+                let t = self.position_between(x.value, y.value, z.value);
                 let rest = self.one_minus(t);
                 let bump = self.product(t, rest);
                 let bump = self.times(bump, 6.0);
@@ -209,125 +205,137 @@ impl Enclosing<'_> {
             }
             Ternary::Select => {
                 let (yes, no) = (self.slope(y), self.slope(z));
-                let truth = self.span(x.value);
-                let (yes, no) = (self.span(yes), self.span(no));
-                let chosen = self.chosen(truth, yes, no);
+                let truth = self.interval(x.value);
+                let (yes, no) = (self.interval(yes), self.interval(no));
+                let chosen = self.select(truth, yes, no);
                 if truth.lo == truth.hi {
                     return Some(chosen.into());
                 }
-                // Where the choice changes the value may jump.
+                // The value may jump where the condition changes.
                 let ty = self.graph.ty(chosen.lo);
                 let entire = self.entire(ty);
                 let undecided = self.graph.binary(Binary::Ne, truth.lo, truth.hi);
-                Some(self.chosen(Span::new(undecided, undecided), entire, chosen).into())
+                Some(self.select(Interval::new(undecided, undecided), entire, chosen).into())
             }
         }
     }
 
-    /// The slope; 0 where the node does not change.
-    pub(super) fn slope(&mut self, x: Known) -> Extent {
+    /// The slope; 0 if the node is constant.
+    pub(super) fn slope(&mut self, x: BoundedValue) -> Values {
         x.slope.unwrap_or_else(|| self.number(x.value, 0.0))
     }
 
-    fn total(&mut self, x: Option<Extent>, y: Option<Extent>) -> Option<Extent> {
+    fn total(&mut self, x: Option<Values>, y: Option<Values>) -> Option<Values> {
         match (x, y) {
             (Some(x), Some(y)) => Some(self.sum(x, y)),
             (x, y) => x.or(y),
         }
     }
 
-    /// A number in all lanes that a value has.
-    fn number(&mut self, like: Extent, value: f64) -> Extent {
+    /// A constant with the type of a value.
+    fn number(&mut self, like: Values, value: f64) -> Values {
         let ty = self.ty(like);
-        Extent::Fixed(self.graph.constant(ty, &[value; 4]))
+        Values::Constant(self.graph.constant(ty, &[value; 4]))
     }
 
-    pub(super) fn times(&mut self, x: Extent, factor: f64) -> Extent {
+    pub(super) fn times(&mut self, x: Values, factor: f64) -> Values {
         let factor = self.number(x, factor);
         self.product(x, factor)
     }
 
-    fn plus(&mut self, x: Extent, by: f64) -> Extent {
+    fn plus(&mut self, x: Values, by: f64) -> Values {
         let by = self.number(x, by);
         self.sum(x, by)
     }
 
-    pub(super) fn one_minus(&mut self, x: Extent) -> Extent {
+    pub(super) fn one_minus(&mut self, x: Values) -> Values {
         let one = self.number(x, 1.0);
         self.difference_of_rounded(one, x)
     }
 
-    fn absolute_slope(&mut self, x: Extent, slope: Extent) -> Extent {
-        let x = self.span(x);
-        let nought = self.number_like(x.lo, 0.0);
+    fn absolute_slope(&mut self, x: Values, slope: Values) -> Values {
+        let x = self.interval(x);
+        let zero = self.number_like(x.lo, 0.0);
         let signs = [x.lo, x.hi].map(|end| {
-            let above = self.graph.binary(Binary::Step, nought, end);
+            let above = self.graph.binary(Binary::Step, zero, end);
             let twice = self.scaled(above, 2.0);
             self.offset(twice, -1.0)
         });
-        self.product(slope, Span::new(signs[0], signs[1]).into())
+        self.product(slope, Interval::new(signs[0], signs[1]).into())
     }
 
     /// The slope of `yes` where `x` is less than `y`, of `no` where it is greater.
-    fn slope_by(&mut self, x: Known, y: Known, yes: Known, no: Known) -> Extent {
+    fn slope_by(
+        &mut self,
+        x: BoundedValue,
+        y: BoundedValue,
+        yes: BoundedValue,
+        no: BoundedValue,
+    ) -> Values {
         let (yes, no) = (self.slope(yes), self.slope(no));
-        self.by_lane([x.value, y.value, yes, no], |s, [x, y, yes, no]| {
-            let (x, y) = (s.span(x), s.span(y));
+        self.per_lane([x.value, y.value, yes, no], |s, [x, y, yes, no]| {
+            let (x, y) = (s.interval(x), s.interval(y));
             let certain = s.graph.lt(x.hi, y.lo);
             let possible = s.graph.le(x.lo, y.hi);
-            let (yes, no) = (s.span(yes), s.span(no));
-            s.chosen(Span::new(certain, possible), yes, no)
+            let (yes, no) = (s.interval(yes), s.interval(no));
+            s.select(Interval::new(certain, possible), yes, no)
         })
     }
 
-    fn clamp_slope(&mut self, x: Known, low: Known, high: Known) -> Option<Extent> {
+    fn clamp_slope(
+        &mut self,
+        x: BoundedValue,
+        low: BoundedValue,
+        high: BoundedValue,
+    ) -> Option<Values> {
         let value = self.binary(Binary::Max, x.value, low.value);
         let slope = Some(self.slope_by(low, x, x, low));
-        let raised = Known { value, slope };
+        let raised = BoundedValue { value, slope };
         Some(self.slope_by(raised, high, raised, high))
     }
 
-    /// Of a point that moves evenly the distance is convex, so its slope rises from one end to the other.
-    fn length_slope(&mut self, x: Extent, slope: Extent, length: Extent) -> Extent {
+    /// The slope of a length. For an affine vector the length is convex, so its slope increases
+    /// from one end to the other.
+    fn length_slope(&mut self, x: Values, slope: Values, length: Values) -> Values {
         if self.ty(x).width() == 1 {
             return self.absolute_slope(x, slope);
         }
         if let (
-            Extent::Line(Line { ends, size }),
-            Extent::Line(Line { ends: [direction, end], size: pace }),
+            Values::Affine(Affine { ends, magnitude: size }),
+            Values::Affine(Affine { ends: [direction, end], magnitude: speed }),
         ) = (x, slope)
             && direction == end
         {
-            let (size, pace) = (self.graph.length(size), self.graph.length(pace));
+            let (size, speed) = (self.graph.length(size), self.graph.length(speed));
             let [lo, hi] = ends.map(|end| {
                 let along = self.graph.dot(end, direction);
                 let length = self.graph.length(end);
                 let length = self.at_least(length, TINY);
                 let slope = self.graph.div(along, length);
-                // Near the centre the rounding of the terms that it is a sum of turns the direction to it.
+                // Near the origin, rounding of the terms turns the direction of the vector.
                 let turn = self.graph.div(size, length);
                 let turn = self.scaled(turn, 2.0 * AFFINE);
                 let turn = self.at_most(turn, 2.0);
-                let part = self.offset(turn, 4.0 * ROUNDING);
-                (slope, self.graph.mul(pace, part))
+                let fraction = self.offset(turn, 4.0 * ROUNDING);
+                (slope, self.graph.mul(speed, fraction))
             });
             let (least, most) = (self.graph.sub(lo.0, lo.1), self.graph.add(hi.0, hi.1));
-            return Span::new(least, most).into();
+            return Interval::new(least, most).into();
         }
         let along = self.dot(x, slope);
         let ratio = self.quotient(along, length);
         let steepest = self.length(slope);
-        let (ratio, steepest) = (self.span(ratio), self.span(steepest).hi);
+        let (ratio, steepest) = (self.interval(ratio), self.interval(steepest).hi);
         let least = self.graph.neg(steepest);
         let [lo, hi] = [ratio.lo, ratio.hi].map(|end| {
             let raised = self.graph.max(end, least);
             self.graph.min(raised, steepest)
         });
-        Span { lo, hi, wild: ratio.wild }.into()
+        Interval { lo, hi, may_overflow: ratio.may_overflow }.into()
     }
 
     /// `y x^(y - 1)` for the base, `x^y log x` for the exponent.
-    fn power_slope(&mut self, x: Known, y: Known, result: Extent) -> Option<Extent> {
+    fn power_slope(&mut self, x: BoundedValue, y: BoundedValue, result: Values) -> Option<Values> {
         let first = x.slope.map(|slope| {
             let less = self.plus(y.value, -1.0);
             let power = self.binary(Binary::Pow, x.value, less);
@@ -335,8 +343,8 @@ impl Enclosing<'_> {
             self.product(slope, factor)
         });
         let second = y.slope.map(|slope| {
-            // Also of a fixed base, which may be 0.
-            let base = self.span(x.value);
+            // As an interval even if the base is constant, since it may be 0.
+            let base = self.interval(x.value);
             let log = self.unary(Unary::Log, base.into());
             let factor = self.product(result, log);
             self.product(slope, factor)
@@ -344,27 +352,29 @@ impl Enclosing<'_> {
         self.total(first, second)
     }
 
-    /// `(x y' - y x') / (x² + y²)`; any slope where the angle may jump.
-    fn angle_slope(&mut self, y: Known, x: Known) -> Option<Extent> {
+    /// `(x y' - y x') / (x² + y²)`; unbounded where the angle may jump.
+    fn angle_slope(&mut self, y: BoundedValue, x: BoundedValue) -> Option<Values> {
         let (dy, dx) = (self.slope(y), self.slope(x));
-        Some(self.by_lane([y.value, x.value, dy, dx], |s, [y, x, dy, dx]| {
-            let above = s.turning(y, x, dy, dx);
-            let place = s.compose(&[x, y]);
-            let square = s.square_of_length(place);
+        Some(self.per_lane([y.value, x.value, dy, dx], |s, [y, x, dy, dx]| {
+            let above = s.angular_momentum(y, x, dy, dx);
+            let vector = s.compose(&[x, y]);
+            let square = s.square_of_length(vector);
             let slope = s.quotient(above, square);
-            let (slope, y, x) = (s.span(slope), s.span(y), s.span(x));
-            let cut = s.meets_cut(y, x);
+            let (slope, y, x) = (s.interval(slope), s.interval(y), s.interval(x));
+            let cut = s.meets_branch_cut(y, x);
             let entire = s.entire(Type::Scalar);
-            s.chosen(Span::new(cut, cut), entire, slope)
+            s.select(Interval::new(cut, cut), entire, slope)
         }))
     }
 
-    /// `x y' - y x'`, which is one number for a point that moves evenly.
-    fn turning(&mut self, y: Extent, x: Extent, dy: Extent, dx: Extent) -> Extent {
+    /// `x y' - y x'`, which is constant for an affine point.
+    fn angular_momentum(&mut self, y: Values, x: Values, dy: Values, dx: Values) -> Values {
         let (first, second) = (self.product(x, dy), self.product(y, dx));
         let difference = self.difference(first, second);
-        let Extent::Line(Line { ends, size }) = difference else { return difference };
+        let Values::Affine(Affine { ends, magnitude: size }) = difference else {
+            return difference;
+        };
         let margin = self.scaled(size, 4.0 * ROUNDING);
-        self.grown(Span::new(ends[0], ends[0]), margin).into()
+        self.expand(Interval::new(ends[0], ends[0]), margin).into()
     }
 }

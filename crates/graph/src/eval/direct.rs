@@ -1,14 +1,15 @@
-//! Evaluation without a tape, for a few values of inputs that a tape does not know.
+//! Evaluation without a tape, for nodes that a tape cannot hold, such as samples.
 
 use rustc_hash::FxHashMap;
 
 use super::Number;
 use super::op::Op;
-use super::scalarise::{Lanes, Machine, scalarise};
+use super::scalarise::{Lanes, ScalarBackend, scalarise};
+use crate::graph::Graph;
 use crate::graph::result_type;
-use crate::{Graph, Node, NodeId, Type};
+use crate::node::{Node, NodeId, Type};
 
-/// Computes in a domain at once, its inputs given by a function.
+/// A backend that computes numbers; a function gives the inputs.
 struct Direct<N, F> {
     input: F,
     /// The node being computed.
@@ -16,7 +17,7 @@ struct Direct<N, F> {
     number: std::marker::PhantomData<N>,
 }
 
-impl<N: Number, F: FnMut(NodeId) -> [N; 4]> Machine for Direct<N, F> {
+impl<N: Number, F: FnMut(NodeId) -> [N; 4]> ScalarBackend for Direct<N, F> {
     type Value = N;
 
     fn constant(&mut self, value: f64) -> N {
@@ -29,13 +30,14 @@ impl<N: Number, F: FnMut(NodeId) -> [N; 4]> Machine for Direct<N, F> {
 
     fn input(&mut self, node: &Node) -> Option<Lanes<N>> {
         let lanes = (self.input)(self.current);
-        let width = result_type(node, |_| Type::Scalar).width(); // an input's own, whatever its argument
+        let width = result_type(node, |_| Type::Scalar).width(); // the type of an input does not depend on its argument
         Some(Lanes::new(width, |i| lanes[i]))
     }
 }
 
-/// The first lane of a node. `order` lists what it is computed from, arguments first, with it at the end;
-/// points, per-frame inputs and samples have the lanes that `input` gives.
+/// Evaluates the last node of `order` and returns its first lane. `order` lists the nodes that it
+/// is computed from, arguments first. `input` gives the lanes of points, per-frame inputs and
+/// samples.
 pub(crate) fn evaluate<N: Number>(
     graph: &Graph,
     order: &[NodeId],
@@ -43,11 +45,11 @@ pub(crate) fn evaluate<N: Number>(
 ) -> N {
     let zero = Lanes::scalar(N::constant(0.0));
     let Some(&last) = order.last() else { return zero.get(0) };
-    let mut machine = Direct { input, current: last, number: std::marker::PhantomData };
+    let mut backend = Direct { input, current: last, number: std::marker::PhantomData };
     let mut values: FxHashMap<NodeId, Lanes<N>> = FxHashMap::default();
     for &id in order {
-        machine.current = id;
-        let value = scalarise(&mut machine, &graph.node(id), |argument| {
+        backend.current = id;
+        let value = scalarise(&mut backend, &graph.node(id), |argument| {
             values.get(&argument).copied().unwrap_or(zero)
         });
         values.insert(id, value.unwrap_or(zero));

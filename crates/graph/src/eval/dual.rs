@@ -1,22 +1,23 @@
-//! Forward-mode derivatives.
+//! Forward-mode differentiation.
 
 use super::Number;
 
-/// A number and its derivatives by the three coordinates of the point, in f64.
+/// A number and its partial derivatives with respect to the coordinates of the point, in f64.
 ///
-/// At kinks the derivative is that of a branch: `min`, `max`, `clamp` on a tie that of the first argument, `abs` at 0
-/// +1. `sqrt` and `length` at 0 have derivative 0, jumps (`floor`, `sign`, comparisons) everywhere. A part
-/// that is 0 stays 0 even where the outer derivative is infinite.
+/// At kinks the derivative is the derivative of one branch: of the first argument for `min`, `max`
+/// and `clamp` on a tie, and +1 for `abs` at 0. `sqrt` and `length` have the derivative 0 at 0,
+/// operations that jump (`floor`, `sign`, comparisons) everywhere. A partial derivative that is 0
+/// stays 0 even where the outer derivative is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual {
     /// The value.
     pub value: f64,
-    /// Its derivatives by x, y, z.
+    /// Its partial derivatives with respect to x, y, z.
     pub partials: [f64; 3],
 }
 
 impl Dual {
-    /// The coordinates of a point, as the variables that derivatives are taken by.
+    /// The coordinates of a point, as the independent variables.
     pub fn point([x, y, z]: [f64; 3]) -> [Self; 3] {
         [
             Self { value: x, partials: [1.0, 0.0, 0.0] },
@@ -25,31 +26,31 @@ impl Dual {
         ]
     }
 
-    fn flat(value: f64) -> Self {
+    fn constant_dual(value: f64) -> Self {
         Self { value, partials: [0.0; 3] }
     }
 
-    /// A function of this number, by its value and derivative.
+    /// A function of this number, given its value and derivative.
     fn chain(self, value: f64, slope: f64) -> Self {
-        Self { value, partials: self.partials.map(|part| scaled(part, slope)) }
+        Self { value, partials: self.partials.map(|partial| scaled(partial, slope)) }
     }
 
-    /// A function of two numbers, by its value and derivatives.
+    /// A function of two numbers, given its value and partial derivatives.
     fn chain2(self, y: Self, value: f64, slopes: [f64; 2]) -> Self {
-        let part =
+        let partial =
             |i: usize| scaled(self.partials[i], slopes[0]) + scaled(y.partials[i], slopes[1]);
-        Self { value, partials: [part(0), part(1), part(2)] }
+        Self { value, partials: [partial(0), partial(1), partial(2)] }
     }
 }
 
-/// The product, 0 where the part is 0 whatever the slope.
-fn scaled(part: f64, slope: f64) -> f64 {
-    if part == 0.0 { 0.0 } else { part * slope }
+/// The product; 0 where the partial derivative is 0, even if the slope is infinite.
+fn scaled(partial: f64, slope: f64) -> f64 {
+    if partial == 0.0 { 0.0 } else { partial * slope }
 }
 
 impl Number for Dual {
     fn constant(value: f64) -> Self {
-        Self::flat(value)
+        Self::constant_dual(value)
     }
 
     fn neg(self) -> Self {
@@ -59,19 +60,19 @@ impl Number for Dual {
         self.chain(self.value.abs(), if self.value < 0.0 { -1.0 } else { 1.0 })
     }
     fn sign(self) -> Self {
-        Self::flat(Number::sign(self.value))
+        Self::constant_dual(Number::sign(self.value))
     }
     fn floor(self) -> Self {
-        Self::flat(self.value.floor())
+        Self::constant_dual(self.value.floor())
     }
     fn ceil(self) -> Self {
-        Self::flat(self.value.ceil())
+        Self::constant_dual(self.value.ceil())
     }
     fn round(self) -> Self {
-        Self::flat(Number::round(self.value))
+        Self::constant_dual(Number::round(self.value))
     }
     fn trunc(self) -> Self {
-        Self::flat(self.value.trunc())
+        Self::constant_dual(self.value.trunc())
     }
     fn square(self) -> Self {
         self.chain(self.value * self.value, 2.0 * self.value)
@@ -128,7 +129,7 @@ impl Number for Dual {
         self.chain(value, 1.0 - value * value)
     }
     fn not(self) -> Self {
-        Self::flat(self.value.not())
+        Self::constant_dual(self.value.not())
     }
 
     fn add(self, y: Self) -> Self {
@@ -153,7 +154,7 @@ impl Number for Dual {
     fn pow(self, y: Self) -> Self {
         let value = self.value.pow(y.value);
         let by_base = y.value * self.value.pow(y.value - 1.0);
-        // x^y ln x tends to 0 with x for the positive powers that are defined there.
+        // x^y ln x tends to 0 with x for positive y, the only ones defined at 0.
         let by_power = if self.value == 0.0 { 0.0 } else { value * libm::log(self.value) };
         self.chain2(y, value, [by_base, by_power])
     }
@@ -163,38 +164,38 @@ impl Number for Dual {
         self.chain2(x, libm::atan2(self.value, x.value), slopes)
     }
     fn step(self, x: Self) -> Self {
-        Self::flat(self.value.step(x.value))
+        Self::constant_dual(self.value.step(x.value))
     }
     fn hash(self, x: Self) -> Self {
-        Self::flat(self.value.hash(x.value))
+        Self::constant_dual(self.value.hash(x.value))
     }
-    fn direction(self, length: Self) -> Self {
-        if length.value == 0.0 { Self::flat(0.0) } else { self.div(length) }
+    fn normalize_lane(self, length: Self) -> Self {
+        if length.value == 0.0 { Self::constant_dual(0.0) } else { self.div(length) }
     }
     fn lt(self, y: Self) -> Self {
-        Self::flat(Number::lt(self.value, y.value))
+        Self::constant_dual(Number::lt(self.value, y.value))
     }
     fn le(self, y: Self) -> Self {
-        Self::flat(Number::le(self.value, y.value))
+        Self::constant_dual(Number::le(self.value, y.value))
     }
     fn eq(self, y: Self) -> Self {
-        Self::flat(Number::eq(self.value, y.value))
+        Self::constant_dual(Number::eq(self.value, y.value))
     }
     fn ne(self, y: Self) -> Self {
-        Self::flat(Number::ne(self.value, y.value))
+        Self::constant_dual(Number::ne(self.value, y.value))
     }
     fn and(self, y: Self) -> Self {
-        Self::flat(self.value.and(y.value))
+        Self::constant_dual(self.value.and(y.value))
     }
     fn or(self, y: Self) -> Self {
-        Self::flat(self.value.or(y.value))
+        Self::constant_dual(self.value.or(y.value))
     }
 
-    fn is_never(self) -> bool {
+    fn is_definitely_false(self) -> bool {
         self.value == 0.0
     }
     fn element(self, list: &[f64]) -> Self {
-        Self::flat(self.value.element(list))
+        Self::constant_dual(self.value.element(list))
     }
 
     fn mix(self, y: Self, t: Self) -> Self {
@@ -207,7 +208,7 @@ impl Number for Dual {
     }
     fn smoothstep(self, hi: Self, x: Self) -> Self {
         let t = x.sub(self).div(hi.sub(self)).saturate();
-        t.square().mul(Self::flat(3.0).sub(t.add(t)))
+        t.square().mul(Self::constant_dual(3.0).sub(t.add(t)))
     }
     fn select(self, yes: Self, no: Self) -> Self {
         if self.value != 0.0 { yes } else { no }

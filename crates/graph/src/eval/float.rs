@@ -1,9 +1,9 @@
-//! Plain floating point: `f64` is the reference, `f32` the twin of the shader.
+//! Floating point: `f64` is the reference, `f32` computes what the shader computes.
 //!
-//! Both follow WGSL, so that `f32` differs from a device only by the accuracy that WGSL allows it:
-//! `round` goes to even, `pow`, `atan2` and equal edges of `smoothstep` know
-//! no negative zero, `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN
-//! or infinite. `min` and `max` pass on a NaN of their first argument only; WGSL leaves this open.
+//! Both follow WGSL, so that `f32` differs from a device only by the accuracy that WGSL allows:
+//! `round` goes to even, `pow`, `atan2` and `smoothstep` with equal edges ignore negative zeros,
+//! `sign(0)` is 0, `pow` of a negative base is NaN. An undefined result is NaN or infinite. `min`
+//! and `max` return a NaN only if it is their first argument; WGSL leaves this open.
 
 use super::Number;
 use super::hash::hash;
@@ -103,7 +103,7 @@ macro_rules! float {
             }
             #[inline]
             fn atan2(self, x: Self) -> Self {
-                $atan2(self + 0.0, x + 0.0) // makes -0 into 0
+                $atan2(self + 0.0, x + 0.0) // turns -0 into 0
             }
             #[inline]
             fn step(self, x: Self) -> Self {
@@ -114,7 +114,7 @@ macro_rules! float {
                 hash(self.into(), x.into()) as Self
             }
             #[inline]
-            fn direction(self, length: Self) -> Self {
+            fn normalize_lane(self, length: Self) -> Self {
                 if length == 0.0 { 0.0 } else { self / length }
             }
             #[inline]
@@ -143,7 +143,7 @@ macro_rules! float {
             }
 
             #[inline]
-            fn is_never(self) -> bool {
+            fn is_definitely_false(self) -> bool {
                 self == 0.0
             }
             fn element(self, list: &[f64]) -> Self {
@@ -191,8 +191,8 @@ float!(
     tanh: f32::tanh,
 );
 
-// The functions of a system's own library differ in the last bit from those of others. Constants are folded and bounds are found by
-// these, so that a scene is the same text wherever it is compiled.
+// The math functions of different systems' libraries differ in the last bit. Constants are folded
+// and bounds are found by libm, so that a scene compiles to the same shader on every system.
 float!(
     f64,
     pow: libm::pow,
@@ -212,7 +212,7 @@ float!(
     tanh: libm::tanh,
 );
 
-/// 1 or 0.
+/// 1 for true, 0 for false.
 #[inline]
 fn truth<F: From<bool>>(holds: bool) -> F {
     F::from(holds)

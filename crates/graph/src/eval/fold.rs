@@ -1,14 +1,14 @@
 //! Constant folding.
 
 use super::op::Op;
-use super::scalarise::{Lanes, Machine, scalarise};
+use super::scalarise::{Lanes, ScalarBackend, scalarise};
 use crate::graph::result_type;
-use crate::{Const, Node, NodeId, Type};
+use crate::node::{Const, Node, NodeId, Type};
 
-/// Computes in f64 at once; has no inputs.
+/// A backend that computes in f64 and has no inputs.
 struct Folding;
 
-impl Machine for Folding {
+impl ScalarBackend for Folding {
     type Value = f64;
 
     fn constant(&mut self, value: f64) -> f64 {
@@ -24,14 +24,16 @@ impl Machine for Folding {
     }
 }
 
-/// The value of a node whose arguments, in order, are these constants. `None` for a node that is no
-/// operation, and where finite arguments give a lane that is not finite, or any give one that is no number: such an
-/// operation stays, to be reported or to run, rather than become a literal that no shader can hold.
+/// The value of a node whose arguments, in order, are these constants.
+///
+/// Returns `None` for a node that is no operation, where finite arguments give a lane that is not
+/// finite, and where any arguments give NaN. Such an operation stays in the graph, to be reported
+/// or to run, instead of becoming a literal that no shader can hold.
 pub fn fold(node: &Node, arguments: &[Const]) -> Option<Const> {
     fold_where(node, |id| arguments.get(node.own_arguments().position(|argument| argument == id)?))
 }
 
-/// As [`fold`], where `constant` gives what an argument is.
+/// Like [`fold`], with the constants given by node.
 pub(crate) fn fold_where<'a>(
     node: &Node,
     constant: impl Fn(NodeId) -> Option<&'a Const>,

@@ -1,17 +1,17 @@
-//! The integer hash, the same bits in every domain and on every device.
+//! The integer hash, with the same bits in every number type and on every device.
 
-/// How many values a hash has: 24 bits, which f32 holds.
-pub const HASHES: f64 = 16_777_216.0;
+/// Number of hash values: 24 bits, the widest whole numbers that f32 holds.
+pub const HASH_COUNT: f64 = 16_777_216.0;
 
 /// The greatest f32 below 2^31.
 const LARGEST: f64 = 2_147_483_520.0;
 
-/// A whole number from 0 to [`HASHES`] - 1, from another such and the whole part of x.
+/// A whole number from 0 to [`HASH_COUNT`] - 1, from another one (the state) and `floor(x)`.
 ///
-/// The state and `floor(x)`, brought into the range of an f32 that fits 32 bits with a sign, are added as words and
-/// permuted by one round of PCG (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020); the upper 24 bits stay. A
-/// place in several dimensions is hashed one coordinate after the other, each result the next state. NaN counts as 0 here
-/// and as anything on a device.
+/// The state and `floor(x)`, clamped to the f32 values that fit an i32, are added as words and
+/// permuted by one round of PCG (Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020).
+/// The upper 24 bits are the result. A point in several dimensions is hashed one coordinate after
+/// the other, each result being the next state. NaN counts as 0 here and as any number on a device.
 pub fn hash(state: f64, x: f64) -> f64 {
     let whole = x.floor().clamp(-LARGEST - 128.0, LARGEST) as i64;
     let word = (state as u32).wrapping_add(whole as u32);

@@ -1,8 +1,8 @@
-//! Evaluation of flat math: in f32 (the shader's twin), f64, intervals and dual numbers.
+//! Evaluation of flat math: in f32 (as the shader computes), f64, intervals and dual numbers.
 //!
-//! [`Number`] names the scalar operations of the closed set, each domain implements them. Nodes become
-//! scalar operations in one place for all domains: a [`Tape`] records them once and then runs in any domain;
-//! [`fold`] computes them at once.
+//! [`Number`] names the scalar operations of the closed set; each number type implements them. One
+//! place turns nodes into scalar operations for all number types: a [`Tape`] records them once and
+//! then runs in any of them; [`fold`] computes them at once.
 //!
 //! ```
 //! use sdfc_graph::eval::{Dual, FrameValues, Interval, Packet, Tape};
@@ -34,97 +34,33 @@
 //! # Ok::<(), sdfc_graph::eval::TapeError>(())
 //! ```
 
+mod allocate;
+mod compile;
 pub(crate) mod direct;
 mod dual;
+mod evaluator;
 mod float;
 mod fold;
+mod frame;
 mod hash;
 mod interval;
 mod number;
 mod op;
 mod packet;
 mod record;
+mod sample;
 mod scalarise;
 mod tape;
-mod watch;
+mod tracer;
 
 pub use dual::Dual;
+pub use evaluator::Evaluator;
 pub use fold::fold;
 pub(crate) use fold::fold_where;
-pub use hash::{HASHES, hash};
-pub use interval::{Interval, Path};
+pub use frame::FrameValues;
+pub use hash::{HASH_COUNT, hash};
+pub use interval::{BranchPath, Interval};
 pub use number::Number;
 pub use packet::Packet;
-pub use tape::{Evaluator, Tape, TapeError};
-
-use crate::{FrameInput, Graph, NodeId, Param, Program};
-
-/// Values of the per-frame inputs, in any domain.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FrameValues<N = f64> {
-    /// Of the scene's params, in their order; lanes beyond a param's type are ignored.
-    pub params: Vec<[N; 4]>,
-    /// Seconds.
-    pub time: N,
-    /// Whole number of the frame.
-    pub frame: N,
-}
-
-impl FrameValues {
-    /// The params' defaults, at time 0 and frame 0.
-    pub fn defaults(params: &[Param]) -> Self {
-        let params = params.iter().map(|param| param.default).collect();
-        Self { params, time: 0.0, frame: 0.0 }
-    }
-}
-
-impl<N: Number> FrameValues<N> {
-    /// One lane of an input; of a param that is not there, 0.
-    pub(crate) fn lane(&self, input: FrameInput, lane: usize) -> N {
-        let param = |index: u32| self.params.get(index as usize).map(|lanes| lanes[lane]);
-        match input {
-            FrameInput::Param(index) => param(index).unwrap_or(N::constant(0.0)),
-            FrameInput::Time => self.time,
-            FrameInput::Frame => self.frame,
-        }
-    }
-}
-
-/// The values of nodes of stage `Const` or `Frame`, in their order; lanes beyond a node's width are
-/// 0. A node that needs more than a frame's values gives NaN.
-pub fn evaluate_frame(graph: &Graph, nodes: &[NodeId], frame: &FrameValues) -> Vec<[f64; 4]> {
-    let nowhere = [f64::NAN; 3];
-    match Tape::new(graph, nodes) {
-        Ok(tape) => tape.prepare(frame).eval(nowhere).to_vec(),
-        Err(_) => vec![[f64::NAN; 4]; nodes.len()],
-    }
-}
-
-/// A field at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FieldSample {
-    /// Signed distance.
-    pub distance: f64,
-    /// Its gradient, by forward-mode derivative.
-    pub gradient: [f64; 3],
-}
-
-/// Distance and gradient of a scene at points, in f64. The gradient is derived from the distance itself,
-/// apart from [`Program::gradient`], which it can be checked against. Empty if the scene draws nothing.
-///
-/// # Errors
-/// Where the program is not flat.
-pub fn sample_field(
-    program: &Program,
-    frame: &FrameValues,
-    points: &[[f64; 3]],
-) -> Result<Vec<FieldSample>, TapeError> {
-    let Some(distance) = program.distance else { return Ok(Vec::new()) };
-    let tape = Tape::new(&program.graph, &[distance])?;
-    let mut field = tape.prepare::<Dual>(frame);
-    let sample = |&point: &[f64; 3]| {
-        let Dual { value, partials } = field.scalar(Dual::point(point));
-        FieldSample { distance: value, gradient: partials }
-    };
-    Ok(points.iter().map(sample).collect())
-}
+pub use sample::{FieldSample, evaluate_frame, sample_field};
+pub use tape::{Tape, TapeError};

@@ -1,10 +1,11 @@
-//! The domains in which a graph can be evaluated.
+//! The number types in which a graph can be evaluated.
 
-/// A domain of values: one method for each scalar operation of the closed set.
+/// A number type: one method for each scalar operation of the closed set.
 ///
-/// Truth values are numbers: 0 is false, 1 is true (an undecided [`Interval`](super::Interval) spans
-/// both). Angles are in radians. Functions of a partial domain are undefined outside it, each domain says how.
-/// Wherever WGSL leaves a result open, the rule stated here holds on the CPU.
+/// Truth values are numbers: 0 is false, 1 is true (an undecided [`Interval`](super::Interval)
+/// spans both). Angles are in radians. Partial functions are undefined outside their domain; each
+/// number type documents what it returns there. Where WGSL leaves a result open, the rule stated
+/// here holds on the CPU.
 pub trait Number: Copy {
     /// The number nearest to a constant.
     fn constant(value: f64) -> Self;
@@ -15,13 +16,13 @@ pub trait Number: Copy {
     fn abs(self) -> Self;
     /// -1, 0 or 1
     fn sign(self) -> Self;
-    /// The next whole number below
+    /// The greatest whole number that is not above x
     fn floor(self) -> Self;
-    /// The next whole number above
+    /// The least whole number that is not below x
     fn ceil(self) -> Self;
     /// The nearest whole number; halves go to the even one
     fn round(self) -> Self;
-    /// The next whole number towards 0
+    /// x rounded towards 0
     fn trunc(self) -> Self;
     /// `x * x`, for two factors known to be one value
     fn square(self) -> Self;
@@ -55,7 +56,7 @@ pub trait Number: Copy {
     fn cosh(self) -> Self;
     /// Hyperbolic tangent
     fn tanh(self) -> Self;
-    /// Of a truth value
+    /// Logical negation of a truth value
     fn not(self) -> Self;
 
     /// `x + y`
@@ -66,9 +67,9 @@ pub trait Number: Copy {
     fn mul(self, y: Self) -> Self;
     /// `x / y`; undefined where y is 0
     fn div(self, y: Self) -> Self;
-    /// The lesser; x on a tie
+    /// The lesser of x and y; x on a tie
     fn min(self, y: Self) -> Self;
-    /// The greater; x on a tie
+    /// The greater of x and y; x on a tie
     fn max(self, y: Self) -> Self;
     /// `x^y`; undefined where x is negative, or where x is 0 and y is not positive
     fn pow(self, y: Self) -> Self;
@@ -76,10 +77,10 @@ pub trait Number: Copy {
     fn atan2(self, x: Self) -> Self;
     /// 0 where x is less than this edge, else 1
     fn step(self, x: Self) -> Self;
-    /// 24 bits from 24 others and the whole part of x, as [`hash`](super::hash::hash) mixes them
+    /// 24 bits from 24 others and `floor(x)`, as [`hash`](super::hash::hash) mixes them
     fn hash(self, x: Self) -> Self;
-    /// A component of a vector of the given length, divided by that length; 0 where the length is 0
-    fn direction(self, length: Self) -> Self;
+    /// A component of a vector, divided by the vector's length; 0 where the length is 0
+    fn normalize_lane(self, length: Self) -> Self;
     /// `x < y`
     fn lt(self, y: Self) -> Self;
     /// `x <= y`
@@ -88,54 +89,54 @@ pub trait Number: Copy {
     fn eq(self, y: Self) -> Self;
     /// `x != y`
     fn ne(self, y: Self) -> Self;
-    /// Both of two truth values
+    /// Logical conjunction
     fn and(self, y: Self) -> Self;
-    /// Either of two truth values
+    /// Logical disjunction
     fn or(self, y: Self) -> Self;
 
     /// `x * (1 - t) + y * t`
     fn mix(self, y: Self, t: Self) -> Self;
     /// `min(max(x, lo), hi)`
     fn clamp(self, lo: Self, hi: Self) -> Self;
-    /// Hermite step of x, this being the lower edge; undefined where the edges are equal
+    /// Hermite step of x between this lower edge and `hi`; undefined where the edges are equal
     fn smoothstep(self, hi: Self, x: Self) -> Self;
-    /// `yes` where this truth value holds, else `no`
+    /// `yes` where this truth value is true, else `no`
     fn select(self, yes: Self, no: Self) -> Self;
 
-    /// Whether this truth value is false for certain: a loop that it keeps running ends
-    fn is_never(self) -> bool;
+    /// True if this truth value is certainly false, so that a loop with this condition ends.
+    fn is_definitely_false(self) -> bool;
 
-    /// The element of a list at a position, rounded down; the first before the first, the last past the last
+    /// The element of a list at an index, which is rounded down and clamped to the list
     fn element(self, list: &[f64]) -> Self;
 
     /// `x - floor(x)`
     fn fract(self) -> Self {
-        self.beyond(self.floor())
+        self.fract_with_floor(self.floor())
     }
 
     /// `x - y * floor(x / y)`; undefined where y is 0
     fn rem(self, y: Self) -> Self {
-        self.left(y, self.div(y).floor())
+        self.rem_with_quotient(y, self.div(y).floor())
     }
 
-    /// `x - whole` for the whole number known to be `floor(x)`
-    fn beyond(self, whole: Self) -> Self {
+    /// `x - whole`, where `whole` is known to be `floor(x)`
+    fn fract_with_floor(self, whole: Self) -> Self {
         self.sub(whole)
     }
 
-    /// `x - y * whole` for the whole number known to be `floor(x / y)`
-    fn left(self, y: Self, whole: Self) -> Self {
+    /// `x - y * whole`, where `whole` is known to be `floor(x / y)`
+    fn rem_with_quotient(self, y: Self, whole: Self) -> Self {
         self.sub(y.mul(whole))
     }
 
-    /// `x * y` for a y known to be `c * (1 - x)`: the dip of a quadratic blend
-    fn parabola(self, y: Self, c: Self) -> Self {
+    /// `x * y`, where y is known to be `c * (1 - x)`: the correction term of a quadratic blend
+    fn x_times_one_minus_x(self, y: Self, c: Self) -> Self {
         let _ = c;
         self.mul(y)
     }
 
     /// `x - clamp(x, lo, hi)`: how far x lies above the range, or below it as a negative number
-    fn excess(self, lo: Self, hi: Self) -> Self {
+    fn clamp_residual(self, lo: Self, hi: Self) -> Self {
         self.sub(self.clamp(lo, hi))
     }
 

@@ -22,7 +22,7 @@ macro_rules! operations {
                 }
             }
 
-            /// The result; `argument` gives the arguments by position.
+            /// The result. `argument` gives the arguments by position.
             #[inline]
             pub(crate) fn apply<N: Number>(self, argument: impl Fn(usize) -> N) -> N {
                 match self {
@@ -76,8 +76,8 @@ operations! {
         Atan2 = atan2,
         Step = step,
         Hash = hash,
-        Direction = direction,
-        Beyond = beyond,
+        NormalizeLane = normalize_lane,
+        FractWithFloor = fract_with_floor,
         Lt = lt,
         Le = le,
         Eq = eq,
@@ -90,19 +90,19 @@ operations! {
         Clamp = clamp,
         Smoothstep = smoothstep,
         Select = select,
-        Parabola = parabola,
-        Excess = excess,
-        Left = left,
+        XTimesOneMinusX = x_times_one_minus_x,
+        ClampResidual = clamp_residual,
+        RemWithQuotient = rem_with_quotient,
     }
 }
 
 impl Op {
-    /// Whether the result can jump where the arguments do not: then whoever watches an evaluation is told.
+    /// True if the result can jump where the arguments do not. A tracer sees these operations.
     pub(crate) fn jumps(self) -> bool {
-        self.is_whole() || matches!(self, Self::Atan2 | Self::Direction)
+        self.is_whole() || matches!(self, Self::Atan2 | Self::NormalizeLane)
     }
 
-    /// Whether the result is a whole number or a truth value.
+    /// True if the result is a whole number or a truth value.
     pub(crate) fn is_whole(self) -> bool {
         use Op::{Ceil, Eq, Floor, Le, Lt, Ne, Round, Sign, Step, Trunc};
         matches!(self, Floor | Ceil | Round | Trunc | Sign | Step | Lt | Le | Eq | Ne)

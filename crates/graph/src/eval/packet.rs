@@ -1,9 +1,9 @@
-//! Several points at once.
+//! Evaluation at several points at once.
 
 use super::Number;
 
-/// B numbers of one domain, evaluated together: an instruction is decoded once for all of them
-/// and compiles to vector instructions where the domain allows it.
+/// B numbers that are evaluated together: each instruction is decoded once for all of them, and
+/// compiles to vector instructions where the number type allows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Packet<N, const B: usize>(pub [N; B]);
 
@@ -36,8 +36,8 @@ macro_rules! lanewise {
                 Self([N::constant(value); B])
             }
             #[inline]
-            fn is_never(self) -> bool {
-                self.0.into_iter().all(N::is_never)
+            fn is_definitely_false(self) -> bool {
+                self.0.into_iter().all(N::is_definitely_false)
             }
             #[inline]
             fn element(self, list: &[f64]) -> Self {
@@ -55,6 +55,6 @@ lanewise! {
         neg abs sign floor ceil round trunc fract square sqrt inverse_sqrt exp exp2 log log2
         sin cos tan asin acos atan sinh cosh tanh not saturate
     }
-    binary { add sub mul div rem min max pow atan2 step hash direction beyond lt le eq ne and or }
-    ternary { mix clamp smoothstep select parabola excess left }
+    binary { add sub mul div rem min max pow atan2 step hash normalize_lane fract_with_floor lt le eq ne and or }
+    ternary { mix clamp smoothstep select x_times_one_minus_x clamp_residual rem_with_quotient }
 }

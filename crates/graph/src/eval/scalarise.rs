@@ -1,28 +1,28 @@
-//! Nodes as scalar operations: the one place that says what each node means.
+//! Lowering of nodes to scalar operations: the only place that defines what each node means.
 //!
-//! What an operation yields is left to a [`Machine`]: folding computes numbers, a tape records instructions.
-//! Vectors fall apart into their lanes, so `Splat`, `Compose` and `Swizzle` cost nothing.
+//! A [`ScalarBackend`] receives the operations: folding computes numbers, a tape records
+//! instructions. Vectors are split into lanes, so `Splat`, `Compose` and `Swizzle` are free.
 
 use super::op::Op;
-use crate::{Binary, Node, NodeId, Ternary, Type, Unary};
+use crate::node::{Binary, Node, NodeId, Ternary, Type, Unary};
 
-/// Receives scalar operations.
-pub(crate) trait Machine {
-    /// What stands for a scalar.
+/// A receiver of scalar operations.
+pub(crate) trait ScalarBackend {
+    /// A scalar: a number or a register, for example.
     type Value: Copy;
 
-    /// The scalar of a constant.
+    /// A constant.
     fn constant(&mut self, value: f64) -> Self::Value;
 
-    /// The scalar that an operation yields; arguments beyond its arity repeat the first.
+    /// The result of an operation; arguments beyond its arity repeat the first.
     fn apply(&mut self, op: Op, arguments: [Self::Value; 3]) -> Self::Value;
 
-    /// The lanes of a node that is no operation on scalars: a point, a per-frame input, a loop, a sample.
-    /// `None` if the machine has no such thing.
+    /// The lanes of a node that is not an operation on scalars: a point, a per-frame input, a loop,
+    /// a sample. `None` if the backend has no such input.
     fn input(&mut self, node: &Node) -> Option<Lanes<Self::Value>>;
 }
 
-/// The scalars of a vector; places beyond the width repeat the first.
+/// The scalars of a vector; entries beyond the width repeat the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lanes<V> {
     values: [V; 4],
@@ -55,16 +55,16 @@ impl<V: Copy> Lanes<V> {
     }
 }
 
-/// The lanes of a node, given those of its arguments; `None` where the machine lacks an input.
-pub(crate) fn scalarise<M: Machine>(
-    machine: &mut M,
+/// The lanes of a node, given the lanes of its arguments; `None` where the backend lacks an input.
+pub(crate) fn scalarise<M: ScalarBackend>(
+    backend: &mut M,
     node: &Node,
     argument: impl Fn(NodeId) -> Lanes<M::Value>,
 ) -> Option<Lanes<M::Value>> {
     Some(match *node {
         Node::Const(value) => {
             let lanes = value.lanes();
-            Lanes::new(value.ty().width(), |i| machine.constant(lanes[i]))
+            Lanes::new(value.ty().width(), |i| backend.constant(lanes[i]))
         }
         Node::Point(..)
         | Node::Frame(..)
@@ -73,16 +73,17 @@ pub(crate) fn scalarise<M: Machine>(
         | Node::Element(..)
         | Node::Sample(..)
         | Node::MaterialAt(..) => {
-            return machine.input(node);
+            return backend.input(node);
         }
-        Node::Unary(op, a) => unary(machine, op, argument(a)),
+        Node::Unary(op, a) => unary(backend, op, argument(a)),
         Node::Binary(Binary::Mul, a, b) if a == b => {
-            map1(machine, Op::Square, argument(a)) // a tighter interval than two factors
+            // Gives a tighter interval than the product of two factors.
+            map1(backend, Op::Square, argument(a))
         }
-        Node::Binary(Binary::Dot, a, b) if a == b => Lanes::scalar(norm(machine, argument(a))),
-        Node::Binary(op, a, b) => binary(machine, op, argument(a), argument(b)),
+        Node::Binary(Binary::Dot, a, b) if a == b => Lanes::scalar(norm(backend, argument(a))),
+        Node::Binary(op, a, b) => binary(backend, op, argument(a), argument(b)),
         Node::Ternary(op, [a, b, c]) => {
-            ternary(machine, op, [argument(a), argument(b), argument(c)])
+            ternary(backend, op, [argument(a), argument(b), argument(c)])
         }
         Node::Splat(ty, a) => Lanes::new(ty.width(), |_| argument(a).get(0)),
         Node::Compose(ty, parts) => Lanes::new(ty.width(), |i| argument(parts[i]).get(0)),
@@ -93,13 +94,13 @@ pub(crate) fn scalarise<M: Machine>(
         Node::Transform(columns, v) => {
             let (columns, v) = (columns.map(&argument), argument(v));
             Lanes::new(Type::Vec3.width(), |row| {
-                sum_of_products(machine, columns.map(|column| column.get(row)), v)
+                sum_of_products(backend, columns.map(|column| column.get(row)), v)
             })
         }
     })
 }
 
-fn unary<M: Machine>(machine: &mut M, op: Unary, a: Lanes<M::Value>) -> Lanes<M::Value> {
+fn unary<M: ScalarBackend>(backend: &mut M, op: Unary, a: Lanes<M::Value>) -> Lanes<M::Value> {
     let op = match op {
         Unary::Neg => Op::Neg,
         Unary::Abs => Op::Abs,
@@ -126,17 +127,22 @@ fn unary<M: Machine>(machine: &mut M, op: Unary, a: Lanes<M::Value>) -> Lanes<M:
         Unary::Tanh => Op::Tanh,
         Unary::Saturate => Op::Saturate,
         Unary::Not => Op::Not,
-        Unary::Length => return Lanes::scalar(length(machine, a)),
+        Unary::Length => return Lanes::scalar(length(backend, a)),
         Unary::Normalize => {
-            let length = length(machine, a);
-            return map2(machine, Op::Direction, a, Lanes { values: [length; 4], width: a.width });
+            let length = length(backend, a);
+            return map2(
+                backend,
+                Op::NormalizeLane,
+                a,
+                Lanes { values: [length; 4], width: a.width },
+            );
         }
     };
-    map1(machine, op, a)
+    map1(backend, op, a)
 }
 
-fn binary<M: Machine>(
-    machine: &mut M,
+fn binary<M: ScalarBackend>(
+    backend: &mut M,
     op: Binary,
     a: Lanes<M::Value>,
     b: Lanes<M::Value>,
@@ -159,21 +165,21 @@ fn binary<M: Machine>(
         Binary::Ne => Op::Ne,
         Binary::And => Op::And,
         Binary::Or => Op::Or,
-        Binary::Dot => return Lanes::scalar(sum_of_products(machine, a.values, b)),
+        Binary::Dot => return Lanes::scalar(sum_of_products(backend, a.values, b)),
         Binary::Cross => {
             return Lanes::new(Type::Vec3.width(), |i| {
                 let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let left = apply2(machine, Op::Mul, a.get(j), b.get(k));
-                let right = apply2(machine, Op::Mul, a.get(k), b.get(j));
-                apply2(machine, Op::Sub, left, right)
+                let left = apply2(backend, Op::Mul, a.get(j), b.get(k));
+                let right = apply2(backend, Op::Mul, a.get(k), b.get(j));
+                apply2(backend, Op::Sub, left, right)
             });
         }
     };
-    map2(machine, op, a, b)
+    map2(backend, op, a, b)
 }
 
-fn ternary<M: Machine>(
-    machine: &mut M,
+fn ternary<M: ScalarBackend>(
+    backend: &mut M,
     op: Ternary,
     [a, b, c]: [Lanes<M::Value>; 3],
 ) -> Lanes<M::Value> {
@@ -183,55 +189,55 @@ fn ternary<M: Machine>(
         Ternary::Smoothstep => Op::Smoothstep,
         Ternary::Select => {
             return Lanes::new(b.width, |i| {
-                machine.apply(Op::Select, [a.get(0), b.get(i), c.get(i)])
+                backend.apply(Op::Select, [a.get(0), b.get(i), c.get(i)])
             });
         }
     };
-    Lanes::new(a.width, |i| machine.apply(op, [a.get(i), b.get(i), c.get(i)]))
+    Lanes::new(a.width, |i| backend.apply(op, [a.get(i), b.get(i), c.get(i)]))
 }
 
-fn map1<M: Machine>(machine: &mut M, op: Op, a: Lanes<M::Value>) -> Lanes<M::Value> {
-    Lanes::new(a.width, |i| machine.apply(op, [a.get(i); 3]))
+fn map1<M: ScalarBackend>(backend: &mut M, op: Op, a: Lanes<M::Value>) -> Lanes<M::Value> {
+    Lanes::new(a.width, |i| backend.apply(op, [a.get(i); 3]))
 }
 
-fn map2<M: Machine>(
-    machine: &mut M,
+fn map2<M: ScalarBackend>(
+    backend: &mut M,
     op: Op,
     a: Lanes<M::Value>,
     b: Lanes<M::Value>,
 ) -> Lanes<M::Value> {
-    Lanes::new(a.width, |i| apply2(machine, op, a.get(i), b.get(i)))
+    Lanes::new(a.width, |i| apply2(backend, op, a.get(i), b.get(i)))
 }
 
-fn apply2<M: Machine>(machine: &mut M, op: Op, a: M::Value, b: M::Value) -> M::Value {
-    machine.apply(op, [a, b, a])
+fn apply2<M: ScalarBackend>(backend: &mut M, op: Op, a: M::Value, b: M::Value) -> M::Value {
+    backend.apply(op, [a, b, a])
 }
 
-/// `left[0] * right.x + left[1] * right.y + …`, as wide as the right side.
-fn sum_of_products<M: Machine, const N: usize>(
-    machine: &mut M,
+/// `left[0] * right.x + left[1] * right.y + …`, with as many terms as the right side has lanes.
+fn sum_of_products<M: ScalarBackend, const N: usize>(
+    backend: &mut M,
     left: [M::Value; N],
     right: Lanes<M::Value>,
 ) -> M::Value {
-    let mut sum = apply2(machine, Op::Mul, left[0], right.get(0));
+    let mut sum = apply2(backend, Op::Mul, left[0], right.get(0));
     for (&a, &b) in left.iter().zip(right.as_slice()).skip(1) {
-        let product = apply2(machine, Op::Mul, a, b);
-        sum = apply2(machine, Op::Add, sum, product);
+        let product = apply2(backend, Op::Mul, a, b);
+        sum = apply2(backend, Op::Add, sum, product);
     }
     sum
 }
 
 /// The squared length.
-fn norm<M: Machine>(machine: &mut M, a: Lanes<M::Value>) -> M::Value {
-    let mut sum = machine.apply(Op::Square, [a.get(0); 3]);
+fn norm<M: ScalarBackend>(backend: &mut M, a: Lanes<M::Value>) -> M::Value {
+    let mut sum = backend.apply(Op::Square, [a.get(0); 3]);
     for i in 1..a.width {
-        let square = machine.apply(Op::Square, [a.get(i); 3]);
-        sum = apply2(machine, Op::Add, sum, square);
+        let square = backend.apply(Op::Square, [a.get(i); 3]);
+        sum = apply2(backend, Op::Add, sum, square);
     }
     sum
 }
 
-fn length<M: Machine>(machine: &mut M, a: Lanes<M::Value>) -> M::Value {
-    let norm = norm(machine, a);
-    machine.apply(Op::Sqrt, [norm; 3])
+fn length<M: ScalarBackend>(backend: &mut M, a: Lanes<M::Value>) -> M::Value {
+    let norm = norm(backend, a);
+    backend.apply(Op::Sqrt, [norm; 3])
 }

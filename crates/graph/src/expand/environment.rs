@@ -1,10 +1,10 @@
-//! Points by level, interned: equal lists have equal handles.
+//! Environments: interned lists of points by level. Equal lists have equal handles.
 
 use rustc_hash::FxHashMap;
 
-use crate::NodeId;
+use crate::node::NodeId;
 
-/// A list of points, outermost first.
+/// A handle to a list of points, outermost first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Env(u32);
 
@@ -15,7 +15,7 @@ struct Entry {
     depth: u16,
 }
 
-/// All lists in use. Each is the one before it and one more point.
+/// All lists in use. Each extends another list by one point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Environments {
     entries: Vec<Entry>,
@@ -49,7 +49,7 @@ impl Environments {
         env
     }
 
-    /// At most the first `depth` points.
+    /// The list's first `depth` points, or all if it has fewer.
     pub(super) fn prefix(&self, mut env: Env, depth: u16) -> Env {
         while let Some(entry) = self.entry(env).filter(|entry| entry.depth > depth) {
             env = entry.outer;

@@ -1,34 +1,36 @@
-//! Materials by shares.
+//! Materials as weighted sums.
 //!
-//! With samples s₁…sₙ in a shape's rule and shares wᵢ = ∂rule/∂sᵢ, the material is
-//! Σ max(wᵢ, 0) mᵢ / Σ max(wᵢ, 0), where a negative wᵢ counts as |wᵢ| times the coverage of mᵢ; if all
-//! are 0, or there is one sample, it is the first's. The result is written in the shape's own point, with the
-//! children's materials as nodes: expansion treats it as any other formula.
+//! Let s₁…sₙ be the samples in a shape's rule, mᵢ their materials and wᵢ = ∂rule/∂sᵢ their weights.
+//! The material is Σ max(wᵢ, 0) mᵢ / Σ max(wᵢ, 0), where a negative wᵢ counts as |wᵢ| times the
+//! coverage of mᵢ. If all weights are 0, or there is one sample, it is the first sample's material.
+//! The result is written in the shape's own point, with the children's materials as nodes, and is
+//! expanded like any other formula.
 
 use rustc_hash::FxHashMap;
 
 use crate::derive::TINY;
+use crate::derive::adjoints;
+use crate::graph::Graph;
 use crate::ids::IdSet;
+use crate::node::{Binary, MaterialField, Node, NodeId, ShapeId, Ternary, Unary};
+use crate::shape::MaterialRule;
 use crate::walk::reachable_where;
-use crate::{
-    Binary, Graph, MaterialField, MaterialRule, Node, NodeId, ShapeId, Ternary, Unary, adjoints,
-};
 
 /// One node for each of [`MaterialField::ALL`].
 type Fields = [NodeId; 6];
 
 const COVERAGE: usize = 1;
 
-/// A shape's material in terms of its own point.
+/// A shape's material over its own point.
 pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Fields {
     let rule = match graph.shape(shape).material {
-        MaterialRule::Stated(fields) => return fields,
-        MaterialRule::Shares(rule) => rule,
+        MaterialRule::Explicit(fields) => return fields,
+        MaterialRule::Weighted(rule) => rule,
     };
     let order = reachable_where(graph, &[rule], |id| graph.as_sample(id).is_none());
     let samples = samples_in_order(graph, shape, &order);
     match samples[..] {
-        [] => unpainted(graph),
+        [] => default_material(graph),
         [only] => material_of(graph, only),
         [first, ..] => {
             let first = material_of(graph, first);
@@ -39,20 +41,20 @@ pub(super) fn formulas(graph: &mut Graph, shape: ShapeId) -> Fields {
     }
 }
 
-/// The material of what nothing paints.
-fn unpainted(graph: &mut Graph) -> Fields {
-    MaterialField::ALL.map(|field| graph.constant(field.ty(), &field.unpainted()))
+/// The default material.
+fn default_material(graph: &mut Graph) -> Fields {
+    MaterialField::ALL.map(|field| graph.constant(field.ty(), &field.default_value()))
 }
 
-/// The rule's samples: by the order in which the formula first uses the shapes, then by age.
+/// The rule's samples, ordered by the first use of the shapes in the formula, then by id.
 fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<NodeId> {
     let children = &graph.shape(shape).children;
-    let place: FxHashMap<ShapeId, usize> =
+    let order_of: FxHashMap<ShapeId, usize> =
         children.iter().enumerate().rev().map(|(place, &child)| (child, place)).collect();
     let mut samples: Vec<(usize, NodeId)> = Vec::new();
     for &id in order {
         if let Some((child, _)) = graph.as_sample(id) {
-            samples.push((place.get(&child).copied().unwrap_or(children.len()), id));
+            samples.push((order_of.get(&child).copied().unwrap_or(children.len()), id));
         }
     }
     samples.sort_unstable();
@@ -60,29 +62,29 @@ fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<Node
 }
 
 fn material_of(graph: &mut Graph, sample: NodeId) -> Fields {
-    let Some((shape, point)) = graph.as_sample(sample) else { return unpainted(graph) };
+    let Some((shape, point)) = graph.as_sample(sample) else { return default_material(graph) };
     MaterialField::ALL.map(|field| graph.material_at(shape, point, field))
 }
 
-/// The general rule, as a chain of mixes: a mix of equal materials folds, whatever the shares.
+/// The general rule, as a chain of mixes: a mix of equal materials folds, whatever the weights are.
 fn weighted(graph: &mut Graph, rule: NodeId, samples: &[NodeId]) -> Fields {
-    let shares = adjoints(graph, rule, samples);
+    let derivatives = adjoints(graph, rule, samples);
     let tiny = graph.number(TINY);
     let mut mixed: Option<(Fields, NodeId)> = None;
-    for (&sample, share) in samples.iter().zip(shares) {
+    for (&sample, derivative) in samples.iter().zip(derivatives) {
         let material = material_of(graph, sample);
-        let weight = weight(graph, share, material[COVERAGE]);
+        let weight = weight(graph, derivative, material[COVERAGE]);
         mixed = Some(match mixed {
             None => (material, weight),
             Some((before, sum)) => {
                 let sum = graph.add(sum, weight);
                 let divisor = graph.max(sum, tiny);
-                let part = graph.div(weight, divisor);
-                (mix(graph, before, material, part), sum)
+                let fraction = graph.div(weight, divisor);
+                (mix(graph, before, material, fraction), sum)
             }
         });
     }
-    mixed.map_or_else(|| unpainted(graph), |(fields, _)| fields)
+    mixed.map_or_else(|| default_material(graph), |(fields, _)| fields)
 }
 
 fn mix(graph: &mut Graph, mut a: Fields, b: Fields, t: NodeId) -> Fields {
@@ -92,27 +94,27 @@ fn mix(graph: &mut Graph, mut a: Fields, b: Fields, t: NodeId) -> Fields {
     a
 }
 
-/// A share as a weight: a negative one counts as far as its material is painted.
-fn weight(graph: &mut Graph, share: NodeId, coverage: NodeId) -> NodeId {
+/// The weight of a derivative: a negative one counts as far as its material is set.
+fn weight(graph: &mut Graph, derivative: NodeId, coverage: NodeId) -> NodeId {
     let nothing = graph.number(0.0);
-    let size = graph.neg(share);
-    let painted = graph.mul(size, coverage);
-    let negative = graph.lt(share, nothing);
-    graph.select(negative, painted, share)
+    let size = graph.neg(derivative);
+    let covered = graph.mul(size, coverage);
+    let negative = graph.lt(derivative, nothing);
+    graph.select(negative, covered, derivative)
 }
 
-/// A rule made of comparisons selects one material by the same comparisons.
+/// Materials of a rule that only selects: the same comparisons select the material.
 struct Selection<'a> {
     graph: &'a mut Graph,
-    /// Nodes that a sample's distance reaches.
+    /// Nodes that depend on a sample.
     live: IdSet,
     /// The first sample's material.
     first: Fields,
-    /// By node, and whether it counts negatively.
+    /// Results by node and by whether its weight is negative.
     done: FxHashMap<(NodeId, bool), Fields>,
 }
 
-/// What a node of a rule selects: `negated` flips the sign of the share.
+/// What a node of a rule selects. `negated` flips the sign of the weight.
 enum Choice {
     Material(Fields),
     Of { argument: NodeId, negated: bool },
@@ -131,7 +133,7 @@ impl<'a> Selection<'a> {
         Self { graph, live, first, done: FxHashMap::default() }
     }
 
-    /// `None` if the rule does anything but select.
+    /// The selected material; `None` if the rule does anything but select.
     fn run(mut self, rule: NodeId) -> Option<Fields> {
         let root = (rule, false);
         let mut stack = vec![root];
@@ -180,17 +182,17 @@ impl<'a> Selection<'a> {
                 let condition = self.graph.le(b, a);
                 Some(Choice::Between { condition, yes: a, no: b })
             }
-            Node::Binary(Binary::Add, a, b) => match (self.moves(a), self.moves(b)) {
+            Node::Binary(Binary::Add, a, b) => match (self.is_live(a), self.is_live(b)) {
                 (true, false) => of(a, false),
                 (false, true) => of(b, false),
                 (true, true) | (false, false) => None,
             },
-            Node::Binary(Binary::Sub, a, b) => match (self.moves(a), self.moves(b)) {
+            Node::Binary(Binary::Sub, a, b) => match (self.is_live(a), self.is_live(b)) {
                 (true, false) => of(a, false),
                 (false, true) => of(b, true),
                 (true, true) | (false, false) => None,
             },
-            Node::Binary(Binary::Mul, a, b) => match (self.moves(a), self.moves(b)) {
+            Node::Binary(Binary::Mul, a, b) => match (self.is_live(a), self.is_live(b)) {
                 (true, false) => of(a, self.is_negative(b)?),
                 (false, true) => of(b, self.is_negative(a)?),
                 (true, true) | (false, false) => None,
@@ -215,25 +217,26 @@ impl<'a> Selection<'a> {
         }
     }
 
-    fn moves(&self, id: NodeId) -> bool {
+    fn is_live(&self, id: NodeId) -> bool {
         self.live.contains(id)
     }
 
-    /// The sign of a constant factor.
+    /// True for a negative constant factor; `None` if the factor is 0 or not constant.
     fn is_negative(&self, factor: NodeId) -> Option<bool> {
         let factor = self.graph.as_number(factor)?;
         (factor != 0.0).then_some(factor < 0.0)
     }
 
-    /// With a negative share an unpainted sample shows the first.
+    /// The material of a sample. With a negative weight, a sample without a material shows the
+    /// first one.
     fn sampled(&mut self, sample: NodeId, negative: bool) -> Fields {
         let material = material_of(self.graph, sample);
         if !negative {
             return material;
         }
         let nothing = self.graph.number(0.0);
-        let painted = self.graph.lt(nothing, material[COVERAGE]);
-        self.select(painted, material, self.first)
+        let has_material = self.graph.lt(nothing, material[COVERAGE]);
+        self.select(has_material, material, self.first)
     }
 
     fn select(&mut self, condition: NodeId, mut yes: Fields, no: Fields) -> Fields {

@@ -1,17 +1,18 @@
-//! Names of expanded nodes, for the generated text.
+//! Names of expanded nodes, for the generated shader source.
 
 use rustc_hash::FxHashMap;
 
-use crate::{Graph, Node, NodeId, ShapeId, Stage};
+use crate::graph::Graph;
+use crate::node::{Node, NodeId, ShapeId, Stage};
 
 #[derive(Clone, Debug)]
 struct Name {
     text: String,
-    /// Given by the scene, not taken from a definition.
+    /// True if the scene gives the name; false if it is the definition's.
     own: bool,
 }
 
-/// The first name of each node; one that the scene gives replaces a definition's.
+/// The first name of each node; a name from the scene replaces a definition's.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Names {
     names: FxHashMap<NodeId, Name>,

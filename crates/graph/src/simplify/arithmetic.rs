@@ -1,7 +1,8 @@
 //! Sums, products, quotients, negation.
 
 use super::lanes;
-use crate::{Binary, Graph, Node, NodeId, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Unary};
 
 impl Graph {
     /// Commutative operands in canonical order: the later stage first, then the older node.

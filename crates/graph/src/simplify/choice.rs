@@ -1,6 +1,7 @@
 //! Minimum, maximum, limits and selections: decided where ranges decide them.
 
-use crate::{Binary, Graph, Node, NodeId, Ternary, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Ternary, Unary};
 
 impl Graph {
     /// a is nowhere above b.
@@ -69,13 +70,17 @@ impl Graph {
     /// `min(max(x, lo), hi)` and `max(min(x, hi), lo)` with ordered constants.
     fn as_limits(&mut self, inner_op: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
         let constant = |s: &Self, x, y| {
-            if s.as_uniform(y).is_some() { Some((x, y)) } else { s.as_uniform(x).map(|_| (y, x)) }
+            if s.as_splat_number(y).is_some() {
+                Some((x, y))
+            } else {
+                s.as_splat_number(x).map(|_| (y, x))
+            }
         };
         let (inner, outer) = constant(self, a, b)?;
         let (x, y) = self.as_binary(inner_op, inner)?;
         let (x, bound) = constant(self, x, y)?;
         let (lo, hi) = if inner_op == Binary::Max { (bound, outer) } else { (outer, bound) };
-        (self.as_uniform(lo) <= self.as_uniform(hi))
+        (self.as_splat_number(lo) <= self.as_splat_number(hi))
             .then(|| self.ternary(Ternary::Clamp, x, lo, hi))
     }
 

@@ -1,6 +1,7 @@
 //! Powers and roots.
 
-use crate::{Binary, Graph, NodeId, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, NodeId, Unary};
 
 impl Graph {
     pub(super) fn simplified_sqrt(&mut self, a: NodeId) -> Option<NodeId> {
@@ -15,7 +16,7 @@ impl Graph {
 
     /// Powers that take at most two multiplications, and roots.
     pub(super) fn simplified_pow(&mut self, x: NodeId, y: NodeId) -> Option<NodeId> {
-        let exponent = self.as_uniform(y)?;
+        let exponent = self.as_splat_number(y)?;
         if exponent == 0.0 {
             return Some(self.one_like(x));
         }

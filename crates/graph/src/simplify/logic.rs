@@ -1,12 +1,13 @@
 //! Comparisons and truth values.
 
 use super::is_truth;
-use crate::{Binary, Graph, Node, NodeId, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Unary};
 
 impl Graph {
     /// The truth value, if the node is a constant one.
     pub(super) fn as_truth(&self, id: NodeId) -> Option<bool> {
-        self.as_uniform(id).filter(|_| is_truth(self.ty(id))).map(|value| value != 0.0)
+        self.as_splat_number(id).filter(|_| is_truth(self.ty(id))).map(|value| value != 0.0)
     }
 
     pub(super) fn simplified_lt(&mut self, a: NodeId, b: NodeId) -> Option<NodeId> {

@@ -19,7 +19,8 @@ mod logic;
 mod vector;
 
 use crate::eval::fold_where;
-use crate::{Binary, Const, Graph, Node, NodeId, Place, Stage, Ternary, Type, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Const, LoopVar, Node, NodeId, Stage, Ternary, Type, Unary};
 
 impl Graph {
     /// The node for an operation: a constant, a simpler equal, or the operation itself.
@@ -152,7 +153,7 @@ impl Graph {
     }
 
     fn is_uniform(&self, id: NodeId, value: f64) -> bool {
-        self.as_uniform(id) == Some(value)
+        self.as_splat_number(id) == Some(value)
     }
 
     fn is_whole(&self, id: NodeId) -> bool {
@@ -173,7 +174,7 @@ impl Graph {
             | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => false,
-            Node::Variable(_, place, _) => place == Place::Round,
+            Node::Variable(_, place, _) => place == LoopVar::Index,
         }
     }
 
@@ -211,7 +212,7 @@ impl Graph {
         if self.ty(id).width() == 1 {
             return Some(id);
         }
-        let constant = self.as_uniform(id).map(|value| self.number(value));
+        let constant = self.as_splat_number(id).map(|value| self.number(value));
         constant.or_else(|| self.as_splat(id))
     }
 

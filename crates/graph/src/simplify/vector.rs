@@ -1,7 +1,8 @@
 //! Vectors: joining, picking, products, lengths.
 
 use super::{is_componentwise, is_lanewise, lanes};
-use crate::{Binary, Graph, Node, NodeId, Type, Unary};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Type, Unary};
 
 impl Graph {
     pub(super) fn simplified_compose(&mut self, parts: &[NodeId]) -> Option<NodeId> {

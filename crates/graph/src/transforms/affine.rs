@@ -1,9 +1,10 @@
-//! Affine forms: a matrix over up to three numbers, and an offset.
+//! Affine forms: a matrix over up to three scalars, and an offset.
 
-use crate::Coefficient::{self, Number};
-use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
+use crate::coefficient::Coefficient::{self, Number};
+use crate::graph::Graph;
+use crate::node::{Binary, Node, NodeId, Stage, Type, Unary};
 
-/// `matrix · base + offset` of one component.
+/// One component of an affine form: `factors · atoms + offset`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) factors: [Coefficient; 3],
@@ -13,7 +14,7 @@ pub(super) struct Row {
 impl Row {
     const ZERO: Self = Self { factors: [Coefficient::ZERO; 3], offset: Coefficient::ZERO };
 
-    fn low(offset: Coefficient) -> Self {
+    fn constant(offset: Coefficient) -> Self {
         Self { offset, ..Self::ZERO }
     }
 
@@ -31,17 +32,18 @@ impl Row {
     }
 }
 
-/// A number or vector of up to three components as a map of up to three numbers.
+/// A scalar or a vector of up to three components as an affine map of up to three scalars.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Affine {
-    /// What it starts from: components of vectors, and numbers. None at all if it is known before the points.
+    /// The inputs of the map: scalars and components of vectors. None if the value does not depend
+    /// on the point.
     pub(super) atoms: [Option<NodeId>; 3],
     pub(super) width: usize,
-    /// Those beyond the width are unused.
+    /// Rows beyond the width are unused.
     pub(super) rows: [Row; 3],
 }
 
-/// A node in terms of itself, or of nothing if it is known before the points.
+/// A node as a function of itself, or as a constant if it does not depend on the point.
 pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
     let width = graph.ty(id).width();
     if width > 3 || graph.ty(id) == Type::Bool {
@@ -51,22 +53,22 @@ pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
     if graph.stage(id) < Stage::Point {
         for (lane, row) in (0..width).zip(&mut rows) {
             let part = graph.component(id, lane as u8);
-            *row = Row::low(Coefficient::of(graph, part));
+            *row = Row::constant(Coefficient::of(graph, part));
         }
         return Some(Affine { atoms: [None; 3], width, rows });
     }
     let mut atoms = [None; 3];
     for (lane, row) in (0..width).zip(&mut rows) {
-        // Two components of a vector may be one number.
+        // Two components of a vector may be the same scalar.
         let atom = Some(graph.component(id, lane as u8));
-        let place = atoms.iter().position(|&known| known == atom || known.is_none())?;
-        atoms[place] = atom;
-        row.factors[place] = Coefficient::ONE;
+        let index = atoms.iter().position(|&known| known == atom || known.is_none())?;
+        atoms[index] = atom;
+        row.factors[index] = Coefficient::ONE;
     }
     Some(Affine { atoms, width, rows })
 }
 
-/// A node in terms of the forms of its arguments; `None` if they start from more than three numbers.
+/// A node as a function of the atoms of its arguments; `None` if these are more than three.
 pub(super) fn form(
     graph: &mut Graph,
     id: NodeId,
@@ -103,7 +105,7 @@ pub(super) fn form(
             let v = of(graph, v)?;
             let mut sum: Option<Affine> = None;
             for (lane, column) in columns.into_iter().enumerate() {
-                let column = of(graph, column).filter(|column| column.is_low())?;
+                let column = of(graph, column).filter(|column| column.is_constant())?;
                 let filled = Affine { rows: [v.rows[lane]; 3], ..v };
                 let product = filled.multiplied(graph, column)?;
                 sum = match sum {
@@ -145,7 +147,7 @@ pub(super) fn form(
 }
 
 impl Affine {
-    /// Without the atoms that no row needs.
+    /// The form without the atoms that no row uses.
     fn trimmed(mut self) -> Option<Self> {
         for (i, atom) in self.atoms.iter_mut().enumerate() {
             *atom =
@@ -154,19 +156,19 @@ impl Affine {
         self.over(&mut [None; 3])
     }
 
-    fn is_low(&self) -> bool {
+    fn is_constant(&self) -> bool {
         self.atoms == [None; 3]
     }
 
-    /// Written in terms of these atoms, to which its own are added; `None` if there is no room.
+    /// The form over the given atoms, to which its own are added; `None` if they do not fit.
     fn over(self, atoms: &mut [Option<NodeId>; 3]) -> Option<Self> {
-        let mut rows = self.rows.map(|row| Row::low(row.offset));
+        let mut rows = self.rows.map(|row| Row::constant(row.offset));
         for (own, atom) in self.atoms.into_iter().enumerate() {
             let Some(atom) = atom else { continue };
-            let place = atoms.iter().position(|&known| known == Some(atom) || known.is_none())?;
-            atoms[place] = Some(atom);
+            let index = atoms.iter().position(|&known| known == Some(atom) || known.is_none())?;
+            atoms[index] = Some(atom);
             for (row, before) in rows.iter_mut().zip(&self.rows) {
-                row.factors[place] = before.factors[own];
+                row.factors[index] = before.factors[own];
             }
         }
         Some(Self { atoms: *atoms, rows, ..self })
@@ -186,20 +188,20 @@ impl Affine {
         Self { rows: self.rows.map(|row| row.scaled(graph, by)), ..self }
     }
 
-    /// Componentwise, one side known before the points.
+    /// The componentwise product, if one side does not depend on the point.
     fn multiplied(self, graph: &mut Graph, other: Self) -> Option<Self> {
-        let (mut varying, low) = match (self.is_low(), other.is_low()) {
+        let (mut varying, constant) = match (self.is_constant(), other.is_constant()) {
             (_, true) => (self, other),
             (true, false) => (other, self),
             (false, false) => return None,
         };
-        for (row, low) in varying.rows.iter_mut().zip(low.rows) {
-            *row = row.scaled(graph, low.offset);
+        for (row, constant) in varying.rows.iter_mut().zip(constant.rows) {
+            *row = row.scaled(graph, constant.offset);
         }
         Some(varying)
     }
 
-    /// With the components of one vector in its order, so that they are that vector.
+    /// The form with components of one vector in order, so that they are that vector.
     pub(super) fn sorted(self, graph: &Graph) -> Option<Self> {
         let mut order: Vec<NodeId> = self.atoms.into_iter().flatten().collect();
         order.sort_unstable_by_key(|&atom| {
@@ -210,13 +212,14 @@ impl Affine {
             }
         });
         let mut atoms = [None; 3];
-        for (place, atom) in atoms.iter_mut().zip(order) {
-            *place = Some(atom);
+        for (entry, atom) in atoms.iter_mut().zip(order) {
+            *entry = Some(atom);
         }
         self.over(&mut atoms)
     }
 
-    /// With factors that rounding alone keeps from 0, 1 or -1 put there, as the cosine of a right angle.
+    /// The form with factors set to 0, 1 or -1 where only rounding keeps them from that, such as
+    /// the cosine of a right angle.
     pub(super) fn snapped(mut self) -> Self {
         const ROUNDING: f64 = 1e-12;
         let factors = || self.rows[..self.width].iter().flat_map(|row| row.factors);

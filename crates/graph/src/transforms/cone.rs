@@ -1,21 +1,22 @@
-//! Which affine operations lead to which head.
+//! Cones: which affine operations lead to which head.
 
+use crate::graph::Graph;
 use crate::ids::{IdMap, IdSet};
-use crate::{Binary, Graph, Node, NodeId, Stage, Type, Unary};
+use crate::node::{Binary, Node, NodeId, Stage, Type, Unary};
 
-/// Operations on single numbers of a 3x3 matrix times a vector, additions fused.
+/// Scalar operations of a 3x3 matrix times a vector, with fused additions.
 pub(super) const TRANSFORM_COST: usize = 9;
 
-/// Who uses a node.
+/// The users of a node.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
-    /// Only the cone of this head.
+    /// Only the cone of this head uses it.
     By(NodeId),
-    /// Several cones, or something that is not affine.
+    /// Several cones, or an operation that is not affine, use it.
     Shared,
 }
 
-/// The heads of all nodes and the costs of their cones.
+/// The head of each node, and the costs of the heads' cones.
 pub(super) struct Cones {
     heads: IdMap<NodeId>,
     costs: IdMap<Cost>,
@@ -28,7 +29,8 @@ struct Cost {
 }
 
 impl Cones {
-    /// `order` is ascending and holds everything that the roots are computed from.
+    /// Finds the cones. `order` is ascending and contains every node that the roots are computed
+    /// from.
     pub(super) fn new(graph: &Graph, order: &[NodeId], roots: &[NodeId]) -> Self {
         let mut uses: IdMap<Use> = roots.iter().map(|&id| (id, Use::Shared)).collect();
         let mut cones = Self { heads: IdMap::default(), costs: IdMap::default() };
@@ -42,16 +44,16 @@ impl Cones {
             cones.heads.insert(id, head);
             let numbers = cost.unwrap_or(0);
             if numbers > 0 {
-                let sum = cones.costs.slot(head).get_or_insert_default();
+                let sum = cones.costs.entry(head).get_or_insert_default();
                 sum.operations += 1;
                 sum.numbers += numbers;
             }
             let used = if cost.is_some() { Use::By(head) } else { Use::Shared };
             for argument in graph.arguments(id) {
-                // What a loop does not change is computed outside it.
-                let outside = graph.loops(argument) != graph.loops(id);
+                // A node that a loop does not change is computed outside it.
+                let outside = graph.loops_around(argument) != graph.loops_around(id);
                 let used = if outside { Use::Shared } else { used };
-                let known = uses.slot(argument).get_or_insert(used);
+                let known = uses.entry(argument).get_or_insert(used);
                 if *known != used {
                     *known = Use::Shared;
                 }
@@ -64,23 +66,23 @@ impl Cones {
         self.heads.get(id).is_none_or(|head| head == id)
     }
 
-    /// Whether the node's cone has more than one operation.
+    /// True if the node's cone has more than one operation.
     pub(super) fn is_worth_folding(&self, id: NodeId) -> bool {
         let operations = |head| self.costs.get(head).map_or(0, |cost| cost.operations);
         self.heads.get(id).is_some_and(|head| operations(head) > 1)
     }
 
-    /// Operations on single numbers in a head's cone.
+    /// Number of scalar operations in a head's cone.
     pub(super) fn cost(&self, head: NodeId) -> usize {
         self.costs.get(head).map_or(0, |cost| cost.numbers)
     }
 }
 
-/// The numbers that a node is a map of: a vector's component, or a node itself.
+/// The scalars that a node is an affine map of: components of a vector, or the node itself.
 #[derive(Clone, Copy)]
 struct Sources {
     list: [Option<(NodeId, u8)>; 3],
-    /// It is a number that no affine operation made.
+    /// True for a scalar that no affine operation computes.
     bare: bool,
 }
 
@@ -91,19 +93,19 @@ impl Sources {
         Self { list, bare: width == 1 }
     }
 
-    /// False if there is no room.
+    /// Adds sources; false if they do not fit.
     fn include(&mut self, other: &Self) -> bool {
         other.list.iter().flatten().all(|&source| {
             let free = |known: &Option<_>| known.is_none_or(|known| known == source);
-            let place = self.list.iter_mut().find(|known| free(known));
-            place.map(|place| *place = Some(source)).is_some()
+            let entry = self.list.iter_mut().find(|known| free(known));
+            entry.map(|entry| *entry = Some(source)).is_some()
         })
     }
 }
 
-/// The operations that are maps of at most three numbers. What would need more starts anew, as does the sum
-/// of two numbers that no affine operation made: the turned components of a twist, not the products in them, are
-/// what later maps start from.
+/// The operations that are affine maps of at most three scalars. An operation that would need more
+/// starts a new cone, and so does the sum of two scalars that no affine operation computes: in a
+/// twist, later maps start from the rotated components, not from the products in them.
 fn affine_nodes(graph: &Graph, order: &[NodeId]) -> IdSet {
     let mut sources: IdMap<Sources> = IdMap::default();
     let mut affine = IdSet::default();
@@ -136,16 +138,19 @@ fn joined_sources(graph: &Graph, id: NodeId, sources: &IdMap<Sources>) -> Option
     (!sum || bare < 2).then_some(joined)
 }
 
-/// Operations on single numbers, where the operation is affine in what depends on the point.
+/// Number of scalar operations; `None` if the operation is not affine in its point-dependent
+/// arguments.
 fn affine_cost(graph: &Graph, id: NodeId) -> Option<usize> {
     let width = graph.ty(id).width();
-    let low = |id: NodeId| graph.stage(id) < Stage::Point;
+    let fixed = |id: NodeId| graph.stage(id) < Stage::Point;
     match graph.node(id) {
         _ if graph.ty(id) == Type::Vec4 => None,
         Node::Unary(Unary::Neg, _) | Node::Binary(Binary::Add | Binary::Sub, ..) => Some(width),
-        Node::Binary(Binary::Mul, a, b) => (low(a) || low(b)).then_some(width),
-        Node::Binary(Binary::Dot, a, b) => (low(a) || low(b)).then(|| 2 * graph.ty(a).width() - 1),
-        Node::Transform(columns, _) => columns.into_iter().all(low).then_some(TRANSFORM_COST),
+        Node::Binary(Binary::Mul, a, b) => (fixed(a) || fixed(b)).then_some(width),
+        Node::Binary(Binary::Dot, a, b) => {
+            (fixed(a) || fixed(b)).then(|| 2 * graph.ty(a).width() - 1)
+        }
+        Node::Transform(columns, _) => columns.into_iter().all(fixed).then_some(TRANSFORM_COST),
         Node::Splat(..) | Node::Compose(..) | Node::Swizzle(..) => Some(0),
         Node::Const(_)
         | Node::Point(..)

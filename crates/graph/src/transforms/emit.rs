@@ -1,29 +1,31 @@
-//! The cheapest way to compute an affine form.
+//! Building the cheapest code for an affine form.
 
 use super::affine::{Affine, Row};
 use super::cone::TRANSFORM_COST;
-use crate::{Coefficient, Graph, NodeId};
+use crate::coefficient::Coefficient;
+use crate::graph::Graph;
+use crate::node::NodeId;
 
-/// How a form is computed, and how many operations on single numbers that takes.
+/// How a form is computed, and its cost in scalar operations.
 pub(super) struct Plan {
     pub(super) cost: usize,
     shape: Shape,
-    /// Snapped.
+    /// The form, with factors snapped to 0, 1 and -1.
     form: Affine,
 }
 
 enum Shape {
-    /// Each row is one atom, scaled.
-    Picked([u8; 3]),
-    /// A sum for each row.
+    /// Each row is one scaled atom.
+    Selected([u8; 3]),
+    /// Each row is a sum.
     Rows,
-    /// One row with every atom.
+    /// One row that uses every atom.
     Dot,
-    /// A matrix.
+    /// A 3x3 matrix.
     Transform,
 }
 
-/// `None` for a form that no point changes.
+/// The cheapest plan; `None` for a form that does not depend on the point.
 pub(super) fn plan(form: &Affine) -> Option<Plan> {
     let form = form.snapped();
     let atoms = form.atoms.iter().flatten().count();
@@ -43,10 +45,10 @@ pub(super) fn plan(form: &Affine) -> Option<Plan> {
     if form.width == 3 && atoms == 3 {
         offer(TRANSFORM_COST, Shape::Transform);
     }
-    if let Some(lanes) = picked(&form) {
+    if let Some(lanes) = selected(&form) {
         let scaled =
             rows(&form).zip(lanes).any(|(row, lane)| !row.factors[usize::from(lane)].is(1.0));
-        offer(if scaled { form.width } else { 0 }, Shape::Picked(lanes));
+        offer(if scaled { form.width } else { 0 }, Shape::Selected(lanes));
     }
     Some(best)
 }
@@ -63,7 +65,8 @@ fn rows_cost(form: &Affine) -> usize {
     rows(form).map(row_cost).sum()
 }
 
-/// Products other than with 1 or -1, the additions between terms, and a negation where no term is positive.
+/// Products with factors other than 1 and -1, the additions between terms, and a negation where no
+/// term is positive.
 fn row_cost(row: &Row) -> usize {
     let factors = &row.factors;
     let products = factors.iter().filter(|f| !f.is(0.0) && !f.is(1.0) && !f.is(-1.0)).count();
@@ -78,8 +81,8 @@ fn offset_cost(form: &Affine) -> usize {
     if moved { form.width } else { 0 }
 }
 
-/// The atoms that the rows pick, if each picks one.
-fn picked(form: &Affine) -> Option<[u8; 3]> {
+/// The atom of each row, if each row has exactly one.
+fn selected(form: &Affine) -> Option<[u8; 3]> {
     let mut lanes = [0; 3];
     for (lane, row) in lanes.iter_mut().zip(rows(form)) {
         let mut factors = row.factors.iter();
@@ -92,18 +95,18 @@ fn picked(form: &Affine) -> Option<[u8; 3]> {
 }
 
 impl Plan {
-    /// The form over atoms (the form's own, or what they became).
+    /// Builds the form over atoms: its own, or their new nodes.
     pub(super) fn build(&self, graph: &mut Graph, atoms: &[NodeId]) -> NodeId {
         let form = &self.form;
         let base = graph.compose(atoms);
         let linear = match self.shape {
-            Shape::Picked(lanes) => {
-                let picked: Vec<NodeId> =
+            Shape::Selected(lanes) => {
+                let selected: Vec<NodeId> =
                     lanes[..form.width].iter().map(|&lane| atoms[usize::from(lane)]).collect();
-                let picked = graph.compose(&picked);
+                let selected = graph.compose(&selected);
                 let factors = [0, 1, 2].map(|i| form.rows[i].factors[usize::from(lanes[i])]);
                 let factors = vector(graph, &factors[..form.width]);
-                graph.mul(picked, factors)
+                graph.mul(selected, factors)
             }
             Shape::Rows => {
                 let sums: Vec<NodeId> = rows(form).map(|row| sum(graph, atoms, row)).collect();

@@ -47,7 +47,7 @@ fn default_of(field: MaterialField, span: Span) -> Expr {
         MaterialField::Emission => graph::MaterialField::Emission,
         MaterialField::Occlusion => graph::MaterialField::Occlusion,
     }
-    .unpainted();
+    .default_value();
     match field {
         MaterialField::Color | MaterialField::Emission => color([x, y, z, 1.0], span),
         MaterialField::Roughness | MaterialField::Metallic | MaterialField::Occlusion => {

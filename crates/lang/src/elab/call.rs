@@ -1,7 +1,7 @@
 //! Calls: arguments, defaults, ranges, requirements, recursion.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Claim, NodeId, Stage};
+use sdfc_graph::{LipschitzClaim, NodeId, Stage};
 
 use super::report::{Frame, show_lanes, show_number};
 use super::value::{Closure, Code, Value};
@@ -147,12 +147,12 @@ impl<'p> Elaborator<'p> {
             Stage::Point => false,
         };
         if known && self.graph.stage(*value) == Stage::Point && !varying.contains(value) {
-            let claim = Claim { arguments: varying, lipschitz: constant };
+            let claim = LipschitzClaim { arguments: varying, lipschitz: constant };
             if !self.program.library.contains(&stated.span.file) {
                 let claimed = Claimed { span: stated.span, value: *value, claim: claim.clone() };
                 self.claims.push(claimed);
             }
-            self.graph.claim(*value, claim);
+            self.graph.claim_lipschitz(*value, claim);
         }
         Ok(())
     }

@@ -50,7 +50,7 @@ impl<'p> Elaborator<'p> {
             // What is wrong has been said.
             let level = self.graph.shape(shape).level;
             if let Ok(intervals) = self.intervals(&mut env, stated, level) {
-                self.graph.set_hits(shape, intervals);
+                self.graph.set_intersect(shape, intervals);
             }
             self.frames = outer;
         }

@@ -5,7 +5,7 @@
 //! are written out as if nothing had been tried. So are those that no point takes part in: they are computed here.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{Const, Loop, MAX_LOOP_DEPTH, Node, NodeId, Place, Stage, Table, reachable};
+use sdfc_graph::{Const, Loop, LoopVar, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, reachable};
 
 use super::expr::node_type;
 use super::report::show_number;
@@ -132,7 +132,7 @@ impl<'p> Elaborator<'p> {
         self.loop_depth += 1;
         self.loop_rounds = nested;
         let ty = self.graph.ty(start);
-        let state = self.graph.variable(depth, Place::State(0), ty);
+        let state = self.graph.variable(depth, LoopVar::State(0), ty);
         let body = self.goes_on(steps, Value::Node(state)).and_then(|go_on| {
             let next = self.next(steps, Value::Node(state), Value::Node(item))?;
             Ok((go_on, next))
@@ -153,10 +153,10 @@ impl<'p> Elaborator<'p> {
         let bit = 1 << depth;
         let differs = |&id: &NodeId| {
             let is_shape = matches!(self.graph.node(id), Node::Sample(..) | Node::MaterialAt(..));
-            is_shape && self.graph.loops(id) & bit != 0
+            is_shape && self.graph.loops_around(id) & bit != 0
         };
         let nodes = reachable(&self.graph, &roots);
-        let outside = nodes.iter().filter(|&&id| self.graph.loops(id) & bit == 0);
+        let outside = nodes.iter().filter(|&&id| self.graph.loops_around(id) & bit == 0);
         let mut read = outside.chain([&start]);
         let at_points = read.any(|&id| self.graph.stage(id) == Stage::Point);
         if nodes.iter().any(differs) || !at_points {
@@ -168,13 +168,21 @@ impl<'p> Elaborator<'p> {
         }
         let (cap, count) = (rounds.items.len() as u32, rounds.limit);
         let (start, next) = (vec![start], vec![next]);
-        let repeated = Loop { depth, cap, count, go_on, start, next, inert: None };
-        Ok(self.graph.repeat(repeated).first().copied())
+        let repeated = Loop {
+            depth,
+            max_iterations: cap,
+            count,
+            condition: go_on,
+            init: start,
+            step: next,
+            skip: None,
+        };
+        Ok(self.graph.add_loop(repeated).first().copied())
     }
 
     /// What a round of a loop is given: its number, or an element of a list of constants.
     fn item(&mut self, rounds: &Rounds<'p>) -> Option<NodeId> {
-        let round = self.graph.variable(self.loop_depth, Place::Round, sdfc_graph::Type::Scalar);
+        let round = self.graph.variable(self.loop_depth, LoopVar::Index, sdfc_graph::Type::Scalar);
         if let Some(first) = rounds.first {
             let first = self.graph.number(first);
             return Some(self.graph.add(round, first));

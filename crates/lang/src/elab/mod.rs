@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
-use sdfc_graph::{Bounds, Claim, Graph, NodeId, Scene, ShapeId};
+use sdfc_graph::{Bounds, Graph, LipschitzClaim, NodeId, Scene, ShapeId};
 
 use crate::font::Fonts;
 use crate::hir;
@@ -82,7 +82,7 @@ pub struct Claimed {
     /// The result.
     pub value: NodeId,
     /// What is stated of it.
-    pub claim: Claim,
+    pub claim: LipschitzClaim,
 }
 
 /// A declared shape and where its clauses stand.

@@ -27,10 +27,10 @@ impl<'p> Elaborator<'p> {
         let settings = self.settings();
         let root = self.drawn();
         self.add_intersections();
-        let painted = root.is_some_and(|root| is_painted(&self.graph, root));
+        let has_materials = root.is_some_and(|root| is_painted(&self.graph, root));
         let graph = std::mem::take(&mut self.graph);
         let params = std::mem::take(&mut self.params);
-        Scene { graph, root, params, settings, painted }
+        Scene { graph, root, params, settings, has_materials }
     }
 
     /// The union of all that stands alone; one shape stays itself.
@@ -211,7 +211,7 @@ fn is_painted(graph: &Graph, root: ShapeId) -> bool {
             continue;
         }
         let shape = graph.shape(id);
-        if matches!(shape.material, MaterialRule::Stated(_)) {
+        if matches!(shape.material, MaterialRule::Explicit(_)) {
             return true;
         }
         stack.extend(&shape.children);

@@ -117,7 +117,7 @@ impl<'p> Elaborator<'p> {
         let mut formula = self.number(&mut env, &definition.body)?;
         let material = self.material(&mut env, definition, formula)?;
         if let Some((_, constant)) = continuation {
-            formula = self.graph.continued(point, nearest, formula, constant);
+            formula = self.graph.lipschitz_extension(point, nearest, formula, constant);
         }
         let shape = Shape {
             definition: name,
@@ -126,7 +126,7 @@ impl<'p> Elaborator<'p> {
             args,
             formula,
             contract,
-            hits: Vec::new(),
+            intersect: Vec::new(),
             material,
             children: Vec::new(),
             depth: 1,
@@ -141,7 +141,7 @@ impl<'p> Elaborator<'p> {
 
     /// The bounds beyond which a formula is to be continued, and how fast.
     fn continuation(&mut self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
-        let constant = contract.lipschitz.filter(|_| contract.is_continued)?;
+        let constant = contract.lipschitz.filter(|_| contract.is_extended)?;
         let bounds = contract.bounds.filter(|_| self.graph.is_finite(constant))?;
         // A field that is nowhere above the distance goes on as one.
         let is_bound = contract.outside != SidePromise::default();
@@ -186,11 +186,11 @@ impl<'p> Elaborator<'p> {
         formula: NodeId,
     ) -> Outcome<MaterialRule> {
         let Some(stated) = definition.material.as_ref().filter(|_| self.paints) else {
-            return Ok(MaterialRule::Shares(formula));
+            return Ok(MaterialRule::Weighted(formula));
         };
         match self.eval(env, stated)? {
-            Value::Material(fields) => Ok(MaterialRule::Stated(fields)),
-            Value::Node(shares) => Ok(MaterialRule::Shares(shares)),
+            Value::Material(fields) => Ok(MaterialRule::Explicit(fields)),
+            Value::Node(shares) => Ok(MaterialRule::Weighted(shares)),
             other => Err(self.unexpected(stated.span, "a material or a number", &other)),
         }
     }
@@ -216,7 +216,7 @@ impl<'p> Elaborator<'p> {
             contract.everywhere = definition.everywhere;
             let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
             contract.is_local = self.asked_bounds && !definition.everywhere;
-            contract.is_continued = contract.is_local && steep;
+            contract.is_extended = contract.is_local && steep;
         }
         contract.copies = definition.copies.is_some();
         if let Some(stated) = &definition.bounds {

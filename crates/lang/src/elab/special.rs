@@ -1,7 +1,7 @@
 //! The kernel's operations on shapes, lists and materials, and `hash`.
 
 use sdfc_diagnostics::{Code as ErrorCode, Span};
-use sdfc_graph::eval::HASHES;
+use sdfc_graph::eval::HASH_COUNT;
 use sdfc_graph::{
     Binary, Bounds, Dim, Expander, MaterialField, Node, NodeId, ShapeId, Ternary, Type, Unary,
     reachable,
@@ -207,7 +207,7 @@ impl<'p> Elaborator<'p> {
                 state = self.graph.binary(Binary::Hash, state, part);
             }
         }
-        let scale = self.graph.number(1.0 / HASHES);
+        let scale = self.graph.number(1.0 / HASH_COUNT);
         Ok(Value::Node(self.graph.mul(state, scale)))
     }
 }

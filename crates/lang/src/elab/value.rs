@@ -92,7 +92,7 @@ impl Value<'_> {
             Self::List(items) => items.iter().any(|item| item.moves(graph)),
             Self::Closure(closure) => closure.moves,
             Self::Shape(id) => {
-                graph.shape(*id).level > 0 || graph.loops(graph.shape(*id).formula) > 0
+                graph.shape(*id).level > 0 || graph.loops_around(graph.shape(*id).formula) > 0
             }
             Self::Material(fields) => fields.iter().any(varies),
             Self::Shadow(Shadow::Soft(node)) => varies(node),

@@ -22,14 +22,14 @@ impl AheadTapes {
     /// `None` where nothing is known of rays.
     pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
         let Program { graph, rays, distance, .. } = program;
-        let marched = if rays.hits.is_some() { rays.marched } else { *distance };
-        let asked: Vec<_> = rays.hits.into_iter().chain(rays.clip).collect();
+        let marched = if rays.first_hit.is_some() { rays.marched } else { *distance };
+        let asked: Vec<_> = rays.first_hit.into_iter().chain(rays.clip).collect();
         if asked.is_empty() && rays.copies.is_none() {
             return Ok(None);
         }
-        let copies = rays.copies.map(|copies| Tape::of_rays(graph, &[copies])).transpose()?;
-        let (has_hits, has_clip) = (rays.hits.is_some(), rays.clip.is_some());
-        let asked = Tape::of_rays(graph, &asked)?;
+        let copies = rays.copies.map(|copies| Tape::for_rays(graph, &[copies])).transpose()?;
+        let (has_hits, has_clip) = (rays.first_hit.is_some(), rays.clip.is_some());
+        let asked = Tape::for_rays(graph, &asked)?;
         let marched = marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
         Ok(Some(Self { asked, has_hits, has_clip, marched, copies }))
     }

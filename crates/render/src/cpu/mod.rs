@@ -71,7 +71,7 @@ impl CpuScene {
         let distance = program.distance.ok_or(RenderError::NothingDrawn)?;
         let refused = |error: TapeError| RenderError::Evaluator(error.to_string());
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
-        let range = program.range.map(|range| Tape::of_rays(&program.graph, &[range]));
+        let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
             field: tape(&[distance])?,
             ahead: AheadTapes::new(program).map_err(refused)?,

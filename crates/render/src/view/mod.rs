@@ -431,7 +431,7 @@ fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError
 
 /// What a program says of [`View::within`] at a frame.
 fn within(program: &Program, frame: &FrameValues) -> Option<[DVec3; 2]> {
-    let corners = evaluate_frame(&program.graph, &program.within?, frame);
+    let corners = evaluate_frame(&program.graph, &program.loop_bounds?, frame);
     let corner = |place: usize| {
         let &[x, y, z, _] = corners.get(place)?;
         Some(DVec3::new(x, y, z))

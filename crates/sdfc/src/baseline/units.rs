@@ -268,7 +268,7 @@ impl<'a> Probe<'a> {
         frame: &'a FrameValues,
     ) -> Option<Self> {
         let first = u32::try_from(frame.params.len()).ok()?;
-        let tape = Tape::of_operator(graph, formula, samples, first).ok()?;
+        let tape = Tape::for_operator(graph, formula, samples, first).ok()?;
         Some(Self { tape, frame, count: samples.len() })
     }
 

@@ -305,8 +305,9 @@ impl<'a> Heat<'a> {
         let inline = prepared(LoopStrategy::Unrolled)?.program;
         let found = prepared(LoopStrategy::Looped)?;
         let pruned = Some(found.program).filter(|_| !found.report.loops.is_empty());
-        let rolled = pruned.clone().map(|program| Program { visits: Vec::new(), ..program });
-        let pruned = pruned.filter(|program| !program.visits.is_empty());
+        let rolled =
+            pruned.clone().map(|program| Program { cullable_loops: Vec::new(), ..program });
+        let pruned = pruned.filter(|program| !program.cullable_loops.is_empty());
         let frame = FrameValues::defaults(scene.params());
         let seen = pruned.as_ref().unwrap_or(&inline);
         let view = View::new(seen, &frame, scene.bounds_at(&frame), options.size)?;
@@ -437,7 +438,8 @@ impl<'a> Heat<'a> {
         uniforms: &[[f32; 4]],
         counted: &mut Counted<'_, '_>,
     ) -> Result<LeafEvaluations, Error> {
-        let rounds = program.visits.iter().map(|visit| visit.rounds as usize).sum::<usize>();
+        let rounds =
+            program.cullable_loops.iter().map(|visit| visit.iterations as usize).sum::<usize>();
         if rounds != self.scene.report().leaves {
             return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
         }

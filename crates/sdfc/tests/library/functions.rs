@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use sdfc::graph::eval::{FrameValues, HASHES, Tape};
+use sdfc::graph::eval::{FrameValues, HASH_COUNT, Tape};
 use sdfc::graph::{Binary, Dim, FrameInput, Node, NodeId, Scene, gradient, reachable};
 use sdfc::lang::library::Entry;
 
@@ -82,7 +82,7 @@ fn measured(scene: &Scene) -> Option<(f64, f64)> {
     let graph = &scene.graph;
     let id = graph.shape_ids().find(|&id| graph.shape(id).definition == "probe")?;
     let formula = graph.shape(id).formula;
-    let claim = graph.claim_of(formula)?;
+    let claim = graph.lipschitz_claim(formula)?;
     let stated = graph.as_number(claim.lipschitz)?;
     let roots: Vec<NodeId> =
         std::iter::once(formula).chain(claim.arguments.iter().copied()).collect();
@@ -162,5 +162,5 @@ fn steepest_of_all_hashes(scene: &Scene, formula: NodeId) -> Option<f64> {
 
 /// Often one of the ends.
 fn any_hash(random: &mut Random) -> f64 {
-    ((0.5 + random.signed()).clamp(0.0, 1.0) * (HASHES - 1.0)).floor()
+    ((0.5 + random.signed()).clamp(0.0, 1.0) * (HASH_COUNT - 1.0)).floor()
 }

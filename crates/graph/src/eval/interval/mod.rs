@@ -4,10 +4,10 @@ mod arithmetic;
 mod elementary;
 mod path;
 
-pub use path::Path;
+pub use path::BranchPath;
 
 use super::Number;
-use super::hash::{HASHES, hash};
+use super::hash::{HASH_COUNT, hash};
 
 /// All numbers from `lo` to `hi`, in f64.
 ///
@@ -234,9 +234,9 @@ impl Number for Interval {
         if self.lo == self.hi && whole.lo == whole.hi {
             return Self::constant(hash(self.lo, whole.lo));
         }
-        Self { lo: 0.0, hi: HASHES - 1.0 }
+        Self { lo: 0.0, hi: HASH_COUNT - 1.0 }
     }
-    fn direction(self, length: Self) -> Self {
+    fn normalize_lane(self, length: Self) -> Self {
         self.component(length)
     }
     fn lt(self, y: Self) -> Self {
@@ -259,7 +259,7 @@ impl Number for Interval {
         Number::max(self, y)
     }
 
-    fn is_never(self) -> bool {
+    fn is_definitely_false(self) -> bool {
         self.hi == 0.0
     }
     fn element(self, list: &[f64]) -> Self {
@@ -270,10 +270,10 @@ impl Number for Interval {
         values.reduce(Self::hull).unwrap_or(Self::ENTIRE)
     }
 
-    fn beyond(self, whole: Self) -> Self {
+    fn fract_with_floor(self, whole: Self) -> Self {
         self.sub(whole).clipped(0.0, 1.0)
     }
-    fn left(self, y: Self, whole: Self) -> Self {
+    fn rem_with_quotient(self, y: Self, whole: Self) -> Self {
         self.remainder(y, whole)
     }
     fn mix(self, y: Self, t: Self) -> Self {
@@ -290,13 +290,13 @@ impl Number for Interval {
         let t = x.sub(self).div(width).saturate();
         t.increasing(|t| t * t * (3.0 - 2.0 * t)).grown(MARGIN)
     }
-    fn excess(self, lo: Self, hi: Self) -> Self {
+    fn clamp_residual(self, lo: Self, hi: Self) -> Self {
         // x is compared with each end once, so within the range this is 0 and not nearly 0. Where the
         // ends are out of order the upper one counts, as in `clamp`.
         let below = Number::min(self.sub(lo), Self::new(0.0, 0.0));
         Number::max(self.sub(hi), below)
     }
-    fn parabola(self, y: Self, c: Self) -> Self {
+    fn x_times_one_minus_x(self, y: Self, c: Self) -> Self {
         self.dip(y, c)
     }
     fn select(self, yes: Self, no: Self) -> Self {

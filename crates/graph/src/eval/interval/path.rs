@@ -2,7 +2,7 @@
 
 use super::Interval;
 use crate::eval::op::Op;
-use crate::eval::watch::Watch;
+use crate::eval::tracer::Tracer;
 
 /// Which results an evaluation over intervals takes at operations that jump within the box.
 ///
@@ -13,7 +13,7 @@ use crate::eval::watch::Watch;
 /// one without jumps, whose range shrinks with the box.
 ///
 /// ```
-/// use sdfc_graph::eval::{FrameValues, Interval, Path, Tape};
+/// use sdfc_graph::eval::{FrameValues, Interval, BranchPath, Tape};
 /// use sdfc_graph::{Dim, Graph, Unary};
 ///
 /// // x - round(x) + 1 lies between 0.5 and 1.5, which one interval cannot see about a jump.
@@ -27,7 +27,7 @@ use crate::eval::watch::Watch;
 /// let mut field = tape.prepare::<Interval>(&FrameValues::default());
 ///
 /// let region = [Interval::new(0.45, 0.55), Interval::ENTIRE, Interval::ENTIRE];
-/// let mut path = Path::default();
+/// let mut path = BranchPath::default();
 /// assert!(field.scalar_along(region, &mut path).contains(1.0));
 /// assert!(path.fork(1));
 /// assert!(field.scalar_along(region, &mut path).lo() > 1.4); // the lower cell
@@ -37,7 +37,7 @@ use crate::eval::watch::Watch;
 /// # Ok::<(), sdfc_graph::eval::TapeError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Path {
+pub struct BranchPath {
     decided: Vec<Decision>,
     /// How many decisions the evaluation under way has come by.
     passed: usize,
@@ -64,7 +64,7 @@ enum Open {
     Cut,
 }
 
-impl Path {
+impl BranchPath {
     /// An operation with more results is not decided.
     pub const MOST_RESULTS: f64 = 4.0;
 
@@ -115,7 +115,7 @@ impl Path {
     }
 }
 
-impl Watch<Interval> for &mut Path {
+impl Tracer<Interval> for &mut BranchPath {
     fn jumped(&mut self, op: Op, [a, b, _]: [Interval; 3], result: Interval) -> Interval {
         if op == Op::Atan2 && a.contains(0.0) && b.hi < 0.0 {
             return self.on_one_side(a, b, result);
@@ -138,7 +138,7 @@ impl Watch<Interval> for &mut Path {
     }
 }
 
-impl Path {
+impl BranchPath {
     /// The angle of a vector on one side of the cut, which is a choice of two.
     fn on_one_side(&mut self, y: Interval, x: Interval, result: Interval) -> Interval {
         let [below, above] = Interval::angles_at_cut(y, x);

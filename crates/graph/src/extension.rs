@@ -1,14 +1,16 @@
-//! A field beyond the box on which its constant holds.
+//! Lipschitz extension of a field beyond the box on which its constant holds.
 //!
-//! With c the point of a box B nearest to p, u = f(c) and v = |p - c|, the field sqrt(u² + (L v)²) equals f in B. If f is
-//! L-Lipschitz in B it is so everywhere: projection onto a convex set is firmly nonexpansive, so
-//! p -> (c, v) is 1-Lipschitz. Divided by L it never exceeds the distance to a surface that lies in B: at c the angle
-//! between p and any point of B is not acute.
+//! Let c be the point of a box B nearest to p, u = f(c) and v = |p - c|. The field sqrt(u² + (L
+//! v)²) equals f in B. If f is L-Lipschitz in B, the extension is so everywhere: projection onto a
+//! convex set is firmly nonexpansive, so p -> (c, v) is 1-Lipschitz. Divided by L it never exceeds
+//! the distance to a surface that lies in B: at c the angle between p and any point of B is not
+//! acute.
 
-use crate::{Graph, NodeId, Ternary};
+use crate::graph::Graph;
+use crate::node::{NodeId, Ternary};
 
 impl Graph {
-    /// The point of `lo..hi` nearest to `point`; an end that is not finite does not bind.
+    /// The point of the box `lo..hi` nearest to `point`. An end that is not finite does not bind.
     pub fn nearest_within(&mut self, point: NodeId, [lo, hi]: [NodeId; 2]) -> NodeId {
         let width = self.ty(point).width() as u8;
         if self.binds(lo, width) && self.binds(hi, width) {
@@ -28,7 +30,7 @@ impl Graph {
         self.compose(&lanes)
     }
 
-    /// Whether no lane is known to be infinite or no number.
+    /// True if no lane is known to be infinite or NaN.
     fn binds(&mut self, end: NodeId, width: u8) -> bool {
         (0..width).all(|lane| {
             let lane = self.component(end, lane);
@@ -36,9 +38,9 @@ impl Graph {
         })
     }
 
-    /// The field that is `value` where `nearest` is `point`, and beyond goes on from `value`, the field at
-    /// `nearest`, with the constant `lipschitz`.
-    pub fn continued(
+    /// The field that is `value` where `nearest == point`; elsewhere it extends `value`, the field
+    /// at `nearest`, with the Lipschitz constant `lipschitz`.
+    pub fn lipschitz_extension(
         &mut self,
         point: NodeId,
         nearest: NodeId,
@@ -49,12 +51,12 @@ impl Graph {
             return value;
         }
         let offset = self.sub(point, nearest);
-        let away = self.length(offset);
-        let risen = self.mul(away, lipschitz);
-        let both = self.compose(&[value, risen]);
+        let distance = self.length(offset);
+        let rise = self.mul(distance, lipschitz);
+        let both = self.compose(&[value, rise]);
         let outside = self.length(both);
         let zero = self.number(0.0);
-        let is_outside = self.lt(zero, away);
+        let is_outside = self.lt(zero, distance);
         self.select(is_outside, outside, value)
     }
 }

@@ -1,14 +1,16 @@
-//! What a frame knows and its points use.
+//! Selection of the per-frame nodes that get a uniform slot.
 
+use crate::graph::Graph;
 use crate::ids::IdSet;
+use crate::node::{Node, NodeId, Stage};
 use crate::walk::reachable_where;
-use crate::{Graph, Node, NodeId, Stage};
 
-/// The per-frame nodes that need a uniform slot, in ascending order: those that are roots or that a per-point
-/// node uses. What they are computed from needs none.
+/// The per-frame nodes that need a uniform slot, in ascending order: roots, and nodes that a
+/// per-point node uses. The nodes that these are computed from need none.
 ///
-/// A vector of per-frame parts is one slot. A `Splat` never has a slot: the number that fills it has, so what
-/// reads the slots must look through a per-frame `Splat` to its argument. Truth values may be among the slots.
+/// A vector composed of per-frame scalars takes one slot. A `Splat` never has a slot, but its
+/// scalar has, so code that reads the slots must look through a per-frame `Splat` to its argument.
+/// Truth values may be among the slots.
 pub fn uniforms(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let per_point = |id: NodeId| graph.stage(id) == Stage::Point;
     let mut slots = IdSet::default();
@@ -25,7 +27,7 @@ pub fn uniforms(graph: &Graph, roots: &[NodeId]) -> Vec<NodeId> {
     slots.to_vec()
 }
 
-/// The node that holds the value of a per-frame node; none for one of another stage.
+/// The node whose slot holds the value of a per-frame node; `None` for a node of another stage.
 fn slot(graph: &Graph, id: NodeId) -> Option<NodeId> {
     if graph.stage(id) != Stage::Frame {
         return None;

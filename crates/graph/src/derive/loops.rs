@@ -1,21 +1,23 @@
 //! The derivative of a loop: a loop that carries the derivatives of its state.
 //!
-//! Let s be the state, c what the loop reads from outside and `s' = f(s, c)` a round. The derivative of each lane of s with
-//! respect to c starts as that of `start` and becomes `∂f/∂s · ds/dc + ∂f/∂c`, whose parts are one reverse sweep over the
-//! body for each lane. A loop that carries s and ds/dc has at its end what the adjoint of s is multiplied
-//! by. Nothing is stored per round, and the number of rounds counts as fixed. What is carried has as many numbers as the
-//! state times those that c consists of: a point, as a rule, so that loops over one to four numbers cost two to four
-//! times as much with their derivatives.
+//! Let s be the state, c the inputs from outside and `s' = f(s, c)` an iteration. The derivative of
+//! each lane of s with respect to c inits as the derivative of `init` and becomes
+//! `∂f/∂s · ds/dc + ∂f/∂c` in each iteration; the partial derivatives come from one reverse sweep
+//! over the body per lane. A loop that carries s and ds/dc ends with the factor of the adjoint of
+//! s. Nothing is stored per iteration, and the number of iterations counts as constant. The loop
+//! carries as many extra numbers as the state has lanes times c has lanes. As a rule c is one
+//! point, so a loop over one to four numbers costs two to four times as much with its derivatives.
 
 use super::{Sweep, adjoints, zero};
+use crate::graph::Graph;
 use crate::ids::{IdMap, IdSet};
-use crate::repeat::Loop;
+use crate::loops::Loop;
+use crate::node::{LoopId, LoopVar, Node, NodeId};
 use crate::walk::{computed_where, reachable};
-use crate::{Graph, LoopId, Node, NodeId, Place};
 
 impl Sweep<'_> {
-    /// Gives what a loop reads from outside its parts of the adjoint of one part of the loop's state.
-    pub(super) fn repeat(&mut self, id: LoopId, position: u16, adjoint: NodeId) {
+    /// Passes the adjoint of one part of a loop's state on to the inputs of the loop.
+    pub(super) fn propagate_loop(&mut self, id: LoopId, position: u16, adjoint: NodeId) {
         let sources = self.sources(id);
         let slopes = slopes(self.graph, id, &sources);
         let before: usize = slopes.lanes[..usize::from(position)].iter().sum();
@@ -24,16 +26,17 @@ impl Sweep<'_> {
             let factor = self.graph.component(adjoint, lane);
             for (&source, &slope) in sources.iter().zip(row) {
                 let part = self.graph.mul(slope, factor);
-                self.give(source, part);
+                self.accumulate(source, part);
             }
         }
     }
 
-    /// What moves with the inputs of the sweep and is read by the loop: the values that lanes are moved about of.
+    /// The inputs of the loop that depend on the inputs of the sweep, looking through operations
+    /// that only move lanes.
     fn sources(&self, id: LoopId) -> Vec<NodeId> {
         let mut sources = IdSet::default();
         let mut seen = IdSet::default();
-        let mut pending = self.graph.inputs_of_loop(id);
+        let mut pending = self.graph.loop_inputs(id);
         while let Some(id) = pending.pop() {
             if !self.live.contains(id) || !seen.insert(id) {
                 continue;
@@ -48,49 +51,49 @@ impl Sweep<'_> {
     }
 }
 
-/// Derivatives of the lanes of a loop's state after its last round.
+/// Derivatives of the lanes of a loop's final state.
 struct Slopes {
-    /// How many lanes each part of the state has.
+    /// Number of lanes of each part of the state.
     lanes: Vec<usize>,
-    /// For each lane of the state, its derivative by each source.
+    /// For each lane of the state, its derivatives with respect to the sources.
     rows: Vec<Vec<NodeId>>,
 }
 
 fn slopes(graph: &mut Graph, id: LoopId, sources: &[NodeId]) -> Slopes {
-    let repeated = graph.repeated(id).clone();
-    let lanes: Vec<usize> = repeated.start.iter().map(|&part| graph.ty(part).width()).collect();
+    let loop_ = graph.loop_at(id).clone();
+    let lanes: Vec<usize> = loop_.init.iter().map(|&part| graph.ty(part).width()).collect();
     let state: Vec<NodeId> = (0..)
-        .zip(&repeated.start)
+        .zip(&loop_.init)
         .map(|(position, &part)| {
-            graph.variable(repeated.depth, Place::State(position), graph.ty(part))
+            graph.variable(loop_.depth, LoopVar::State(position), graph.ty(part))
         })
         .collect();
 
-    let mut starts = Vec::new();
-    for lane in lanes_of(graph, &repeated.start) {
-        starts.extend(adjoints(graph, lane, sources));
+    let mut inits = Vec::new();
+    for lane in lanes_of(graph, &loop_.init) {
+        inits.extend(adjoints(graph, lane, sources));
     }
-    // One variable for each lane and source, after those of the state.
-    let carried: Vec<NodeId> = starts
+    // One variable for each lane and source, following the variables of the state.
+    let carried: Vec<NodeId> = inits
         .iter()
-        .zip(repeated.start.len() as u16..)
+        .zip(loop_.init.len() as u16..)
         .map(|(&start, position)| {
-            graph.variable(repeated.depth, Place::State(position), graph.ty(start))
+            graph.variable(loop_.depth, LoopVar::State(position), graph.ty(start))
         })
         .collect();
 
     let mut wrt = state;
     wrt.extend(sources);
-    let next = lanes_of(graph, &repeated.next);
+    let next = lanes_of(graph, &loop_.step);
     let partials: Vec<Vec<NodeId>> =
         next.into_iter().map(|lane| adjoints(graph, lane, &wrt)).collect();
 
-    let nothing = zeros(graph, &starts, &carried, |graph, carried| {
+    let nothing = zeros(graph, &inits, &carried, |graph, carried| {
         advanced(graph, &partials, &lanes, sources, carried)
     });
-    let parts = repeated.start.len();
+    let parts = loop_.init.len();
     let mut kept = Vec::new();
-    let carried: Vec<NodeId> = starts
+    let carried: Vec<NodeId> = inits
         .iter()
         .zip(&nothing)
         .map(|(&start, &is_zero)| {
@@ -99,17 +102,18 @@ fn slopes(graph: &mut Graph, id: LoopId, sources: &[NodeId]) -> Slopes {
             }
             kept.push(start);
             let position = (parts + kept.len() - 1) as u16;
-            graph.variable(repeated.depth, Place::State(position), graph.ty(start))
+            graph.variable(loop_.depth, LoopVar::State(position), graph.ty(start))
         })
         .collect();
     let moved = advanced(graph, &partials, &lanes, sources, &carried);
     let moved = moved.into_iter().zip(&nothing).filter(|(_, is_zero)| !**is_zero);
-    let mut next = repeated.next.clone();
+    let mut next = loop_.step.clone();
     next.extend(moved.map(|(id, _)| id));
     let next = merged(graph, &next);
-    let start: Vec<NodeId> = repeated.start.iter().copied().chain(kept).collect();
-    let mut ends = graph.repeat(Loop { start, next, ..repeated }).into_iter().skip(parts);
-    let all: Vec<NodeId> = starts
+    let start: Vec<NodeId> = loop_.init.iter().copied().chain(kept).collect();
+    let mut ends =
+        graph.add_loop(Loop { init: start, step: next, ..loop_ }).into_iter().skip(parts);
+    let all: Vec<NodeId> = inits
         .iter()
         .zip(nothing)
         .map(|(&start, is_zero)| if is_zero { start } else { ends.next().unwrap_or(start) })
@@ -128,7 +132,7 @@ fn lanes_of(graph: &mut Graph, parts: &[NodeId]) -> Vec<NodeId> {
     lanes
 }
 
-/// The derivatives after a round: for each lane of the state and each source in turn.
+/// The derivatives after an iteration, for each lane of the state and each source in turn.
 fn advanced(
     graph: &mut Graph,
     partials: &[Vec<NodeId>],
@@ -155,15 +159,15 @@ fn advanced(
     all
 }
 
-/// Which of the carried derivatives start as 0 and stay so.
+/// Which of the carried derivatives start as 0 and stay 0.
 fn zeros(
     graph: &mut Graph,
-    starts: &[NodeId],
+    inits: &[NodeId],
     carried: &[NodeId],
     advance: impl Fn(&mut Graph, &[NodeId]) -> Vec<NodeId>,
 ) -> Vec<bool> {
-    let is_zero = |graph: &Graph, id: NodeId| graph.as_uniform(id) == Some(0.0);
-    let mut zeros: Vec<bool> = starts.iter().map(|&start| is_zero(graph, start)).collect();
+    let is_zero = |graph: &Graph, id: NodeId| graph.as_splat_number(id) == Some(0.0);
+    let mut zeros: Vec<bool> = inits.iter().map(|&start| is_zero(graph, start)).collect();
     loop {
         let guess: Vec<NodeId> = carried
             .iter()
@@ -183,8 +187,8 @@ fn zeros(
     }
 }
 
-/// The roots, with the results of each loop taken from one that carries the same state and more, where the roots are
-/// computed from both: the state is then computed once.
+/// The roots, rewritten so that results of a loop are taken from another loop that carries the same
+/// state and more, where the roots use both. The state is then computed once.
 pub(super) fn merged(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     let mut loops: Vec<LoopId> = computed_where(graph, roots, |_| true)
         .into_iter()
@@ -193,8 +197,8 @@ pub(super) fn merged(graph: &mut Graph, roots: &[NodeId]) -> Vec<NodeId> {
     loops.sort_unstable();
     loops.dedup();
     let longer = |id: LoopId| {
-        let extends = |&other: &LoopId| graph.repeated(other).extends(graph.repeated(id));
-        loops.iter().copied().filter(extends).max_by_key(|&id| graph.repeated(id).start.len())
+        let extends = |&other: &LoopId| graph.loop_at(other).extends(graph.loop_at(id));
+        loops.iter().copied().filter(extends).max_by_key(|&id| graph.loop_at(id).init.len())
     };
     let known: Vec<(LoopId, LoopId)> =
         loops.iter().filter_map(|&id| Some((id, longer(id)?))).collect();

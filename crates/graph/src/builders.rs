@@ -1,11 +1,13 @@
-//! Typed builders. Every node outside this crate is made here, so folding and simplification
-//! happen as the graph grows and an equal value never gets a second node.
+//! Typed builders. Other crates make every node here, so folding and simplification happen as the
+//! graph grows, and equal values share one node.
 //!
-//! Operands of different width are brought to one: a scalar fills a vector.
+//! A scalar operand of a vector operation is splatted to the vector's width.
 
-use crate::{
-    Binary, Const, Dim, FrameInput, Graph, MaterialField, Node, NodeId, ShapeId, Ternary, Type,
-    Unary,
+use crate::graph::Graph;
+use crate::loops::{Loop, Table};
+use crate::node::{
+    Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId, Ternary,
+    Type, Unary,
 };
 
 impl Graph {
@@ -51,13 +53,13 @@ impl Graph {
         self.make(Node::Ternary(op, arguments))
     }
 
-    /// `yes` where the condition holds, else `no`.
+    /// `yes` where the condition is true, else `no`.
     pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
         let [yes, no] = self.widened([yes, no]);
         self.make(Node::Ternary(Ternary::Select, [condition, yes, no]))
     }
 
-    /// A vector of equal parts.
+    /// A vector whose lanes are all equal to one scalar.
     pub fn splat(&mut self, ty: Type, a: NodeId) -> NodeId {
         if self.ty(a) == ty {
             return a;
@@ -65,7 +67,7 @@ impl Graph {
         self.make(Node::Splat(ty, a))
     }
 
-    /// A vector of 2 to 4 scalar parts; of one part, the part.
+    /// A vector of 2 to 4 scalars; a single scalar is returned as it is.
     pub fn compose(&mut self, parts: &[NodeId]) -> NodeId {
         let Some(ty) = Type::of_width(parts.len()).filter(|_| parts.len() > 1) else {
             return parts.first().copied().unwrap_or_else(|| self.number(0.0));
@@ -79,13 +81,13 @@ impl Graph {
     pub fn swizzle(&mut self, a: NodeId, lanes: &[u8]) -> NodeId {
         let ty = Type::of_width(lanes.len()).unwrap_or(Type::Scalar);
         let mut list = [0; 4];
-        for (place, lane) in list.iter_mut().zip(lanes) {
-            *place = *lane;
+        for (entry, lane) in list.iter_mut().zip(lanes) {
+            *entry = *lane;
         }
         self.make(Node::Swizzle(ty, a, list))
     }
 
-    /// One component of a vector; of a scalar, itself.
+    /// One component of a vector; a scalar is its own component.
     pub fn component(&mut self, a: NodeId, lane: u8) -> NodeId {
         if self.ty(a).width() == 1 { a } else { self.swizzle(a, &[lane]) }
     }
@@ -103,6 +105,62 @@ impl Graph {
     /// Material of a shape at a point.
     pub fn material_at(&mut self, shape: ShapeId, point: NodeId, field: MaterialField) -> NodeId {
         self.intern(Node::MaterialAt(shape, point, field))
+    }
+
+    /// A variable of the loop that is nested in `depth` others.
+    pub fn variable(&mut self, depth: u8, var: LoopVar, ty: Type) -> NodeId {
+        self.intern(Node::Variable(depth, var, ty))
+    }
+
+    /// Adds a loop and returns the parts of its state after the last iteration.
+    ///
+    /// A part that no iteration changes is its initial value.
+    pub fn add_loop(&mut self, loop_: Loop) -> Vec<NodeId> {
+        let types: Vec<Type> = loop_.init.iter().map(|&id| self.ty(id)).collect();
+        let unchanged: Vec<bool> = (0..)
+            .zip(loop_.step.iter().zip(&types))
+            .map(|(i, (&step, &ty))| {
+                self.node(step) == Node::Variable(loop_.depth, LoopVar::State(i), ty)
+            })
+            .collect();
+        if loop_.max_iterations == 0 || unchanged.iter().all(|unchanged| *unchanged) {
+            return loop_.init;
+        }
+        let init = loop_.init.clone();
+        let id = self.intern_loop(loop_);
+        let mut results = Vec::with_capacity(types.len());
+        for (position, ty) in (0..).zip(types) {
+            results.push(if unchanged[usize::from(position)] {
+                init[usize::from(position)]
+            } else {
+                self.intern(Node::Loop(id, position, ty))
+            });
+        }
+        results
+    }
+
+    /// One part of the state after a loop like this one over other nodes.
+    pub(crate) fn rebuild_loop(
+        &mut self,
+        id: LoopId,
+        position: u16,
+        map: impl FnMut(NodeId) -> NodeId,
+    ) -> NodeId {
+        let loop_ = self.loop_at(id).map(map);
+        self.add_loop(loop_)[usize::from(position)]
+    }
+
+    /// The element of a table of constants at an index, which is rounded down and clamped to the
+    /// table.
+    pub fn element(&mut self, table: Table, at: NodeId) -> NodeId {
+        if let Some(at) = self.as_number(at) {
+            let last = table.elements.len().saturating_sub(1);
+            let element = table.elements[(at.max(0.0) as usize).min(last)];
+            return self.constant(element.ty(), &element.lanes());
+        }
+        let ty = table.ty;
+        let id = self.intern_table(table);
+        self.intern(Node::Element(id, at, ty))
     }
 
     fn widened<const N: usize>(&mut self, arguments: [NodeId; N]) -> [NodeId; N] {

@@ -1,0 +1,19 @@
+//! Tracing the operations of an evaluation that can jump.
+
+use super::op::Op;
+
+/// Sees each operation that can jump, in the order in which they run.
+pub(super) trait Tracer<N> {
+    /// The value to use instead of the result.
+    fn jumped(&mut self, op: Op, arguments: [N; 3], result: N) -> N;
+}
+
+/// A tracer that changes nothing.
+pub(super) struct NoTrace;
+
+impl<N> Tracer<N> for NoTrace {
+    #[inline(always)]
+    fn jumped(&mut self, _: Op, _: [N; 3], result: N) -> N {
+        result
+    }
+}
