@@ -1,15 +1,16 @@
-//! From an edit on disk to its first picture, as a session without a window shows it, with the stages apart.
+//! Measures the time from an edit on disk to its first picture, in a session without a window.
 //!
 //! ```text
 //! MESA_SHADER_CACHE_DIR=$(mktemp -d) cargo bench -p sdfc-viewer --bench latency [-- PART OF A ROW'S NAME]
 //! ```
 //!
-//! A *literal* is another number of the same text. A *structure* differs from all before it: of six more leaves, each is
-//! a ball or a block as the digits of the edit's number say, so that no driver has met the shader.
+//! A *literal* edit changes a number. A *structure* edit gives a scene that differs from all before
+//! it: six more leaves are balls or blocks, by the binary digits of the edit's number, so that no
+//! driver has compiled the shader before.
 //!
-//! The session is looked at when it asks to be, and at most 60 times a second, as a window looks at it. `frames` counts
-//! those looks from the edit to the one that has its picture. `watch` goes from the edit to where its text is read; `rest` is what lies between the
-//! stages, waiting for the next look among it.
+//! The session is polled when it wakes, at most 60 times per second, as by a window. `frames`
+//! counts the polls from the edit to its picture. `watch` is the time from the edit to reading the
+//! file; `rest` is the time between the stages, including the wait for the next poll.
 
 #![allow(
     clippy::print_stdout,
@@ -27,23 +28,23 @@ use sdfc::render::milliseconds_since;
 use sdfc_viewer::session::Session;
 
 const SIZE: [u32; 2] = [640, 360];
-/// Scenes, what they are called here, and how often each is edited in either way.
+/// Scene, name in the table, and number of edits of each kind.
 const SCENES: [(&str, &str, u32); 3] = [
     ("bench/thirty.sdf", "30 leaves", 63),
     ("generated 300", "300 leaves", 15),
     (ALIKE, "300 leaves, alike", 63),
 ];
-/// Of two kinds, so that they become loops.
+/// Leaves of two kinds, which loop rerolling turns into loops.
 const ALIKE: &str = "alike 300";
-/// They spell the numbers of the edits.
+/// Leaves that encode the number of the edit.
 const MORE_LEAVES: u32 = 6;
-/// From one frame of a window to the next.
+/// The time from one frame of a window to the next.
 const FRAME: Duration = Duration::from_nanos(16_666_667);
 /// Longer than any edit takes.
-const PATIENCE: Duration = Duration::from_secs(600);
+const TIMEOUT: Duration = Duration::from_secs(600);
 
-/// Milliseconds of one edit.
-struct Spent {
+/// The times of one edit, in milliseconds.
+struct Times {
     total: f64,
     frames: f64,
     watch: f64,
@@ -55,7 +56,7 @@ struct Spent {
 }
 
 fn main() {
-    // Cargo's own flag is no part of a name.
+    // Cargo passes `--bench`.
     let wanted = std::env::args().skip(1).find(|it| !it.starts_with('-')).unwrap_or_default();
     println!(
         "| edit | edits | p50 | p99 | frames, p50 | p99 | watch | front end | analysis | lowering | pipeline | frame | rest |"
@@ -66,7 +67,7 @@ fn main() {
     for (scene, called, edits) in SCENES {
         let (_, text) = suite.iter().find(|(name, _)| name == scene).unwrap();
         let literal = |edit: u32| format!("{text}\nsphere(0.1{edit:03}).translate(y: 3)\n");
-        let structure = |edit: u32| format!("{text}\n{}", spelt(edit));
+        let structure = |edit: u32| format!("{text}\n{}", encoded(edit));
         let rows: [(&str, &dyn Fn(u32) -> String); 2] =
             [("literal", &literal), ("structure", &structure)];
         for (kind, text) in rows {
@@ -78,20 +79,20 @@ fn main() {
     }
 }
 
-/// Balls and blocks in rows of twenty, no two of one size.
+/// Balls and blocks in rows of twenty, all of different sizes.
 fn alike(leaves: u32) -> String {
     let mut out = String::new();
-    for place in 0..leaves {
-        let leaf = if place.is_multiple_of(2) { "sphere" } else { "box" };
-        let [x, y] = [place % 20, place / 20].map(|it| 0.3 * f64::from(it) - 3.0);
+    for index in 0..leaves {
+        let leaf = if index.is_multiple_of(2) { "sphere" } else { "box" };
+        let [x, y] = [index % 20, index / 20].map(|it| 0.3 * f64::from(it) - 3.0);
         // Writing to a String cannot fail.
-        let _ = writeln!(out, "{leaf}(0.1{place:03}).translate([{x:.1}, {y:.1}, 0.0{place}])");
+        let _ = writeln!(out, "{leaf}(0.1{index:03}).translate([{x:.1}, {y:.1}, 0.0{index}])");
     }
     out
 }
 
-/// Six leaves that are a number in binary digits.
-fn spelt(number: u32) -> String {
+/// Leaves that encode a number in binary digits.
+fn encoded(number: u32) -> String {
     let mut out = String::new();
     for digit in 0..MORE_LEAVES {
         let leaf = if number >> digit & 1 == 0 { "sphere(0.1)" } else { "box(0.15)" };
@@ -109,30 +110,30 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
     window.shown(&text(0), Instant::now());
     let mut all = Vec::new();
     for edit in 1..=edits {
-        // What refines the last picture is over, as it is for someone who looks before he types.
+        // A user looks at the finished picture before the next edit.
         window.wait(|it| it.picture.as_ref().is_some_and(|picture| picture.finished));
         let text = text(edit);
-        // Whoever types has not looked for a while.
+        // Typing takes longer than a frame.
         std::thread::sleep(FRAME);
         let start = Instant::now();
         std::fs::write(&path, &text).unwrap();
         all.push(window.shown(&text, start));
     }
-    let figure = |of: &dyn Fn(&Spent) -> f64, share: f64| {
+    let quantile = |of: &dyn Fn(&Times) -> f64, fraction: f64| {
         let mut sorted: Vec<f64> = all.iter().map(of).collect();
         sorted.sort_by(f64::total_cmp);
-        sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+        sorted[((sorted.len() - 1) as f64 * fraction).round() as usize]
     };
-    let median = |of: &dyn Fn(&Spent) -> f64| format!("{:.1}", figure(of, 0.5));
-    let rest = |it: &Spent| {
+    let median = |of: &dyn Fn(&Times) -> f64| format!("{:.1}", quantile(of, 0.5));
+    let rest = |it: &Times| {
         it.total - it.watch - it.front - it.analyze - it.lower - it.pipeline - it.frame
     };
     println!(
         "| {name} | {edits} | {:.1} | {:.1} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-        figure(&|it| it.total, 0.5),
-        figure(&|it| it.total, 0.99),
-        figure(&|it| it.frames, 0.5),
-        figure(&|it| it.frames, 0.99),
+        quantile(&|it| it.total, 0.5),
+        quantile(&|it| it.total, 0.99),
+        quantile(&|it| it.frames, 0.5),
+        quantile(&|it| it.frames, 0.99),
         median(&|it| it.watch),
         median(&|it| it.front),
         median(&|it| it.analyze),
@@ -143,7 +144,7 @@ fn row(name: &str, edits: u32, text: &dyn Fn(u32) -> String) {
     );
 }
 
-/// A window without one.
+/// Polls a session as a window does.
 struct Window {
     session: Session,
     woken: Receiver<()>,
@@ -159,38 +160,38 @@ impl Window {
         Self { session, woken, last: Instant::now() }
     }
 
-    /// Waits for the first picture of a text.
-    fn shown(&mut self, text: &str, start: Instant) -> Spent {
+    /// Waits for the first picture of a source.
+    fn shown(&mut self, text: &str, start: Instant) -> Times {
         let frames = self.wait(|session| {
-            session.picture.as_ref().is_some_and(|it| it.request.model.text == text)
+            session.picture.as_ref().is_some_and(|it| it.request.model.source == text)
         });
         let total = milliseconds_since(start);
         let picture = self.session.picture.as_ref().unwrap();
         let model = &picture.request.model;
-        let stages = model.stages;
-        Spent {
+        let times = model.build_times;
+        Times {
             total,
             frames: f64::from(frames),
-            watch: 1000.0 * model.begun.saturating_duration_since(start).as_secs_f64(),
-            front: stages.front,
-            analyze: stages.analyze,
-            lower: stages.lower,
-            pipeline: stages.pipeline.unwrap_or(0.0),
+            watch: 1000.0 * model.read_at.saturating_duration_since(start).as_secs_f64(),
+            front: times.front,
+            analyze: times.analyze,
+            lower: times.lower,
+            pipeline: times.pipeline.unwrap_or(0.0),
             frame: picture.latency,
         }
     }
 
-    /// Frame by frame, until it is so; gives how many that took.
+    /// Polls frame by frame until the condition holds; returns the number of frames.
     fn wait(&mut self, holds: impl Fn(&Session) -> bool) -> u32 {
         let mut frames = 0;
         while !holds(&self.session) {
-            let woken = self.woken.recv_timeout(PATIENCE);
-            assert!(woken.is_ok(), "{:?} {:?}", self.session.findings, self.session.trouble);
+            let woken = self.woken.recv_timeout(TIMEOUT);
+            assert!(woken.is_ok(), "{:?} {:?}", self.session.diagnostics, self.session.problem);
             std::thread::sleep(FRAME.saturating_sub(self.last.elapsed()));
             self.last = Instant::now();
             while self.woken.try_recv().is_ok() {}
             self.session.poll();
-            self.session.ask(SIZE, false);
+            self.session.request_picture(SIZE, false);
             frames += 1;
         }
         frames

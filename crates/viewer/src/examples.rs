@@ -1,23 +1,26 @@
-//! Scenes to begin with, embedded in the program: opened, one becomes a file of the user's.
+//! Example scenes, embedded in the program. Opening one copies it to a file of the user.
 
 use std::path::{Path, PathBuf};
 
-/// A scene to begin with.
+/// An example scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
-    /// The name of its file, without the ending.
+    /// The file name without its extension.
     pub name: &'static str,
-    /// Its text.
-    pub text: &'static str,
+    /// Its source.
+    pub source: &'static str,
 }
 
 macro_rules! examples {
     ($($name:literal)*) => {
-        &[$(Example { name: $name, text: include_str!(concat!("../../../examples/", $name, ".sdf")) }),*]
+        &[$(Example {
+            name: $name,
+            source: include_str!(concat!("../../../examples/", $name, ".sdf")),
+        }),*]
     };
 }
 
-/// All of them by name.
+/// All examples, by name.
 pub const EXAMPLES: &[Example] = examples![
     "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lettering" "mandelbulb" "materials"
     "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "polyhedra" "profiles" "recursion" "round"
@@ -25,25 +28,27 @@ pub const EXAMPLES: &[Example] = examples![
 ];
 
 impl Example {
-    /// The example as a file in a folder, which is made. One that is there is left as it is: it may have been edited.
+    /// Copies the example to a folder, which is created. An existing file is kept: the user may
+    /// have edited it.
     ///
     /// # Errors
     ///
-    /// The folder or the file cannot be made; why, in one line.
+    /// The folder or the file cannot be written. The message is one line.
     pub fn file_in(&self, folder: &Path) -> Result<PathBuf, String> {
         let path = folder.join(format!("{}.sdf", self.name));
         if path.exists() {
             return Ok(path);
         }
-        let made = std::fs::create_dir_all(folder)
-            .and_then(|()| sdfc_files::write(&path, self.text.as_bytes()));
-        made.map(|()| path.clone())
+        let written = std::fs::create_dir_all(folder)
+            .and_then(|()| sdfc_files::write(&path, self.source.as_bytes()));
+        written
+            .map(|()| path.clone())
             .map_err(|error| format!("cannot write {}: {error}", path.display()))
     }
 
-    /// What it is about: its first comment.
+    /// The description: the comment at the start of the source.
     pub fn summary(&self) -> String {
-        let comment = self.text.lines().map_while(|line| line.strip_prefix("//"));
+        let comment = self.source.lines().map_while(|line| line.strip_prefix("//"));
         comment.map(|line| line.trim_start_matches('/').trim()).collect::<Vec<_>>().join("\n")
     }
 }
@@ -53,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_of_the_folder_are_there_and_say_what_they_are_about() {
+    fn every_scene_of_the_examples_folder_is_included_and_has_a_description() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
         let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
         let scenes = paths.filter(|path| path.extension().is_some_and(|it| it == "sdf"));
@@ -67,10 +72,10 @@ mod tests {
     }
 
     #[test]
-    fn one_that_was_edited_stays_so() {
+    fn opening_an_example_again_keeps_its_edits() {
         let folder = tempfile::tempdir().unwrap();
         let path = EXAMPLES[0].file_in(&folder.path().join("new")).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), EXAMPLES[0].text);
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), EXAMPLES[0].source);
         std::fs::write(&path, "box(1)").unwrap();
         EXAMPLES[0].file_in(&folder.path().join("new")).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");

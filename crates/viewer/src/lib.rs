@@ -1,48 +1,38 @@
-//! A window that shows a scene and follows its text as it is edited.
+//! A window that shows a scene and follows its file as it is edited.
 //!
 //! # How it is built
 //!
 //! ```text
-//!                 watch ──▶ worker ──▶ Model (scene, pipeline) ─┐
-//!                  files    compiles                            ▼
-//! window ──▶ session ──────────────────────────────────▶ painter ──▶ Picture ──▶ window
-//!  input     what is open, camera, knobs, time            draws        an image on the CPU
+//!         file watcher ─▶ compile worker ─▶ Model (scene, pipeline) ─┐
+//!                                                                   ▼
+//! window ─▶ Session ────────────────────────────────────▶ render worker ─▶ Picture ─▶ window
+//!  input    open scene, camera, param values, time         draws            CPU image
 //! ```
 //!
-//! The window ([`app`]) only shows a [`session`] and hands input to it; everything else knows nothing of
-//! windows and is tested without one. The worker, the painter and the [`judge`] are threads with a [`mailbox`] that keeps
-//! the newest order only. Nothing that can be slow runs where input is heard: not reading files, not
-//! compiling, not a driver's shader compiler, not drawing.
+//! The window ([`app`]) only shows a [`session`] and passes input to it. Nothing else depends on
+//! windows, so everything else is tested without one. The [compile](compile::worker),
+//! [render](render::worker) and [accuracy](accuracy::worker) workers are threads that handle the
+//! latest message only ([`latest_channel`]); the [export](export::worker) worker handles every job
+//! in order. The window's thread does nothing slow: it does not read files, compile, call a
+//! driver's shader compiler or draw the picture.
 //!
-//! The painter has a device of its own and reads each picture back. So the window never waits for a slow
-//! shader, a lost device is opened anew while the window stays, one that never comes back is replaced by the
-//! CPU renderer, and a picture is data: hovering, heat maps and the other [`views`] are functions of it that
-//! need no second renderer. What that costs is in `docs/viewer.md`.
+//! The render worker has its own device and reads each picture back. So the window never waits for
+//! a slow shader, a lost device is reopened while the window stays, and the CPU renderer replaces a
+//! device that does not come back. The picture is data on the CPU: pixel info, heat maps and the
+//! other [`views`] are functions of it and need no second renderer. `docs/viewer.md` gives the
+//! cost.
 
+pub mod accuracy;
 pub mod app;
-pub mod clerk;
-pub mod clock;
-pub mod comparing;
-pub mod document;
-pub mod edit;
-pub mod engine;
+pub mod compile;
 pub mod examples;
-pub mod findings;
-pub mod identity;
-pub mod judge;
-pub mod knobs;
-pub mod legend;
-pub mod look;
-pub mod mailbox;
-pub mod material;
-pub mod memory;
-pub mod mode;
-pub mod model;
-pub mod orbit;
-pub mod painter;
-pub mod probe;
+pub mod export;
+pub mod latest_channel;
+pub mod render;
+pub mod scene;
 pub mod session;
-mod shop;
+pub mod settings;
+#[cfg(test)]
+mod test_support;
 pub mod views;
-pub mod watch;
-pub mod worker;
+pub mod worker_thread;

@@ -1,25 +1,28 @@
-//! `sdfc-view FILE`: a window on a scene.
+//! `sdfc-view FILE`: shows a scene in a window.
 //!
-//! Exit statuses as those of `sdfc`: 0, the window was closed; 2, the call is wrong; 3, there is no window to
-//! be had.
+//! Exit codes: 0, the window was closed; 2, invalid command line or unreadable file; 3, no window
+//! could be opened or its device was lost.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use sdfc_viewer::app::NoWindow;
+use sdfc_viewer::app::WindowError;
 use sdfc_viewer::examples::EXAMPLES;
-use sdfc_viewer::memory::examples_folder;
+use sdfc_viewer::settings::examples_folder;
 
 const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
-    Shows the scene in FILE in a window and follows its text as it is edited; without FILE, an example.";
-const LOST: &str = "error: the window's device was lost while it was drawn, as all are when a driver is renewed\n\
+    Shows the scene in FILE in a window and follows the file as it is edited.\n\
+    Without FILE it shows an example.";
+const DEVICE_LOST: &str = "error: the GPU was lost while the window was drawn, as happens when a \
+    driver is updated\n\
     help: open the scene again: camera and params are kept";
-const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or OpenGL (Mesa's software \
-    drivers do: Debian's mesa-vulkan-drivers or libgl1-mesa-dri); `sdfc render --backend cpu` needs neither";
-/// The example that is shown where no file is named: it has something to drag.
-const FIRST: &str = "params";
+const NO_WINDOW: &str = "a window needs a display and a driver for Vulkan, Metal, DirectX 12 or \
+    OpenGL; Mesa's software drivers work (on Debian: mesa-vulkan-drivers or libgl1-mesa-dri). \
+    `sdfc render --backend cpu` needs neither";
+/// The example that is shown if no file is named. It has params to drag.
+const FIRST_EXAMPLE: &str = "params";
 
-#[allow(clippy::print_stdout, clippy::print_stderr, reason = "a program says what it has to say")]
+#[allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints messages")]
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
     let argument = match &arguments[..] {
@@ -42,11 +45,11 @@ fn main() -> ExitCode {
         Some(_) | None => {}
     }
     if argument == "-" {
-        eprintln!("error: a scene from stdin cannot be followed; write it to a file");
+        eprintln!("error: a scene on stdin cannot be watched for changes; write it to a file");
         return ExitCode::from(2);
     }
     let path = PathBuf::from(argument);
-    // Asked before the window opens: afterwards a file may come and go.
+    // A missing file is an error only before the window opens; afterwards it may come and go.
     if let Err(error) = sdfc_files::read(&path) {
         eprintln!("error: {error}");
         return ExitCode::from(2);
@@ -54,9 +57,9 @@ fn main() -> ExitCode {
     window(&path)
 }
 
-#[allow(clippy::print_stderr, reason = "a program says what it has to say")]
+#[allow(clippy::print_stderr, reason = "a program prints messages")]
 fn example() -> ExitCode {
-    let first = EXAMPLES.iter().find(|example| example.name == FIRST);
+    let first = EXAMPLES.iter().find(|example| example.name == FIRST_EXAMPLE);
     let Some((example, folder)) = first.zip(examples_folder()) else {
         eprintln!("{USAGE}");
         return ExitCode::from(2);
@@ -70,12 +73,12 @@ fn example() -> ExitCode {
     }
 }
 
-#[allow(clippy::print_stderr, reason = "a program says what it has to say")]
+#[allow(clippy::print_stderr, reason = "a program prints messages")]
 fn window(path: &Path) -> ExitCode {
     match sdfc_viewer::app::run(path) {
         Ok(()) => return ExitCode::SUCCESS,
-        Err(NoWindow::Refused(why)) => eprintln!("error: no window: {why}\nhelp: {NO_WINDOW}"),
-        Err(NoWindow::Lost) => eprintln!("{LOST}"),
+        Err(WindowError::Refused(why)) => eprintln!("error: no window: {why}\nhelp: {NO_WINDOW}"),
+        Err(WindowError::DeviceLost) => eprintln!("{DEVICE_LOST}"),
     }
     ExitCode::from(3)
 }

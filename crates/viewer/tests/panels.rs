@@ -1,4 +1,4 @@
-//! The panels, laid out and clicked without a window, in front of the CPU renderer.
+//! The panels, laid out and clicked without a window, with the CPU renderer.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,10 +12,10 @@ use eframe::egui::{Context, DroppedFile, Key, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
-use sdfc_viewer::mode::Mode;
+use sdfc_viewer::views::mode::ViewMode;
 
-/// Long enough for a busy machine; reached only where a test fails.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// Long enough for a busy machine; reached only if a test fails.
+const TIMEOUT: Duration = Duration::from_secs(120);
 
 const SCENE: &str = "/// How thick the wall is.\nparam wall = 0.1 in 0.05..0.5\nsphere(1) - sphere(1 - wall)\n\
                      camera(eye: [0, 0, 5], target: [0, 0, 0], fov: 40deg)\n";
@@ -34,9 +34,9 @@ impl Fixture {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.sdf");
         std::fs::write(&path, text).unwrap();
-        let place = Some(folder.path().join("view.json"));
-        let mut app = App::new(&Context::default(), &path, place).unwrap();
-        app.session().set_build(|build| build.on_cpu = true);
+        let settings = Some(folder.path().join("view.json"));
+        let mut app = App::new(&Context::default(), &path, settings).unwrap();
+        app.session().update_build(|build| build.on_cpu = true);
         let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
         let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
         let mut fixture = Self { harness, folder };
@@ -51,7 +51,7 @@ impl Fixture {
     fn until(&mut self, holds: impl Fn(&Harness<'static, App>) -> bool) {
         let start = Instant::now();
         while !holds(&self.harness) {
-            assert!(start.elapsed() < PATIENCE);
+            assert!(start.elapsed() < TIMEOUT);
             std::thread::sleep(Duration::from_millis(5));
             self.harness.step();
         }
@@ -62,16 +62,16 @@ impl Fixture {
         self.harness.run_steps(3);
     }
 
-    fn move_a_number(&mut self) {
+    fn change_a_number(&mut self) {
         let session = self.harness.state_mut().session();
         let model = session.model.clone().unwrap();
         let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
-        let (slot, _) = model.literals().find(|(slot, _)| slot.span.start == at).unwrap();
-        session.knobs.set_literal(slot, 1.25);
+        let (literal, _) = model.literals().find(|(literal, _)| literal.span.start == at).unwrap();
+        session.param_values.set_literal(literal, 1.25);
         self.harness.run_steps(2);
     }
 
-    /// As a window manager does.
+    /// Closes the window as a window manager does.
     fn request_close(&mut self) {
         let viewports = &mut self.harness.input_mut().viewports;
         viewports.entry(ViewportId::ROOT).or_default().events.push(ViewportEvent::Close);
@@ -81,8 +81,8 @@ impl Fixture {
         self.harness.run_steps(2);
     }
 
-    /// What can be clicked, dragged or typed into and says nothing where the pointer rests on it.
-    fn unexplained(&self) -> Vec<String> {
+    /// Widgets that can be clicked, dragged or typed into and have no hover text.
+    fn without_hover_text(&self) -> Vec<String> {
         let widgets = [
             Role::Button,
             Role::CheckBox,
@@ -94,13 +94,13 @@ impl Fixture {
             Role::SpinButton,
             Role::TextInput,
         ];
-        let silent = by().predicate(|node| {
-            // What egui puts there itself.
+        let without = by().predicate(|node| {
+            // The close button of egui's windows.
             let own = node.label().is_some_and(|label| label == "Close window");
             widgets.contains(&node.role()) && node.data().description().is_none() && !own
         });
         let named = |node: egui_kittest::Node<'_>| format!("{node:?}");
-        self.harness.query_all(silent).map(named).collect()
+        self.harness.query_all(without).map(named).collect()
     }
 
     fn has(&self, text: &str) -> bool {
@@ -109,18 +109,18 @@ impl Fixture {
 }
 
 #[test]
-fn the_camera_is_the_scenes_until_it_is_moved() {
+fn the_camera_follows_the_scene_until_it_is_moved() {
     let mut fixture = Fixture::new();
     assert!(fixture.has("wall"));
-    assert!(fixture.harness.state_mut().session().follows());
+    assert!(fixture.harness.state_mut().session().follows_scene());
     fixture.click("Top");
-    assert!(!fixture.harness.state_mut().session().follows());
-    fixture.click("Scene's own");
-    assert!(fixture.harness.state_mut().session().follows());
+    assert!(!fixture.harness.state_mut().session().follows_scene());
+    fixture.click("Reset camera");
+    assert!(fixture.harness.state_mut().session().follows_scene());
 }
 
 #[test]
-fn errors_are_told_in_the_terminals_words_and_go_when_mended() {
+fn errors_are_shown_as_on_the_command_line_and_disappear_when_fixed() {
     let mut fixture = Fixture::new();
     fixture.write("spere(1)\n");
     fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
@@ -132,52 +132,49 @@ fn errors_are_told_in_the_terminals_words_and_go_when_mended() {
 }
 
 #[test]
-fn the_text_opens_and_params_can_be_reset() {
+fn the_code_panel_opens_and_params_can_be_reset() {
     let mut fixture = Fixture::new();
-    fixture.click("Text");
+    fixture.click("Code");
     assert!(fixture.has("drag a number"));
-    let moved = [0.4, 0.0, 0.0, 0.0];
-    fixture.harness.state_mut().session().knobs.params.insert("wall".to_owned(), moved);
+    let changed = [0.4, 0.0, 0.0, 0.0];
+    fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
     fixture.harness.run_steps(2);
-    // The last is that of the numbers in the text, which is not to be clicked.
-    let reset = fixture.harness.get_all_by_label("Reset").next();
-    reset.unwrap().click();
-    fixture.harness.run_steps(3);
-    assert!(fixture.harness.state_mut().session().knobs.params.is_empty());
+    fixture.click("Reset params");
+    assert!(fixture.harness.state_mut().session().param_values.params.is_empty());
 }
 
 #[test]
-fn a_number_that_a_let_names_has_a_slider() {
+fn a_literal_that_a_let_names_has_a_slider() {
     let mut fixture = Fixture::of("let k = 0.4\nsphere(k)\n");
     let slider = fixture.harness.get_by_role_and_label(Role::Slider, "k");
     slider.set_value_accesskit(0.6);
     fixture.harness.run_steps(3);
-    fixture.click("Write");
+    fixture.click("Save to file");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == "let k = 0.6\nsphere(k)\n");
 }
 
 #[test]
-fn moved_numbers_are_written_into_the_file() {
+fn changed_numbers_are_saved_to_the_file() {
     let mut fixture = Fixture::new();
-    fixture.click("Text");
-    fixture.move_a_number();
-    fixture.click("Write");
+    fixture.click("Code");
+    fixture.change_a_number();
+    fixture.click("Save to file");
     let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
 }
 
 #[test]
-fn a_window_with_moved_numbers_asks_before_it_goes() {
+fn a_window_with_changed_numbers_asks_before_it_closes() {
     let mut fixture = Fixture::new();
-    fixture.move_a_number();
+    fixture.change_a_number();
     fixture.request_close();
-    assert!(fixture.has("A moved number is not in the file"));
-    fixture.click("Stay");
-    assert!(!fixture.has("A moved number is not in the file"));
+    assert!(fixture.has("1 changed number is not saved"));
+    fixture.click("Cancel");
+    assert!(!fixture.has("1 changed number is not saved"));
     fixture.request_close();
-    fixture.click("Write and close");
+    fixture.click("Save and close");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap().contains("sphere(1.25) "));
 }
@@ -185,9 +182,9 @@ fn a_window_with_moved_numbers_asks_before_it_goes() {
 #[test]
 fn a_picture_and_a_shader_are_saved_beside_the_scene() {
     let mut fixture = Fixture::new();
-    let place = |name: &str| fixture.folder.path().join(name);
-    let (picture, shader) = (place("scene.png"), place("scene.wgsl"));
-    fixture.click("Save");
+    let in_folder = |name: &str| fixture.folder.path().join(name);
+    let (picture, shader) = (in_folder("scene.png"), in_folder("scene.wgsl"));
+    fixture.click("Export");
     fixture.click("square");
     fixture.harness.get_all_by_label("1").last().unwrap().click();
     fixture.harness.run_steps(3);
@@ -204,51 +201,54 @@ fn a_picture_and_a_shader_are_saved_beside_the_scene() {
 fn the_picture_is_compared_with_the_oracle() {
     let mut fixture = Fixture::new();
     assert!(fixture.has("proven ray by ray"));
-    fixture.click("Compare");
-    fixture.until(|harness| harness.query_by_label("99 of 100").is_some());
-    fixture.until(|harness| harness.query_by_label("Compare").is_some());
+    fixture.click("Check accuracy");
+    fixture.until(|harness| harness.query_by_label("99th percentile").is_some());
+    fixture.until(|harness| harness.query_by_label("Check accuracy").is_some());
     let session = fixture.harness.state_mut().session();
-    assert!(session.judgement_is_of_this());
-    assert_eq!(session.comparing.judgement.as_ref().unwrap().shown.failed(), 0);
+    assert!(session.accuracy_is_current());
+    assert_eq!(session.accuracy.result.as_ref().unwrap().shown.failed(), 0);
     fixture.click("Top");
-    assert!(fixture.has("of another picture than this"));
-    // Compared anew of its own accord.
-    fixture.click("at rest");
+    assert!(fixture.has("of another picture"));
+    // Compared automatically from now on.
+    fixture.click("check each picture");
     fixture.until(|harness| harness.query_by_label_contains("of another picture").is_none());
 }
 
-/// Params of all kinds, a number with a name, and time.
+/// Params of all kinds, a named literal, and time.
 const ALL_KINDS: &str = "param width = 0.5 in 0..1\nparam count: int = 2 in 1..5\nparam lean = 10deg\n\
                          param red: color = #d94f30\nparam whole = true\nparam kind = \"ball\" in [\"ball\", \"box\"]\n\
                          let k = 0.25\nsphere(width + k + 0.1 * sin(time)).color(red)\n";
 
 #[test]
-fn every_widget_explains_itself() {
+fn every_widget_has_a_hover_text() {
     let mut fixture = Fixture::of(ALL_KINDS);
-    fixture.click("Text");
-    fixture.click("Save");
-    fixture.harness.state_mut().session().mode = Mode::Slice;
-    let mut unexplained = BTreeSet::new();
-    for what in ["Picture", "Animation", "Shader", "render", "Window"] {
+    fixture.click("Code");
+    fixture.click("Export");
+    fixture.harness.state_mut().session().mode = ViewMode::Slice;
+    let mut without_hover_text = BTreeSet::new();
+    for what in ["Picture", "Animation", "Shader", "render", "Screenshot"] {
         fixture.click(what);
-        unexplained.extend(fixture.unexplained());
+        without_hover_text.extend(fixture.without_hover_text());
     }
     for menu in ["scene.sdf", "Examples"] {
         fixture.click(menu);
-        unexplained.extend(fixture.unexplained());
+        without_hover_text.extend(fixture.without_hover_text());
     }
     fixture.harness.key_press(Key::Escape);
-    for list in ["What is shown. V for the next.", "How rays are marched."] {
+    for (list, entry) in [
+        ("The view: what the picture shows (V for the next).", "Overshoot"),
+        ("The ray method: how the surface is found along each ray.", "auto-relaxed"),
+    ] {
         fixture.harness.get_by_role_and_label(Role::ComboBox, list).click();
         fixture.harness.run_steps(3);
-        assert!(fixture.has(if list.starts_with("What") { "Overshoot" } else { "auto-relaxed" }));
-        unexplained.extend(fixture.unexplained());
+        assert!(fixture.has(entry));
+        without_hover_text.extend(fixture.without_hover_text());
     }
-    assert_eq!(unexplained, BTreeSet::new());
+    assert_eq!(without_hover_text, BTreeSet::new());
 }
 
 #[test]
-fn escape_closes_what_is_open_before_it_stops_refining() {
+fn escape_closes_menus_and_dialogs_before_it_stops_refining() {
     let mut fixture = Fixture::new();
     let refines = |fixture: &mut Fixture| fixture.harness.state_mut().session().refine;
     let escape = |fixture: &mut Fixture| {
@@ -259,11 +259,11 @@ fn escape_closes_what_is_open_before_it_stops_refining() {
     assert!(fixture.has("Examples"));
     escape(&mut fixture);
     assert!(!fixture.has("Examples") && refines(&mut fixture));
-    fixture.move_a_number();
+    fixture.change_a_number();
     fixture.request_close();
     escape(&mut fixture);
-    assert!(!fixture.has("A moved number is not in the file") && refines(&mut fixture));
-    fixture.click("Save");
+    assert!(!fixture.has("1 changed number is not saved") && refines(&mut fixture));
+    fixture.click("Export");
     escape(&mut fixture);
     assert!(refines(&mut fixture));
     escape(&mut fixture);
@@ -271,7 +271,7 @@ fn escape_closes_what_is_open_before_it_stops_refining() {
 }
 
 #[test]
-fn another_monitor_is_told() {
+fn a_move_to_another_monitor_is_reported() {
     let mut fixture = Fixture::new();
     for (width, scale) in [(1920.0, 1.0), (3840.0, 2.0)] {
         let viewports = &mut fixture.harness.input_mut().viewports;
@@ -280,10 +280,10 @@ fn another_monitor_is_told() {
         viewport.native_pixels_per_point = Some(scale);
         fixture.harness.run_steps(2);
     }
-    assert!(fixture.has("the window is on a monitor of 3840 × 2160 pixels, 2 to a point"));
+    assert!(fixture.has("the window is now on a monitor of 3840 × 2160 pixels, scale 2"));
 }
 
-/// A file that is let go over the window.
+/// A file that is dropped on the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -298,7 +298,7 @@ impl DroppedFile for Dropped {
 }
 
 #[test]
-fn a_dropped_scene_is_shown_and_the_one_before_is_in_the_menu() {
+fn a_dropped_scene_is_opened_and_the_one_before_is_in_the_menu() {
     let mut fixture = Fixture::new();
     let other = fixture.folder.path().join("other.sdf");
     std::fs::write(&other, SCENE.replace("param wall", "param rind").replace("- wall", "- rind"))
@@ -306,47 +306,47 @@ fn a_dropped_scene_is_shown_and_the_one_before_is_in_the_menu() {
     fixture.harness.input_mut().dropped_files.push(Arc::new(Dropped(other)));
     fixture.until(|harness| harness.query_all_by_label("rind").next().is_some());
     fixture.click("other.sdf");
-    fixture.click("Open before");
+    fixture.click("Open recent");
     fixture.click("scene.sdf");
     fixture.until(|harness| harness.query_all_by_label("wall").next().is_some());
 }
 
 #[test]
-fn a_scene_is_opened_as_it_was_left() {
+fn a_scene_is_opened_with_its_last_camera_and_params() {
     let mut fixture = Fixture::new();
     fixture.click("Top");
     let session = fixture.harness.state_mut().session();
-    session.knobs.params.insert("wall".to_owned(), [0.4, 0.0, 0.0, 0.0]);
-    let left = session.moved_camera().unwrap();
+    session.param_values.params.insert("wall".to_owned(), [0.4, 0.0, 0.0, 0.0]);
+    let left = session.manual_camera().unwrap();
     let context = fixture.harness.ctx.clone();
-    fixture.harness.state_mut().remember(&context);
+    fixture.harness.state_mut().store_settings(&context);
     let folder = fixture.folder.path();
-    let place = Some(folder.join("view.json"));
+    let settings = Some(folder.join("view.json"));
     let mut again =
-        App::new(&Context::default(), &folder.join("scene.sdf"), place.clone()).unwrap();
+        App::new(&Context::default(), &folder.join("scene.sdf"), settings.clone()).unwrap();
     let session = again.session();
-    session.set_build(|build| build.on_cpu = true);
+    session.update_build(|build| build.on_cpu = true);
     let start = Instant::now();
     while session.model.is_none() {
-        assert!(start.elapsed() < PATIENCE);
+        assert!(start.elapsed() < TIMEOUT);
         std::thread::sleep(Duration::from_millis(5));
         session.poll();
-        session.ask([30, 20], false);
+        session.request_picture([30, 20], false);
     }
-    session.ask([30, 20], false);
-    let camera = session.moved_camera().unwrap();
+    session.request_picture([30, 20], false);
+    let camera = session.manual_camera().unwrap();
     let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
     assert!(camera.eye.iter().zip(&left.eye).all(near), "{camera:?}, not {left:?}");
-    assert_eq!(session.knobs.params["wall"][0], 0.4);
-    // Another scene knows nothing of it.
+    assert_eq!(session.param_values.params["wall"][0], 0.4);
+    // Another scene has its own settings.
     let other = folder.join("other.sdf");
     std::fs::write(&other, SCENE).unwrap();
-    let mut other = App::new(&Context::default(), &other, place).unwrap();
-    assert_eq!(other.session().moved_camera(), None);
+    let mut other = App::new(&Context::default(), &other, settings).unwrap();
+    assert_eq!(other.session().manual_camera(), None);
 }
 
 #[test]
-fn a_scene_from_stdin_and_two_files_are_refused() {
+fn stdin_two_files_and_a_missing_file_are_refused() {
     for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing.sdf"]] {
         let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
         let output = program.args(arguments).output().unwrap();

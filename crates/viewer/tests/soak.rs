@@ -1,6 +1,6 @@
-//! Edits without end, half of them broken: with a file that is written in every way that editors know, with every edit
-//! followed and with edits faster than they can be. At the end the last one is shown, and neither memory nor threads
-//! nor open files have grown.
+//! Hundreds of edits, half of them broken. The file is written in every way that editors use, some
+//! edits one by one, others faster than they can be compiled. At the end the last one is shown, and
+//! memory, threads and open files have not grown.
 //!
 //! ```text
 //! SDFC_SOAK=10000 cargo test -p sdfc-viewer --test soak -- --nocapture
@@ -12,20 +12,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use sdfc_viewer::mode::Mode;
 use sdfc_viewer::session::Session;
+use sdfc_viewer::views::mode::ViewMode;
 
-/// Long enough for a busy machine and a software adapter; reached only where the test fails.
-const PATIENCE: Duration = Duration::from_secs(300);
+/// Long enough for a busy machine and a software GPU; reached only if the test fails.
+const TIMEOUT: Duration = Duration::from_secs(300);
 const SIZE: [u32; 2] = [64, 48];
-/// Edits without `SDFC_SOAK`.
-const FEW: usize = 240;
-/// Edits between two looks at the memory. Every second lot is faster than it can be followed.
-const LOT: usize = 40;
-/// Growth of the memory from the first half to the end that is no leak, in MiB: allocators keep what they had.
-const SLACK: u64 = 48;
-/// Threads and files that are open for a moment.
-const FEW_MORE: u64 = 8;
+/// How many edits are made if `SDFC_SOAK` is not set.
+const DEFAULT_EDITS: usize = 240;
+/// Edits between two measurements. Every second batch is faster than it can be compiled.
+const BATCH: usize = 40;
+/// How much memory may grow from the first half to the end, in MiB: allocators keep freed memory.
+const MEMORY_SLACK: u64 = 48;
+/// How many threads and files may be open for a moment.
+const TRANSIENT: u64 = 8;
 
 const BROKEN: [&str; 8] = [
     "sphere(",
@@ -39,55 +39,58 @@ const BROKEN: [&str; 8] = [
 ];
 
 #[test]
-fn edits_without_end() {
-    let count = std::env::var("SDFC_SOAK").ok().and_then(|it| it.parse().ok()).unwrap_or(FEW);
+fn many_edits_leak_no_memory_threads_or_files() {
+    let count =
+        std::env::var("SDFC_SOAK").ok().and_then(|it| it.parse().ok()).unwrap_or(DEFAULT_EDITS);
     let folder = tempfile::tempdir().unwrap();
     let mut soak = Soak::new(folder.path().join("scene.sdf"));
     let mut samples = Vec::new();
     let start = Instant::now();
-    for lot in 0..count.div_ceil(LOT).max(2) {
-        for edit in lot * LOT..(lot + 1) * LOT {
+    for batch in 0..count.div_ceil(BATCH).max(2) {
+        for edit in batch * BATCH..(batch + 1) * BATCH {
             let text = soak.write(edit);
-            if lot % 2 == 0 {
+            if batch % 2 == 0 {
                 soak.follow(edit, &text);
             } else {
                 soak.step();
                 std::thread::sleep(Duration::from_micros(edit as u64 * 37 % 4000));
             }
         }
-        let text = format!("sphere(0.{})\n", lot % 8 + 1);
+        let text = format!("sphere(0.{})\n", batch % 8 + 1);
         std::fs::write(&soak.path, &text).unwrap();
         soak.until(|session| is_shown(session, &text));
-        samples.push(Held::now());
-        if lot % 25 == 0 {
-            println!("{} edits, {:?}", (lot + 1) * LOT, samples[lot]);
+        samples.push(Resources::now());
+        if batch % 25 == 0 {
+            println!("{} edits, {:?}", (batch + 1) * BATCH, samples[batch]);
         }
     }
     let (half, end) = (samples[samples.len() / 2], samples[samples.len() - 1]);
     println!(
-        "{} edits in {:.0} s, {} pipelines, {} pictures: {:?} after the first lot, {half:?} at half, {end:?} at the end",
-        samples.len() * LOT,
+        "{} edits in {:.0} s, {} pipelines, {} pictures: {:?} after the first batch, {half:?} at half, \
+         {end:?} at the end",
+        samples.len() * BATCH,
         start.elapsed().as_secs_f64(),
         soak.session.model.as_ref().unwrap().pipelines,
-        soak.session.pictures,
+        soak.session.picture_count,
         samples[0],
     );
-    let most = |of: fn(&Held) -> u64| samples[..=samples.len() / 2].iter().map(of).max().unwrap();
-    assert!(end.threads <= most(|held| held.threads) + FEW_MORE, "threads: {samples:?}");
-    assert!(end.files <= most(|held| held.files) + FEW_MORE, "open files: {samples:?}");
-    assert!(end.memory <= most(|held| held.memory) + SLACK, "memory: {samples:?}");
+    let most =
+        |of: fn(&Resources) -> u64| samples[..=samples.len() / 2].iter().map(of).max().unwrap();
+    assert!(end.threads <= most(|resources| resources.threads) + TRANSIENT, "threads: {samples:?}");
+    assert!(end.files <= most(|resources| resources.files) + TRANSIENT, "open files: {samples:?}");
+    assert!(end.memory <= most(|resources| resources.memory) + MEMORY_SLACK, "memory: {samples:?}");
 }
 
-/// What the process holds; all 0 where the system does not say.
+/// What the process uses; all 0 if the system does not say.
 #[derive(Clone, Copy, Debug, Default)]
-struct Held {
-    /// MiB of memory.
+struct Resources {
+    /// Resident memory in MiB.
     memory: u64,
     threads: u64,
     files: u64,
 }
 
-impl Held {
+impl Resources {
     fn now() -> Self {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let of = |name: &str| -> u64 {
@@ -99,12 +102,12 @@ impl Held {
     }
 }
 
-/// Whether the text is the one that is drawn.
+/// Returns true if the source is the one that is drawn, completely.
 fn is_shown(session: &Session, text: &str) -> bool {
     let Some((model, picture)) = session.model.as_ref().zip(session.picture.as_ref()) else {
         return false;
     };
-    model.text == text && picture.finished && picture.request.model.serial == model.serial
+    model.source == text && picture.finished && picture.request.model.serial == model.serial
 }
 
 struct Soak {
@@ -118,51 +121,51 @@ impl Soak {
         let mut session = Session::open(&path, Arc::new(|| ())).unwrap();
         session.samples = Some(1);
         let mut soak = Self { session, path };
-        soak.until(|session| session.pictures > 0);
+        soak.until(|session| session.picture_count > 0);
         soak
     }
 
-    /// The text of an edit, and one of the ways to write it. Every second one is broken.
+    /// Writes an edit in one of the ways that editors use. Every second edit is broken.
     fn write(&self, edit: usize) -> String {
         let number = edit / 2;
         let text = match edit % 2 {
             0 => format!("{} // {edit}\n", BROKEN[number % BROKEN.len()]),
             _ => good(number),
         };
-        let place = &self.path;
+        let path = &self.path;
         match number % 5 {
             0 => {
-                let aside = place.with_extension("new");
-                std::fs::write(&aside, &text).unwrap();
-                std::fs::rename(&aside, place).unwrap();
+                let temporary = path.with_extension("new");
+                std::fs::write(&temporary, &text).unwrap();
+                std::fs::rename(&temporary, path).unwrap();
             }
             1 => {
-                let _ = std::fs::remove_file(place);
-                std::fs::write(place, &text).unwrap();
+                let _ = std::fs::remove_file(path);
+                std::fs::write(path, &text).unwrap();
             }
-            2 => std::fs::write(place, format!("\u{feff}{}", text.replace('\n', "\r\n"))).unwrap(),
-            _ => std::fs::write(place, &text).unwrap(),
+            2 => std::fs::write(path, format!("\u{feff}{}", text.replace('\n', "\r\n"))).unwrap(),
+            _ => std::fs::write(path, &text).unwrap(),
         }
         text
     }
 
-    /// Does as the window does.
+    /// Does what the window does in a frame.
     fn step(&mut self) {
         self.session.poll();
-        let turn = self.session.pictures;
-        self.session.mode = Mode::ALL[turn as usize / 16 % Mode::ALL.len()];
-        self.session.move_camera(|orbit| orbit.turn(0.01, 0.0));
-        self.session.ask(SIZE, turn.is_multiple_of(3));
+        let frame = self.session.picture_count;
+        self.session.mode = ViewMode::ALL[frame as usize / 16 % ViewMode::ALL.len()];
+        self.session.move_camera(|camera| camera.orbit(0.01, 0.0));
+        self.session.request_picture(SIZE, frame.is_multiple_of(3));
     }
 
-    /// Until it is told what comes of the edit.
+    /// Waits for the errors of the edit, or its model.
     fn follow(&mut self, edit: usize, text: &str) {
         self.step();
         let mark = format!("// {edit}");
         let text = text.trim_end().to_owned();
         self.until(|session| match edit % 2 {
-            0 => session.findings.errors() > 0 && is_told(session, &mark),
-            _ => session.model.as_ref().is_some_and(|model| trimmed(&model.text) == text),
+            0 => session.diagnostics.errors() > 0 && is_reported(session, &mark),
+            _ => session.model.as_ref().is_some_and(|model| trimmed(&model.source) == text),
         });
     }
 
@@ -170,29 +173,29 @@ impl Soak {
         let start = Instant::now();
         while !holds(&self.session) {
             let session = &self.session;
-            assert!(start.elapsed() < PATIENCE, "{:?} {:?}", session.trouble, session.findings);
+            assert!(start.elapsed() < TIMEOUT, "{:?} {:?}", session.problem, session.diagnostics);
             std::thread::sleep(Duration::from_micros(200));
             self.session.poll();
-            self.session.ask(SIZE, false);
+            self.session.request_picture(SIZE, false);
         }
     }
 }
 
-/// However the lines of the file end.
+/// The source without byte-order mark and carriage returns.
 fn trimmed(text: &str) -> String {
     text.trim_start_matches('\u{feff}').trim_end().replace('\r', "")
 }
 
-/// Whether the findings are those of the text with the mark.
-fn is_told(session: &Session, mark: &str) -> bool {
-    read(session.path()).contains(mark) && session.findings.all.iter().any(|it| it.is_error)
+/// Returns true if there are errors and the file contains the mark.
+fn is_reported(session: &Session, mark: &str) -> bool {
+    read(session.path()).contains(mark) && session.diagnostics.all.iter().any(|it| it.is_error)
 }
 
 fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_default()
 }
 
-/// Mostly another number, at times another structure.
+/// A scene: usually a changed number, sometimes another structure.
 fn good(number: usize) -> String {
     let size = 0.5 + (number % 97) as f64 / 200.0;
     let leaves = ["sphere(0.3)", "box(0.2)", "torus(0.3, 0.1)", "cylinder(0.2, 0.4)"];

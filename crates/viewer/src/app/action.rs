@@ -1,0 +1,9 @@
+//! What a panel asks the window to do.
+
+/// Something that only the window can do.
+pub enum Action {
+    /// Copies text to the clipboard.
+    Copy(String),
+    /// Shows a message in the status line.
+    Message(String),
+}

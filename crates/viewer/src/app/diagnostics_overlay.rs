@@ -1,0 +1,119 @@
+//! Errors and warnings over the picture.
+
+use eframe::egui::text::{LayoutJob, TextFormat};
+use eframe::egui::{self, Color32, FontId, RichText, Ui, vec2};
+
+use super::action::Action;
+
+use super::external_editor;
+use super::theme::{self, card};
+use crate::compile::diagnostics::ShownDiagnostic;
+use crate::session::Session;
+
+/// Shows errors in the upper left corner, and warnings if `warnings` is true.
+pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, actions: &mut Vec<Action>) {
+    let diagnostics = &session.diagnostics;
+    if diagnostics.all.is_empty() {
+        return;
+    }
+    let rect = ui.max_rect();
+    let errors = diagnostics.errors();
+    let area = egui::Area::new(ui.scope_id().with("diagnostics")).order(egui::Order::Middle);
+    area.fixed_pos(rect.left_top() + vec2(10.0, 10.0)).show(ui.ctx(), |ui| {
+        ui.set_max_width((rect.width() - 20.0).clamp(120.0, 620.0));
+        let warning_count = diagnostics.all.len() - errors;
+        if errors > 0 || *warnings {
+            let shown = |it: &&ShownDiagnostic| it.is_error || *warnings;
+            let scroll = egui::ScrollArea::vertical()
+                .max_height(rect.height() * 0.7)
+                .min_scrolled_height(rect.height() * 0.7);
+            scroll.show(ui, |ui| {
+                for diagnostic in diagnostics.all.iter().filter(shown) {
+                    card_of(ui, session, diagnostic, actions);
+                }
+            });
+        }
+        if warning_count > 0 {
+            let text = match warning_count {
+                1 => "1 warning".to_owned(),
+                count => format!("{count} warnings"),
+            };
+            let button =
+                egui::Button::new(RichText::new(text).small().color(theme::of(ui).warning))
+                    .fill(theme::of(ui).card);
+            if ui.add(button).on_hover_text("Show or hide the warnings.").clicked() {
+                *warnings = !*warnings;
+            }
+        }
+    });
+}
+
+/// A card with a diagnostic, its source line and its help.
+fn card_of(
+    ui: &mut Ui,
+    session: &Session,
+    diagnostic: &ShownDiagnostic,
+    actions: &mut Vec<Action>,
+) {
+    let color = if diagnostic.is_error { theme::of(ui).error } else { theme::of(ui).warning };
+    card(ui).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6))).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.spacing_mut().item_spacing.y = 4.0;
+        let kind = if diagnostic.is_error { "error" } else { "warning" };
+        ui.horizontal_wrapped(|ui| {
+            ui.label(RichText::new(format!("{kind}[{}]", diagnostic.code)).strong().color(color));
+            ui.label(RichText::new(&diagnostic.message).strong());
+        });
+        position(ui, session, diagnostic, actions);
+        ui.label(source_line(ui, diagnostic, color));
+        for help in &diagnostic.help {
+            ui.label(RichText::new(help).color(theme::of(ui).weak));
+        }
+    });
+}
+
+/// Links to copy the position and to open it in an editor.
+fn position(
+    ui: &mut Ui,
+    session: &Session,
+    diagnostic: &ShownDiagnostic,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        let link = egui::Link::new(RichText::new(diagnostic.location()).monospace().small());
+        if ui.add(link).on_hover_text("Copy file:line:column.").clicked() {
+            let path = session.path_of(diagnostic);
+            let [line, column] = diagnostic.position;
+            actions.push(Action::Copy(format!("{}:{line}:{column}", path.display())));
+        }
+        let Some(chosen) = external_editor::from_environment() else { return };
+        let link = egui::Link::new(RichText::new("open in editor").small());
+        if ui.add(link).on_hover_text(format!("Open the file in {chosen}.")).clicked()
+            && let Err(error) =
+                external_editor::open(&chosen, &session.path_of(diagnostic), diagnostic.position)
+        {
+            actions.push(Action::Message(error));
+        }
+    });
+}
+
+/// The source line with its marked range and its label.
+fn source_line(ui: &Ui, diagnostic: &ShownDiagnostic, color: Color32) -> LayoutJob {
+    let font = FontId::monospace(12.0);
+    let plain = TextFormat::simple(font.clone(), theme::of(ui).text);
+    let mut marked = TextFormat::simple(font.clone(), color);
+    marked.underline = egui::Stroke::new(1.5, color);
+    let substring = |range: std::ops::Range<usize>| -> String {
+        diagnostic.line.chars().skip(range.start).take(range.len()).collect()
+    };
+    let mut job = LayoutJob::default();
+    let number = TextFormat::simple(font.clone(), theme::of(ui).weak);
+    job.append(&format!("{:>4} ", diagnostic.position[0]), 0.0, number);
+    job.append(&substring(0..diagnostic.marked.start), 0.0, plain.clone());
+    job.append(&substring(diagnostic.marked.clone()), 0.0, marked);
+    job.append(&substring(diagnostic.marked.end..usize::MAX), 0.0, plain);
+    if !diagnostic.label.is_empty() {
+        job.append(&diagnostic.label, 16.0, TextFormat::simple(font, color));
+    }
+    job
+}

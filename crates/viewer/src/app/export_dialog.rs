@@ -1,0 +1,306 @@
+//! The export dialog: a picture, an animation, a shader, or a screenshot of the window.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, Context, RichText, Ui};
+use sdfc::render::MAX_SIDE;
+use sdfc::{Backend, Emit, PictureOptions, ShaderOptions, Stage, Target};
+
+use super::number_widget::number_drag;
+use super::theme;
+use crate::export::exporter::ExportJob;
+use crate::session::Session;
+
+/// How long each frame of an animation is shown, in hundredths of a second.
+const HUNDREDTHS: u32 = 4;
+
+/// What is exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ExportKind {
+    Picture,
+    Animation,
+    Shader,
+    Screenshot,
+}
+
+impl ExportKind {
+    const ALL: [(Self, &'static str, &'static str); 4] = [
+        (
+            Self::Picture,
+            "Picture",
+            "A picture of any size, as .png, or as .exr with linear colours.",
+        ),
+        (Self::Animation, "Animation", "The scene from time 0 for a number of seconds, as .gif."),
+        (
+            Self::Shader,
+            "Shader",
+            "A shader for your own program, with the scene's numbers as constants.",
+        ),
+        (Self::Screenshot, "Screenshot", "The window with its panels, as .png."),
+    ];
+}
+
+/// The dialog, with what was chosen last.
+#[derive(Clone, Debug)]
+pub struct ExportDialog {
+    kind: ExportKind,
+    /// The file; empty until the dialog is opened.
+    path: String,
+    /// The scene that the file name was proposed for.
+    scene: PathBuf,
+    size: [u32; 2],
+    samples: u32,
+    seconds: f64,
+    target: Target,
+    emit: Emit,
+    stage: Stage,
+    /// The file for a screenshot of the next frame, which does not show the dialog.
+    screenshot: Option<PathBuf>,
+}
+
+impl Default for ExportDialog {
+    fn default() -> Self {
+        Self {
+            kind: ExportKind::Picture,
+            path: String::new(),
+            scene: PathBuf::new(),
+            size: [1920, 1080],
+            samples: 16,
+            seconds: 4.0,
+            target: Target::Wgsl,
+            emit: Emit::Field,
+            stage: Stage::Compute,
+            screenshot: None,
+        }
+    }
+}
+
+impl ExportDialog {
+    /// Shows the dialog if it is open.
+    pub fn show(&mut self, ctx: &Context, session: &Session, open: &mut bool) {
+        if let Some(path) = self.screenshot.take() {
+            take_screenshot(ctx, path, session);
+        }
+        if *open && self.scene != session.path() {
+            self.scene = session.path().to_owned();
+            self.path = self.proposed();
+        }
+        let mut stays_open = *open;
+        let window =
+            egui::Window::new("Export").open(&mut stays_open).resizable(false).collapsible(false);
+        window.default_pos([80.0, 60.0]).show(ctx, |ui| self.contents(ui, session, open));
+        *open &= stays_open;
+    }
+
+    fn contents(&mut self, ui: &mut Ui, session: &Session, open: &mut bool) {
+        ui.set_width(400.0);
+        ui.horizontal(|ui| {
+            for (kind, name, help) in ExportKind::ALL {
+                if ui.selectable_value(&mut self.kind, kind, name).on_hover_text(help).clicked() {
+                    self.path = self.proposed();
+                }
+            }
+        });
+        ui.separator();
+        match self.kind {
+            ExportKind::Picture => self.picture(ui),
+            ExportKind::Animation => {
+                self.picture(ui);
+                let drag = number_drag(&mut self.seconds).range(0.04..=600.0).speed(0.05);
+                labelled(ui, "length", |ui| {
+                    ui.add(drag.suffix(" s"))
+                        .on_hover_text("In seconds from time 0, with 25 frames per second.");
+                });
+            }
+            ExportKind::Shader => self.shader(ui),
+            ExportKind::Screenshot => {}
+        }
+        labelled(ui, "file", |ui| {
+            let edit = egui::TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
+            ui.add(edit).on_hover_text(&self.path);
+        });
+        let path = PathBuf::from(&self.path);
+        let problem = self.problem(&path, session);
+        ui.horizontal(|ui| {
+            let ready = problem.is_none() && session.model.is_some();
+            let button = ui.add_enabled(ready, egui::Button::new("Save"));
+            let button = button.on_hover_text("Write the file in the background (Enter).");
+            let entered = ready && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if button.clicked() || entered {
+                self.save(ui.ctx(), path.clone(), session, open);
+            }
+            let (text, color) = match problem {
+                Some(problem) => (problem, theme::of(ui).warning),
+                None if path.exists() => {
+                    ("replaces the existing file".to_owned(), theme::of(ui).warning)
+                }
+                None => (String::new(), theme::of(ui).weak),
+            };
+            ui.label(RichText::new(text).small().color(color));
+        });
+    }
+
+    fn picture(&mut self, ui: &mut Ui) {
+        labelled(ui, "size", |ui| {
+            let [width, height] = &mut self.size;
+            ui.add(egui::DragValue::new(width).range(1..=MAX_SIDE).speed(4))
+                .on_hover_text("Width in pixels.");
+            ui.label("×");
+            ui.add(egui::DragValue::new(height).range(1..=MAX_SIDE).speed(4))
+                .on_hover_text("Height in pixels.");
+            for (name, size) in [("HD", [1920, 1080]), ("4K", [3840, 2160]), ("square", [2048; 2])]
+            {
+                let text = format!("{} × {} pixels.", size[0], size[1]);
+                if ui.small_button(name).on_hover_text(text).clicked() {
+                    self.size = size;
+                }
+            }
+        });
+        labelled(ui, "samples", |ui| {
+            for count in [1, 4, 16, 64] {
+                ui.selectable_value(&mut self.samples, count, count.to_string())
+                    .on_hover_text("Rays averaged in each pixel; more is smoother and slower.");
+            }
+        });
+    }
+
+    fn shader(&mut self, ui: &mut Ui) {
+        labelled(ui, "language", |ui| {
+            let combo = egui::ComboBox::from_id_salt("target").selected_text(self.target.name());
+            let combo = combo.show_ui(ui, |ui| {
+                for target in Target::ALL {
+                    let choice = ui.selectable_value(&mut self.target, target, target.name());
+                    if choice.on_hover_text("The shading language of your program.").clicked() {
+                        self.path = self.proposed();
+                    }
+                }
+            });
+            combo.response.on_hover_text("The shading language of your program.");
+        });
+        if self.target == Target::Shadertoy {
+            self.emit = Emit::Render;
+            return;
+        }
+        labelled(ui, "contents", |ui| {
+            let parts = [
+                (Emit::Field, "field", "Functions of distance, gradient and material."),
+                (Emit::March, "march", "The same, and the ray method."),
+                (Emit::Render, "render", "The complete shader that draws the picture."),
+            ];
+            for (emit, name, help) in parts {
+                ui.selectable_value(&mut self.emit, emit, name).on_hover_text(help);
+            }
+        });
+        if self.emit == Emit::Render {
+            if !self.target.has_stage(self.stage) {
+                self.stage = Stage::Fragment;
+            }
+            labelled(ui, "stage", |ui| {
+                for stage in [Stage::Compute, Stage::Fragment] {
+                    let there = self.target.has_stage(stage);
+                    let button = egui::Button::selectable(self.stage == stage, stage.name());
+                    let button = ui
+                        .add_enabled(there, button)
+                        .on_hover_text("The pipeline stage that runs the shader.");
+                    let why = "The language has no such stage.";
+                    if button.on_disabled_hover_text(why).clicked() {
+                        self.stage = stage;
+                    }
+                }
+            });
+        }
+    }
+
+    /// A file beside the scene, with the scene's name.
+    fn proposed(&self) -> String {
+        let extension = match self.kind {
+            ExportKind::Picture => "png",
+            ExportKind::Animation => "gif",
+            ExportKind::Screenshot => "window.png",
+            ExportKind::Shader => match self.target {
+                Target::Wgsl => "wgsl",
+                Target::Glsl | Target::GlslEs | Target::Shadertoy => "glsl",
+                Target::Hlsl => "hlsl",
+                Target::Msl => "metal",
+                Target::Spirv => "spv",
+            },
+        };
+        self.scene.with_extension(extension).display().to_string()
+    }
+
+    /// Why the file cannot be written, if that is known before writing.
+    fn problem(&self, path: &Path, session: &Session) -> Option<String> {
+        let canonical =
+            |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        if self.path.trim().is_empty() {
+            return Some("enter a file name".to_owned());
+        }
+        if canonical(path) == canonical(session.path())
+            || path.extension().is_some_and(|it| it == "sdf")
+        {
+            return Some("a scene cannot be overwritten".to_owned());
+        }
+        match self.kind {
+            ExportKind::Picture | ExportKind::Screenshot => sdfc_files::Format::of(path).err(),
+            ExportKind::Animation
+                if path.extension().is_none_or(|extension| extension != "gif") =>
+            {
+                Some("an animation must be a .gif file".to_owned())
+            }
+            ExportKind::Animation | ExportKind::Shader => None,
+        }
+    }
+
+    fn save(&mut self, ctx: &Context, path: PathBuf, session: &Session, open: &mut bool) {
+        let Some(model) = &session.model else { return };
+        let frames = match self.kind {
+            ExportKind::Picture => vec![session.values(model)],
+            ExportKind::Animation => session.frames(model, self.seconds, HUNDREDTHS),
+            ExportKind::Shader => {
+                let (scene, source) =
+                    (self.scene.clone(), session.param_values.source_with_values(model));
+                let (target, emit, stage) = (self.target, self.emit, self.stage);
+                let method = session.build().method.clone();
+                let options = ShaderOptions { target, emit, stage, method, ..Default::default() };
+                return session.exports().send(ExportJob::Shader { scene, source, path, options });
+            }
+            ExportKind::Screenshot => {
+                (*open, self.screenshot) = (false, Some(path));
+                return ctx.request_repaint();
+            }
+        };
+        let options = PictureOptions {
+            size: self.size,
+            method: session.build().method.clone(),
+            backend: if session.build().on_cpu { Backend::Cpu } else { Backend::Auto },
+            pose: session.manual_pose(),
+            tolerance: session.tolerance,
+            samples: Some(self.samples),
+            ..PictureOptions::default()
+        };
+        let (model, options) = (std::sync::Arc::clone(model), Box::new(options));
+        let job = ExportJob::Picture { model, path, options, frames, hundredths: HUNDREDTHS };
+        session.exports().send(job);
+    }
+}
+
+/// Requests the pixels of the next frame, which does not show the dialog.
+fn take_screenshot(ctx: &Context, path: PathBuf, session: &Session) {
+    let send = session.exports().sender();
+    ctx.request_screenshot(move |image| {
+        let size = image.size.map(|side| side as u32);
+        let rgba = image.as_raw().to_vec();
+        send(ExportJob::Screenshot { path, size, rgba });
+    });
+}
+
+fn labelled(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        let left = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(egui::vec2(76.0, 18.0), left, |ui| {
+            ui.set_min_width(76.0);
+            ui.label(RichText::new(name).color(theme::of(ui).weak));
+        });
+        contents(ui);
+    });
+}

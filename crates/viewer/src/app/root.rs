@@ -1,0 +1,265 @@
+//! The contents of the window: all panels and the picture.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Context, Ui};
+
+use super::action::Action;
+use super::canvas::Canvas;
+use super::close_dialog::CloseDialog;
+use super::export_dialog::ExportDialog;
+use super::monitor::Monitor;
+use super::open_panels::OpenPanels;
+use super::{
+    code_panel, controls, diagnostics_overlay, help, scene_menu, shortcuts, status_bar, theme,
+    toolbar,
+};
+use crate::session::Session;
+use crate::settings::Settings;
+
+/// How long a message stays in the status line.
+const MESSAGE_TIME: Duration = Duration::from_secs(4);
+
+/// The application, which can move from one window to another.
+pub struct App {
+    session: Session,
+    /// The egui context of the current window, which workers wake.
+    context: Arc<Mutex<Context>>,
+    monitor: Option<Monitor>,
+    canvas: Canvas,
+    clipboard: Option<arboard::Clipboard>,
+    message: Option<(String, Instant)>,
+    panels: OpenPanels,
+    export: ExportDialog,
+    close_dialog: CloseDialog,
+    settings: Settings,
+    settings_path: Option<PathBuf>,
+    last_frame: Instant,
+}
+
+impl App {
+    /// Opens a scene with the settings stored at `settings_path`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Session::open`].
+    pub fn new(
+        ctx: &Context,
+        path: &Path,
+        settings_path: Option<PathBuf>,
+    ) -> std::io::Result<Self> {
+        let settings = settings_path.as_deref().map(Settings::read).unwrap_or_default();
+        apply_theme(ctx, &settings);
+        let context = Arc::new(Mutex::new(ctx.clone()));
+        let shared = Arc::clone(&context);
+        let wake = move || current_context(&shared).request_repaint();
+        let mut session = Session::open(path, Arc::new(wake))?;
+        restore(&settings, &mut session);
+        Ok(Self {
+            session,
+            context,
+            monitor: None,
+            canvas: Canvas::default(),
+            clipboard: None,
+            message: None,
+            panels: OpenPanels::default(),
+            export: ExportDialog::default(),
+            close_dialog: CloseDialog::default(),
+            settings,
+            settings_path,
+            last_frame: Instant::now(),
+        })
+    }
+
+    /// Moves to a new window because the device of the last one was lost.
+    pub(super) fn move_to_window(&mut self, ctx: &Context) {
+        apply_theme(ctx, &self.settings);
+        // Textures were lost with the device.
+        self.canvas = Canvas::default();
+        *self.context.lock().unwrap_or_else(PoisonError::into_inner) = ctx.clone();
+        let text = "the GPU that showed the window was lost: this is a new window";
+        self.session.messages.push(text.to_owned());
+    }
+
+    /// Stores the settings before the window closes.
+    pub(super) fn close(&mut self) {
+        let ctx = current_context(&self.context);
+        self.store_settings(&ctx);
+    }
+
+    /// The open scene.
+    pub fn session(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Returns true if no finer picture follows.
+    pub fn picture_is_finished(&self) -> bool {
+        self.session.picture.as_ref().is_some_and(|picture| picture.finished)
+    }
+
+    /// Draws one frame of the window.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.session.poll();
+        self.open_dropped_file(&ctx);
+        self.report_new_monitor(&ctx);
+        let mut actions: Vec<Action> =
+            self.session.messages.drain(..).map(Action::Message).collect();
+        self.advance_clock(&ctx);
+        shortcuts::handle(&ctx, &mut self.session, &mut self.panels, &mut actions);
+        let bar = egui::Panel::top("bar").frame(bar_frame(ui));
+        let (session, panels, settings) = (&mut self.session, &mut self.panels, &mut self.settings);
+        let chosen = bar.show(ui, |ui| toolbar::show(ui, session, panels, settings)).inner;
+        match chosen {
+            Some(scene_menu::Choice::Open(path)) => self.open(&ctx, path),
+            Some(scene_menu::Choice::Failed(why)) => actions.push(Action::Message(why)),
+            None => {}
+        }
+        let message = self.message.as_ref().map(|(text, _)| text.as_str());
+        let line = egui::Panel::bottom("status").frame(bar_frame(ui));
+        line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        if self.panels.controls {
+            let panel = egui::Panel::right("controls").default_size(290.0).min_size(220.0);
+            panel.show(ui, |ui| controls::show(ui, &mut self.session, &mut actions));
+        }
+        if self.panels.code {
+            let size = (ui.available_width() * 0.42).clamp(270.0, 400.0);
+            let panel = egui::Panel::left("code").default_size(size).min_size(220.0);
+            panel.show(ui, |ui| code_panel::show(ui, &mut self.session, &mut actions));
+        }
+        let center = egui::CentralPanel::no_frame();
+        center.show(ui, |ui| {
+            self.canvas.show(ui, &mut self.session);
+            let warnings = &mut self.panels.warnings;
+            diagnostics_overlay::show(ui, &self.session, warnings, &mut actions);
+        });
+        show_drop_hint(&ctx);
+        help::show(&ctx, &mut self.panels.help);
+        self.export.show(&ctx, &self.session, &mut self.panels.export);
+        self.close_dialog.show(&ctx, &self.session);
+        actions.into_iter().for_each(|action| self.perform(action));
+        if let Some((_, since)) = &self.message {
+            if since.elapsed() < MESSAGE_TIME {
+                ctx.request_repaint_after(MESSAGE_TIME);
+            } else {
+                self.message = None;
+            }
+        }
+    }
+
+    /// Reports a move to another monitor, where the picture has another number of pixels.
+    fn report_new_monitor(&mut self, ctx: &Context) {
+        let now = Monitor::of(ctx);
+        if let (Some(before), Some(now)) = (self.monitor, now)
+            && before != now
+        {
+            self.session.messages.push(format!("the window is now on {now}"));
+        }
+        self.monitor = now.or(self.monitor);
+    }
+
+    fn advance_clock(&mut self, ctx: &Context) {
+        let seconds = self.last_frame.elapsed().as_secs_f64();
+        self.last_frame = Instant::now();
+        if self.session.is_animated() && self.session.clock.playing {
+            self.session.clock.advance(seconds);
+            ctx.request_repaint();
+        }
+    }
+
+    fn open_dropped_file(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        if let Some(path) = dropped.first().map(|file| file.path()) {
+            self.open(ctx, path.to_owned());
+        }
+    }
+
+    /// Stores the settings of the open scene and opens another.
+    fn open(&mut self, ctx: &Context, path: PathBuf) {
+        self.store_settings(ctx);
+        ctx.send_viewport_cmd(egui::ViewportCommand::Title(title(&path)));
+        self.session.open_other(path);
+        restore(&self.settings, &mut self.session);
+    }
+
+    /// Stores the settings, together with what other windows have stored meanwhile.
+    pub fn store_settings(&mut self, ctx: &Context) {
+        let Some(path) = self.settings_path.clone() else { return };
+        let mut settings = Settings { light: self.settings.light, ..Settings::read(&path) };
+        let session = &self.session;
+        let params = session.param_values.params.clone();
+        settings.record(session.path(), session.manual_camera(), params);
+        let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size().into()));
+        settings.window = size.or(settings.window);
+        settings.write(&path);
+        self.settings = settings;
+    }
+
+    fn perform(&mut self, action: Action) {
+        let text = match action {
+            Action::Message(text) => text,
+            Action::Copy(text) => match self.copy(&text) {
+                Ok(()) => format!("copied: {text}"),
+                Err(error) => format!("cannot copy: {error}"),
+            },
+        };
+        self.message = Some((text, Instant::now()));
+    }
+
+    fn copy(&mut self, text: &str) -> Result<(), arboard::Error> {
+        // The clipboard is kept: on X11 its text is gone when the program that offers it drops it.
+        let clipboard = match &mut self.clipboard {
+            Some(clipboard) => clipboard,
+            none => none.insert(arboard::Clipboard::new()?),
+        };
+        clipboard.set_text(text)
+    }
+}
+
+/// The title of a window that shows a scene.
+pub fn title(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    format!("{name} · sdfc")
+}
+
+fn apply_theme(ctx: &Context, settings: &Settings) {
+    theme::apply(ctx);
+    theme::set_light(ctx, settings.light);
+}
+
+fn current_context(shared: &Mutex<Context>) -> Context {
+    // The context is replaced whole, so a poisoned lock holds a valid one.
+    shared.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+/// Restores the stored camera and params of a scene.
+fn restore(settings: &Settings, session: &mut Session) {
+    if let Some(scene) = settings.scene(session.path()) {
+        session.restore(scene.camera.as_ref(), &scene.params);
+    }
+}
+
+impl std::fmt::Debug for App {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("App").field("session", &self.session).finish_non_exhaustive()
+    }
+}
+
+/// Says what happens to a file that is held over the window.
+fn show_drop_hint(ctx: &Context) {
+    if ctx.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let (painter, screen) = (ctx.layer_painter(layer), ctx.content_rect());
+    painter.rect_filled(screen, 0.0, egui::Color32::from_black_alpha(160));
+    let font = egui::FontId::proportional(18.0);
+    let text = "Drop the file to open the scene";
+    painter.text(screen.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
+}
+
+fn bar_frame(ui: &Ui) -> egui::Frame {
+    egui::Frame::new().fill(theme::of(ui).panel).inner_margin(egui::Margin::symmetric(10, 5))
+}

@@ -1,0 +1,103 @@
+//! The menu behind the scene's name: examples, recent scenes, scenes in the same folder, the theme.
+
+use std::path::{Path, PathBuf};
+
+use eframe::egui::{self, RichText, Ui};
+
+use super::theme;
+use crate::examples::EXAMPLES;
+use crate::settings::{Settings, examples_folder};
+
+/// The most scenes of the same folder that are listed.
+const MAX_IN_FOLDER: usize = 60;
+/// The most recent scenes that are listed.
+const MAX_RECENT: usize = 15;
+
+/// What was chosen.
+pub enum Choice {
+    /// Open this scene.
+    Open(PathBuf),
+    /// An example could not be copied; why.
+    Failed(String),
+}
+
+/// Shows the scene's name as a button that opens the menu.
+pub fn show(ui: &mut Ui, path: &Path, settings: &mut Settings) -> Option<Choice> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut choice = None;
+    let menu = ui.menu_button(RichText::new(name).strong(), |ui| {
+        ui.set_min_width(180.0);
+        let menu = ui.menu_button("Examples", |ui| examples(ui, &mut choice));
+        menu.response.on_hover_text(
+            "Example scenes, each about one feature. Opening one copies it to a file of yours.",
+        );
+        let menu = ui.menu_button("Open recent", |ui| recent(ui, path, settings, &mut choice));
+        menu.response.on_hover_text("Scenes that were open before, the last one first.");
+        let menu = ui.menu_button("In this folder", |ui| in_folder(ui, path, &mut choice));
+        menu.response.on_hover_text("Other scenes in the folder of this one.");
+        ui.label(RichText::new("or drop a file on the window").small().color(theme::of(ui).weak));
+        ui.separator();
+        let light = ui.checkbox(&mut settings.light, "Light theme");
+        if light.on_hover_text("Dark text on light panels.").clicked() {
+            theme::set_light(ui.ctx(), settings.light);
+        }
+    });
+    let text = format!("{}\n\nOpens examples and other scenes.", path.display());
+    menu.response.on_hover_text(text);
+    choice
+}
+
+fn examples(ui: &mut Ui, choice: &mut Option<Choice>) {
+    ui.set_min_width(160.0);
+    let Some(folder) = examples_folder() else {
+        ui.label("no home folder to copy them to");
+        return;
+    };
+    let scroll = egui::ScrollArea::vertical().max_height(460.0);
+    scroll.show(ui, |ui| {
+        for example in EXAMPLES {
+            let copied_to = format!("\n\nOpens a copy in {}.", folder.display());
+            let button = ui.button(example.name).on_hover_text(example.summary() + &copied_to);
+            if button.clicked() {
+                let copied = example.file_in(&folder);
+                *choice = Some(copied.map_or_else(Choice::Failed, Choice::Open));
+                ui.close();
+            }
+        }
+    });
+}
+
+fn recent(ui: &mut Ui, current: &Path, settings: &Settings, choice: &mut Option<Choice>) {
+    ui.set_min_width(160.0);
+    let current = std::path::absolute(current).unwrap_or_default();
+    let paths = settings.scenes.iter().map(|scene| PathBuf::from(&scene.path));
+    let others = paths.filter(|path| *path != current && path.is_file());
+    list(ui, others.take(MAX_RECENT).collect(), choice);
+}
+
+fn in_folder(ui: &mut Ui, current: &Path, choice: &mut Option<Choice>) {
+    ui.set_min_width(160.0);
+    let folder = current.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_scene = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "sdf");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_scene).collect();
+    paths.retain(|path| path.file_name() != current.file_name());
+    paths.sort();
+    paths.truncate(MAX_IN_FOLDER);
+    list(ui, paths, choice);
+}
+
+fn list(ui: &mut Ui, paths: Vec<PathBuf>, choice: &mut Option<Choice>) {
+    if paths.is_empty() {
+        ui.label(RichText::new("none").color(theme::of(ui).weak));
+    }
+    egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
+        for path in paths {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                *choice = Some(Choice::Open(path));
+                ui.close();
+            }
+        }
+    });
+}

@@ -1,0 +1,75 @@
+//! The keys that work wherever the pointer is.
+
+use eframe::egui::{self, Context, Key};
+
+use super::action::Action;
+use super::help::SIDES;
+use super::open_panels::OpenPanels;
+use crate::session::Session;
+
+/// Handles the keys that were pressed, unless text is being typed.
+pub fn handle(
+    ctx: &Context,
+    session: &mut Session,
+    panels: &mut OpenPanels,
+    actions: &mut Vec<Action>,
+) {
+    if ctx.text_edit_focused() {
+        return;
+    }
+    let pressed = |key| ctx.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+    for (key, side) in SIDES {
+        if pressed(key) {
+            session.move_camera(|camera| camera.look_from(side));
+        }
+    }
+    if pressed(Key::F) {
+        session.fit_view();
+    }
+    if pressed(Key::Home) || pressed(Key::H) {
+        session.reset_camera();
+    }
+    if pressed(Key::P) {
+        session.move_camera(|camera| camera.set_parallel(!camera.is_parallel()));
+    }
+    if pressed(Key::B) {
+        session.show_axes = !session.show_axes;
+    }
+    if pressed(Key::C)
+        && let Some(camera) = session.camera()
+    {
+        actions.push(Action::Copy(camera.text()));
+    }
+    // Space also presses the button that has the keyboard focus.
+    if pressed(Key::Space) && !ctx.egui_wants_keyboard_input() && session.is_animated() {
+        session.clock.toggle();
+    }
+    if pressed(Key::V) {
+        session.mode = session.mode.next();
+    }
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
+        panels.export = !panels.export;
+    }
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+    if pressed(Key::K) {
+        panels.controls = !panels.controls;
+    }
+    if pressed(Key::T) {
+        panels.code = !panels.code;
+    }
+    if ctx.input(|input| input.key_pressed(Key::Questionmark)) || pressed(Key::F1) {
+        panels.help = !panels.help;
+    }
+    // egui closes menus and dialogs on Esc; then it means nothing else.
+    let egui_closes =
+        egui::Popup::is_any_open(ctx) || ctx.memory(|memory| memory.top_modal_layer().is_some());
+    if pressed(Key::Escape) && !egui_closes {
+        if panels.help || panels.export {
+            (panels.help, panels.export) = (false, false);
+        } else {
+            session.refine = !session.refine;
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The line below the picture: how it was drawn, and messages.
+
+use eframe::egui::{self, RichText, Ui};
+use sdfc::render::Clock;
+
+use super::theme;
+use crate::render::picture::Picture;
+use crate::render::worker::PASS_BUDGET_MS;
+use crate::scene::model::{BuildTimes, Model};
+use crate::session::Session;
+
+/// Shows the line. A message takes precedence over a problem, and that over the GPU's name.
+pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
+    ui.horizontal(|ui| {
+        if let Some(picture) = session.picture.as_deref() {
+            metrics(ui, session, picture);
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            export_progress(ui, session);
+            let problem = session.problem.as_ref().or(session.render_error.as_ref());
+            match (message, problem, &session.model) {
+                (Some(message), ..) => truncated(ui, message, theme::of(ui).accent),
+                (None, Some(problem), _) => truncated(ui, problem, theme::of(ui).warning),
+                (None, None, Some(model)) => device(ui, model),
+                (None, None, None) => {}
+            }
+        });
+    });
+}
+
+/// A text that is cut off if there is no room, with the full text on hover.
+fn truncated(ui: &mut Ui, text: &str, color: egui::Color32) {
+    let label = egui::Label::new(RichText::new(text).small().color(color)).truncate();
+    ui.add(label).on_hover_text(text);
+}
+
+fn export_progress(ui: &mut Ui, session: &Session) {
+    let Some(progress) = session.exports().progress() else { return };
+    if ui.small_button("cancel").on_hover_text("Cancel the export; no file is written.").clicked() {
+        session.exports().cancel();
+    }
+    let bar = egui::ProgressBar::new(progress).desired_width(90.0).show_percentage();
+    ui.add(bar).on_hover_text("Drawing a picture to export.");
+}
+
+fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
+    let color = theme::of(ui).weak;
+    let weak = |text: String| RichText::new(text).small().color(color);
+    let model = &picture.request.model;
+    ui.label(weak(model.method.clone())).on_hover_text("The ray method.");
+    let [width, height] = picture.request.size;
+    ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
+    let clock = match picture.clock {
+        Clock::Gpu => "by the GPU's clock",
+        Clock::Wall => "by the CPU's clock, with the transfer of the picture",
+    };
+    let text = format!(
+        "Drawing one ray per pixel took {:.2} ms {clock};\n\
+         {:.1} ms from the request to the picture.",
+        picture.milliseconds, picture.latency
+    );
+    ui.label(weak(format!("{:.1} ms", picture.milliseconds))).on_hover_text(text);
+    let evaluations = picture.evaluations;
+    let text = format!(
+        "Mean number of field evaluations per pixel, shadows and reflections included.\n\
+         99th percentile {}, maximum {}.\n\
+         {} pixels hit a surface, {} hit nothing, {} ran out of steps, {} are not finite.",
+        evaluations.p99,
+        evaluations.max,
+        picture.counts.hit,
+        picture.counts.miss,
+        picture.counts.capped,
+        picture.counts.nan
+    );
+    ui.label(weak(format!("{:.1} evaluations per pixel", evaluations.mean))).on_hover_text(text);
+    if picture.counts.capped > 0 {
+        let text = format!("{} out of steps", picture.counts.capped);
+        ui.label(RichText::new(text).small().color(theme::of(ui).warning)).on_hover_text(
+            "Pixels whose ray ran out of steps. The view “Out of steps” marks them.",
+        );
+    }
+    refinement(ui, session, picture);
+}
+
+/// How fine the picture is, if it is not finished.
+fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
+    let text = if picture.divisor > 1 {
+        let more = match (session.refine, picture.request.moving) {
+            (false, _) => ", not refined: Esc resumes",
+            (true, true) => "",
+            (true, false) => ", refining: Esc stops",
+        };
+        let full = picture.milliseconds * f64::from(picture.divisor * picture.divisor);
+        let why = if full > PASS_BUDGET_MS { "slow scene: " } else { "" };
+        format!("{why}1/{} resolution{more}", picture.divisor)
+    } else if !picture.finished && session.refine {
+        format!("{} of {} samples per pixel", picture.samples, picture.request.samples)
+    } else {
+        return;
+    };
+    let help = "A slow scene is drawn at a lower resolution while something moves, and refined \
+                when it rests. Esc stops and resumes refining.";
+    ui.label(RichText::new(text).small().color(theme::of(ui).accent)).on_hover_text(help);
+}
+
+/// The GPU or CPU that draws; if that is not what was requested, why.
+fn device(ui: &mut Ui, model: &Model) {
+    let name = model.gpu_name().unwrap_or("CPU");
+    let text = RichText::new(name).small().color(theme::of(ui).weak);
+    ui.label(text).on_hover_text(build_summary(model.build_times, model.pipelines));
+    if let Some(why) = &model.note {
+        truncated(ui, why, theme::of(ui).warning);
+    }
+}
+
+fn build_summary(times: BuildTimes, pipelines: u64) -> String {
+    let pipeline = match times.pipeline {
+        Some(milliseconds) => format!("pipeline {milliseconds:.1} ms"),
+        None => "pipeline reused".to_owned(),
+    };
+    format!(
+        "Draws the picture.\n\
+         Last build: front end {:.1} ms, analysis {:.1} ms, code generation {:.1} ms, {pipeline}.\n\
+         Pipelines made so far: {pipelines}.",
+        times.front, times.analyze, times.lower
+    )
+}

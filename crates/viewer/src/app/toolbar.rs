@@ -1,0 +1,121 @@
+//! The bar above the picture: scene menu, view, ray method, and buttons that open panels.
+
+use eframe::egui::{self, RichText, Ui};
+use sdfc::march::{METHODS, MethodParameter};
+
+use super::number_widget::number_drag;
+use super::open_panels::OpenPanels;
+use super::scene_menu::{self, Choice};
+use super::theme;
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::views::mode::ViewMode;
+
+/// Below this width in points the names of view, method and tolerance are left out.
+const WIDE: f32 = 900.0;
+
+/// Shows the bar; returns what was chosen in the scene menu.
+pub fn show(
+    ui: &mut Ui,
+    session: &mut Session,
+    panels: &mut OpenPanels,
+    settings: &mut Settings,
+) -> Option<Choice> {
+    let wide = ui.available_width() >= WIDE;
+    let row = ui.horizontal(|ui| {
+        let choice = scene_menu::show(ui, session.path(), settings);
+        compile_state(ui, session);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.toggle_value(&mut panels.help, "?").on_hover_text("Keys and mouse (? or F1).");
+            ui.toggle_value(&mut panels.controls, "Controls")
+                .on_hover_text("Params, time, camera, accuracy, drawing (K).");
+            ui.toggle_value(&mut panels.code, "Code")
+                .on_hover_text("The scene's source, in which numbers can be dragged (T).");
+            ui.toggle_value(&mut panels.export, "Export")
+                .on_hover_text("Save a picture, an animation, a shader or a screenshot (Ctrl+S).");
+            ui.separator();
+            tolerance(ui, session, wide);
+            methods(ui, session, wide);
+            views(ui, session, wide);
+        });
+        choice
+    });
+    row.inner
+}
+
+/// The parameter of the ray method, if it has one.
+fn tolerance(ui: &mut Ui, session: &mut Session, wide: bool) {
+    let parameter = session.model.as_ref().and_then(|model| model.method_parameter());
+    let Some(parameter) = parameter else { return };
+    let (name, what) = match parameter {
+        MethodParameter::Steps => ("Steps", "How many steps a ray may take"),
+        MethodParameter::Epsilon => {
+            ("Epsilon", "How close to the surface a ray must come, in scene units")
+        }
+        MethodParameter::Tolerance => {
+            ("Tolerance", "How close to the surface a ray must come, in pixel widths")
+        }
+    };
+    let prefix = if wide { format!("{name} ×") } else { "×".to_owned() };
+    let speed = session.tolerance * 0.02;
+    let drag = number_drag(&mut session.tolerance).range(1e-3..=1e3).speed(speed).prefix(prefix);
+    let text = format!("{what}, as a multiple of the scene's setting. Double-click to reset.");
+    let response = ui.add(drag).on_hover_text(text);
+    if response.double_clicked() {
+        session.tolerance = 1.0;
+    }
+}
+
+/// Errors of the scene, or what the compile worker is doing.
+fn compile_state(ui: &mut Ui, session: &Session) {
+    let errors = session.diagnostics.errors();
+    if errors > 0 {
+        let text = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
+        let shown = if session.model.is_some() { ", showing the last good scene" } else { "" };
+        ui.label(RichText::new(format!("{text}{shown}")).small().color(theme::of(ui).error));
+    } else if session.building {
+        let text = RichText::new("compiling the shader…").small();
+        ui.label(text.color(theme::of(ui).accent));
+    }
+}
+
+/// A chosen value, with its name if there is room.
+fn named(name: &str, value: &str, wide: bool) -> String {
+    if wide { format!("{name}: {value}") } else { value.to_owned() }
+}
+
+fn views(ui: &mut Ui, session: &mut Session, wide: bool) {
+    let text = named("View", session.mode.name(), wide);
+    let combo = egui::ComboBox::from_id_salt("view").selected_text(text);
+    let combo = combo.height(400.0).show_ui(ui, |ui| {
+        for mode in ViewMode::ALL {
+            ui.selectable_value(&mut session.mode, mode, mode.name()).on_hover_text(mode.help());
+        }
+    });
+    combo.response.on_hover_text("The view: what the picture shows (V for the next).");
+}
+
+fn methods(ui: &mut Ui, session: &mut Session, wide: bool) {
+    let chosen = session.build().method.clone();
+    let own = session.model.as_ref().map_or("auto", |model| model.scene.method()).to_owned();
+    let shown = chosen.clone().unwrap_or_else(|| own.clone());
+    let text = named("Ray method", &shown, wide);
+    let combo = egui::ComboBox::from_id_salt("method").selected_text(text);
+    let combo = combo.height(400.0).show_ui(ui, |ui| {
+        let text = format!("the scene's ({own})");
+        let scenes_own = ui.selectable_label(chosen.is_none(), text);
+        if scenes_own
+            .on_hover_text("The method that `march` in the scene states, or auto.")
+            .clicked()
+        {
+            session.update_build(|build| build.method = None);
+        }
+        for method in METHODS {
+            let is_chosen = chosen.as_deref() == Some(method.name);
+            if ui.selectable_label(is_chosen, method.name).on_hover_text(method.summary).clicked() {
+                session.update_build(|build| build.method = Some(method.name.to_owned()));
+            }
+        }
+    });
+    combo.response.on_hover_text("The ray method: how the surface is found along each ray.");
+}

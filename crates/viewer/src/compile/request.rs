@@ -1,0 +1,63 @@
+//! What the compile worker is asked for, and what it reports.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::compile::diagnostics::SceneDiagnostics;
+use crate::scene::model::Model;
+
+/// Which scene is built, and how.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BuildRequest {
+    /// The scene's file.
+    pub path: PathBuf,
+    /// The ray method; `None` takes the scene's.
+    pub method: Option<String>,
+    /// True if the scene's numbers become live literals, which change without a recompile.
+    pub live_literals: bool,
+    /// True for an orthographic camera; `None` takes that of the scene's camera.
+    pub parallel: Option<bool>,
+    /// True if the CPU draws even though there may be a GPU.
+    pub on_cpu: bool,
+    /// How many times new devices were opened because one was lost.
+    pub device_generation: u32,
+}
+
+impl BuildRequest {
+    /// A request for a file with everything else at its default.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self {
+            path: path.into(),
+            method: None,
+            live_literals: true,
+            parallel: None,
+            on_cpu: false,
+            device_generation: 0,
+        }
+    }
+}
+
+/// What the compile worker reports.
+#[derive(Debug)]
+pub enum CompileEvent {
+    /// The file cannot be read; why.
+    Unreadable(String),
+    /// The source was compiled, with or without errors.
+    Compiled {
+        /// Errors and warnings.
+        diagnostics: SceneDiagnostics,
+        /// The folders to watch: a change in one of them can change the scene.
+        folders: BTreeSet<PathBuf>,
+        /// True if the scene can be drawn, so that more events follow.
+        draws: bool,
+    },
+    /// A pipeline is being made for the scene, which may take seconds.
+    BuildingPipeline,
+    /// The scene draws nothing.
+    Empty,
+    /// The scene can be drawn.
+    Ready(Arc<Model>),
+    /// The scene compiles but cannot be drawn; why.
+    Failed(String),
+}

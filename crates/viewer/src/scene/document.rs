@@ -1,0 +1,161 @@
+//! The scene's source file, the files that it imports, and the folders to watch for changes.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+
+use sdfc::Resolver;
+use sdfc::diagnostics::{FileId, Sources, Span};
+use sdfc_files::{Folder, ReadError};
+
+/// The scene's source as it was read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Document {
+    /// The file.
+    pub path: PathBuf,
+    /// The name that diagnostics show.
+    pub name: String,
+    /// The source.
+    pub source: String,
+}
+
+impl Document {
+    /// Reads a scene's file.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`sdfc_files::read`].
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let input = sdfc_files::read(path)?;
+        let name = path.file_name().map_or(input.name, |name| name.to_string_lossy().into_owned());
+        Ok(Self { path: path.to_owned(), name, source: input.text })
+    }
+}
+
+/// Reads imported files for the compiler, and records which ones were read and a hash of each.
+/// Missing files are recorded too, since they may be created later.
+#[derive(Debug)]
+pub struct Imports {
+    folder: Folder,
+    /// Key: path, and true if read as bytes. Value: a hash of the result.
+    reads: RefCell<BTreeMap<(String, bool), u64>>,
+}
+
+impl Imports {
+    /// The imports of the scene at `path`; none has been read yet.
+    pub fn new(path: &Path) -> Self {
+        Self { folder: Folder::of(path), reads: RefCell::default() }
+    }
+
+    /// Returns true if reading every recorded file again would give the same result.
+    pub fn are_unchanged(&self) -> bool {
+        let same = |((path, bytes), before): (&(String, bool), &u64)| {
+            let now = match bytes {
+                true => hash(&self.folder.read_bytes(path)),
+                false => hash(&self.folder.read(path)),
+            };
+            now == *before
+        };
+        self.reads.borrow().iter().all(same)
+    }
+
+    /// The folders in which a change can change the scene: its own and those of its imports.
+    pub fn folders(&self) -> BTreeSet<PathBuf> {
+        let root = self.folder.path();
+        let reads = self.reads.borrow();
+        let parents = reads.keys().filter_map(|(path, _)| root.join(path).parent().map(existing));
+        [existing(root)].into_iter().chain(parents).collect()
+    }
+
+    fn record<T: Hash>(&self, path: &str, bytes: bool, result: &T) {
+        self.reads.borrow_mut().insert((path.to_owned(), bytes), hash(result));
+    }
+}
+
+impl Resolver for Imports {
+    fn read(&self, path: &str) -> Result<String, String> {
+        let text = self.folder.read(path);
+        self.record(path, false, &text);
+        text
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        let bytes = self.folder.read_bytes(path);
+        self.record(path, true, &bytes);
+        bytes
+    }
+}
+
+fn hash(value: &impl Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    value.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The folder itself, or its nearest ancestor that exists.
+fn existing(folder: &Path) -> PathBuf {
+    let found = folder.ancestors().find(|folder| folder.is_dir());
+    found.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+}
+
+/// The path of a file by the name that a diagnostic gives it.
+pub fn path_of(scene: &Path, name: &str) -> PathBuf {
+    if scene.file_name().is_some_and(|own| own.to_string_lossy() == name) {
+        return scene.to_owned();
+    }
+    Folder::of(scene).path().join(name)
+}
+
+/// The source with some spans replaced. The spans must not overlap.
+pub fn with_replacements(source: &str, edits: &[(Span, String)]) -> String {
+    let mut edits: Vec<&(Span, String)> = edits.iter().collect();
+    edits.sort_by_key(|(span, _)| span.start);
+    let mut out = String::with_capacity(source.len());
+    let mut from = 0;
+    for (span, new) in edits {
+        out.push_str(source.get(from..span.start as usize).unwrap_or_default());
+        out.push_str(new);
+        from = span.end as usize;
+    }
+    out.push_str(source.get(from..).unwrap_or_default());
+    out
+}
+
+/// A line without its line ending; lines count from 1.
+pub fn source_line(sources: &Sources, file: FileId, line: u32) -> String {
+    let range = sources.line_bytes(file, line.saturating_sub(1) as usize);
+    let text = range.and_then(|range| sources.text(file).get(range)).unwrap_or_default();
+    text.trim_end_matches(['\n', '\r']).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_existing_folder_of_a_missing_import_is_watched() {
+        let root = tempfile::tempdir().unwrap();
+        std::fs::create_dir(root.path().join("parts")).unwrap();
+        let imports = Imports::new(&root.path().join("scene.sdf"));
+        assert!(imports.read("parts/gear.sdf").is_err());
+        assert!(imports.read("deep/er/wheel.sdf").is_err());
+        let expected = [root.path().to_owned(), root.path().join("parts")];
+        assert_eq!(imports.folders(), BTreeSet::from(expected));
+    }
+
+    #[test]
+    fn replacements_may_come_in_any_order() {
+        let span = |start, end| Span::new(FileId(0), start, end);
+        let edits = [(span(12, 15), "7".to_owned()), (span(4, 7), "0.25".to_owned())];
+        assert_eq!(with_replacements("box(1.5) + (2.0)", &edits), "box(0.25) + (7)");
+        assert_eq!(with_replacements("box", &[]), "box");
+    }
+
+    #[test]
+    fn names_in_diagnostics_become_paths() {
+        let scene = Path::new("/a/b/scene.sdf");
+        assert_eq!(path_of(scene, "scene.sdf"), scene);
+        assert_eq!(path_of(scene, "parts/gear.sdf"), Path::new("/a/b/parts/gear.sdf"));
+    }
+}
