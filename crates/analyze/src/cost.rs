@@ -1,16 +1,16 @@
-//! What one evaluation costs, counted on the graph.
+//! The cost of one evaluation, counted on the graph.
 
 use sdfc_graph::{Graph, LoopId, Node, NodeId, Stage, reachable};
 
-/// Counts of what a root needs at each point.
+/// Counts of operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Nodes of any kind and stage.
+    /// Nodes of any kind and evaluation rate.
     pub nodes: usize,
-    /// Arithmetic operations at each point; a vector operation counts once, moving lanes about not at all, what a
-    /// loop does as often as it may run.
+    /// Arithmetic operations at each point. A vector operation counts once, a swizzle not at all. The
+    /// operations in a loop count as often as the loop may run.
     pub operations: usize,
-    /// Operations done once per frame.
+    /// Operations that run once per frame.
     pub per_frame: usize,
 }
 
@@ -35,7 +35,7 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
     cost
 }
 
-/// Operations of the loops among some nodes.
+/// The operations of the loops among some nodes.
 fn in_loops(graph: &Graph, nodes: impl Iterator<Item = NodeId>) -> usize {
     let mut found: Vec<LoopId> = nodes
         .filter_map(|node| if let Node::Loop(id, ..) = graph.node(node) { Some(id) } else { None })
@@ -45,7 +45,7 @@ fn in_loops(graph: &Graph, nodes: impl Iterator<Item = NodeId>) -> usize {
     found.into_iter().map(|id| in_loop(graph, id)).fold(0, usize::saturating_add)
 }
 
-/// Operations of all rounds of a loop.
+/// The operations of all iterations of a loop.
 fn in_loop(graph: &Graph, id: LoopId) -> usize {
     let body = graph.loop_body(id);
     let nodes: Vec<NodeId> = body.condition.into_iter().chain(body.step).collect();

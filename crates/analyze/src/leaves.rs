@@ -1,10 +1,10 @@
-//! How many leaf shapes one evaluation of a scene's field looks at.
+//! The number of leaf shapes in one evaluation of a scene's field.
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, reachable};
 
-/// Childless shapes at distinct points: a leaf that two samples see at one point counts once, as in the
-/// shader.
+/// Counts the shapes without children at distinct points. A leaf that is sampled twice at one point
+/// counts once, as it is evaluated once in the shader.
 pub(crate) fn count_leaves(
     graph: &mut Graph,
     expander: &mut Expander,

@@ -1,14 +1,15 @@
-//! Where a ray enters and leaves boxes.
+//! The intervals along a ray that lie inside boxes.
 
 use sdfc_graph::{FAR, Graph, NodeId, Stage};
 
-/// Part of its own size by which the box is made larger: more than rounding in f32 takes from it.
+/// The fraction of its size by which a box is enlarged: more than the rounding errors of f32.
 const MARGIN: f64 = 1e-5;
-/// No component of a direction is taken to be less than this.
-const LEAST_SLOPE: f64 = 1e-12;
+/// Smallest absolute value of a component of a direction; smaller ones are replaced by it.
+const MIN_SLOPE: f64 = 1e-12;
 
-/// Enter and exit, of a ray of this origin and direction: the first above the second where the ray misses the box.
-/// `None` for a box without a wall. A wall that is not known to be finite is none.
+/// The distances at which a ray, given by origin and direction, enters and leaves a box. Where the ray
+/// misses the box, the first is above the second. Walls that are not known to be finite are ignored;
+/// returns `None` if there are no others.
 pub(crate) fn clip(
     graph: &mut Graph,
     [origin, direction]: [NodeId; 2],
@@ -51,7 +52,7 @@ pub(crate) fn clip(
     ([enter, exit] != [first, last]).then_some([enter, exit])
 }
 
-/// Those of some boxes that are not known to lie in another.
+/// Removes the boxes that are known to lie within another one.
 pub(crate) fn outermost(graph: &Graph, boxes: &[[NodeId; 2]]) -> Vec<[NodeId; 2]> {
     let lies_in = |[lo, hi]: [NodeId; 2], [low, high]: [NodeId; 2]| {
         let at_most = |a: NodeId, b: NodeId| {
@@ -70,15 +71,15 @@ pub(crate) fn outermost(graph: &Graph, boxes: &[[NodeId; 2]]) -> Vec<[NodeId; 2]
     outermost
 }
 
-/// From where a ray enters the first of some boxes to where it leaves the last, those left aside that it misses or has behind
-/// it; `None` for no box.
-pub(crate) fn through(graph: &mut Graph, ways: &[[NodeId; 2]]) -> Option<[NodeId; 2]> {
-    if let [] | [_] = ways {
-        return ways.first().copied();
+/// The interval from where a ray first enters one of some boxes to where it leaves the last one. Boxes
+/// that the ray misses, or that lie behind its origin, do not count. Returns `None` if there is no box.
+pub(crate) fn hull(graph: &mut Graph, intervals: &[[NodeId; 2]]) -> Option<[NodeId; 2]> {
+    if let [] | [_] = intervals {
+        return intervals.first().copied();
     }
     let [zero, far, before] = [0.0, FAR, -FAR].map(|end| graph.number(end));
     let (mut first, mut last) = (far, before);
-    for &[enter, exit] in ways {
+    for &[enter, exit] in intervals {
         let start = graph.max(enter, zero);
         let passes = graph.le(start, exit);
         let [start, end] = [graph.select(passes, start, far), graph.select(passes, exit, before)];
@@ -88,18 +89,18 @@ pub(crate) fn through(graph: &mut Graph, ways: &[[NodeId; 2]]) -> Option<[NodeId
     Some([first, last])
 }
 
-/// 1 over a component, whose least size keeps it finite.
+/// The inverse of a component of a direction. [`MIN_SLOPE`] keeps it finite.
 fn inverse(graph: &mut Graph, component: NodeId, rises: NodeId) -> NodeId {
-    let (least, one) = (graph.number(LEAST_SLOPE), graph.number(1.0));
+    let (smallest, one) = (graph.number(MIN_SLOPE), graph.number(1.0));
     let size = graph.abs(component);
-    let size = graph.max(size, least);
+    let size = graph.max(size, smallest);
     let negative = graph.neg(size);
     let slope = graph.select(rises, size, negative);
     graph.div(one, slope)
 }
 
-/// Whether a wall of a box is known to be somewhere.
-pub(crate) fn is_finite(graph: &Graph, wall: NodeId) -> bool {
+/// True if the coordinate of a wall is known to be finite.
+fn is_finite(graph: &Graph, wall: NodeId) -> bool {
     match graph.as_number(wall) {
         Some(value) => value.is_finite(),
         None => graph.stage(wall) == Stage::Frame && graph.is_finite(wall),
@@ -112,6 +113,6 @@ fn margin(graph: &mut Graph, ends: [NodeId; 2], walls: [bool; 2]) -> NodeId {
         let end = graph.abs(end);
         size = graph.max(size, end);
     }
-    let part = graph.number(MARGIN);
-    graph.mul(size, part)
+    let fraction = graph.number(MARGIN);
+    graph.mul(size, fraction)
 }

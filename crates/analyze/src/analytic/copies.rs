@@ -1,59 +1,60 @@
-//! A formula that says `copies`, taken apart.
+//! Formulas with the clause `copies`, taken apart into samples and limits.
 //!
-//! It is the least of samples, each at a map of the point that is rigid while what jumps keeps its value, by itself or cut by a box
-//! around it, and of values without samples, which say how near what is not sampled there is at most.
+//! Such a formula is the minimum of samples and of values without samples. Each sample is at a map of
+//! the point that is rigid between the jumps of `floor` and the like, and may be intersected with a
+//! box. Each value without samples is a lower bound of the distance to the copies that are not sampled.
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Dim, Graph, Node, NodeId, Shape, ShapeId, reachable};
 
 use crate::certify::affine::{Linear, applied, linear_between_jumps, similarity};
 
-/// What such a formula is made of, in its own point.
+/// The operands of such a minimum, in the formula's own point.
 pub(crate) struct Copies {
-    pub samples: Vec<Copied>,
-    /// Nothing that is not sampled is nearer than the least of these; one at least.
+    pub samples: Vec<CopySample>,
+    /// The minimum of these bounds the distance to all other copies from below; not empty.
     pub limits: Vec<NodeId>,
 }
 
-/// A sample of a shape.
-pub(crate) struct Copied {
+/// One sample of a shape.
+pub(crate) struct CopySample {
     pub child: ShapeId,
-    /// Where it is sampled.
+    /// The point at which it is sampled.
     pub at: NodeId,
     linear: Linear,
 }
 
-impl Copied {
-    /// What the map makes of a direction.
+impl CopySample {
+    /// Applies the linear part of the map to a direction.
     pub fn direction(&self, graph: &mut Graph, direction: NodeId) -> NodeId {
         applied(graph, &self.linear, direction)
     }
 }
 
-/// Why a shape that says `copies` is not met by its copies.
+/// The reason why the clause `copies` of a shape cannot be used to intersect rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CopiesObstacle {
-    /// Something in its minimum samples shapes otherwise.
+    /// An operand of the minimum is neither a single sample nor a value without samples.
     NotASample,
-    /// A sample is stretched, sheared or bent.
+    /// The point of a sample is not a rigid map: it is scaled, sheared or bent.
     NotRigid,
-    /// Nothing is sampled.
+    /// No operand samples a shape.
     NoSample,
-    /// Only samples stand there.
+    /// No operand bounds the distance to the other copies.
     NoLimit,
 }
 
-/// Why the clause `copies` of a shape does nothing; `None` if it is of use, or not stated.
+/// The reason why the clause `copies` of a shape has no effect; `None` if it has one, or is not stated.
 pub fn copies_obstacle(graph: &mut Graph, shape: ShapeId) -> Option<CopiesObstacle> {
     let Shape { contract, dim, .. } = graph.shape(shape);
     if !contract.copies || *dim != Dim::Three {
         return None;
     }
-    taken_apart(graph, shape).err()
+    split_copies(graph, shape).err()
 }
 
-/// The samples and limits of a shape's formula.
-pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, CopiesObstacle> {
+/// Takes the formula of a shape with the clause `copies` apart.
+pub(crate) fn split_copies(graph: &mut Graph, shape: ShapeId) -> Result<Copies, CopiesObstacle> {
     let Shape { formula, level, .. } = *graph.shape(shape);
     let mut copies = Copies { samples: Vec::new(), limits: Vec::new() };
     let (mut seen, mut pending) = (FxHashSet::default(), vec![formula]);
@@ -64,7 +65,7 @@ pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, C
         if let Node::Binary(Binary::Min, a, b) = graph.node(node) {
             pending.extend([b, a]);
         } else if has_samples(graph, node) {
-            copies.samples.push(copied(graph, node, level)?);
+            copies.samples.push(copy_sample(graph, node, level)?);
         } else {
             copies.limits.push(node);
         }
@@ -76,8 +77,12 @@ pub(crate) fn taken_apart(graph: &mut Graph, shape: ShapeId) -> Result<Copies, C
     }
 }
 
-/// A sample by itself, or the one in a maximum with values without samples.
-fn copied(graph: &mut Graph, mut node: NodeId, level: u16) -> Result<Copied, CopiesObstacle> {
+/// The sample in an operand: the operand itself, or the one operand of a maximum that has samples.
+fn copy_sample(
+    graph: &mut Graph,
+    mut node: NodeId,
+    level: u16,
+) -> Result<CopySample, CopiesObstacle> {
     while let Node::Binary(Binary::Max, a, b) = graph.node(node) {
         node = match [a, b].map(|operand| has_samples(graph, operand)) {
             [true, false] => a,
@@ -87,11 +92,11 @@ fn copied(graph: &mut Graph, mut node: NodeId, level: u16) -> Result<Copied, Cop
     }
     let (child, at) = graph.as_sample(node).ok_or(CopiesObstacle::NotASample)?;
     let linear = linear_between_jumps(graph, at, level).ok_or(CopiesObstacle::NotRigid)?;
-    let stretch = similarity(graph, &linear).and_then(|stretch| graph.as_number(stretch));
-    if stretch != Some(1.0) {
+    let scale = similarity(graph, &linear).and_then(|scale| graph.as_number(scale));
+    if scale != Some(1.0) {
         return Err(CopiesObstacle::NotRigid);
     }
-    Ok(Copied { child, at, linear })
+    Ok(CopySample { child, at, linear })
 }
 
 fn has_samples(graph: &Graph, node: NodeId) -> bool {

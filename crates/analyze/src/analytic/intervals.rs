@@ -1,94 +1,103 @@
-//! Where a ray is inside a solid: intervals of its length, and what unions, intersections and complements make of
-//! them.
+//! The intervals along a ray that lie inside a solid, and their unions, intersections and complements.
 //!
-//! A ray is inside in any of a list of intervals, which may overlap. One whose enter is above its exit holds nothing;
-//! its complement, (-∞, enter] and [exit, ∞), is everything, as it must be.
+//! A ray is inside within any of a list of intervals, which may overlap. An interval whose enter
+//! exceeds its exit is empty. Its complement is computed as (-∞, enter] and [exit, ∞), which together
+//! are everything, as they must be.
 
 use sdfc_graph::{Binary, FAR, Graph, NodeId};
 
-/// Most intervals of an intersection or a complement.
-const MOST: usize = 8;
+/// Largest number of intervals of an intersection or a complement.
+const MAX_INTERVALS: usize = 8;
 
-/// Enter and exit, scalars.
-pub(crate) type Span = [NodeId; 2];
+/// The distances at which a ray enters and leaves.
+pub(crate) type RayInterval = [NodeId; 2];
 
-/// Where a ray is inside a solid.
+/// The intervals along a ray that lie inside a solid.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Known {
-    pub(crate) spans: Vec<Span>,
-    /// That is known so far from the ray's origin; `None`: everywhere.
+pub(crate) struct RayIntervals {
+    /// The intervals, in no order.
+    pub(crate) list: Vec<RayInterval>,
+    /// The distance from the ray's origin up to which they are known; `None`: everywhere.
     pub(crate) reach: Option<NodeId>,
 }
 
-impl Known {
-    /// Whether it takes no more intervals than one may have of what is made of others.
+impl RayIntervals {
+    /// True if there are few enough intervals to combine them further.
     pub(crate) fn is_short(&self) -> bool {
-        self.spans.len() <= MOST
+        self.list.len() <= MAX_INTERVALS
     }
 }
 
-/// How far two things are known both.
-fn nearer(graph: &mut Graph, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
+/// The distance up to which two things are both known.
+fn common_reach(graph: &mut Graph, a: Option<NodeId>, b: Option<NodeId>) -> Option<NodeId> {
     match (a, b) {
         (Some(a), Some(b)) => Some(graph.min(a, b)),
         (one, other) => one.or(other),
     }
 }
 
-/// Where a ray is inside any of some solids.
-pub(crate) fn joined(graph: &mut Graph, all: Vec<Known>) -> Known {
-    let mut whole = Known::default();
-    for Known { spans, reach } in all {
-        whole.spans.extend(spans);
-        whole.reach = nearer(graph, whole.reach, reach);
+/// The union of the intervals of some solids.
+pub(crate) fn union(graph: &mut Graph, all: Vec<RayIntervals>) -> RayIntervals {
+    let mut whole = RayIntervals::default();
+    for RayIntervals { list, reach } in all {
+        whole.list.extend(list);
+        whole.reach = common_reach(graph, whole.reach, reach);
     }
     whole
 }
 
-/// Where a ray is inside both; `None` where that takes too many intervals.
-pub(crate) fn intersection(graph: &mut Graph, a: &Known, b: &Known) -> Option<Known> {
-    let spans = both(graph, &a.spans, &b.spans)?;
-    Some(Known { spans, reach: nearer(graph, a.reach, b.reach) })
+/// The intersection of two solids' intervals; `None` if it takes too many.
+pub(crate) fn intersection(
+    graph: &mut Graph,
+    a: &RayIntervals,
+    b: &RayIntervals,
+) -> Option<RayIntervals> {
+    let list = pairwise(graph, &a.list, &b.list)?;
+    Some(RayIntervals { list, reach: common_reach(graph, a.reach, b.reach) })
 }
 
-fn both(graph: &mut Graph, a: &[Span], b: &[Span]) -> Option<Vec<Span>> {
-    if a.len() * b.len() > MOST {
+/// The intersections of each interval of `a` with each of `b`; `None` if there are too many.
+fn pairwise(graph: &mut Graph, a: &[RayInterval], b: &[RayInterval]) -> Option<Vec<RayInterval>> {
+    if a.len() * b.len() > MAX_INTERVALS {
         return None;
     }
-    let mut both = Vec::with_capacity(a.len() * b.len());
+    let mut common = Vec::with_capacity(a.len() * b.len());
     for &[enter, exit] in a {
         for &[other_enter, other_exit] in b {
-            both.push([graph.max(enter, other_enter), graph.min(exit, other_exit)]);
+            common.push([graph.max(enter, other_enter), graph.min(exit, other_exit)]);
         }
     }
-    Some(both)
+    Some(common)
 }
 
-/// Where a ray is not inside; `None` where that takes too many intervals.
-pub(crate) fn complement(graph: &mut Graph, known: &Known) -> Option<Known> {
+/// The intervals outside a solid; `None` if there are too many.
+pub(crate) fn complement(graph: &mut Graph, solid: &RayIntervals) -> Option<RayIntervals> {
     let [before, after] = [-FAR, FAR].map(|end| graph.number(end));
     let mut outside = vec![[before, after]];
-    for &[enter, exit] in &known.spans {
-        outside = both(graph, &outside, &[[before, enter], [exit, after]])?;
+    for &[enter, exit] in &solid.list {
+        outside = pairwise(graph, &outside, &[[before, enter], [exit, after]])?;
     }
-    Some(Known { spans: outside, reach: known.reach })
+    Some(RayIntervals { list: outside, reach: solid.reach })
 }
 
-/// Intervals measured in units that are `factor` long.
-pub(crate) fn scaled(graph: &mut Graph, spans: &[Span], factor: NodeId) -> Vec<Span> {
-    spans.iter().map(|span| span.map(|end| graph.mul(end, factor))).collect()
+/// Multiplies intervals by a factor.
+pub(crate) fn scaled(
+    graph: &mut Graph,
+    intervals: &[RayInterval],
+    factor: NodeId,
+) -> Vec<RayInterval> {
+    intervals.iter().map(|interval| interval.map(|end| graph.mul(end, factor))).collect()
 }
 
-/// Where a ray is inside for the first time, counted from its origin: 0 for one that starts inside, [`FAR`] for one
-/// that never is.
-pub(crate) fn first(graph: &mut Graph, spans: &[Span]) -> NodeId {
+/// The distance at which a ray is first inside: 0 if it starts inside, [`FAR`] if it never is.
+pub(crate) fn first_hit(graph: &mut Graph, intervals: &[RayInterval]) -> NodeId {
     let [zero, far] = [0.0, FAR].map(|end| graph.number(end));
     let mut nearest = far;
-    for &[enter, exit] in spans {
+    for &[enter, exit] in intervals {
         let start = graph.max(enter, zero);
         let is_inside = graph.binary(Binary::Le, start, exit);
-        let met = graph.select(is_inside, start, far);
-        nearest = graph.min(nearest, met);
+        let hit = graph.select(is_inside, start, far);
+        nearest = graph.min(nearest, hit);
     }
     nearest
 }

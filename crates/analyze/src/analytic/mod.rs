@@ -3,6 +3,7 @@
 pub(crate) mod boxes;
 pub(crate) mod copies;
 pub(crate) mod intervals;
+pub(crate) mod operands;
 pub(crate) mod queries;
 pub(crate) mod repetition;
 pub(crate) mod split;

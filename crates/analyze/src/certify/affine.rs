@@ -1,9 +1,10 @@
-//! Affine maps of a formula's point, and the factor by which they can stretch distances.
+//! Affine maps of a formula's point, and their operator norms.
 //!
-//! A node is affine if each of its lanes is `c0 x + c1 y + c2 z + t` with coefficients known before
-//! the point is (constants or per-frame). Its Lipschitz constant is the largest singular value of the
-//! matrix. For constant matrices that is computed; for per-frame ones a multiple of a rotation is
-//! recognised at every angle by an identity (see [`sdfc_graph::Polynomial`]).
+//! A node is affine if each of its lanes is `c0 x + c1 y + c2 z + t` with coefficients that do not
+//! depend on the point (constants or per-frame values). Its Lipschitz constant is the operator norm
+//! of the matrix, which is the largest singular value. The norm of a constant matrix is computed. A
+//! per-frame matrix is recognised as a multiple of a rotation at every angle by a polynomial
+//! identity (see [`sdfc_graph::Polynomial`]).
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
@@ -13,10 +14,10 @@ use sdfc_graph::{
 
 const ZERO: Coefficient = Coefficient::ZERO;
 
-/// One lane: the coefficients of x, y, z.
+/// The coefficients of x, y and z in one lane.
 type Row = [Coefficient; 3];
 
-/// The linear part of an affine node: one row per lane.
+/// The linear lane of an affine node, one row for each lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Linear {
     rows: [Row; 4],
@@ -24,11 +25,11 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    /// As many rows as lanes; none is asked for beyond them.
+    /// Makes `lanes` rows by calling `row` for each of them.
     fn new(lanes: usize, mut row: impl FnMut(usize) -> Row) -> Self {
         let mut rows = [[ZERO; 3]; 4];
-        for (lane, place) in rows.iter_mut().enumerate().take(lanes) {
-            *place = row(lane);
+        for (lane, target) in rows.iter_mut().enumerate().take(lanes) {
+            *target = row(lane);
         }
         Self { rows, lanes }
     }
@@ -50,26 +51,27 @@ impl Linear {
         self.rows().iter().flatten().all(|coefficient| coefficient.is(0.0))
     }
 
-    /// Each row's coefficients changed.
+    /// Replaces each coefficient by the result of `change` for its lane.
     fn map(&self, mut change: impl FnMut(usize, Coefficient) -> Coefficient) -> Self {
         Self::new(self.lanes, |lane| self.rows[lane].map(|coefficient| change(lane, coefficient)))
     }
 }
 
-/// The linear part of a node over the point of `level` where all that jumps keeps its value; `None` if it is not affine there.
+/// The linear lane of a node as a map of the point of `level`, between the jumps of `floor`, `sign`
+/// and the like, which count as constant. Returns `None` if the node is not affine there.
 pub(crate) fn linear_between_jumps(graph: &mut Graph, root: NodeId, level: u16) -> Option<Linear> {
     let mut known: FxHashMap<NodeId, Option<Box<Linear>>> = FxHashMap::default();
     for node in reachable(graph, &[root]) {
         if is_fixed(graph, node, level) {
             continue;
         }
-        let is_kept = |id: NodeId| {
+        let is_constant = |id: NodeId| {
             let linear = known.get(&id).and_then(Option::as_deref);
             is_fixed(graph, id, level) || linear.is_some_and(Linear::is_zero)
         };
         let mut arguments = graph.arguments(node).peekable();
-        let follows = arguments.peek().is_some() && arguments.all(is_kept);
-        let linear = if follows || jumps(graph.node(node)) {
+        let has_constant_arguments = arguments.peek().is_some() && arguments.all(is_constant);
+        let linear = if has_constant_arguments || is_piecewise_constant(graph.node(node)) {
             Some(Linear::new(graph.ty(node).width(), |_| [ZERO; 3]))
         } else {
             linear_part(graph, node, level, &known)
@@ -79,8 +81,8 @@ pub(crate) fn linear_between_jumps(graph: &mut Graph, root: NodeId, level: u16) 
     known.get(&root)?.as_deref().copied()
 }
 
-/// Whether a node keeps its value but where it jumps.
-fn jumps(node: Node) -> bool {
+/// True if the operation is constant between its jumps.
+fn is_piecewise_constant(node: Node) -> bool {
     matches!(
         node,
         Node::Unary(Unary::Sign | Unary::Floor | Unary::Ceil | Unary::Round | Unary::Trunc, _)
@@ -88,7 +90,8 @@ fn jumps(node: Node) -> bool {
     )
 }
 
-/// The linear part of a node that the point of `level` moves, given those of its arguments that it moves; `None` if it is not affine.
+/// The linear lane of a node that depends on the point of `level`. `known` holds the linear lanes of
+/// those of its arguments that do. Returns `None` if the node is not affine.
 pub(crate) fn linear_part(
     graph: &mut Graph,
     node: NodeId,
@@ -114,12 +117,12 @@ pub(crate) fn linear_part(
         Node::Binary(Binary::Add, a, b) => {
             let (a, b) = (of(graph, a)?, of(graph, b)?);
             let sum = |lane: usize, i: usize| a.rows[lane][i].plus(graph, b.rows[lane][i]);
-            Some(by_place(a.lanes, sum))
+            Some(from_coefficients(a.lanes, sum))
         }
         Node::Binary(Binary::Sub, a, b) => {
             let (a, b) = (of(graph, a)?, of(graph, b)?);
             let difference = |lane: usize, i: usize| a.rows[lane][i].minus(graph, b.rows[lane][i]);
-            Some(by_place(a.lanes, difference))
+            Some(from_coefficients(a.lanes, difference))
         }
         Node::Binary(Binary::Mul, a, b) => {
             let (fixed, varying) = if is_fixed(graph, a, level) { (a, b) } else { (b, a) };
@@ -149,10 +152,10 @@ pub(crate) fn linear_part(
             let row = of(graph, a)?.rows[0];
             Some(Linear::new(width, |_| row))
         }
-        Node::Compose(_, parts) => {
+        Node::Compose(_, lanes) => {
             let mut rows = [[ZERO; 3]; 4];
-            for (row, &part) in rows.iter_mut().zip(&parts[..width]) {
-                *row = of(graph, part)?.rows[0];
+            for (row, &lane) in rows.iter_mut().zip(&lanes[..width]) {
+                *row = of(graph, lane)?.rows[0];
             }
             Some(Linear { rows, lanes: width })
         }
@@ -184,13 +187,14 @@ pub(crate) fn linear_part(
     }
 }
 
-/// Whether the point of `level` does not move the node: known before it is, or from the points of formulas around alone.
+/// True if the node does not depend on the point of `level`: it has a lower evaluation rate, or depends
+/// only on the points of enclosing formulas.
 pub(crate) fn is_fixed(graph: &Graph, node: NodeId, level: u16) -> bool {
     graph.stage(node) < Stage::Point
         || (graph.levels(node) <= level && graph.loops_around(node) == 0)
 }
 
-/// The lanes of a fixed node, the last one repeated.
+/// The lanes of a fixed node. The last lane is repeated up to four.
 fn lanes_of(graph: &mut Graph, node: NodeId) -> [Coefficient; 4] {
     let last = graph.ty(node).width() - 1;
     if let Some(value) = graph.as_const(node) {
@@ -202,7 +206,10 @@ fn lanes_of(graph: &mut Graph, node: NodeId) -> [Coefficient; 4] {
     })
 }
 
-fn by_place(lanes: usize, mut coefficient: impl FnMut(usize, usize) -> Coefficient) -> Linear {
+fn from_coefficients(
+    lanes: usize,
+    mut coefficient: impl FnMut(usize, usize) -> Coefficient,
+) -> Linear {
     Linear::new(lanes, |lane| std::array::from_fn(|i| coefficient(lane, i)))
 }
 
@@ -215,20 +222,20 @@ fn weighted_sum(graph: &mut Graph, rows: &[Row], weights: &[Coefficient]) -> Row
     })
 }
 
-/// The map without its offset, of a vector.
+/// Applies the linear lane of a map to a vector.
 pub(crate) fn applied(graph: &mut Graph, linear: &Linear, vector: NodeId) -> NodeId {
     if linear.is_identity() {
         return vector;
     }
     let columns = [0, 1, 2].map(|i| {
-        let parts: Vec<NodeId> = linear.rows().iter().map(|row| row[i].node(graph)).collect();
-        graph.compose(&parts)
+        let lanes: Vec<NodeId> = linear.rows().iter().map(|row| row[i].node(graph)).collect();
+        graph.compose(&lanes)
     });
     graph.transform(columns, vector)
 }
 
-/// The largest factor by which the map stretches distances; `None` where it cannot be told.
-pub(crate) fn stretch(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
+/// The operator norm of the map; `None` if it is not known.
+pub(crate) fn operator_norm(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
     match constant_rows(linear) {
         Some(rows) => Some(graph.number(largest_singular_value(&rows))),
         None => similarity(graph, linear),
@@ -240,7 +247,8 @@ fn constant_rows(linear: &Linear) -> Option<Vec<[f64; 3]>> {
     linear.rows().iter().map(row_of).collect()
 }
 
-/// The factor of a multiple of an isometry: rows orthogonal and of one squared length.
+/// The factor by which the map scales all distances; `None` if its rows are not orthogonal and of
+/// equal length, so that it is no similarity.
 pub(crate) fn similarity(graph: &mut Graph, linear: &Linear) -> Option<NodeId> {
     if let Some(rows) = constant_rows(linear) {
         return constant_similarity(&rows).map(|factor| graph.number(factor));
@@ -279,8 +287,8 @@ fn constant_similarity(rows: &[[f64; 3]]) -> Option<f64> {
     Some(if same(norm, 1.0) { 1.0 } else { norm.sqrt() })
 }
 
-/// Largest singular value of a matrix of rows of three: the root of the largest eigenvalue of AᵀA,
-/// by cyclic Jacobi rotations (Golub and Van Loan, section 8.5).
+/// The largest singular value of a matrix with rows of three: the square root of the largest
+/// eigenvalue of AᵀA, by cyclic Jacobi rotations (Golub and Van Loan, section 8.5).
 pub(crate) fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
     let mut m = [[0.0; 3]; 3];
     for row in rows {
@@ -290,7 +298,7 @@ pub(crate) fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
             }
         }
     }
-    // What is left off the diagonal then moves no eigenvalue by more than rounding.
+    // Smaller elements off the diagonal change no eigenvalue by more than rounding does.
     let negligible = f64::EPSILON * 0.01 * (m[0][0] + m[1][1] + m[2][2]);
     for _ in 0..12 {
         if [m[0][1], m[0][2], m[1][2]].iter().all(|off| off.abs() <= negligible) {
@@ -301,7 +309,7 @@ pub(crate) fn largest_singular_value(rows: &[[f64; 3]]) -> f64 {
         }
     }
     let largest = m[0][0].max(m[1][1]).max(m[2][2]).max(0.0).sqrt();
-    // A rotation's constant is 1, not 1 plus rounding: later comparisons ask for `<= 1`.
+    // The norm of a rotation is 1 without rounding errors: later comparisons test `<= 1`.
     if (largest - 1.0).abs() < 1e-12 { 1.0 } else { largest }
 }
 

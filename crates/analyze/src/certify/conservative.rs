@@ -1,40 +1,42 @@
-//! The field that rays march: a scene's distance, divided where it must be.
+//! The conservative field that rays march: the scene's distance, divided by Lipschitz constants.
 //!
-//! From the root down through hard `min` and `max`, sign changes and rigid samples, each operand is
-//! divided by its own Lipschitz constant; what stands under anything else (a blend, an offset) is
-//! expanded undivided, its constant travels up. So no division moves a surface.
+//! The pass descends from the root through hard `min` and `max`, sign changes and rigid samples, and
+//! divides each operand by its own Lipschitz constant. The operands of all other operations, such as
+//! blends and offsets, are expanded undivided, and their constants contribute to the constant of the
+//! whole. So no division moves a surface.
 //!
-//! A constant that is stated with bounds and not known to hold beyond them is used there: the field is continued
-//! ([`sdfc_graph::Graph::continued`]).
+//! A constant that is stated with bounds, and is not known to hold beyond them, is used only within
+//! the bounds. Beyond them the field is continued ([`sdfc_graph::Graph::continued`]).
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{ExpandError, Expander, Graph, NodeId, ShapeId, Stage};
 
 use crate::certify::descent::{Form, chain_below, form};
-use crate::certify::lipschitz::{Constant, Reason, Slopes};
+use crate::certify::lipschitz::Slopes;
 use crate::certify::quality::Qualities;
+use crate::certify::reason::{Constant, Reason};
 
-/// A part of the scene that no constant covers.
+/// A part of the scene without a known Lipschitz constant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Uncertified {
-    /// The shape whose formula it stands in.
+    /// The shape whose formula contains it.
     pub shape: ShapeId,
-    /// Why.
+    /// The reason why there is no constant.
     pub reason: Reason,
 }
 
-/// The sound field of a scene.
+/// The conservative field of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct ConservativeField {
-    /// The distance to march by.
+    /// The distance that rays step by.
     pub distance: NodeId,
-    /// What no constant covers; empty for a certified scene.
+    /// The parts without a constant; empty for a certified scene.
     pub uncertified: Vec<Uncertified>,
-    /// Shapes that were divided by a constant above 1.
+    /// The shapes that were divided by a constant above 1.
     pub divided: Vec<ShapeId>,
 }
 
-/// The sound field of `root` at `point`.
+/// Expands the conservative field of `root` at `point`.
 pub(crate) fn conservative_field(
     graph: &mut Graph,
     expander: &mut Expander,
@@ -76,9 +78,9 @@ impl Pass<'_> {
         let Some(quality) = self.qualities.get(shape) else {
             return self.expander.field_under(self.graph, shape, outer, point);
         };
-        let (everywhere, within) = (quality.everywhere, quality.within);
+        let (everywhere, local_bounds) = (quality.everywhere, quality.local_bounds);
         let constant = quality.lipschitz.clone();
-        // What never exceeds the distance needs no constant.
+        // A field that never exceeds the distance needs no constant.
         let is_bound = constant.is_err() && quality.sides.is_bound();
         if everywhere && (is_bound || self.is_at_most_one(&constant)) {
             return self.expander.field_under(self.graph, shape, outer, point);
@@ -88,17 +90,18 @@ impl Pass<'_> {
         points.push(point);
         let contract = self.graph.shape(shape).contract;
         if constant.is_ok() && contract.lipschitz.is_some() && !everywhere {
-            // A stated constant trusts that the children's hold wherever the formula samples them.
-            self.trust_children(shape, self.graph.shape(shape).formula);
+            // A stated constant assumes that the constants of the children hold wherever the formula
+            // samples them.
+            self.check_children(shape, self.graph.shape(shape).formula);
         }
-        let bounds = within.or(contract.lipschitz.and(contract.bounds));
+        let bounds = local_bounds.or(contract.lipschitz.and(contract.bounds));
         let value = match (constant, contract.lipschitz, bounds) {
             (Ok(constant), _, Some(bounds)) if !everywhere => {
-                self.drawn_into(shape, constant, bounds, &points)?
+                self.continued(shape, constant, bounds, &points)?
             }
             (constant, Some(_), _) => {
                 let formula = self.graph.shape(shape).formula;
-                self.by_constant(shape, formula, constant, &points)?
+                self.divided_by(shape, formula, constant, &points)?
             }
             (_, None, _) => {
                 let formula = self.graph.shape(shape).formula;
@@ -110,8 +113,8 @@ impl Pass<'_> {
         Ok(value)
     }
 
-    /// A node of a shape's formula, or all of it, by a constant.
-    fn by_constant(
+    /// Expands a node of a shape's formula and divides it by a constant.
+    fn divided_by(
         &mut self,
         shape: ShapeId,
         node: NodeId,
@@ -135,7 +138,7 @@ impl Pass<'_> {
         constant.as_ref().is_ok_and(|&l| self.graph.as_number(l).is_some_and(|l| l <= 1.0))
     }
 
-    /// The formula with its operands of hard minima and maxima made sound one by one.
+    /// Expands a formula and divides its operands of hard minima and maxima one by one.
     fn descend(
         &mut self,
         shape: ShapeId,
@@ -143,39 +146,39 @@ impl Pass<'_> {
         slopes: &mut Slopes,
         points: &[NodeId],
     ) -> Result<NodeId, ExpandError> {
-        let mut sound: FxHashMap<NodeId, NodeId> = FxHashMap::default();
+        let mut built: FxHashMap<NodeId, NodeId> = FxHashMap::default();
         for node in chain_below(self.graph, formula, &mut slopes.maps) {
-            let of = |id: NodeId| sound.get(&id).copied().unwrap_or(id);
+            let of = |id: NodeId| built.get(&id).copied().unwrap_or(id);
             let value = match form(self.graph, node, &mut slopes.maps) {
-                Form::Whole => self.divided(shape, node, slopes, points)?,
-                Form::Least(a, b) => self.graph.min(of(a), of(b)),
-                Form::Greatest(a, b) => self.graph.max(of(a), of(b)),
-                Form::Negative(a) => self.graph.neg(of(a)),
-                Form::Chosen(condition, a, b) => {
+                Form::Other => self.divided_operand(shape, node, slopes, points)?,
+                Form::Min(a, b) => self.graph.min(of(a), of(b)),
+                Form::Max(a, b) => self.graph.max(of(a), of(b)),
+                Form::Neg(a) => self.graph.neg(of(a)),
+                Form::Select(condition, a, b) => {
                     let condition = self.expander.node(self.graph, condition, points)?;
                     self.graph.select(condition, of(a), of(b))
                 }
-                Form::Sampled(child, q) => {
+                Form::Sample(child, q) => {
                     let q = self.expander.node(self.graph, q, points)?;
                     self.shape(child, points, q)?
                 }
-                Form::Scaled(factor, child, q) => {
+                Form::ScaledSample(factor, child, q) => {
                     let factor = self.expander.node(self.graph, factor, points)?;
                     let q = self.expander.node(self.graph, q, points)?;
                     let inner = self.shape(child, points, q)?;
                     self.graph.mul(factor, inner)
                 }
             };
-            sound.insert(node, value);
+            built.insert(node, value);
         }
-        match sound.get(&formula) {
+        match built.get(&formula) {
             Some(&value) => Ok(value),
             None => self.expander.node(self.graph, formula, points),
         }
     }
 
-    /// An operand as a whole, by its own constant.
-    fn divided(
+    /// Expands an operand of the descent and divides it by its own constant.
+    fn divided_operand(
         &mut self,
         shape: ShapeId,
         node: NodeId,
@@ -185,11 +188,11 @@ impl Pass<'_> {
         if self.graph.stage(node) < Stage::Point {
             return self.expander.node(self.graph, node, points);
         }
-        self.trust_children(shape, node);
-        self.by_constant(shape, node, slopes.constant(node), points)
+        self.check_children(shape, node);
+        self.divided_by(shape, node, slopes.constant(node), points)
     }
 
-    /// `value / max(constant, 1)`
+    /// `value / max(constant, 1)`.
     fn quotient(&mut self, shape: ShapeId, value: NodeId, constant: NodeId) -> NodeId {
         let one = self.graph.number(1.0);
         let constant = self.graph.max(constant, one);
@@ -199,15 +202,15 @@ impl Pass<'_> {
         self.graph.div(value, constant)
     }
 
-    /// Tells if `node` rests on a child whose constant holds only within bounds.
-    fn trust_children(&mut self, shape: ShapeId, node: NodeId) {
+    /// Reports the shape if `node` samples a child whose constant holds only within bounds.
+    fn check_children(&mut self, shape: ShapeId, node: NodeId) {
         if let Some(child) = self.child_within_bounds(node) {
             let name = self.graph.shape(child).definition.clone();
             self.uncertified.push(Uncertified { shape, reason: Reason::Within(name) });
         }
     }
 
-    /// A sampled child whose constant holds only within its bounds.
+    /// The first child below `node` whose constant holds only within its bounds.
     fn child_within_bounds(&self, node: NodeId) -> Option<ShapeId> {
         sdfc_graph::reachable(self.graph, &[node]).into_iter().find_map(|id| {
             let (child, _) = self.graph.as_sample(id)?;
@@ -216,8 +219,8 @@ impl Pass<'_> {
         })
     }
 
-    /// The field of a constant that holds within bounds, continued beyond them.
-    fn drawn_into(
+    /// Divides a formula by a constant that holds within bounds, and continues the field beyond them.
+    fn continued(
         &mut self,
         shape: ShapeId,
         constant: NodeId,

@@ -1,24 +1,33 @@
-//! Hard minima and maxima, sign changes and rigid samples: what a scene's field is made of from its root down, until
-//! something else stands there.
+//! The descent from a formula's root through hard minima and maxima, sign changes and samples.
+//!
+//! A scene's field consists of these operations near its root. The descent ends at every other node,
+//! which callers treat as a whole.
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};
 
 use crate::certify::maps::Maps;
-use crate::certify::quality::{is_one, scaled_sample};
+use crate::certify::quality::{is_fixed_shape, scaled_sample};
 
-/// How a node of a formula passes its value on.
+/// How a node of a formula passes on the values of its operands.
 pub(crate) enum Form {
-    Least(NodeId, NodeId),
-    Greatest(NodeId, NodeId),
-    Negative(NodeId),
-    Chosen(NodeId, NodeId, NodeId),
-    Sampled(ShapeId, NodeId),
-    Scaled(NodeId, ShapeId, NodeId),
-    Whole,
+    /// The minimum of two operands.
+    Min(NodeId, NodeId),
+    /// The maximum of two operands.
+    Max(NodeId, NodeId),
+    /// The negated operand.
+    Neg(NodeId),
+    /// A condition that does not depend on the point, and the operands it selects from.
+    Select(NodeId, NodeId, NodeId),
+    /// A shape, sampled at an isometric map of the point.
+    Sample(ShapeId, NodeId),
+    /// A factor times a shape that is sampled at a point scaled by its inverse.
+    ScaledSample(NodeId, ShapeId, NodeId),
+    /// Any other node.
+    Other,
 }
 
-/// The nodes that a descent from a formula visits, arguments before uses.
+/// The nodes that the descent from a formula visits, arguments before uses.
 pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, maps: &mut Maps) -> Vec<NodeId> {
     let mut seen = FxHashSet::default();
     let mut pending = vec![formula];
@@ -27,11 +36,11 @@ pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, maps: &mut Maps) -
             continue;
         }
         match form(graph, node, maps) {
-            Form::Least(a, b) | Form::Greatest(a, b) | Form::Chosen(_, a, b) => {
+            Form::Min(a, b) | Form::Max(a, b) | Form::Select(_, a, b) => {
                 pending.extend([a, b]);
             }
-            Form::Negative(a) => pending.push(a),
-            Form::Whole | Form::Sampled(..) | Form::Scaled(..) => {}
+            Form::Neg(a) => pending.push(a),
+            Form::Other | Form::Sample(..) | Form::ScaledSample(..) => {}
         }
     }
     let mut order: Vec<NodeId> = seen.into_iter().collect();
@@ -39,30 +48,31 @@ pub(crate) fn chain_below(graph: &mut Graph, formula: NodeId, maps: &mut Maps) -
     order
 }
 
-/// How a descent goes on at a node of a formula.
+/// Classifies a node of a formula for the descent.
 pub(crate) fn form(graph: &mut Graph, node: NodeId, maps: &mut Maps) -> Form {
     let scalar = graph.ty(node) == Type::Scalar;
     match graph.node(node) {
-        Node::Binary(Binary::Min, a, b) if scalar => Form::Least(a, b),
-        Node::Binary(Binary::Max, a, b) if scalar => Form::Greatest(a, b),
-        Node::Unary(Unary::Neg, a) if scalar => Form::Negative(a),
+        Node::Binary(Binary::Min, a, b) if scalar => Form::Min(a, b),
+        Node::Binary(Binary::Max, a, b) if scalar => Form::Max(a, b),
+        Node::Unary(Unary::Neg, a) if scalar => Form::Neg(a),
         Node::Ternary(Ternary::Select, [condition, a, b])
             if scalar && graph.stage(condition) < Stage::Point =>
         {
-            Form::Chosen(condition, a, b)
+            Form::Select(condition, a, b)
         }
         Node::Sample(child, q)
-            if is_one(graph, child, maps.level()) && maps.is_isometry(graph, q) =>
+            if is_fixed_shape(graph, child, maps.level()) && maps.is_isometry(graph, q) =>
         {
-            Form::Sampled(child, q)
+            Form::Sample(child, q)
         }
         Node::Binary(Binary::Mul, a, b) => match scaled_sample(graph, a, b) {
             Some((factor, child, q))
-                if is_one(graph, child, maps.level()) && maps.is_similarity(graph, q, factor) =>
+                if is_fixed_shape(graph, child, maps.level())
+                    && maps.is_similarity(graph, q, factor) =>
             {
-                Form::Scaled(factor, child, q)
+                Form::ScaledSample(factor, child, q)
             }
-            Some(_) | None => Form::Whole,
+            Some(_) | None => Form::Other,
         },
         Node::Const(_)
         | Node::Point(..)
@@ -78,6 +88,6 @@ pub(crate) fn form(graph: &mut Graph, node: NodeId, maps: &mut Maps) -> Form {
         | Node::Loop(..)
         | Node::Element(..)
         | Node::Sample(..)
-        | Node::MaterialAt(..) => Form::Whole,
+        | Node::MaterialAt(..) => Form::Other,
     }
 }

@@ -1,18 +1,21 @@
-//! Operators that use the value of a distance, not only its sign.
+//! Operators that need an exact distance and are applied to a field that is only a bound.
 //!
-//! `a - r` is the surface at the distance r from that of `a`, `abs(a) - w` the two surfaces at the distance w, only
-//! where `a` is the distance. Of a mere bound they are surfaces too, but at a distance that varies.
+//! `a - r` is the surface at distance r from the surface of `a`, and `abs(a) - w` is the pair of
+//! surfaces at distance w, only where `a` is the exact distance. If `a` is only a bound, the distance
+//! between the surfaces varies.
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Unary};
 
-use crate::certify::quality::{Promise, Qualities, Sides, shapes_below};
+use crate::certify::promise::{Promise, Sides};
+use crate::certify::quality::Qualities;
+use crate::shapes::shapes_below;
 
-/// An operator whose result is uneven.
+/// An operator that needs an exact distance and is applied to an inexact field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct InexactOperator {
-    /// The operator's instance.
+    /// The instance of the operator.
     pub shape: ShapeId,
-    /// Where below it the field stops being the distance.
+    /// The shape below it at which the field stops being exact.
     pub cause: ShapeId,
 }
 
@@ -30,7 +33,8 @@ pub(crate) fn inexact_operators(
     found.collect()
 }
 
-/// Where at or below `root` the field stops being the distance outside; `None` where it is that.
+/// The shape at or below `root` at which the field stops being exact outside; `None` if it is exact
+/// there.
 pub(crate) fn inexact_outside(
     graph: &Graph,
     qualities: &Qualities,
@@ -39,14 +43,16 @@ pub(crate) fn inexact_outside(
     cause(graph, qualities, LevelSet { child: root, outside: true, inside: false })
 }
 
-/// A child whose surface at some distance is wanted.
+/// A child of which an operator uses a level set other than the surface.
 struct LevelSet {
     child: ShapeId,
+    /// True if a level set outside the child is used.
     outside: bool,
+    /// True if a level set inside the child is used.
     inside: bool,
 }
 
-/// What a formula `a ± r` or `abs(a) ± r` wants of `a`.
+/// The level sets of `a` that a formula `a ± r` or `abs(a) ± r` uses.
 fn level_set(graph: &Graph, qualities: &Qualities, shape: ShapeId) -> Option<LevelSet> {
     let (value, offset, sign) = match graph.node(graph.shape(shape).formula) {
         Node::Binary(Binary::Sub, a, r) if graph.stage(r) < Stage::Point => (a, r, 1.0),
@@ -70,28 +76,29 @@ fn level_set(graph: &Graph, qualities: &Qualities, shape: ShapeId) -> Option<Lev
     let range = qualities.range(graph, offset);
     let (lo, hi) = (range.lo(), range.hi());
     let (out, within) = if sign > 0.0 { (hi, -lo) } else { (-lo, hi) };
-    let skin = folded(graph, value);
-    let (child, _) = graph.as_sample(skin.unwrap_or(value))?;
-    let both = skin.is_some();
-    Some(LevelSet { child, outside: out > 0.0, inside: within > 0.0 || (both && out > 0.0) })
+    let shell = absolute(graph, value);
+    let (child, _) = graph.as_sample(shell.unwrap_or(value))?;
+    let is_shell = shell.is_some();
+    Some(LevelSet { child, outside: out > 0.0, inside: within > 0.0 || (is_shell && out > 0.0) })
 }
 
-fn folded(graph: &Graph, node: NodeId) -> Option<NodeId> {
+fn absolute(graph: &Graph, node: NodeId) -> Option<NodeId> {
     if let Node::Unary(Unary::Abs, inner) = graph.node(node) { Some(inner) } else { None }
 }
 
-/// The lowest shape on the way down that is not exact although all below it is; by way of those that lack what is wanted,
-/// where there are such.
-fn cause(graph: &Graph, qualities: &Qualities, wanted: LevelSet) -> Option<ShapeId> {
+/// The lowest inexact shape whose children are all exact, on a path down from the child. Children that
+/// are inexact on a side that is used come first.
+fn cause(graph: &Graph, qualities: &Qualities, level_set: LevelSet) -> Option<ShapeId> {
     let sides = |shape: ShapeId| qualities.get(shape).map(|quality| quality.sides);
     let lacks = |shape: ShapeId| {
-        let lacking = |wanted: bool, promise: Promise| wanted && promise != Promise::Exact;
+        let is_lacking = |used: bool, promise: Promise| used && promise != Promise::Exact;
         sides(shape).is_some_and(|sides| {
-            lacking(wanted.outside, sides.outside) || lacking(wanted.inside, sides.inside)
+            is_lacking(level_set.outside, sides.outside)
+                || is_lacking(level_set.inside, sides.inside)
         })
     };
     let is_exact = |shape: ShapeId| sides(shape).is_some_and(Sides::is_exact);
-    let mut cause = Some(wanted.child).filter(|&child| lacks(child))?;
+    let mut cause = Some(level_set.child).filter(|&child| lacks(child))?;
     let below = |shape: ShapeId| {
         let children = graph.shape(shape).children.iter().copied();
         children

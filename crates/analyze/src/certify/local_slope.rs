@@ -1,48 +1,49 @@
-//! How fast a formula can change within a box, by interval derivatives.
+//! Lipschitz constants within a box, by interval derivatives.
 //!
-//! For formulas that the rules of [`crate::certify::lipschitz`] do not cover, such as products of coordinates. The gradient is evaluated over
-//! intervals; the box is cut where it may be longest, until what is left to gain is little. Params take
-//! part with their ranges, so the constant holds for every position of their sliders.
+//! They cover formulas that the rules of [`crate::certify::lipschitz`] do not, such as products of
+//! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound is split
+//! until another split gains little. Params have the intervals of their ranges, so the constant holds
+//! for all of their values.
 
 use std::collections::BinaryHeap;
 
 use sdfc_graph::eval::{BranchPath, Evaluator, FrameValues, Interval, Tape};
 use sdfc_graph::{Expander, Graph, NodeId, Param, ShapeId, gradient};
 
-/// Scalar operations that one shape's search may take.
+/// Budget of one shape's search, in scalar operations.
 const OPERATIONS: usize = 1_000_000;
-/// But no more boxes than this, and no fewer than the other.
-const MOST_BOXES: usize = 2048;
-const FEWEST_BOXES: usize = 64;
-/// A constant is good enough if it exceeds a slope that occurs by no more than this part.
-const LOOSE: f64 = 0.02;
+/// Limits of the number of boxes, whatever the budget.
+const MAX_BOXES: usize = 2048;
+const MIN_BOXES: usize = 64;
+/// The search ends if the constant exceeds a slope that occurs by no more than this fraction.
+const TOLERANCE: f64 = 0.02;
 
-/// Steps that are shorter than the usual slope asks for by more than this cost more than the proof of stretches that takes their
-/// place where there is no constant.
-const UNEVEN: f64 = 16.0;
-/// Places to an axis where the slope is looked at.
-const PLACES: usize = 5;
+/// Largest ratio of the largest to the median slope. Above it, the short steps cost more than interval
+/// tracing, which is used if there is no constant.
+const MAX_RATIO: f64 = 16.0;
+/// Sample points for the median slope along each axis.
+const SAMPLES: usize = 5;
 
-/// A box, per axis from low to high.
+/// The lowest and highest coordinate of a box on each axis.
 type Region = [[f64; 2]; 3];
 
-/// How fast a formula changes within a box.
+/// The slopes of a formula within a box.
 pub(crate) struct Slope {
-    /// A constant that holds all over the box.
-    pub(crate) most: f64,
+    /// An upper bound: a Lipschitz constant for the box.
+    pub(crate) largest: f64,
     /// The median over the box.
-    usual: f64,
+    median: f64,
 }
 
 impl Slope {
-    /// Whether a field divided by the greatest slope is still worth stepping by.
-    pub(crate) fn is_even(&self) -> bool {
-        self.most <= UNEVEN * self.usual
+    /// True if stepping by the field divided by the largest slope is worth it.
+    pub(crate) fn is_uniform(&self) -> bool {
+        self.largest <= MAX_RATIO * self.median
     }
 }
 
-/// How fast a shape's formula changes within its bounds, for all values of the params; `None` where the bounds or the slope
-/// have no end, or the formula jumps.
+/// The slopes of a shape's formula within its bounds, for all values of the params. Returns `None` if
+/// the bounds or the slope are infinite, or the formula jumps.
 pub(crate) fn steepest_within(
     graph: &mut Graph,
     shape: ShapeId,
@@ -60,7 +61,7 @@ pub(crate) fn steepest_within(
     let slope = gradient(graph, field, point);
     let tapes = [Tape::new(graph, &[field]).ok()?, Tape::new(graph, &[slope]).ok()?];
     let cost = tapes.iter().map(Tape::operations).fold(1, usize::saturating_add);
-    let boxes = (OPERATIONS / cost).clamp(FEWEST_BOXES, MOST_BOXES);
+    let boxes = (OPERATIONS / cost).clamp(MIN_BOXES, MAX_BOXES);
     let [field, slope] = &tapes;
     let mut search = Search {
         field: field.prepare_in(&ranges),
@@ -68,42 +69,43 @@ pub(crate) fn steepest_within(
         path: BranchPath::default(),
         axes: dim.point_type().width(),
     };
-    let most = search.run(region, boxes)?;
-    Some(Slope { most, usual: search.usual(region) })
+    let largest = search.run(region, boxes)?;
+    Some(Slope { largest, median: search.median(region) })
 }
 
-/// The box in which the bounds lie whatever the params are; `None` if it is empty or has no end.
+/// The smallest box that holds the bounds for all values of the params; `None` if it is empty or
+/// infinite.
 fn region(graph: &Graph, bounds: [NodeId; 2], ranges: &FrameValues<Interval>) -> Option<Region> {
     let tape = Tape::new(graph, &bounds).ok()?;
     let mut corners = tape.prepare_in(ranges);
     let [lo, hi] = corners.eval([Interval::ENTIRE; 3]) else { return None };
     let axis = |i: usize| [lo[i].lo(), hi[i].hi()];
     let region = [axis(0), axis(1), axis(2)];
-    let sound = |[lo, hi]: &[f64; 2]| lo.is_finite() && hi.is_finite() && lo <= hi;
-    region.iter().all(sound).then_some(region)
+    let is_valid = |[lo, hi]: &[f64; 2]| lo.is_finite() && hi.is_finite() && lo <= hi;
+    region.iter().all(is_valid).then_some(region)
 }
 
-/// A box and the longest that the gradient may be in it.
-struct Part {
+/// A box and an upper bound of the gradient's length in it.
+struct Cell {
     limit: f64,
     region: Region,
 }
 
-impl PartialEq for Part {
+impl PartialEq for Cell {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Part {}
+impl Eq for Cell {}
 
-impl PartialOrd for Part {
+impl PartialOrd for Cell {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Part {
+impl Ord for Cell {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.limit.total_cmp(&other.limit)
     }
@@ -118,54 +120,55 @@ struct Search<'t> {
 
 impl Search<'_> {
     fn run(&mut self, region: Region, boxes: usize) -> Option<f64> {
-        // The longest gradient that certainly occurs somewhere.
+        // The largest gradient length that certainly occurs.
         let mut reached: f64 = 0.0;
-        let mut parts = BinaryHeap::from([self.part(region, &mut reached)]);
+        let mut cells = BinaryHeap::from([self.cell(region, &mut reached)]);
         for _ in 0..boxes {
-            let worst = parts.pop()?;
-            if worst.limit <= reached * (1.0 + LOOSE) {
-                parts.push(worst);
+            let worst = cells.pop()?;
+            if worst.limit <= reached * (1.0 + TOLERANCE) {
+                cells.push(worst);
                 break;
             }
             for half in self.halves(&worst.region) {
-                let part = self.part(half, &mut reached);
-                parts.push(part);
+                let cell = self.cell(half, &mut reached);
+                cells.push(cell);
             }
         }
-        let limit = parts.pop()?.limit;
+        let limit = cells.pop()?.limit;
         limit.is_finite().then_some(limit)
     }
 
-    /// The median of the slopes at places evenly spread over a region.
-    fn usual(&mut self, region: Region) -> f64 {
+    /// The median of the slopes at evenly spaced points of a region.
+    fn median(&mut self, region: Region) -> f64 {
         let at = |axis: usize, i: usize| {
             let [lo, hi] = region[axis];
-            let place = lo + (hi - lo) * (i as f64 + 0.5) / PLACES as f64;
-            Interval::new(place, place)
+            let coordinate = lo + (hi - lo) * (i as f64 + 0.5) / SAMPLES as f64;
+            Interval::new(coordinate, coordinate)
         };
-        let mut slopes = Vec::with_capacity(PLACES.pow(3));
-        for i in 0..PLACES.pow(3) {
-            let place = [at(0, i % PLACES), at(1, i / PLACES % PLACES), at(2, i / PLACES.pow(2))];
-            slopes.push(self.lengths(place).1);
+        let mut slopes = Vec::with_capacity(SAMPLES.pow(3));
+        for i in 0..SAMPLES.pow(3) {
+            let point =
+                [at(0, i % SAMPLES), at(1, i / SAMPLES % SAMPLES), at(2, i / SAMPLES.pow(2))];
+            slopes.push(self.lengths(point).1);
         }
         slopes.sort_by(f64::total_cmp);
         slopes[slopes.len() / 2]
     }
 
-    /// Without a limit where the field may jump.
-    fn part(&mut self, region: Region, reached: &mut f64) -> Part {
+    /// Evaluates the gradient on a box. The upper bound is infinite if the field may jump there.
+    fn cell(&mut self, region: Region, reached: &mut f64) -> Cell {
         let at = region.map(|[lo, hi]| Interval::new(lo, hi));
         self.path.clear();
         self.field.scalar_along(at, &mut self.path);
         if self.path.is_open() {
-            return Part { limit: f64::INFINITY, region };
+            return Cell { limit: f64::INFINITY, region };
         }
         let (shortest, limit) = self.lengths(at);
         *reached = reached.max(shortest);
-        Part { limit, region }
+        Cell { limit, region }
     }
 
-    /// The least and the greatest length of the gradient on a box.
+    /// Lower and upper bound of the gradient's length on a box.
     fn lengths(&mut self, at: [Interval; 3]) -> (f64, f64) {
         let lanes = self.slope.eval(at).first().copied().unwrap_or([Interval::ENTIRE; 4]);
         let lanes = &lanes[..self.axes];
@@ -173,19 +176,19 @@ impl Search<'_> {
         let least =
             |x: &Interval| if x.contains(0.0) { 0.0 } else { x.lo().abs().min(x.hi().abs()) };
         let most = |x: &Interval| x.lo().abs().max(x.hi().abs());
-        // Above the rounding of the sum and its root.
+        // The factor covers the rounding of the sum and of its root.
         (length(least).sqrt(), length(most).sqrt() * (1.0 + 1e-12))
     }
 
-    /// Cut across the longest side.
+    /// Splits a box across its longest side.
     fn halves(&self, region: &Region) -> [Region; 2] {
         let side = |axis: &usize| region[*axis][1] - region[*axis][0];
-        let longest = (0..self.axes).max_by(|a, b| side(a).total_cmp(&side(b))).unwrap_or(0);
-        let [lo, hi] = region[longest];
+        let widest = (0..self.axes).max_by(|a, b| side(a).total_cmp(&side(b))).unwrap_or(0);
+        let [lo, hi] = region[widest];
         let middle = lo + 0.5 * (hi - lo);
         let (mut first, mut second) = (*region, *region);
-        first[longest] = [lo, middle];
-        second[longest] = [middle, hi];
+        first[widest] = [lo, middle];
+        second[widest] = [middle, hi];
         [first, second]
     }
 }

@@ -1,24 +1,30 @@
-//! Vectors whose lanes mix the same few values, as where what was folded is turned. Lane by lane their constants know nothing
-//! of each other, and grow with each turn; together the lanes are a matrix over those values.
+//! Lipschitz constants of vectors whose lanes are linear combinations of the same few values.
+//!
+//! Such vectors occur where a folded point is rotated, as in kaleidoscopic fractals. Combining the
+//! constants of the single lanes loses that they share values, and the result grows with each
+//! rotation. Taken together, the lanes are a matrix over the shared values, and its operator norm is
+//! the constant.
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Unary};
 
 use crate::certify::affine::{is_fixed, largest_singular_value};
 
-/// Folds, one within the other, that are looked through.
-const MOST_FOLDS: usize = 64;
-/// Terms that one lane may have before they are added up.
-const MOST_TERMS: usize = 256;
+/// Largest number of nested folds that are followed.
+const MAX_FOLDS: usize = 64;
+/// Largest number of terms in one lane.
+const MAX_TERMS: usize = 256;
 
-/// A lane of a node.
+/// One lane of a node.
 type Lane = (NodeId, usize);
 
-/// The constant of a vector of these lanes over the point of `level`: a number, where each of them is a sum of no more than
-/// three values, these are folded lanes of such a vector again, and so on down to the point.
+/// The Lipschitz constant of the vector of `parts` in the point of `level`.
+///
+/// Every lane must be a linear combination of at most three values, the values must be folded lanes of
+/// such a vector again, and so on down to the point; otherwise returns `None`.
 pub(crate) fn constant(graph: &Graph, parts: &[NodeId], level: u16) -> Option<f64> {
     let mut lanes: Vec<Lane> = parts.iter().map(|&part| (part, 0)).collect();
     let mut factor = 1.0;
-    for _ in 0..MOST_FOLDS {
+    for _ in 0..MAX_FOLDS {
         let mut values = Vec::new();
         let rows: Option<Vec<[f64; 3]>> =
             lanes.iter().map(|&lane| row(graph, lane, level, &mut values)).collect();
@@ -36,7 +42,7 @@ fn is_point(graph: &Graph, node: NodeId, level: u16) -> bool {
     matches!(graph.node(node), Node::Point(at, _) if at == level)
 }
 
-/// What a value follows without ever changing by more: |u(x) - u(y)| <= |x - y|.
+/// The lane `x` of which a value is a function u with |u(x) - u(y)| <= |x - y|.
 fn unfolded(graph: &Graph, (node, lane): Lane, level: u16) -> Option<Lane> {
     match graph.node(node) {
         Node::Unary(Unary::Abs | Unary::Sin | Unary::Cos | Unary::Saturate, a) => Some((a, lane)),
@@ -65,11 +71,11 @@ fn unfolded(graph: &Graph, (node, lane): Lane, level: u16) -> Option<Lane> {
     }
 }
 
-/// The factors of a lane over the values, to which it adds those that it is the first to have.
+/// The coefficients of a lane in `values`. Appends values that are not in the list yet.
 fn row(graph: &Graph, lane: Lane, level: u16, values: &mut Vec<Lane>) -> Option<[f64; 3]> {
     let mut row = [0.0; 3];
     let mut terms = vec![(lane, 1.0)];
-    for _ in 0..MOST_TERMS {
+    for _ in 0..MAX_TERMS {
         let Some(((node, lane), factor)) = terms.pop() else { return Some(row) };
         if is_fixed(graph, node, level) {
             continue;
@@ -115,11 +121,11 @@ fn row(graph: &Graph, lane: Lane, level: u16, values: &mut Vec<Lane>) -> Option<
             | Node::Sample(..)
             | Node::MaterialAt(..) => {
                 let known = values.iter().position(|value| *value == (node, lane));
-                let place = known.unwrap_or(values.len());
+                let index = known.unwrap_or(values.len());
                 if known.is_none() {
                     values.push((node, lane));
                 }
-                *row.get_mut(place)? += factor;
+                *row.get_mut(index)? += factor;
             }
         }
     }

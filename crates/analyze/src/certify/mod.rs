@@ -9,4 +9,7 @@ pub(crate) mod lipschitz;
 pub(crate) mod local_slope;
 pub(crate) mod maps;
 pub(crate) mod mixed_lanes;
+pub(crate) mod norms;
+pub(crate) mod promise;
 pub(crate) mod quality;
+pub(crate) mod reason;

@@ -1,4 +1,4 @@
-//! What a function states of its result, held against its values where the scene calls it.
+//! Tests of Lipschitz annotations of functions where the scene calls them.
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{
@@ -8,33 +8,33 @@ use sdfc_graph::{
 use crate::refute::frames::{ParamValues, axes, frames};
 use crate::refute::probe::Random;
 
-/// Pairs of points, in the bounds of each shape whose formula has the call.
+/// Number of pairs of points, in the bounds of each shape whose formula has the call.
 const PAIRS: usize = 2000;
-/// Most such shapes that are looked at.
+/// Largest number of such shapes that are sampled.
 const SHAPES: usize = 4;
-/// How far an axis without bounds is looked at.
+/// Half the sampled interval on an axis without bounds.
 const REACH: f64 = 2.0;
-/// A constant that is exceeded by less is not told, in parts of itself and of what rounding may make of the result.
+/// Relative tolerance, and rounding tolerance, below which an exceeded constant is not reported.
 const SLACK: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 
-/// Two points between which a function's result changes by more than it states.
+/// Two points between which the result of a function changes by more than its annotation allows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LipschitzViolation {
-    /// As stated.
+    /// The stated constant.
     pub constant: f64,
-    /// The change of the result, divided by the largest of an argument.
+    /// The change of the result, divided by the largest change of an argument.
     pub slope: f64,
-    /// One point, in the dimension of the shape that calls it.
+    /// The first point, in the dimension of the shape whose formula has the call.
     pub from: Vec<f64>,
-    /// The other.
+    /// The second point.
     pub to: Vec<f64>,
-    /// Where the params stand.
+    /// The values of the params.
     pub params: ParamValues,
 }
 
-/// Looks for two points that refute what is stated of a function's result, a node. Calls within loops and within what is built anew at
-/// each point are passed over.
+/// Searches for two points that refute the annotation of a function, of which `value` is the result.
+/// Calls in loops, and in shapes whose arguments depend on a point, are skipped.
 pub fn refute_lipschitz(
     scene: &Scene,
     value: NodeId,
@@ -46,7 +46,7 @@ pub fn refute_lipschitz(
     }
     let shapes = callers(graph, scene.root, value);
     let dim = graph.shape(*shapes.first()?).dim;
-    let tape = asked(graph, dim, value, &claim.arguments)?;
+    let tape = call_tape(graph, dim, value, &claim.arguments)?;
     let mut bounds = Bounds::new(&scene.params);
     let corners: Vec<[NodeId; 2]> = shapes.iter().map(|&shape| bounds.of(graph, shape)).collect();
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
@@ -61,7 +61,8 @@ pub fn refute_lipschitz(
     })
 }
 
-/// Shapes whose formulas compute the node; if simplification has left it in none, the scene.
+/// The shapes whose formulas contain the node. If simplification has removed it from all of them, the
+/// root of the scene.
 fn callers(graph: &Graph, root: Option<ShapeId>, value: NodeId) -> Vec<ShapeId> {
     let calls = |&shape: &ShapeId| {
         let shape = graph.shape(shape);
@@ -75,8 +76,8 @@ fn callers(graph: &Graph, root: Option<ShapeId>, value: NodeId) -> Vec<ShapeId> 
     callers
 }
 
-/// The result and the arguments.
-fn asked(graph: &mut Graph, dim: Dim, value: NodeId, arguments: &[NodeId]) -> Option<Tape> {
+/// The result and the arguments of the call as a tape.
+fn call_tape(graph: &mut Graph, dim: Dim, value: NodeId, arguments: &[NodeId]) -> Option<Tape> {
     let space = graph.point(0, Dim::Three);
     let point = match dim {
         Dim::Two => graph.swizzle(space, &[0, 1]),
@@ -90,6 +91,7 @@ fn asked(graph: &mut Graph, dim: Dim, value: NodeId, arguments: &[NodeId]) -> Op
     Tape::new(graph, &roots).ok()
 }
 
+/// The function's values at random pairs of points.
 struct Pairs<'t> {
     values: Evaluator<'t, f64>,
     random: Random,
@@ -109,16 +111,17 @@ impl<'t> Pairs<'t> {
         Self { values: tape.prepare(frame), random: Random(13), window, axes }
     }
 
+    /// Two points between which the slope exceeds `constant`, and the slope.
     fn steeper(&mut self, constant: f64) -> Option<(Vec<f64>, Vec<f64>, f64)> {
-        (0..PAIRS).find_map(|round| {
-            let share = [1.0, 1e-2, 1e-4][round % 3];
+        (0..PAIRS).find_map(|pair| {
+            let fraction = [1.0, 1e-2, 1e-4][pair % 3];
             let (from, other) = (self.point(), self.point());
-            let to = [0, 1, 2].map(|axis| from[axis] + share * (other[axis] - from[axis]));
+            let to = [0, 1, 2].map(|axis| from[axis] + fraction * (other[axis] - from[axis]));
             let [before, after] = [from, to].map(|point| self.values.eval(point).to_vec());
-            let way = |a: &[f64; 4], b: &[f64; 4]| {
+            let distance = |a: &[f64; 4], b: &[f64; 4]| {
                 a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
             };
-            let mut changes = before.iter().zip(&after).map(|(a, b)| way(a, b));
+            let mut changes = before.iter().zip(&after).map(|(a, b)| distance(a, b));
             let rise = changes.next()?;
             let run = changes.fold(0.0, f64::max);
             let size = before.iter().flatten().fold(1.0, |most: f64, lane| most.max(lane.abs()));
@@ -128,7 +131,7 @@ impl<'t> Pairs<'t> {
         })
     }
 
-    /// A point of the window.
+    /// A random point of the window.
     fn point(&mut self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let (lo, hi) = (self.window[0][axis], self.window[1][axis]);

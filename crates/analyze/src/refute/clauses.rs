@@ -1,55 +1,57 @@
-//! Stated clauses, held against samples.
+//! Tests of stated clauses by samples.
 //!
-//! What a field is compared with is not the field itself: points of the surface, found by bisection between
-//! signs, are at least as far as the nearest one, so a value above that distance refutes `exact` and `bound`; an
-//! exact distance f with the gradient g has a point of the surface at p - f g, so one that has none there, and no
-//! surface as near, refutes `exact`; two points refute a constant, one refutes bounds. A clause is held to what it says:
-//! given children that keep the same promise.
+//! The field is compared with points of the surface, which bisection finds between points of opposite
+//! sign. They are at least as far away as the nearest point of the surface, so a value above their
+//! distance refutes `exact` and `bound`. If f is an exact distance with the gradient g, then p - f g is
+//! on the surface; a point where that is not so, and which has no surface as near, refutes `exact`. Two
+//! points refute a constant, and one point refutes bounds. A clause is tested as it is meant: for
+//! children that keep the same promise.
 
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
 
-use crate::certify::quality::{Promise, Qualities, Stated};
+use crate::certify::promise::Promise;
+use crate::certify::quality::{Qualities, Stated};
 use crate::refute::copies::{CopiesViolation, refute_copies};
 use crate::refute::frames::{ParamValues, frames};
 use crate::refute::probe::Probe;
 use crate::refute::rays::{RayViolation, refute_intersect};
 
-/// What intervals of rays may be off, in parts of the lengths that they are computed from.
+/// Relative error that intervals along rays may have.
 const RAY_ROUNDING: f64 = 1e-8;
 
-/// A clause that does not hold.
+/// A clause that does not hold, and the point that shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
-    /// The instance.
+    /// The instance of the shape.
     pub shape: ShapeId,
-    /// Which clause.
+    /// The clause.
     pub clause: Clause,
-    /// Where it fails, in the shape's dimension.
+    /// A point at which it fails, in the shape's dimension.
     pub at: Vec<f64>,
-    /// The field there.
+    /// The field at that point.
     pub field: f64,
-    /// Where the params stand.
+    /// The values of the params.
     pub params: ParamValues,
 }
 
-/// A refuted clause and what is the case instead.
+/// A clause that does not hold, and what is true instead.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Clause {
-    /// `exact` or `bound`, and how far the surface is, up to the accuracy of a search.
+    /// `exact` or `bound`.
     Distance {
-        /// Whether it is `exact`.
+        /// True for `exact`, false for `bound`.
         exact: bool,
-        /// On which side of the surface.
+        /// True if the point is outside, false if it is inside.
         outside: bool,
-        /// The distance.
+        /// The distance to the surface, up to the accuracy of a search.
         distance: f64,
     },
     /// `lipschitz`.
     Lipschitz {
-        /// As stated, times the largest of the children's.
+        /// The stated constant times the largest constant of a child.
         constant: f64,
-        /// The change of the field to another point, divided by the way there.
+        /// The change of the field between the two points, divided by their distance.
         slope: f64,
         /// The other point.
         to: Vec<f64>,
@@ -62,9 +64,9 @@ pub enum Clause {
     Copies(CopiesViolation),
 }
 
-/// Looks for points at which clauses of the shapes fail; at most one is told of each shape. The budget is fixed: some
-/// ten thousand evaluations a shape. Shapes whose arguments depend on a point, and fields that do not
-/// expand, are passed over.
+/// Searches for points at which clauses of the shapes fail, and returns at most one for each shape. The
+/// budget is about ten thousand evaluations for each shape. Shapes whose arguments depend on a point,
+/// and fields that do not expand, are skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
     let mut graph = scene.graph.clone();
     let mut bounds = Bounds::new(&scene.params);
@@ -77,7 +79,7 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
             found.push(refuted);
             continue;
         }
-        if stated.says_nothing() {
+        if stated.is_empty() {
             continue;
         }
         let corners = bounds.of(&mut graph, shape);
@@ -97,7 +99,7 @@ pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
     found
 }
 
-/// A ray whose intervals do not hold.
+/// A ray with wrong intervals.
 fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
         let fault = refute_intersect::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
@@ -106,7 +108,7 @@ fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     })
 }
 
-/// A ball in which there is something else than what is sampled in its middle.
+/// A ball that contains more than the copies sampled at its centre.
 fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
         let fault = refute_copies(scene, shape, &frame, 1.0)?;
@@ -115,13 +117,14 @@ fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Violation> {
     })
 }
 
-/// What a probe finds.
+/// A clause that does not hold, as a probe finds it.
 struct Fault {
     clause: Clause,
     at: Vec<f64>,
     field: f64,
 }
 
+/// Tests the clauses on bounds, constants and distances.
 fn first_fault(
     graph: &Graph,
     stated: &Stated,
@@ -148,7 +151,7 @@ fn first_fault(
     if promised == [Promise::None; 2] {
         return None;
     }
-    let (at, field, distance) = probe.no_distance(promised)?;
+    let (at, field, distance) = probe.wrong_distance(promised)?;
     let side = usize::from(field < 0.0);
     let exact = promised[side] == Promise::Exact;
     let clause = Clause::Distance { exact, outside: side == 0, distance };

@@ -3,18 +3,18 @@
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Dim, Param};
 
-/// Where the params stand in their ranges.
+/// The values of the params within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParamValues {
-    /// As in the scene.
+    /// The defaults of the scene.
     Default,
-    /// All at the low end.
+    /// All params are at the low end of their ranges.
     Low,
-    /// All at the high end.
+    /// All params are at the high end of their ranges.
     High,
 }
 
-/// The frames at which a scene's clauses are tried.
+/// The frames at which the clauses of a scene are tested.
 pub(super) fn frames(params: &[Param]) -> Vec<(ParamValues, FrameValues)> {
     let at = |end: usize| {
         let mut frame = FrameValues::defaults(params);
@@ -32,7 +32,7 @@ pub(super) fn frames(params: &[Param]) -> Vec<(ParamValues, FrameValues)> {
     frames
 }
 
-/// How many coordinates a point of the dimension has.
+/// The number of coordinates of a point.
 pub(super) fn axes(dim: Dim) -> usize {
     dim.point_type().width()
 }

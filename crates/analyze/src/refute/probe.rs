@@ -1,40 +1,44 @@
-//! One shape's field with the means to ask it.
+//! Samples of one shape's field.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Dim, Expander, Graph, NodeId, ShapeId};
 
-use crate::certify::quality::Promise;
+use crate::certify::promise::Promise;
 use crate::refute::frames::axes;
 
-/// Pairs for a constant, points for bounds and promises, points of the surface.
+/// Number of pairs of points for a constant, of points for bounds and promises, and of points on the
+/// surface.
 const PAIRS: usize = 1500;
 const POINTS: usize = 400;
 const SURFACE: usize = 200;
-/// Halvings of a way between two signs; rounds of the search for the nearest point of a surface.
-const HALVINGS: usize = 50;
-const ROUNDS: usize = 300;
-/// How far a shape is looked at where nothing bounds it.
+/// Bisections between points of opposite sign, and iterations of the search for the nearest point of a
+/// surface.
+const BISECTIONS: usize = 50;
+const ITERATIONS: usize = 300;
+/// Half the sampled interval on an axis without bounds.
 const REACH: f64 = 2.0;
-/// Relative slack of constants and distances. A promise that fails by less is not told.
+/// Relative tolerances of constants and of distances. A promise that fails by less is not reported.
 const SLACK: f64 = 1e-6;
 const INEXACT: f64 = 1e-3;
 
 type Point = [f64; 3];
 
+/// One shape's field at fixed values of the params.
 pub(super) struct Probe {
     tape: Tape,
     frame: FrameValues,
     axes: usize,
-    /// Stated or derived bounds: as they are, and cut where they are infinite.
+    /// Stated or derived bounds.
     bounds: [Point; 2],
+    /// The bounds, limited where they are infinite.
     region: [Point; 2],
-    /// Longest edge of the region.
+    /// The longest edge of the region.
     scale: f64,
     random: Random,
 }
 
 impl Probe {
-    /// `None` where the field does not expand, or the bounds hold nothing.
+    /// Expands the field. Returns `None` if that fails, or if the bounds are empty.
     pub(super) fn new(
         graph: &mut Graph,
         shape: ShapeId,
@@ -76,31 +80,32 @@ impl Probe {
         self.tape.prepare(&self.frame)
     }
 
+    /// The field at a point.
     pub(super) fn at(&self, p: Point) -> f64 {
         self.field().scalar(p)
     }
 
-    /// A point without the coordinates that the shape does not have.
+    /// The coordinates of a point in the shape's dimension.
     pub(super) fn lanes(&self, p: Point) -> Vec<f64> {
         p[..self.axes].to_vec()
     }
 
-    /// A point of the region grown by a share of its size.
-    fn point(&mut self, grown: f64) -> Point {
+    /// A random point of the region, which is enlarged by a fraction of its size.
+    fn point(&mut self, enlarged: f64) -> Point {
         let mut point = [0.0; 3];
-        for (axis, place) in point.iter_mut().enumerate().take(self.axes) {
+        for (axis, coordinate) in point.iter_mut().enumerate().take(self.axes) {
             let (lo, hi) = (self.region[0][axis], self.region[1][axis]);
-            let margin = grown * self.scale;
-            *place = lo - margin + (hi - lo + 2.0 * margin) * self.random.next();
+            let margin = enlarged * self.scale;
+            *coordinate = lo - margin + (hi - lo + 2.0 * margin) * self.random.next();
         }
         point
     }
 
-    /// A point of the shape that lies outside its bounds.
+    /// A point inside the shape and outside its bounds, and the field there.
     pub(super) fn beyond_bounds(&mut self) -> Option<(Vec<f64>, f64)> {
         let slack = SLACK * self.scale;
-        (0..PAIRS).find_map(|round| {
-            let p = self.point([0.02, 0.2, 1.0][round % 3]);
+        (0..PAIRS).find_map(|index| {
+            let p = self.point([0.02, 0.2, 1.0][index % 3]);
             let beyond = |axis: usize| {
                 p[axis] < self.bounds[0][axis] - slack || p[axis] > self.bounds[1][axis] + slack
             };
@@ -109,18 +114,18 @@ impl Probe {
         })
     }
 
-    /// Two points of the region between which the field changes by more than `constant` times the way.
+    /// Two points of the region between which the slope exceeds `constant`, and the slope.
     pub(super) fn steeper(&mut self, constant: f64) -> Option<(Point, Point, f64)> {
         let pairs: Vec<[Point; 2]> =
             (0..PAIRS).map(|_| [self.point(0.0), self.point(0.0)]).collect();
         let mut field = self.field();
         let mut slopes = self.tape.prepare::<Dual>(&self.frame);
-        pairs.into_iter().enumerate().find_map(|(round, [p, other])| {
-            let share = [1.0, 1e-2, 1e-4][round % 3];
+        pairs.into_iter().enumerate().find_map(|(index, [p, other])| {
+            let fraction = [1.0, 1e-2, 1e-4][index % 3];
             let uphill = slopes.scalar(Dual::point(p)).partials;
             let step = 1e-5 * self.scale / distance(uphill, [0.0; 3]).max(1e-30);
             let near = self.within([0, 1, 2].map(|axis| p[axis] + step * uphill[axis]));
-            [mix(p, other, share), near].into_iter().find_map(|q| {
+            [mix(p, other, fraction), near].into_iter().find_map(|q| {
                 let (a, b) = (field.scalar(p), field.scalar(q));
                 let (rise, run) = ((a - b).abs(), distance(p, q));
                 let rounding = 1e-12 * (a.abs() + self.scale);
@@ -137,14 +142,18 @@ impl Probe {
         [0, 1, 2].map(|axis| p[axis].clamp(self.region[0][axis], self.region[1][axis]))
     }
 
-    /// A point at which the field is not what is promised outside and inside; the field and the distance there.
-    pub(super) fn no_distance(&mut self, promised: [Promise; 2]) -> Option<(Vec<f64>, f64, f64)> {
+    /// A point at which the field breaks the promises for outside and inside, the field and the distance
+    /// there.
+    pub(super) fn wrong_distance(
+        &mut self,
+        promised: [Promise; 2],
+    ) -> Option<(Vec<f64>, f64, f64)> {
         let surface = self.surface();
         if surface.is_empty() {
             return None;
         }
-        for round in 0..POINTS {
-            let p = self.point([0.0, 0.5][round % 2]);
+        for index in 0..POINTS {
+            let p = self.point([0.0, 0.5][index % 2]);
             let field = self.at(p);
             let promise = promised[usize::from(field < 0.0)];
             if !field.is_finite() || promise == Promise::None {
@@ -157,25 +166,26 @@ impl Probe {
             let size = field.abs();
             let too_far = size > distance(p, nearest) * (1.0 + INEXACT) + SLACK * self.scale;
             if too_far || (promise == Promise::Exact && !self.has_foot(p, field)) {
-                let way = self.nearest(p, nearest);
-                let slack = INEXACT * way + SLACK * self.scale;
-                let under = promise == Promise::Exact && size < way - slack;
-                if size > way + slack || under {
-                    return Some((self.lanes(p), field, way));
+                let nearest_surface = self.nearest_distance(p, nearest);
+                let slack = INEXACT * nearest_surface + SLACK * self.scale;
+                let under = promise == Promise::Exact && size < nearest_surface - slack;
+                if size > nearest_surface + slack || under {
+                    return Some((self.lanes(p), field, nearest_surface));
                 }
             }
         }
         None
     }
 
-    /// Whether the point that an exact distance and its gradient name lies on the surface.
+    /// True if the nearest surface point, as an exact distance and its gradient give it, is on the
+    /// surface.
     fn has_foot(&self, p: Point, field: f64) -> bool {
         let slope = self.tape.prepare::<Dual>(&self.frame).scalar(Dual::point(p)).partials;
         let foot = [0, 1, 2].map(|axis| p[axis] - field * slope[axis]);
         self.at(foot).abs() <= INEXACT * field.abs() + SLACK * self.scale
     }
 
-    /// Points between points of opposite sign.
+    /// Points of the surface, by bisection between points of opposite sign.
     fn surface(&mut self) -> Vec<Point> {
         let points: Vec<Point> = (0..4 * SURFACE).map(|i| self.point([0.0, 0.1][i % 2])).collect();
         let mut field = self.tape.prepare::<f64>(&self.frame);
@@ -194,33 +204,33 @@ impl Probe {
             .collect()
     }
 
-    /// The way to the nearest point of the surface, by a search around a first one.
-    fn nearest(&mut self, p: Point, first: Point) -> f64 {
+    /// The distance to the nearest point of the surface, by a random search that starts at `first`.
+    fn nearest_distance(&mut self, p: Point, first: Point) -> f64 {
         let mut field = self.tape.prepare::<f64>(&self.frame);
         let sign = field.scalar(p) < 0.0;
         let mut best = first;
-        for round in 0..ROUNDS {
-            let way = distance(p, best);
-            // Wide at first, then narrow.
-            let spread = 0.5f64.powf(12.0 * round as f64 / ROUNDS as f64);
-            let mut aim = best;
-            for place in aim.iter_mut().take(self.axes) {
-                *place += way * spread * (2.0 * self.random.next() - 1.0);
+        for index in 0..ITERATIONS {
+            let nearest_surface = distance(p, best);
+            // The search narrows with each iteration.
+            let spread = 0.5f64.powf(12.0 * index as f64 / ITERATIONS as f64);
+            let mut target = best;
+            for coordinate in target.iter_mut().take(self.axes) {
+                *coordinate += nearest_surface * spread * (2.0 * self.random.next() - 1.0);
             }
-            let length = distance(p, aim).max(1e-30);
-            let aim = mix(p, aim, way * (1.0 - 1e-6) / length);
-            if (field.scalar(aim) < 0.0) != sign {
-                best = crossing(&mut field, p, aim);
+            let length = distance(p, target).max(1e-30);
+            let target = mix(p, target, nearest_surface * (1.0 - 1e-6) / length);
+            if (field.scalar(target) < 0.0) != sign {
+                best = crossing(&mut field, p, target);
             }
         }
         distance(p, best)
     }
 }
 
-/// Where the sign changes between two points that differ in it.
+/// The point between two points of opposite sign at which the sign changes.
 fn crossing(field: &mut Evaluator<'_, f64>, mut from: Point, mut to: Point) -> Point {
     let sign = field.scalar(from) < 0.0;
-    for _ in 0..HALVINGS {
+    for _ in 0..BISECTIONS {
         let middle = mix(from, to, 0.5);
         let end = if (field.scalar(middle) < 0.0) == sign { &mut from } else { &mut to };
         *end = middle;
@@ -236,16 +246,16 @@ fn distance(a: Point, b: Point) -> f64 {
     [0, 1, 2].map(|axis| (a[axis] - b[axis]).powi(2)).iter().sum::<f64>().sqrt()
 }
 
-/// SplitMix64: the same numbers on every machine.
+/// The SplitMix64 generator: the same numbers on every machine.
 pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    /// One of the first so many whole numbers.
+    /// A random integer in `0..count`.
     pub(super) fn below(&mut self, count: usize) -> usize {
         (self.next() * count as f64) as usize
     }
 
-    /// In 0..1.
+    /// A random number in `0..1`.
     pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -1,45 +1,46 @@
-//! Stated intervals of rays, held against the field along these rays.
+//! Tests of the clause `intersect`: the field along rays is compared with the stated intervals.
 //!
-//! Rays lead through the shape from near and far, along axes, past its surface within a hair, from inside and from the
-//! surface itself. Where intervals say that a ray is inside, the field is nowhere above 0, and elsewhere nowhere
-//! below; where one begins or ends, the field is 0.
+//! The rays start near and far, inside the shape and on its surface. Some are parallel to axes, and some
+//! barely touch or miss the surface. Within the intervals the field must not be positive, and outside
+//! of them not negative. At their ends it must be 0.
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, NodeId, Scene, ShapeId};
 
 use crate::refute::probe::Random;
 
-/// Rays of each shape.
+/// Number of rays for each shape.
 const RAYS: usize = 4000;
-/// Places at which each is looked at.
-const PLACES: usize = 24;
-/// How far away rays start at most, in sizes of the shape.
+/// Number of samples along each ray.
+const SAMPLES: usize = 24;
+/// Largest distance of a ray's origin, in sizes of the shape.
 const FARTHEST: f64 = 30.0;
-/// Size of shapes without bounds.
+/// Half the sampled interval on an axis without bounds.
 const REACH: f64 = 1.5;
 
-/// A ray along which the field is not what the intervals say.
+/// A ray along which the field contradicts the intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayViolation {
-    /// Where it starts, and its direction.
+    /// The origin and the direction.
     pub ray: [[f64; 3]; 2],
-    /// Where along it they differ.
+    /// The distance along the ray at which they differ.
     pub t: f64,
-    /// The field there.
+    /// The field at that point.
     pub field: f64,
-    /// Whether the intervals hold it to be inside; `None` for an end of one.
+    /// True if that point is within an interval, false if it is not, `None` at the end of one.
     pub inside: Option<bool>,
 }
 
 impl RayViolation {
-    /// The place in space.
+    /// The point at which they differ.
     pub fn at(&self) -> [f64; 3] {
         at(self.ray, self.t)
     }
 }
 
-/// Looks for a ray that refutes the intervals of a shape, computed in `N`, whose rounding in parts of what is computed
-/// with is `rounding`. `None` also for a shape that states none.
+/// Searches for a ray that refutes the intervals of a shape. They are computed in the number type `N`,
+/// and `rounding` is the relative error that is accepted. Returns `None` also for a shape without the
+/// clause `intersect`.
 pub fn refute_intersect<N: Number + Into<f64>>(
     scene: &Scene,
     shape: ShapeId,
@@ -72,10 +73,12 @@ pub fn refute_intersect<N: Number + Into<f64>>(
     (0..RAYS).find_map(|_| sampler.ray())
 }
 
+/// The end of an axis of the bounds, limited if it is infinite.
 fn cut(end: f64, side: usize) -> f64 {
     if end.is_finite() { end } else { [-REACH, REACH][side] }
 }
 
+/// The field and the intervals of a shape, and the rays to sample.
 struct Sampler<'t, N> {
     exact: Evaluator<'t, f64>,
     hits: Evaluator<'t, N>,
@@ -86,7 +89,7 @@ struct Sampler<'t, N> {
 }
 
 impl<N: Number + Into<f64>> Sampler<'_, N> {
-    /// One ray; what is wrong with it.
+    /// Tests one random ray.
     fn ray(&mut self) -> Option<RayViolation> {
         let (target, direction) = (self.target(), self.direction());
         let back = match self.random.below(4) {
@@ -97,23 +100,24 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         let narrow = |x: f64| -> f64 { N::constant(x).into() };
         let direction = direction.map(narrow);
         let origin = [0, 1, 2].map(|axis| narrow(target[axis] - back * direction[axis]));
-        let spans = self.spans([origin, direction]);
-        // What rounding does to the origin, the direction and the place on the ray.
+        let intervals = self.intervals([origin, direction]);
+        // The rounding error of the origin, the direction and the point on the ray.
         let slack = |t: f64| self.rounding * (back + t.abs() + self.size);
         let fault = |t, field, inside| RayViolation { ray: [origin, direction], t, field, inside };
-        for &t in spans.as_flattened().iter().filter(|t| t.abs() < 10.0 * (back + self.size)) {
-            let within = |span: &[f64; 2]| span[0] + slack(t) < t && t < span[1] - slack(t);
+        for &t in intervals.as_flattened().iter().filter(|t| t.abs() < 10.0 * (back + self.size)) {
+            let within =
+                |interval: &[f64; 2]| interval[0] + slack(t) < t && t < interval[1] - slack(t);
             let field = self.exact.scalar(at([origin, direction], t));
             let is_zero = field.abs() <= slack(t);
-            if !is_zero && !spans.iter().any(within) {
+            if !is_zero && !intervals.iter().any(within) {
                 return Some(fault(t, field, None));
             }
         }
-        for place in 0..PLACES {
+        for sample in 0..SAMPLES {
             let t = back
-                + self.size * (2.0 * (place as f64 + self.random.next()) / PLACES as f64 - 1.0);
+                + self.size * (2.0 * (sample as f64 + self.random.next()) / SAMPLES as f64 - 1.0);
             let field = self.exact.scalar(at([origin, direction], t));
-            let inside = spans.iter().any(|span| span[0] <= t && t <= span[1]);
+            let inside = intervals.iter().any(|interval| interval[0] <= t && t <= interval[1]);
             let right = if inside { field <= slack(t) } else { field >= -slack(t) };
             if !right {
                 return Some(fault(t, field, Some(inside)));
@@ -122,16 +126,18 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         None
     }
 
-    /// The intervals that are not empty. An end that is no number empties none: it will be found wrong.
-    fn spans(&mut self, ray: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
+    /// The intervals that are not empty. An end that is NaN makes no interval empty, so that the test
+    /// fails.
+    fn intervals(&mut self, ray: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
         let [origin, direction] = ray.map(|vector| vector.map(N::constant));
         let ends = self.hits.eval_ray(origin, direction);
-        let spans = ends.chunks_exact(2).map(|pair| [pair[0][0].into(), pair[1][0].into()]);
-        let is_empty = |span: &[f64; 2]| span[0] > span[1];
-        spans.filter(|span| !is_empty(span)).collect()
+        let intervals = ends.chunks_exact(2).map(|pair| [pair[0][0].into(), pair[1][0].into()]);
+        let is_empty = |interval: &[f64; 2]| interval[0] > interval[1];
+        intervals.filter(|interval| !is_empty(interval)).collect()
     }
 
-    /// A point to aim at: in the window, often on its walls or in its middle, or next to the surface.
+    /// A point that the ray goes through: in the window, often on its walls or at its centre, or next to
+    /// the surface.
     fn target(&mut self) -> [f64; 3] {
         let [lo, hi] = self.window;
         let mut point = [0, 1, 2].map(|axis| match self.random.below(6) {
@@ -141,21 +147,21 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
             _ => lo[axis] + (hi[axis] - lo[axis]) * self.random.next(),
         });
         if self.random.below(2) == 0 {
-            // Along the axis that changes the field most, to where it is 0 and a hair beyond.
+            // Newton steps to the surface, and a tiny step beyond it.
             for _ in 0..4 {
                 let [field, slopes @ ..] = self.slopes(point);
                 let square = slopes.iter().map(|slope| slope * slope).sum::<f64>().max(1e-12);
                 let step = field / square;
                 point = [0, 1, 2].map(|axis| point[axis] - step * slopes[axis]);
             }
-            let hair = self.size * [0.0, 1e-6, -1e-6, 1e-3, -1e-3][self.random.below(5)];
+            let step_beyond = self.size * [0.0, 1e-6, -1e-6, 1e-3, -1e-3][self.random.below(5)];
             let [_, slopes @ ..] = self.slopes(point);
-            point = [0, 1, 2].map(|axis| point[axis] + hair * slopes[axis]);
+            point = [0, 1, 2].map(|axis| point[axis] + step_beyond * slopes[axis]);
         }
         if point.iter().all(|x| x.is_finite()) { point } else { [0.0; 3] }
     }
 
-    /// The field and its differences along the axes.
+    /// The field and its slopes along the axes.
     fn slopes(&mut self, point: [f64; 3]) -> [f64; 4] {
         let step = 1e-5 * self.size;
         let here = self.exact.scalar(point);
@@ -168,7 +174,7 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         slopes
     }
 
-    /// A unit vector, often along an axis or between two.
+    /// A random unit vector, often parallel to an axis or in the plane of two.
     fn direction(&mut self) -> [f64; 3] {
         loop {
             let vector = [0, 1, 2].map(|_| match self.random.below(5) {

@@ -1,183 +1,201 @@
-//! Near which values of a node a surface may lie.
+//! The values of each node range which a surface may lie.
 
 use sdfc_graph::{
     Binary, Blends, Graph, IdMap, Node, NodeId, Stage, Ternary, Type, Unary, blend_at, reachable,
 };
 
-/// Blends' widths from which on an operand does not matter to a surface.
+/// Distance from the surface, in widths of a blend, at which an operand no longer affects it.
 pub(super) const WIDTHS: f64 = 4.0;
 
-/// What is between a node and the root.
+/// The operations between a node and the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Path {
-    /// Hard minima alone.
+pub(super) enum BlendContext {
+    /// Only hard minima.
     Hard,
-    /// Minima and blends: where all that is joined is left out, nothing is seen that is not there.
+    /// Minima and blends: skipping all operands removes surface but never adds any.
     Joined,
-    /// Something else.
+    /// Other operations too.
     Other,
 }
 
-/// Where a node's value does not exceed `hi` after it was scaled, nor falls below `lo`, a surface may lie.
+/// The range of a node's scaled value, from `lo` to `hi`, within which a surface may lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Near {
-    /// What the value is multiplied by on its way to the root.
+pub(super) struct ActiveRange {
+    /// The factor by which the value is multiplied on its way to the root.
     pub(super) scale: f64,
     pub(super) lo: NodeId,
     pub(super) hi: NodeId,
-    /// The widest of the blends that follow in the chain that the node is the start of.
+    /// The largest width of the blends that follow in the chain that starts with the node.
     width: NodeId,
-    pub(super) path: Path,
+    pub(super) context: BlendContext,
 }
 
-impl Near {
-    /// The same of an operand of a chain of blends, the width of which is at least this.
+impl ActiveRange {
+    /// The range of an operand that is blended with at least this width.
     pub(super) fn of_chain(self, graph: &mut Graph, width: NodeId) -> Self {
         let widest = graph.max(self.width, width);
         let factor = graph.number(WIDTHS * self.scale);
         let more = graph.mul(widest, factor);
         let (lo, hi) = (graph.sub(self.lo, more), graph.add(self.hi, more));
         let is_joined = graph.as_number(more) != Some(0.0);
-        let path = if is_joined { self.path.max(Path::Joined) } else { self.path };
-        Self { lo, hi, width: graph.number(0.0), path, ..self }
+        let context = if is_joined { self.context.max(BlendContext::Joined) } else { self.context };
+        Self { lo, hi, width: graph.number(0.0), context, ..self }
     }
 
-    /// Of what a chain was before a blend of this width.
+    /// The range of a chain's value before a blend of this width.
     fn before(self, graph: &mut Graph, width: NodeId) -> Self {
-        Self { width: graph.max(self.width, width), path: self.path.max(Path::Joined), ..self }
+        Self {
+            width: graph.max(self.width, width),
+            context: self.context.max(BlendContext::Joined),
+            ..self
+        }
     }
 
-    /// Of an argument that is taken as it is.
+    /// The range of an argument whose value is passed on unchanged.
     fn inner(self, graph: &mut Graph) -> Self {
         let zero = graph.number(0.0);
         self.of_chain(graph, zero)
     }
 
+    /// The range of an argument that is negated.
     fn negated(self, graph: &mut Graph) -> Self {
-        Self { lo: graph.neg(self.hi), hi: graph.neg(self.lo), path: Path::Other, ..self }
+        Self {
+            lo: graph.neg(self.hi),
+            hi: graph.neg(self.lo),
+            context: BlendContext::Other,
+            ..self
+        }
     }
 
-    /// Of an argument to which a number is added.
+    /// The range of an argument to which `added` is added.
     fn without(self, graph: &mut Graph, added: NodeId) -> Self {
         let scale = graph.number(self.scale);
         let added = graph.mul(added, scale);
         let (lo, hi) = (graph.sub(self.lo, added), graph.sub(self.hi, added));
-        Self { lo, hi, path: Path::Other, ..self }
+        Self { lo, hi, context: BlendContext::Other, ..self }
     }
 
-    fn of_size(self, graph: &mut Graph) -> Self {
-        Self { lo: graph.neg(self.hi), path: Path::Other, ..self }
+    /// The range of an argument of which the absolute value is taken.
+    fn of_abs(self, graph: &mut Graph) -> Self {
+        Self { lo: graph.neg(self.hi), context: BlendContext::Other, ..self }
     }
 
+    /// The range of an argument that is multiplied by a factor; `None` unless that is positive.
     fn scaled(self, factor: f64) -> Option<Self> {
         let scale = self.scale * factor;
-        (factor > 0.0 && scale.is_finite()).then_some(Self { scale, path: Path::Other, ..self })
+        (factor > 0.0 && scale.is_finite()).then_some(Self {
+            scale,
+            context: BlendContext::Other,
+            ..self
+        })
     }
 
-    /// Of a node that is used in both ways.
-    pub(super) fn joined(self, graph: &mut Graph, other: Self) -> Option<Self> {
+    /// The range of a node with two uses.
+    pub(super) fn union(self, graph: &mut Graph, other: Self) -> Option<Self> {
         if self == other {
             return Some(self);
         }
         let lo = graph.min(self.lo, other.lo);
         let hi = graph.max(self.hi, other.hi);
-        let (width, path) = (graph.max(self.width, other.width), self.path.max(other.path));
-        (self.scale == other.scale).then_some(Self { lo, hi, width, path, ..self })
+        let (width, context) =
+            (graph.max(self.width, other.width), self.context.max(other.context));
+        (self.scale == other.scale).then_some(Self { lo, hi, width, context, ..self })
     }
 }
 
-/// What is known of the nodes that the roots are computed from: `Some(None)` of those that matter everywhere; nothing of
-/// those that only what is a blend is computed from.
-pub(super) fn near(graph: &mut Graph, roots: &[NodeId]) -> IdMap<Option<Near>> {
+/// The active range of each node that the roots depend on. `Some(None)`: the node is relevant
+/// everywhere. Nodes that are used only inside the formula of a blend are absent.
+pub(super) fn active_ranges(graph: &mut Graph, roots: &[NodeId]) -> IdMap<Option<ActiveRange>> {
     let zero = graph.number(0.0);
-    let at_root = Near { scale: 1.0, lo: zero, hi: zero, width: zero, path: Path::Hard };
+    let at_root =
+        ActiveRange { scale: 1.0, lo: zero, hi: zero, width: zero, context: BlendContext::Hard };
     let (mut known, mut blends) = (IdMap::default(), Blends::default());
     for &root in roots {
         known.insert(root, Some(at_root));
     }
-    // Uses before what they use.
+    // Uses before their arguments.
     for id in reachable(graph, roots).into_iter().rev() {
-        let Some(near) = known.get(id) else { continue };
-        let arguments = near.and_then(|near| arguments(graph, &mut blends, id, near));
+        let Some(range) = known.get(id) else { continue };
+        let arguments = range.and_then(|range| arguments(graph, &mut blends, id, range));
         let arguments = arguments
             .unwrap_or_else(|| graph.arguments(id).map(|argument| (argument, None)).collect());
-        for (argument, near) in arguments {
-            let near = match known.get(argument) {
-                None => near,
-                Some(other) => near.zip(other).and_then(|(a, b)| a.joined(graph, b)),
+        for (argument, range) in arguments {
+            let range = match known.get(argument) {
+                None => range,
+                Some(other) => range.zip(other).and_then(|(a, b)| a.union(graph, b)),
             };
-            known.insert(argument, near);
+            known.insert(argument, range);
         }
     }
     known
 }
 
-/// What a node makes of its arguments; `None`: of all, that they matter everywhere.
+/// The active ranges of a node's arguments. Returns `None` if all of them are relevant everywhere.
 fn arguments(
     graph: &mut Graph,
     blends: &mut Blends,
     id: NodeId,
-    near: Near,
-) -> Option<Vec<(NodeId, Option<Near>)>> {
+    range: ActiveRange,
+) -> Option<Vec<(NodeId, Option<ActiveRange>)>> {
     if graph.ty(id) != Type::Scalar || graph.stage(id) < Stage::Point {
         return None;
     }
     if let Some(blend) = blend_at(graph, blends, id) {
         let [first, second] = blend.ordered_values(graph, blends);
-        let before = near.before(graph, blend.width);
-        let operand = near.of_chain(graph, blend.width);
+        let before = range.before(graph, blend.width);
+        let operand = range.of_chain(graph, blend.width);
         return Some(vec![(first, Some(before)), (second, Some(operand))]);
     }
-    if let Node::Loop(repeated, ..) = graph.node(id) {
-        let inert = graph.loop_at(repeated).skip?;
-        let start = *graph.loop_at(repeated).init.first()?;
-        let before = match graph.as_number(inert.margin) {
-            Some(0.0) => near.inner(graph),
-            _ => near.before(graph, inert.margin),
+    if let Node::Loop(body, ..) = graph.node(id) {
+        let skip = graph.loop_at(body).skip?;
+        let start = *graph.loop_at(body).init.first()?;
+        let before = match graph.as_number(skip.margin) {
+            Some(0.0) => range.inner(graph),
+            _ => range.before(graph, skip.margin),
         };
         let rest = graph.arguments(id).filter(|&argument| argument != start);
         let mut all: Vec<_> = rest.map(|argument| (argument, None)).collect();
         all.push((start, Some(before)));
         return Some(all);
     }
-    let near = near.inner(graph);
+    let range = range.inner(graph);
     Some(match graph.node(id) {
-        Node::Binary(Binary::Min, a, b) => vec![(a, Some(near)), (b, Some(near))],
+        Node::Binary(Binary::Min, a, b) => vec![(a, Some(range)), (b, Some(range))],
         Node::Binary(Binary::Max, a, b) => {
-            let near = Near { path: Path::Other, ..near };
-            vec![(a, Some(near)), (b, Some(near))]
+            let range = ActiveRange { context: BlendContext::Other, ..range };
+            vec![(a, Some(range)), (b, Some(range))]
         }
-        Node::Unary(Unary::Neg, a) => vec![(a, Some(near.negated(graph)))],
-        Node::Unary(Unary::Abs, a) => vec![(a, Some(near.of_size(graph)))],
+        Node::Unary(Unary::Neg, a) => vec![(a, Some(range.negated(graph)))],
+        Node::Unary(Unary::Abs, a) => vec![(a, Some(range.of_abs(graph)))],
         Node::Binary(Binary::Add, a, b) if graph.stage(b) < Stage::Point => {
-            vec![(a, Some(near.without(graph, b)))]
+            vec![(a, Some(range.without(graph, b)))]
         }
         Node::Binary(Binary::Add, a, b) if graph.stage(a) < Stage::Point => {
-            vec![(b, Some(near.without(graph, a)))]
+            vec![(b, Some(range.without(graph, a)))]
         }
         Node::Binary(Binary::Sub, a, b) if graph.stage(b) < Stage::Point => {
             let added = graph.neg(b);
-            vec![(a, Some(near.without(graph, added)))]
+            vec![(a, Some(range.without(graph, added)))]
         }
         Node::Binary(Binary::Sub, a, b) if graph.stage(a) < Stage::Point => {
             let added = graph.neg(a);
-            let near = near.negated(graph).without(graph, added);
-            vec![(b, Some(near))]
+            let range = range.negated(graph).without(graph, added);
+            vec![(b, Some(range))]
         }
         Node::Binary(Binary::Mul, a, b) => match (graph.as_number(a), graph.as_number(b)) {
-            (None, Some(factor)) => vec![(a, near.scaled(factor))],
-            (Some(factor), None) => vec![(b, near.scaled(factor))],
+            (None, Some(factor)) => vec![(a, range.scaled(factor))],
+            (Some(factor), None) => vec![(b, range.scaled(factor))],
             _ => return None,
         },
         Node::Binary(Binary::Div, a, b) => {
             let factor = 1.0 / graph.as_number(b)?;
-            vec![(a, near.scaled(factor))]
+            vec![(a, range.scaled(factor))]
         }
         Node::Ternary(Ternary::Select, [condition, a, b])
             if graph.stage(condition) < Stage::Point =>
         {
-            let near = Near { path: Path::Other, ..near };
-            vec![(a, Some(near)), (b, Some(near))]
+            let range = ActiveRange { context: BlendContext::Other, ..range };
+            vec![(a, Some(range)), (b, Some(range))]
         }
         Node::Const(_)
         | Node::Point(..)

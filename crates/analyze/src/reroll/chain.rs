@@ -1,52 +1,54 @@
-//! Chains of hard minima, and left-deep chains of blends that end.
+//! Chains of hard minima, and left-deep chains of blends of finite width.
 
 use sdfc_graph::{Binary, Blends, Graph, Node, NodeId, Type, blend_at};
 
-/// A chain by its operands.
+/// The operands of a chain.
 #[derive(Debug)]
 pub(super) enum Chain {
-    /// The least of these. The minima between them are `inner`.
-    Least { operands: Vec<NodeId>, inner: Vec<NodeId> },
-    /// Each step joins an operand to what was before.
+    /// The minimum of `operands`. `inner` are the nodes of the single minima.
+    Min { operands: Vec<NodeId>, inner: Vec<NodeId> },
+    /// A blend of `first` with one more operand in each step.
     Blend { first: NodeId, steps: Vec<Step> },
 }
 
 /// A step of a chain of blends.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    /// What it makes of `before` and `operand`.
+    /// The blend of `before` and `operand`.
     pub(super) value: NodeId,
+    /// The value of the chain up to this step.
     pub(super) before: NodeId,
+    /// The operand that this step adds.
     pub(super) operand: NodeId,
-    /// It is the lesser of the two where they differ by no less than this.
+    /// The width of the blend: it equals the minimum where its operands differ by at min_chain this.
     pub(super) width: NodeId,
 }
 
 impl Chain {
-    /// How many operands there are.
+    /// The number of operands.
     pub(super) fn len(&self) -> usize {
         match self {
-            Self::Least { operands, .. } => operands.len(),
+            Self::Min { operands, .. } => operands.len(),
             Self::Blend { steps, .. } => steps.len() + 1,
         }
     }
 
-    /// The nodes that are chains of the first operands.
+    /// The nodes of the chain's single minima or blends.
     pub(super) fn inner(&self) -> Box<dyn Iterator<Item = NodeId> + '_> {
         match self {
-            Self::Least { inner, .. } => Box::new(inner.iter().copied()),
+            Self::Min { inner, .. } => Box::new(inner.iter().copied()),
             Self::Blend { steps, .. } => Box::new(steps.iter().map(|step| step.value)),
         }
     }
 }
 
-/// The chain that ends in a node; `None` if that is no end of one.
+/// The chain whose value is the node `end`; `None` if it is not a minimum or a blend.
 pub(super) fn chain(graph: &Graph, blends: &mut Blends, end: NodeId) -> Option<Chain> {
     if graph.ty(end) != Type::Scalar {
         return None;
     }
     if let Node::Binary(Binary::Min, ..) = graph.node(end) {
-        return Some(least(graph, end));
+        return Some(min_chain(graph, end));
     }
     let mut steps = Vec::new();
     let mut value = end;
@@ -60,8 +62,8 @@ pub(super) fn chain(graph: &Graph, blends: &mut Blends, end: NodeId) -> Option<C
     Some(Chain::Blend { first, steps })
 }
 
-/// The operands of which a node is the least; the node itself if it is no minimum.
-pub(super) fn least(graph: &Graph, end: NodeId) -> Chain {
+/// The operands of a minimum. A node that is no minimum is its own only operand.
+pub(super) fn min_chain(graph: &Graph, end: NodeId) -> Chain {
     let (mut operands, mut inner) = (Vec::new(), Vec::new());
     let mut seen = sdfc_graph::IdSet::default();
     let mut pending = vec![end];
@@ -76,5 +78,5 @@ pub(super) fn least(graph: &Graph, end: NodeId) -> Chain {
             operands.push(id);
         }
     }
-    Chain::Least { operands, inner }
+    Chain::Min { operands, inner }
 }

@@ -1,72 +1,76 @@
-//! Which loops may leave out rounds for a ray.
+//! Cullable loops: loops that can skip iterations for a ray.
 //!
-//! Let every operand of a chain change by at most the distance that a point moves. A ray then meets the same surface without the operands
-//! that stay above a margin all along it. Of hard minima at the root the margin is 0. Of a chain of blends of width k it is
-//! [`WIDTHS`] k: operands of at least m k bring what the chain was before down to no less than (m - 1) k, and what differs there is damped by the
-//! blends that follow by at least `exp(-2.45)` for each k that the value falls on its way to the surface, so that for m = 4 the
-//! surface moves by less than k / 500.
+//! If every operand of a chain is 1-Lipschitz, a ray hits the same surface without the operands that
+//! stay above a margin all along it. For hard minima at the root the margin is 0. For a chain of blends
+//! of width k it is [`WIDTHS`] k: operands of at least m k lower the chain's value to no less than
+//! (m - 1) k, and the blends that follow damp the difference by at least `exp(-2.45)` for each k that
+//! the value falls on its way to the surface. So for m = 4 the surface moves by less than k / 500.
 //!
-//! What stands between a loop and the root moves the margin: of `loop - r` the surface is where the loop is r, and a blend of
-//! width k asks for values of up to [`WIDTHS`] k. `near` follows the values near which a surface may lie down to the loops; loops
-//! below anything else are visited whole.
+//! The operations between a loop and the root change the margin: the surface of `loop - r` is where the
+//! loop has the value r, and a blend of width k uses values of up to [`WIDTHS`] k. `active_range`
+//! follows the values range the surface from the root down to the loops. Loops below any other operation
+//! run all of their iterations.
 
 use sdfc_graph::{CullableLoop, Graph, Node, NodeId, SkipCondition, reachable};
 
-use crate::reroll::active_range::{Near, Path, near};
+use crate::reroll::active_range::{ActiveRange, BlendContext, active_ranges};
 
-/// Loops that rays visit in part; more are visited whole.
-const MOST_LOOPS: usize = 8;
+/// Largest number of cullable loops; others run all of their iterations.
+const MAX_LOOPS: usize = 8;
 
-/// The loops that the roots are computed from and whose rounds can be left out, those of most rounds first. `steepest` is the most
-/// that their operands change by where the point moves by 1, if that is known.
-pub(crate) fn visits(
+/// The cullable loops that the roots depend on, those with the most iterations first. `lipschitz` is a
+/// Lipschitz constant of their operands, if one is known.
+pub(crate) fn cullable_loops(
     graph: &mut Graph,
     roots: &[NodeId],
-    steepest: Option<f64>,
+    lipschitz: Option<f64>,
 ) -> Vec<CullableLoop> {
-    let Some(steepest) = steepest else { return Vec::new() };
-    let needs = near(graph, roots);
-    let mut found: Vec<(SkipCondition, Option<Near>, u32)> = Vec::new();
+    let Some(lipschitz) = lipschitz else { return Vec::new() };
+    let ranges = active_ranges(graph, roots);
+    let mut found: Vec<(SkipCondition, Option<ActiveRange>, u32)> = Vec::new();
     for id in reachable(graph, roots) {
-        let Node::Loop(repeated, ..) = graph.node(id) else { continue };
-        let repeated = graph.loop_at(repeated);
-        let (cap, depth) = (repeated.max_iterations, repeated.depth);
-        let Some(inert) = repeated.skip.filter(|_| depth == 0) else { continue };
-        // Of a hard minimum at the root each operand has been divided by its own constant.
-        let is_zero = graph.as_number(inert.margin) == Some(0.0);
-        let is_slow = |near: &Near| (is_zero && near.path == Path::Hard) || steepest <= 1.0 + 1e-9;
-        let near = needs.get(id).flatten().filter(is_slow);
-        match found.iter_mut().find(|known| known.0 == inert) {
+        let Node::Loop(loop_id, ..) = graph.node(id) else { continue };
+        let body = graph.loop_at(loop_id);
+        let (iterations, depth) = (body.max_iterations, body.depth);
+        let Some(skip) = body.skip.filter(|_| depth == 0) else { continue };
+        // Each operand of a hard minimum at the root has been divided by its own constant.
+        let is_zero = graph.as_number(skip.margin) == Some(0.0);
+        let is_lipschitz = |range: &ActiveRange| {
+            (is_zero && range.context == BlendContext::Hard) || lipschitz <= 1.0 + 1e-9
+        };
+        let range = ranges.get(id).flatten().filter(is_lipschitz);
+        match found.iter_mut().find(|known| known.0 == skip) {
             Some((_, known, _)) => {
-                *known = near.zip(*known).and_then(|(a, b)| a.joined(graph, b));
+                *known = range.zip(*known).and_then(|(a, b)| a.union(graph, b));
             }
-            None if is_flat(graph, inert.operand) => found.push((inert, near, cap)),
+            None if has_no_loop(graph, skip.operand) => found.push((skip, range, iterations)),
             None => {}
         }
     }
-    let known =
-        |(inert, near, rounds): (SkipCondition, Option<Near>, u32)| Some((inert, near?, rounds));
+    let known = |(skip, range, iterations): (SkipCondition, Option<ActiveRange>, u32)| {
+        Some((skip, range?, iterations))
+    };
     let mut found: Vec<_> = found.into_iter().filter_map(known).collect();
-    found.sort_by_key(|&(_, _, rounds)| std::cmp::Reverse(rounds));
-    found.truncate(MOST_LOOPS);
-    let visit = |(inert, near, rounds): (SkipCondition, Near, u32)| {
-        let all = near.of_chain(graph, inert.margin);
-        let blended = graph.sub(all.hi, near.hi);
-        let scale = graph.number(near.scale);
-        let operand = graph.mul(inert.operand, scale);
-        let (reach, least) = (graph.sub(operand, all.hi), graph.sub(operand, blended));
-        let ends = graph.compose(&[reach, least, operand]);
+    found.sort_by_key(|&(_, _, iterations)| std::cmp::Reverse(iterations));
+    found.truncate(MAX_LOOPS);
+    let cullable = |(skip, range, iterations): (SkipCondition, ActiveRange, u32)| {
+        let all = range.of_chain(graph, skip.margin);
+        let blended = graph.sub(all.hi, range.hi);
+        let scale = graph.number(range.scale);
+        let operand = graph.mul(skip.operand, scale);
+        let (distance, lowest) = (graph.sub(operand, all.hi), graph.sub(operand, blended));
+        let culling_bounds = graph.compose(&[distance, lowest, operand]);
         CullableLoop {
-            skip: inert,
-            culling_bounds: ends,
-            iterations: rounds,
-            is_union_operand: near.path <= Path::Joined,
+            skip,
+            culling_bounds,
+            iterations,
+            is_union_operand: range.context <= BlendContext::Joined,
         }
     };
-    found.into_iter().map(visit).collect()
+    found.into_iter().map(cullable).collect()
 }
 
-/// Whether an operand holds no loop itself.
-fn is_flat(graph: &Graph, operand: NodeId) -> bool {
+/// True if an operand contains no loop.
+fn has_no_loop(graph: &Graph, operand: NodeId) -> bool {
     reachable(graph, &[operand]).into_iter().all(|id| !matches!(graph.node(id), Node::Loop(..)))
 }

@@ -1,11 +1,12 @@
-//! Many alike parts of a field as loops over lists of what they differ in.
+//! Loop rerolling: many similar operands as a loop over a list of their constants.
 //!
-//! Where a field is the least of many operands, or a chain of blends, operands that are equal up to constants become one
-//! formula whose constants are read from a list, and a loop over that list. What a shader holds then does not grow with the
-//! number of operands. A hard minimum may be taken in any order; of a blend only operands that follow each other are
-//! taken together, since a blend is not associative.
+//! The pass works on minima of many operands and on chains of blends. Operands that are equal up to
+//! constants become one formula that reads the constants from a list, and a loop over that list. The
+//! size of the shader then does not grow with the number of operands. The operands of a hard minimum
+//! may be reordered. A blend is not associative, so only consecutive operands of a blend are combined.
 //!
-//! What is recognised are forms of math, not shapes: `chain` tells what a chain is, `template` what is equal up to constants.
+//! The pass recognises formulas, not shapes: `chain` finds the chains, and `template` compares operands
+//! up to constants.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
@@ -13,63 +14,70 @@ use sdfc_graph::{
 };
 
 use crate::reroll::chain::{self, Chain};
-use crate::reroll::template::{Skeletons, template};
+use crate::reroll::template::{ShapeKeys, template};
 
-/// Fewer operands of a kind stay written out.
-pub(super) const FEWEST: usize = 16;
+/// Smallest number of similar operands that become a loop.
+pub(super) const MIN_OPERANDS: usize = 16;
 
-/// What became a loop.
+/// A loop that stands for many operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RerolledLoop {
-    /// How many operands it stands for.
+    /// The number of operands.
     pub operands: usize,
-    /// Whether they are blended, or else the least is taken.
+    /// True if the operands are blended, false if their minimum is taken.
     pub blended: bool,
 }
 
-/// The roots with all that is alike in loops, and what these are.
+/// Rewrites the roots with similar operands as loops. Returns the new roots and the loops.
 pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<RerolledLoop>) {
-    let mut pass =
-        Pass { graph, skeletons: Skeletons::default(), plans: IdMap::default(), found: Vec::new() };
-    let visited = pass.discover(roots);
+    let mut rerolling = Rerolling {
+        graph,
+        keys: ShapeKeys::default(),
+        plan_of: IdMap::default(),
+        plans: Vec::new(),
+    };
+    let visited = rerolling.discover(roots);
     let mut new: IdMap<NodeId> = IdMap::default();
     for id in visited.to_vec() {
-        let built = match pass.plans.get(id) {
-            Some(plan) => pass.build(plan, &new),
-            None => pass.rebuilt(id, &new),
+        let built = match rerolling.plan_of.get(id) {
+            Some(plan) => rerolling.build(plan, &new),
+            None => rerolling.rebuilt(id, &new),
         };
         new.insert(id, built);
     }
-    // Roots may share loops.
+    // Roots may share loops, which count once.
     let mut seen = IdSet::default();
-    let parts = pass.found.iter().flat_map(|plan| &plan.parts);
-    let found = parts.filter_map(|part| part.rolled(&mut seen)).collect();
+    let parts = rerolling.plans.iter().flat_map(|plan| &plan.parts);
+    let found = parts.filter_map(|part| part.rerolled_loop(&mut seen)).collect();
     (roots.iter().map(|&root| new.get(root).unwrap_or(root)).collect(), found)
 }
 
-/// Groups of values that are equal up to constants, by position; those of few members are left out.
-pub(crate) fn alike(graph: &mut Graph, values: &[NodeId]) -> Vec<Vec<usize>> {
-    let mut skeletons = Skeletons::default();
-    let mut groups = grouped(graph, &mut skeletons, values);
-    groups.retain(|group| group.len() >= FEWEST);
+/// Groups of positions of values that are equal up to constants. Groups that are too small for a loop
+/// are omitted.
+pub(crate) fn similar_groups(graph: &mut Graph, values: &[NodeId]) -> Vec<Vec<usize>> {
+    let mut keys = ShapeKeys::default();
+    let mut groups = grouped(graph, &mut keys, values);
+    groups.retain(|group| group.len() >= MIN_OPERANDS);
     groups
 }
 
-fn grouped(graph: &mut Graph, skeletons: &mut Skeletons, values: &[NodeId]) -> Vec<Vec<usize>> {
-    skeletons.learn(graph, values);
-    let mut places: FxHashMap<u32, usize> = FxHashMap::default();
+/// Groups of positions of values that are equal up to constants.
+fn grouped(graph: &mut Graph, keys: &mut ShapeKeys, values: &[NodeId]) -> Vec<Vec<usize>> {
+    keys.compute(graph, values);
+    let mut group_of: FxHashMap<u32, usize> = FxHashMap::default();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (position, &value) in values.iter().enumerate() {
-        let place = *places.entry(skeletons.of(value)).or_insert(groups.len());
-        if place == groups.len() {
+        let group = *group_of.entry(keys.of(value)).or_insert(groups.len());
+        if group == groups.len() {
             groups.push(Vec::new());
         }
-        groups[place].push(position);
+        groups[group].push(position);
     }
     groups
 }
 
-/// What a chain becomes, first to last. The parts of a minimum are joined, each of a blend is the start of the next.
+/// The parts that a chain becomes, first to last. The result of a minimum is the minimum of its parts;
+/// each part of a blend takes the result of the part before it.
 #[derive(Debug)]
 struct Plan {
     parts: Vec<Part>,
@@ -77,17 +85,17 @@ struct Plan {
 
 #[derive(Debug)]
 enum Part {
-    /// An operand of a minimum, or the first of a blend, written out.
+    /// An operand of a minimum, or the first operand of a blend, unrolled.
     Value(NodeId),
-    /// A step of a blend, written out: what it makes of the value before.
+    /// A step of a blend, unrolled.
     Step { step: NodeId, before: NodeId, operand: NodeId },
-    /// A loop, as [`template`] made it: what a round computes, and when it is inert.
-    Loop { next: NodeId, inert: Option<SkipCondition>, operands: usize, blended: bool },
+    /// A loop: the value after an iteration, as [`template`] formulas it, and its skip condition.
+    Loop { next: NodeId, skip: Option<SkipCondition>, operands: usize, blended: bool },
 }
 
 impl Part {
-    /// What it became, unless that was seen.
-    fn rolled(&self, seen: &mut IdSet) -> Option<RerolledLoop> {
+    /// The loop, unless it is in `seen`.
+    fn rerolled_loop(&self, seen: &mut IdSet) -> Option<RerolledLoop> {
         match *self {
             Self::Loop { next, operands, blended, .. } => {
                 seen.insert(next).then_some(RerolledLoop { operands, blended })
@@ -97,16 +105,17 @@ impl Part {
     }
 }
 
-struct Pass<'g> {
+struct Rerolling<'g> {
     graph: &'g mut Graph,
-    skeletons: Skeletons,
-    /// By the node at the end of a chain, the position of what it becomes.
-    plans: IdMap<usize>,
-    found: Vec<Plan>,
+    keys: ShapeKeys,
+    /// The index of a chain's plan, by the node that is the value of the chain.
+    plan_of: IdMap<usize>,
+    plans: Vec<Plan>,
 }
 
-impl Pass<'_> {
-    /// Finds the chains that the roots are computed from; gives the nodes that stay and what stands in chains' place.
+impl Rerolling<'_> {
+    /// Plans the chains that the roots depend on. Returns all nodes to rebuild: the values of those
+    /// chains and the nodes outside of them.
     fn discover(&mut self, roots: &[NodeId]) -> IdSet {
         let (mut visited, mut plain) = (IdSet::default(), IdSet::default());
         let mut blends = Blends::default();
@@ -117,9 +126,8 @@ impl Pass<'_> {
             }
             let chain = match plain.contains(id) || self.graph.loops_around(id) != 0 {
                 true => None,
-                false => {
-                    chain::chain(self.graph, &mut blends, id).filter(|chain| chain.len() >= FEWEST)
-                }
+                false => chain::chain(self.graph, &mut blends, id)
+                    .filter(|chain| chain.len() >= MIN_OPERANDS),
             };
             let Some(chain) = chain else {
                 pending.extend(self.graph.arguments(id));
@@ -134,11 +142,11 @@ impl Pass<'_> {
                             Part::Loop { .. } => {}
                         }
                     }
-                    self.plans.insert(id, self.found.len());
-                    self.found.push(plan);
+                    self.plan_of.insert(id, self.plans.len());
+                    self.plans.push(plan);
                 }
                 None => {
-                    // What is within is not looked at again.
+                    // Its inner nodes are not tried as chains of their own.
                     chain.inner().for_each(|id| _ = plain.insert(id));
                     pending.extend(self.graph.arguments(id));
                 }
@@ -147,27 +155,27 @@ impl Pass<'_> {
         visited
     }
 
-    /// What a chain becomes; `None` if too few of its operands are alike.
+    /// Plans a chain; `None` if too few of its operands are similar.
     fn plan(&mut self, chain: &Chain) -> Option<Plan> {
         let parts = match chain {
-            Chain::Least { operands, .. } => self.plan_least(operands),
+            Chain::Min { operands, .. } => self.plan_min(operands),
             Chain::Blend { first, steps } => self.plan_blend(*first, steps),
         };
-        let any = parts.iter().any(|part| matches!(part, Part::Loop { .. }));
-        any.then_some(Plan { parts })
+        let has_loop = parts.iter().any(|part| matches!(part, Part::Loop { .. }));
+        has_loop.then_some(Plan { parts })
     }
 
-    fn plan_least(&mut self, operands: &[NodeId]) -> Vec<Part> {
+    fn plan_min(&mut self, operands: &[NodeId]) -> Vec<Part> {
         let (mut values, mut loops) = (Vec::new(), Vec::new());
-        for group in grouped(self.graph, &mut self.skeletons, operands) {
+        for group in grouped(self.graph, &mut self.keys, operands) {
             let members: Vec<NodeId> = group.iter().map(|&position| operands[position]).collect();
-            let rolled = if members.len() < FEWEST {
+            let formulas = if members.len() < MIN_OPERANDS {
                 None
             } else {
-                template(self.graph, &self.skeletons, &[&members], None)
+                template(self.graph, &self.keys, &[&members], None)
             };
-            match rolled {
-                Some(values) => loops.push(self.least_loop(values[0], members.len())),
+            match formulas {
+                Some(formulas) => loops.push(self.min_loop(formulas[0], members.len())),
                 None => values.extend(members.into_iter().map(Part::Value)),
             }
         }
@@ -175,21 +183,21 @@ impl Pass<'_> {
         values
     }
 
-    fn least_loop(&mut self, operand: NodeId, operands: usize) -> Part {
+    fn min_loop(&mut self, operand: NodeId, operands: usize) -> Part {
         let state = self.graph.variable(0, LoopVar::State(0), Type::Scalar);
         let next = self.graph.min(state, operand);
-        let inert = Some(SkipCondition { operand, margin: self.graph.number(0.0) });
-        Part::Loop { next, inert, operands, blended: false }
+        let skip = Some(SkipCondition { operand, margin: self.graph.number(0.0) });
+        Part::Loop { next, skip, operands, blended: false }
     }
 
     fn plan_blend(&mut self, first: NodeId, steps: &[chain::Step]) -> Vec<Part> {
         let operands: Vec<NodeId> = steps.iter().map(|step| step.operand).collect();
-        self.skeletons.learn(self.graph, &operands);
+        self.keys.compute(self.graph, &operands);
         let mut parts = vec![Part::Value(first)];
         let mut rest = steps;
         while let Some(head) = rest.first() {
-            let kind = self.skeletons.of(head.operand);
-            let same = rest.iter().take_while(|step| self.skeletons.of(step.operand) == kind);
+            let kind = self.keys.of(head.operand);
+            let same = rest.iter().take_while(|step| self.keys.of(step.operand) == kind);
             let (run, after) = rest.split_at(same.count());
             match self.blend_loop(run) {
                 Some(part) => parts.push(part),
@@ -205,20 +213,20 @@ impl Pass<'_> {
     }
 
     fn blend_loop(&mut self, run: &[chain::Step]) -> Option<Part> {
-        if run.len() < FEWEST {
+        if run.len() < MIN_OPERANDS {
             return None;
         }
         let column = |of: fn(&chain::Step) -> NodeId| run.iter().map(of).collect::<Vec<_>>();
         let (values, operands) = (column(|step| step.value), column(|step| step.operand));
         let before = column(|step| step.before);
-        let made = template(self.graph, &self.skeletons, &[&values, &operands], Some(&before))?;
-        let [next, operand] = made[..] else { return None };
+        let formulas = template(self.graph, &self.keys, &[&values, &operands], Some(&before))?;
+        let [next, operand] = formulas[..] else { return None };
         let margin = self.widest(run.iter().map(|step| step.width));
-        let inert = margin.map(|margin| SkipCondition { operand, margin });
-        Some(Part::Loop { next, inert, operands: run.len(), blended: true })
+        let skip = margin.map(|margin| SkipCondition { operand, margin });
+        Some(Part::Loop { next, skip, operands: run.len(), blended: true })
     }
 
-    /// The greatest of some numbers, if they are all constants or all one.
+    /// The largest of some widths, if all are constants or all are the same node.
     fn widest(&mut self, widths: impl Iterator<Item = NodeId>) -> Option<NodeId> {
         let mut widest: Option<NodeId> = None;
         for width in widths {
@@ -234,9 +242,10 @@ impl Pass<'_> {
         widest
     }
 
+    /// Builds a planned chain. `new` maps nodes to the rebuilt ones.
     fn build(&mut self, plan: usize, new: &IdMap<NodeId>) -> NodeId {
         let mapped = |id: NodeId| new.get(id).unwrap_or(id);
-        let parts = std::mem::take(&mut self.found[plan].parts);
+        let parts = std::mem::take(&mut self.plans[plan].parts);
         let mut value: Option<NodeId> = None;
         for part in &parts {
             value = Some(match *part {
@@ -248,7 +257,7 @@ impl Pass<'_> {
                     let before = (before, value.unwrap_or(before));
                     substitute(self.graph, step, &[before, (operand, mapped(operand))])
                 }
-                Part::Loop { next, inert, operands, blended } => {
+                Part::Loop { next, skip, operands, blended } => {
                     let far = self.graph.number(FAR);
                     let start = value.filter(|_| blended).unwrap_or(far);
                     let cap = operands as u32;
@@ -260,7 +269,7 @@ impl Pass<'_> {
                         condition: None,
                         init: start,
                         step: next,
-                        skip: inert,
+                        skip: skip,
                     };
                     let result = self.graph.add_loop(repeated)[0];
                     match value.filter(|_| !blended) {
@@ -270,10 +279,11 @@ impl Pass<'_> {
                 }
             });
         }
-        self.found[plan].parts = parts;
+        self.plans[plan].parts = parts;
         value.unwrap_or_else(|| self.graph.number(FAR))
     }
 
+    /// Rebuilds a node if one of its arguments was replaced.
     fn rebuilt(&mut self, id: NodeId, new: &IdMap<NodeId>) -> NodeId {
         let changed = self.graph.arguments(id).any(|id| new.get(id).is_some_and(|new| new != id));
         if changed { self.graph.rebuild(id, |old| new.get(old).unwrap_or(old)) } else { id }

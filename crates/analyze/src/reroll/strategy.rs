@@ -1,86 +1,89 @@
-//! Whether a field is written out, or as loops over what is alike in it.
+//! The choice between unrolled operands and loops.
 
 use sdfc_graph::{Graph, NodeId, Settings, Shadow, fold_transforms};
 
 use crate::cost::cost;
-use crate::reroll::cullable::visits;
+use crate::reroll::cullable::cullable_loops;
 use crate::reroll::rewrite::reroll;
 
-/// How a field of many parts is written.
+/// How the similar operands of a scene become code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopStrategy {
-    /// As costs less: [`LoopStrategy::Looped`] where the field takes more operations than [`Report::unrolled_limit`](crate::Report::unrolled_limit) says.
+    /// [`LoopStrategy::Looped`] if the field has more operations than
+    /// [`Report::unrolled_limit`](crate::Report::unrolled_limit), otherwise
+    /// [`LoopStrategy::Unrolled`].
     #[default]
     Auto,
-    /// All that there is, one operation after the other.
+    /// Every operand has its own code.
     Unrolled,
-    /// Parts that are equal up to constants as loops over lists, where there are such.
+    /// Operands that are equal up to constants are loops over lists of these constants.
     Looped,
 }
 
-/// More operations of a field take longer to compile and to evaluate than loops that visit what matters: of a scene all of whose rays come
-/// from the eye, of one whose rays to lamps and mirrored rays go by lists for cells, and of one with soft shadows, which visit all rounds.
-const MOST_INLINE: [usize; 3] = [425, 1200, 4500];
-/// So many more for each loop, which is compiled too, and entered at each place.
-const MORE_FOR_A_LOOP: [usize; 3] = [125, 250, 0];
-/// The same where loops visit all rounds.
-const MOST_WITHOUT_LISTS: usize = 4500;
+/// Numbers of operations above which loops that skip iterations compile and run faster than unrolled
+/// code: in scenes with primary rays only, in scenes whose secondary rays use the lists of culling
+/// cells, and in scenes with soft shadows, for which loops run all iterations.
+const UNROLLED_LIMITS: [usize; 3] = [425, 1200, 4500];
+/// Operations to add to the limit for each loop, which costs time to compile and to enter.
+const LOOP_COSTS: [usize; 3] = [125, 250, 0];
+/// The limit for loops that run all of their iterations.
+const LIMIT_WITHOUT_LISTS: usize = 4500;
 
-/// How many operations a field may take that is written out though so many loops with lists could stand in its place.
+/// The largest number of operations of an unrolled field that could have this many cullable loops.
 fn unrolled_limit(settings: &Settings, loops: usize) -> usize {
     if loops == 0 {
-        return MOST_WITHOUT_LISTS;
+        return LIMIT_WITHOUT_LISTS;
     }
     let kind = if settings.lights.iter().any(|light| matches!(light.shadow, Shadow::Soft(_))) {
         2
     } else {
         usize::from(has_secondary_rays(settings))
     };
-    MOST_INLINE[kind] + loops * MORE_FOR_A_LOOP[kind]
+    UNROLLED_LIMITS[kind] + loops * LOOP_COSTS[kind]
 }
 
 impl LoopStrategy {
-    /// Whether a field is written as loops, and up to how many operations it is not of its own accord. `steepest` is as for
-    /// [`visits`].
-    pub(crate) fn rolls(
+    /// Decides if a field becomes loops. Also returns the number of operations up to which
+    /// [`LoopStrategy::Auto`] unrolls it. `lipschitz` is as for [`cullable_loops`].
+    pub(crate) fn uses_loops(
         self,
         graph: &Graph,
         distance: NodeId,
         settings: &Settings,
-        steepest: Option<f64>,
+        lipschitz: Option<f64>,
     ) -> (bool, usize) {
-        let (pays, unrolled_limit) = loops_pay(graph, distance, settings, steepest);
-        let rolls = match self {
-            Self::Auto => pays,
+        let (is_faster, unrolled_limit) = prefers_loops(graph, distance, settings, lipschitz);
+        let uses_loops = match self {
+            Self::Auto => is_faster,
             Self::Unrolled => false,
             Self::Looped => true,
         };
-        (rolls, unrolled_limit)
+        (uses_loops, unrolled_limit)
     }
 }
 
-/// Whether loops cost less, and up to how many operations they do not.
-fn loops_pay(
+/// Decides if loops are faster, and returns the number of operations up to which they are not.
+fn prefers_loops(
     graph: &Graph,
     distance: NodeId,
     settings: &Settings,
-    steepest: Option<f64>,
+    lipschitz: Option<f64>,
 ) -> (bool, usize) {
     let operations = cost(graph, &[distance]).operations;
-    let least = unrolled_limit(settings, 1);
-    if operations <= least || operations > MOST_WITHOUT_LISTS {
-        return (operations > least, least);
+    let limit = unrolled_limit(settings, 1);
+    if operations <= limit || operations > LIMIT_WITHOUT_LISTS {
+        return (operations > limit, limit);
     }
     let mut trial = graph.clone();
     let folded = fold_transforms(&mut trial, &[distance]).roots;
-    let rolled = reroll(&mut trial, &folded).0;
-    let most = unrolled_limit(settings, visits(&mut trial, &rolled, steepest).len());
-    (operations > most, most)
+    let roots = reroll(&mut trial, &folded).0;
+    let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
+    (operations > limit, limit)
 }
 
-/// Whether the field is asked for elsewhere than on rays from the eye.
+/// True if the field is evaluated on other rays than primary rays.
 pub(crate) fn has_secondary_rays(settings: &Settings) -> bool {
-    let shaded = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
-    let mirrored = settings.reflections.is_some_and(|mirrors| mirrors.count > 0);
-    shaded || mirrored || settings.occlusion.is_some()
+    let has_shadows = settings.lights.iter().any(|light| light.shadow != Shadow::Off);
+    let has_reflections = settings.reflections.is_some_and(|reflections| reflections.count > 0);
+    has_shadows || has_reflections || settings.occlusion.is_some()
 }

@@ -1,4 +1,7 @@
-//! Values that are equal up to constants.
+//! Nodes that are equal up to constants, and the formulas they share.
+//!
+//! Equal shape keys mean equal structure. [`template`] builds the common formula of nodes with equal
+//! keys, in which lists hold the constants that differ.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
@@ -6,8 +9,8 @@ use sdfc_graph::{
     reachable,
 };
 
-/// More places in one formula than any that is worth a loop.
-const MOST_PLACES: usize = 4096;
+/// Largest number of subexpressions of a template. Larger ones are not worth a loop.
+const MAX_COLUMNS: usize = 4096;
 
 /// An operation without its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,72 +24,76 @@ enum Operation {
     Transform,
 }
 
-/// What a node is, constants left out.
+/// The structure of a node without its constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Bones {
-    /// Some constant of a type.
+enum Structure {
+    /// Any constant of a type.
     Constant(Type),
-    /// This node itself.
+    /// Exactly this node.
     Same(NodeId),
-    /// An operation on such.
+    /// An operation and the keys of its arguments.
     Operation(u32, [u32; 4]),
 }
 
-/// A node taken apart: its operation and the arguments, those of a sum or product in an order that does not
-/// depend on when they were made.
+/// A node as an operation and its arguments. The arguments of sums and products are in an order that
+/// does not depend on the order in which they were built.
 enum View {
+    /// A constant that may differ between similar nodes.
     Constant,
+    /// A node that must be the same in all similar nodes.
     Same,
+    /// An operation with arguments.
     Operation(Operation, Vec<NodeId>),
 }
 
-/// Numbers by which nodes are told apart that differ in more than constants.
+/// Shape keys: numbers that are equal for nodes that are equal up to constants.
 #[derive(Debug, Default)]
-pub(super) struct Skeletons {
+pub(super) struct ShapeKeys {
     known: IdMap<u32>,
-    numbers: FxHashMap<Bones, u32>,
+    keys: FxHashMap<Structure, u32>,
     operations: FxHashMap<Operation, u32>,
 }
 
-impl Skeletons {
-    /// Gives numbers to the nodes that these are computed from.
-    pub(super) fn learn(&mut self, graph: &mut Graph, roots: &[NodeId]) {
+impl ShapeKeys {
+    /// Computes the keys of all nodes that the roots depend on.
+    pub(super) fn compute(&mut self, graph: &mut Graph, roots: &[NodeId]) {
         for id in reachable(graph, roots) {
-            self.learn_one(graph, id);
+            self.compute_one(graph, id);
         }
     }
 
-    /// The number of a node that was learnt.
+    /// The key of a node; `u32::MAX` if it was not computed.
     pub(super) fn of(&self, id: NodeId) -> u32 {
         self.known.get(id).unwrap_or(u32::MAX)
     }
 
-    fn learn_one(&mut self, graph: &mut Graph, id: NodeId) {
+    fn compute_one(&mut self, graph: &mut Graph, id: NodeId) {
         if self.known.get(id).is_some() {
             return;
         }
-        let bones = match self.view(graph, id) {
-            View::Constant => Bones::Constant(graph.ty(id)),
-            View::Same => Bones::Same(id),
+        let structure = match self.view(graph, id) {
+            View::Constant => Structure::Constant(graph.ty(id)),
+            View::Same => Structure::Same(id),
             View::Operation(operation, arguments) => {
                 let next = self.operations.len() as u32;
                 let operation = *self.operations.entry(operation).or_insert(next);
-                let mut numbers = [u32::MAX; 4];
-                for (number, &argument) in numbers.iter_mut().zip(&arguments) {
-                    // A constant that the view has turned may be new.
+                let mut argument_keys = [u32::MAX; 4];
+                for (number, &argument) in argument_keys.iter_mut().zip(&arguments) {
+                    // The view negates constants, so this one may be new.
                     if self.known.get(argument).is_none() {
-                        self.learn_one(graph, argument);
+                        self.compute_one(graph, argument);
                     }
                     *number = self.of(argument);
                 }
-                Bones::Operation(operation, numbers)
+                Structure::Operation(operation, argument_keys)
             }
         };
-        let next = self.numbers.len() as u32;
-        let number = *self.numbers.entry(bones).or_insert(next);
-        self.known.insert(id, number);
+        let next = self.keys.len() as u32;
+        let key = *self.keys.entry(structure).or_insert(next);
+        self.known.insert(id, key);
     }
 
+    /// Takes a node apart.
     fn view(&self, graph: &mut Graph, id: NodeId) -> View {
         let node = graph.node(id);
         if let Node::Const(constant) = node {
@@ -123,11 +130,13 @@ impl Skeletons {
         View::Operation(operation, arguments)
     }
 
+    /// The operands of a sum or product in order of their rank.
     fn sorted(&self, graph: &Graph, a: NodeId, b: NodeId) -> Vec<NodeId> {
         if self.rank(graph, b) < self.rank(graph, a) { vec![b, a] } else { vec![a, b] }
     }
 
-    /// Sums and products of blends' steps are told apart by their own operation: what is in them has no number.
+    /// The sort key of an operand. The steps of a blend have no shape key, so their kind of operation
+    /// comes first.
     fn rank(&self, graph: &Graph, id: NodeId) -> (usize, u32) {
         let node = graph.node(id);
         let kinds = [
@@ -140,63 +149,69 @@ impl Skeletons {
     }
 }
 
-/// One place in the formula.
-enum Spot {
+/// A subexpression of the template.
+enum Expression {
+    /// The state of the loop.
     State,
+    /// The same node in every iteration.
     Same(NodeId),
+    /// Constants that differ, by the index of their column.
     Column(usize),
+    /// An operation on other subexpressions.
     Operation(Operation, Vec<usize>),
 }
 
 struct Merging<'a> {
     graph: &'a mut Graph,
-    skeletons: &'a Skeletons,
-    places: Vec<Spot>,
+    keys: &'a ShapeKeys,
+    expressions: Vec<Expression>,
     known: FxHashMap<Vec<NodeId>, usize>,
     columns: Vec<Vec<Const>>,
 }
 
-/// Formulas over the round's variable of depth 0 that yield, for each list of nodes, in round i the node at i. `before` is a list
-/// that the first part of the state stands for. `None` where the nodes differ in more than constants.
+/// Builds one formula for each list of nodes, whose value in iteration i of a loop of depth 0 is the
+/// list's node i. The first lane of the state stands for the nodes of `before`. Returns `None` if the
+/// nodes differ in more than constants.
 pub(super) fn template(
     graph: &mut Graph,
-    skeletons: &Skeletons,
+    keys: &ShapeKeys,
     lists: &[&[NodeId]],
     before: Option<&[NodeId]>,
 ) -> Option<Vec<NodeId>> {
-    let (places, known, columns) = Default::default();
-    let mut merging = Merging { graph, skeletons, places, known, columns };
+    let (expressions, known, columns) = Default::default();
+    let mut merging = Merging { graph, keys, expressions, known, columns };
     if let Some(before) = before {
-        merging.add(before.to_vec(), Spot::State);
+        merging.add(before.to_vec(), Expression::State);
     }
-    let roots: Option<Vec<usize>> = lists.iter().map(|list| merging.place(list.to_vec())).collect();
+    let roots: Option<Vec<usize>> =
+        lists.iter().map(|list| merging.expression(list.to_vec())).collect();
     let roots = roots?;
     let values = merging.build();
     Some(roots.into_iter().map(|root| values[root]).collect())
 }
 
 impl Merging<'_> {
-    fn add(&mut self, column: Vec<NodeId>, place: Spot) -> usize {
-        let index = self.places.len();
-        self.places.push(place);
+    fn add(&mut self, column: Vec<NodeId>, expression: Expression) -> usize {
+        let index = self.expressions.len();
+        self.expressions.push(expression);
         self.known.insert(column, index);
         index
     }
 
-    fn place(&mut self, column: Vec<NodeId>) -> Option<usize> {
+    fn expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
         if let Some(&known) = self.known.get(&column) {
             return Some(known);
         }
-        if self.places.len() >= MOST_PLACES {
+        if self.expressions.len() >= MAX_COLUMNS {
             return None;
         }
-        stacker::maybe_grow(64 * 1024, 1024 * 1024, || self.new_place(column))
+        stacker::maybe_grow(64 * 1024, 1024 * 1024, || self.new_expression(column))
     }
 
-    fn new_place(&mut self, column: Vec<NodeId>) -> Option<usize> {
+    fn new_expression(&mut self, column: Vec<NodeId>) -> Option<usize> {
         let (&first, rest) = column.split_first()?;
         if rest.iter().all(|&id| id == first) {
-            return Some(self.add(column, Spot::Same(first)));
+            return Some(self.add(column, Expression::Same(first)));
         }
         let constants: Option<Vec<Const>> =
             column.iter().map(|&id| self.graph.as_const(id)).collect();
@@ -207,14 +222,14 @@ impl Merging<'_> {
             }
             let number = self.columns.len();
             self.columns.push(constants);
-            return Some(self.add(column, Spot::Column(number)));
+            return Some(self.add(column, Expression::Column(number)));
         }
-        let View::Operation(operation, arguments) = self.skeletons.view(self.graph, first) else {
+        let View::Operation(operation, arguments) = self.keys.view(self.graph, first) else {
             return None;
         };
         let mut lists: Vec<Vec<NodeId>> = arguments.iter().map(|&id| vec![id]).collect();
         for &id in &column[1..] {
-            let View::Operation(other, arguments) = self.skeletons.view(self.graph, id) else {
+            let View::Operation(other, arguments) = self.keys.view(self.graph, id) else {
                 return None;
             };
             if other != operation || arguments.len() != lists.len() {
@@ -225,30 +240,31 @@ impl Merging<'_> {
             }
         }
         let arguments: Option<Vec<usize>> =
-            lists.into_iter().map(|list| self.place(list)).collect();
+            lists.into_iter().map(|list| self.expression(list)).collect();
         let arguments = arguments?;
-        Some(self.add(column, Spot::Operation(operation, arguments)))
+        Some(self.add(column, Expression::Operation(operation, arguments)))
     }
 
-    /// The nodes of all places.
+    /// Builds the nodes of all subexpressions.
     fn build(&mut self) -> Vec<NodeId> {
         let reads = self.reads();
-        let mut values: Vec<NodeId> = Vec::with_capacity(self.places.len());
-        for place in &self.places {
-            values.push(match place {
-                Spot::State => self.graph.variable(0, LoopVar::State(0), Type::Scalar),
-                Spot::Same(id) => *id,
-                Spot::Column(number) => reads[*number],
-                Spot::Operation(operation, arguments) => {
+        let mut values: Vec<NodeId> = Vec::with_capacity(self.expressions.len());
+        for expression in &self.expressions {
+            values.push(match expression {
+                Expression::State => self.graph.variable(0, LoopVar::State(0), Type::Scalar),
+                Expression::Same(id) => *id,
+                Expression::Column(number) => reads[*number],
+                Expression::Operation(operation, arguments) => {
                     let arguments: Vec<NodeId> = arguments.iter().map(|&at| values[at]).collect();
-                    made(self.graph, *operation, &arguments)
+                    build_operation(self.graph, *operation, &arguments)
                 }
             });
         }
         values
     }
 
-    /// What reads each column: elements of lists of four numbers each, the widest columns first.
+    /// The nodes that read the columns: lanes of elements of lists with four numbers each. Wide columns
+    /// are placed first.
     fn reads(&mut self) -> Vec<NodeId> {
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_by_key(|&number| std::cmp::Reverse(self.columns[number][0].ty().width()));
@@ -288,7 +304,8 @@ impl Merging<'_> {
     }
 }
 
-fn made(graph: &mut Graph, operation: Operation, arguments: &[NodeId]) -> NodeId {
+/// Builds an operation.
+fn build_operation(graph: &mut Graph, operation: Operation, arguments: &[NodeId]) -> NodeId {
     match (operation, arguments) {
         (Operation::Unary(op), &[a]) => graph.unary(op, a),
         (Operation::Binary(op), &[a, b]) => graph.binary(op, a, b),
@@ -300,7 +317,7 @@ fn made(graph: &mut Graph, operation: Operation, arguments: &[NodeId]) -> NodeId
         (Operation::Compose(_), parts) => graph.compose(parts),
         (Operation::Swizzle(ty, lanes), &[a]) => graph.swizzle(a, &lanes[..ty.width()]),
         (Operation::Transform, &[a, b, c, v]) => graph.transform([a, b, c], v),
-        // `View` has as many arguments as the operation takes.
+        // Unreachable: `View` has as many arguments as the operation takes.
         (_, arguments) => arguments[0],
     }
 }
