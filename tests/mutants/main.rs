@@ -1,9 +1,9 @@
 //! Scenes that show whether the rules for the steps of rays are needed, and the table of mutants.
 //!
-//! A mutant is one rule of the analysis or of a ray method that is broken on purpose. `table.txt` lists
-//! for each mutant a file, a text of that file, the text to put in its place, and a scene that is
-//! drawn wrong once that is done. The tests here check the other half: every text of the table occurs
-//! exactly once in its file, and the unchanged compiler draws every scene right.
+//! A mutant is one rule of the analysis or of a ray method that is broken on purpose. `table.txt`
+//! lists for each mutant a file, a text of that file, the text to put in its place, and a scene
+//! that is drawn wrong once that is done. The tests here check the other half: every text of the
+//! table occurs exactly once in its file, and the unchanged compiler draws every scene right.
 //!
 //! `tests/mutants/run` applies the mutants one by one to a copy of the repository and expects the
 //! test of the mutant's scene to fail there. It builds the compiler once for each mutant, so it is

@@ -7,8 +7,8 @@ use sdfc_graph::{Graph, LoopId, Node, NodeId, Stage, reachable};
 pub struct Cost {
     /// Nodes of any kind and evaluation rate.
     pub nodes: usize,
-    /// Arithmetic operations at each point. A vector operation counts once, a swizzle not at all. The
-    /// operations in a loop count as often as the loop may run.
+    /// Arithmetic operations at each point. A vector operation counts once, a swizzle not at all.
+    /// The operations in a loop count as often as the loop may run.
     pub operations: usize,
     /// Operations that run once per frame.
     pub per_frame: usize,

@@ -5,18 +5,18 @@
 //! [`Qualities`] derives what every shape's field promises outside and inside, and its Lipschitz
 //! constant. [`prepare`] divides the field by these constants, splits the scene into analytic and
 //! marched operands, expands both to flat math over one point, folds transforms, turns many similar
-//! operands into loops if that is faster, derives gradient and materials, and lists the uniform slots.
-//! [`refute`] tests the clauses of shapes with samples.
+//! operands into loops if that is faster, derives gradient and materials, and lists the uniform
+//! slots. [`refute`] tests the clauses of shapes with samples.
 //!
 //! # How
 //!
-//! Everything is a free function over [`sdfc_graph::Graph`]. Results are tables beside the graph, and
-//! nothing is stored in the nodes. A question that needs new nodes asks it on an extract of the graph
-//! ([`sdfc_graph::Graph::extract`]).
+//! Everything is a free function over [`sdfc_graph::Graph`]. Results are tables beside the graph,
+//! and nothing is stored in the nodes. A question that needs new nodes asks it on an extract of the
+//! graph ([`sdfc_graph::Graph::extract`]).
 //!
-//! The modules are named after the stages: `certify` derives promises, constants and the conservative
-//! field; `analytic` intersects rays without marching; `reroll` makes loops; `refute` tests clauses;
-//! `prepare` runs the passes in order.
+//! The modules are named after the stages: `certify` derives promises, constants and the
+//! conservative field; `analytic` intersects rays without marching; `reroll` makes loops; `refute`
+//! tests clauses; `prepare` runs the passes in order.
 //!
 //! # Limits
 //!

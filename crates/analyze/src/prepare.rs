@@ -29,9 +29,9 @@ pub struct Prepared {
     pub report: Report,
 }
 
-/// Turns a scene into a flat program: derives promises and constants, expands the conservative field
-/// and the materials, splits off analytic operands, folds transforms, rerolls loops, derives the
-/// gradient and lists the uniform slots.
+/// Turns a scene into a flat program: derives promises and constants, expands the conservative
+/// field and the materials, splits off analytic operands, folds transforms, rerolls loops, derives
+/// the gradient and lists the uniform slots.
 ///
 /// # Errors
 ///
@@ -40,9 +40,9 @@ pub fn prepare(scene: &Scene) -> Result<Prepared, ExpandError> {
     prepare_with(scene, [0.0; 3], LoopStrategy::Auto)
 }
 
-/// As [`prepare`], with a loop strategy and with the point of the flat program relative to `origin`. The
-/// positions of solids relative to the origin are computed in f64 here, so that rounding errors of f32
-/// are small near the origin.
+/// As [`prepare`], with a loop strategy and with the point of the flat program relative to
+/// `origin`. The positions of solids relative to the origin are computed in f64 here, so that
+/// rounding errors of f32 are small near the origin.
 ///
 /// # Errors
 ///
@@ -131,16 +131,16 @@ fn flatten(
     })
 }
 
-/// The Lipschitz constant of the scene's field: infinite if it depends on a param, `None` if there is
-/// none.
+/// The Lipschitz constant of the scene's field: infinite if it depends on a param, `None` if there
+/// is none.
 fn lipschitz_constant(graph: &Graph, qualities: &Qualities, root: ShapeId) -> Option<f64> {
     let constant = qualities.get(root)?.lipschitz.as_ref().ok()?;
     Some(graph.as_number(*constant).unwrap_or(f64::INFINITY))
 }
 
 /// Makes the operands that become loops marched ones. As analytic operands, all of them would be
-/// intersected with every ray. The local intervals of copies are dropped, since those of one iteration
-/// would count for all.
+/// intersected with every ray. The local intervals of copies are dropped, since those of one
+/// iteration would count for all.
 fn march_similar_operands(graph: &mut Graph, operands: &mut Operands) {
     let values: Vec<NodeId> = operands.analytic.iter().map(|operand| operand.value).collect();
     let mut many = similar_groups(graph, &values).concat();
@@ -149,8 +149,8 @@ fn march_similar_operands(graph: &mut Graph, operands: &mut Operands) {
     operands.marched.iter_mut().for_each(|operand| operand.local = None);
 }
 
-/// The field of the whole scene. If there are analytic operands, their field follows, and then that of
-/// the marched operands, if there are any.
+/// The field of the whole scene. If there are analytic operands, their field follows, and then that
+/// of the marched operands, if there are any.
 fn fields(graph: &mut Graph, whole: NodeId, operands: &Operands) -> Vec<NodeId> {
     let mut fields = vec![whole];
     if !operands.analytic.is_empty() {

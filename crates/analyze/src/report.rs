@@ -44,8 +44,8 @@ pub struct Report {
 }
 
 impl Report {
-    /// Estimated number of operations per ray. `evaluations` is the mean number of field evaluations;
-    /// with `looks_ahead` the first of them is the analytic pre-intersection.
+    /// Estimated number of operations per ray. `evaluations` is the mean number of field
+    /// evaluations; with `looks_ahead` the first of them is the analytic pre-intersection.
     pub fn operations_per_ray(&self, evaluations: f64, looks_ahead: bool) -> f64 {
         if looks_ahead && self.ray_cost.operations > 0 {
             let steps = (evaluations - 1.0).max(0.0);

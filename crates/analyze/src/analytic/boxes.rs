@@ -7,9 +7,9 @@ const MARGIN: f64 = 1e-5;
 /// Smallest absolute value of a component of a direction; smaller ones are replaced by it.
 const MIN_SLOPE: f64 = 1e-12;
 
-/// The distances at which a ray, given by origin and direction, enters and leaves a box. Where the ray
-/// misses the box, the first is above the second. Walls that are not known to be finite are ignored;
-/// returns `None` if there are no others.
+/// The distances at which a ray, given by origin and direction, enters and leaves a box. Where the
+/// ray misses the box, the first is above the second. Walls that are not known to be finite are
+/// ignored; returns `None` if there are no others.
 pub(crate) fn clip(
     graph: &mut Graph,
     [origin, direction]: [NodeId; 2],
@@ -71,8 +71,9 @@ pub(crate) fn outermost(graph: &Graph, boxes: &[[NodeId; 2]]) -> Vec<[NodeId; 2]
     outermost
 }
 
-/// The interval from where a ray first enters one of some boxes to where it leaves the last one. Boxes
-/// that the ray misses, or that lie behind its origin, do not count. Returns `None` if there is no box.
+/// The interval from where a ray first enters one of some boxes to where it leaves the last one.
+/// Boxes that the ray misses, or that lie behind its origin, do not count. Returns `None` if there
+/// is no box.
 pub(crate) fn hull(graph: &mut Graph, intervals: &[[NodeId; 2]]) -> Option<[NodeId; 2]> {
     if let [] | [_] = intervals {
         return intervals.first().copied();

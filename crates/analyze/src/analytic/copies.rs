@@ -1,8 +1,9 @@
 //! Formulas with the clause `copies`, taken apart into samples and limits.
 //!
-//! Such a formula is the minimum of samples and of values without samples. Each sample is at a map of
-//! the point that is rigid between the jumps of `floor` and the like, and may be intersected with a
-//! box. Each value without samples is a lower bound of the distance to the copies that are not sampled.
+//! Such a formula is the minimum of samples and of values without samples. Each sample is at a map
+//! of the point that is rigid between the jumps of `floor` and the like, and may be intersected
+//! with a box. Each value without samples is a lower bound of the distance to the copies that are
+//! not sampled.
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Dim, Graph, Node, NodeId, Shape, ShapeId, reachable};
@@ -44,7 +45,8 @@ pub enum CopiesObstacle {
     NoLimit,
 }
 
-/// The reason why the clause `copies` of a shape has no effect; `None` if it has one, or is not stated.
+/// The reason why the clause `copies` of a shape has no effect; `None` if it has one, or is not
+/// stated.
 pub fn copies_obstacle(graph: &mut Graph, shape: ShapeId) -> Option<CopiesObstacle> {
     let Shape { contract, dim, .. } = graph.shape(shape);
     if !contract.copies || *dim != Dim::Three {

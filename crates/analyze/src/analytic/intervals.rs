@@ -1,8 +1,9 @@
-//! The intervals along a ray that lie inside a solid, and their unions, intersections and complements.
+//! The intervals along a ray that lie inside a solid, and their unions, intersections and
+//! complements.
 //!
 //! A ray is inside within any of a list of intervals, which may overlap. An interval whose enter
-//! exceeds its exit is empty. Its complement is computed as (-∞, enter] and [exit, ∞), which together
-//! are everything, as they must be.
+//! exceeds its exit is empty. Its complement is computed as (-∞, enter] and [exit, ∞), which
+//! together are everything, as they must be.
 
 use sdfc_graph::{Binary, FAR, Graph, NodeId};
 

@@ -6,8 +6,8 @@ use crate::analytic::boxes::{clip, hull, outermost};
 use crate::analytic::intervals::{RayIntervals, first_hit, union};
 use crate::analytic::operands::{MarchedOperand, Operands, bounding_shape};
 
-/// Largest number of marched operands whose bounds clip rays. Deriving the bounds of more takes longer
-/// than the clipping saves.
+/// Largest number of marched operands whose bounds clip rays. Deriving the bounds of more takes
+/// longer than the clipping saves.
 const MAX_CLIPPED: usize = 256;
 /// Largest number of intervals of copies near the ray's origin. Each costs as much as a distance.
 const MAX_COPIES: usize = 64;

@@ -1,10 +1,10 @@
 //! The intervals of repeated shapes, of which a point samples only a few copies.
 //!
-//! A shape with the clause `copies` is the minimum of samples and of a limit, which bounds the distance
-//! to every other copy from below. Within a ball of that radius around a ray's origin, the shape equals
-//! the copies that are sampled at the origin: where the index of a cell jumps, other copies are
-//! sampled, but those within the ball stay the same. A copy is moved rigidly while the index is
-//! constant.
+//! A shape with the clause `copies` is the minimum of samples and of a limit, which bounds the
+//! distance to every other copy from below. Within a ball of that radius around a ray's origin, the
+//! shape equals the copies that are sampled at the origin: where the index of a cell jumps, other
+//! copies are sampled, but those within the ball stay the same. A copy is moved rigidly while the
+//! index is constant.
 
 use sdfc_graph::{Dim, ExpandError, Shape, ShapeId};
 
@@ -15,8 +15,8 @@ use crate::analytic::split::{LocalRay, Splitter};
 use crate::shapes::minimum;
 
 impl Splitter<'_> {
-    /// The intervals of the copies that a shape samples at the ray's origin, and the distance within
-    /// which there are no others. Returns `None` for other shapes.
+    /// The intervals of the copies that a shape samples at the ray's origin, and the distance
+    /// within which there are no others. Returns `None` for other shapes.
     pub(super) fn repetition(
         &mut self,
         shape: ShapeId,

@@ -1,14 +1,15 @@
 //! The split of a scene into analytic and marched operands.
 //!
 //! The pass descends from the root through hard minima and maxima, sign changes and rigid or scaled
-//! samples, and transforms the ray by the same maps as the point. A shape with the clause `intersect`
-//! states the intervals in which the ray is inside it. The operands of a union are split into those
-//! with known intervals, which are analytic, and the others, which are marched. Intersections and
-//! complements are analytic if all of their operands are, and if they have few intervals.
+//! samples, and transforms the ray by the same maps as the point. A shape with the clause
+//! `intersect` states the intervals in which the ray is inside it. The operands of a union are
+//! split into those with known intervals, which are analytic, and the others, which are marched.
+//! Intersections and complements are analytic if all of their operands are, and if they have few
+//! intervals.
 //!
-//! A floor in a smooth blend is just a floor where all other operands are farther away than the width
-//! of the blend. So an unbounded operand of a blend is intersected analytically there, and the blend
-//! as a whole is marched around the other operands.
+//! A floor in a smooth blend is just a floor where all other operands are farther away than the
+//! width of the blend. So an unbounded operand of a blend is intersected analytically there, and
+//! the blend as a whole is marched around the other operands.
 //!
 //! A point samples only few of infinitely many copies. Their intervals are known only up to the
 //! distance of the copies that are not sampled (`repetition.rs`). So operands that contain them are
@@ -28,8 +29,8 @@ use crate::certify::maps::Maps;
 use crate::certify::quality::Qualities;
 use crate::shapes::{is_bounded, minimum, unnamed_shape};
 
-/// Splits the scene `root`, sampled at `point`, into analytic and marched operands. The point of level
-/// 0 is the origin of rays, the point of level 1 is their direction.
+/// Splits the scene `root`, sampled at `point`, into analytic and marched operands. The point of
+/// level 0 is the origin of rays, the point of level 1 is their direction.
 pub(crate) fn split_analytic(
     graph: &mut Graph,
     expander: &mut Expander,
@@ -45,8 +46,8 @@ pub(crate) fn split_analytic(
     splitter.shape(root, &ray).map(Operands::with_local_marched)
 }
 
-/// The ray in the coordinates of a shape. Lengths along it are multiplied by `scale` to get lengths in
-/// the scene.
+/// The ray in the coordinates of a shape. Lengths along it are multiplied by `scale` to get lengths
+/// in the scene.
 #[derive(Clone, Debug)]
 pub(super) struct LocalRay {
     /// The points of the enclosing formulas, all at the ray's origin. Only shapes whose arguments
@@ -81,7 +82,8 @@ enum Split {
 struct Formula {
     maps: Maps,
     ray: LocalRay,
-    /// The intervals of a node, or of its complement if the flag is set; `None` if they are unknown.
+    /// The intervals of a node, or of its complement if the flag is set; `None` if they are
+    /// unknown.
     intervals: FxHashMap<(NodeId, bool), Option<RayIntervals>>,
 }
 
@@ -131,8 +133,8 @@ impl Splitter<'_> {
         }
     }
 
-    /// Splits a chain of blends that has one unbounded analytic operand. Returns that operand, and a
-    /// shape outside of which the blend equals the operand.
+    /// Splits a chain of blends that has one unbounded analytic operand. Returns that operand, and
+    /// a shape outside of which the blend equals the operand.
     fn split_blend(
         &mut self,
         shape: ShapeId,
@@ -202,8 +204,8 @@ impl Splitter<'_> {
         Ok(Operands { analytic, marched: Vec::new() })
     }
 
-    /// The conservative field at the sample point. It is never used for shapes whose arguments depend on
-    /// enclosing points; a placeholder is returned for those.
+    /// The conservative field at the sample point. It is never used for shapes whose arguments
+    /// depend on enclosing points; a placeholder is returned for those.
     fn field(&mut self, shape: ShapeId, ray: &LocalRay) -> Result<NodeId, ExpandError> {
         if !ray.outer.is_empty() {
             return Ok(ray.scale);
@@ -277,8 +279,8 @@ impl Splitter<'_> {
         Ok(operands.marched.is_empty().then(|| Split::Intervals(union(self.graph, others))))
     }
 
-    /// The intervals of a node of a formula, or of its complement; `None` if they are unknown or too
-    /// many.
+    /// The intervals of a node of a formula, or of its complement; `None` if they are unknown or
+    /// too many.
     fn intervals(
         &mut self,
         formula: &mut Formula,
@@ -328,8 +330,8 @@ impl Splitter<'_> {
         Ok(Some(union(self.graph, vec![a, b])))
     }
 
-    /// The operands of a node that samples a child at a rigid map of the point, or of a scaled sample;
-    /// `None` for any other node.
+    /// The operands of a node that samples a child at a rigid map of the point, or of a scaled
+    /// sample; `None` for any other node.
     fn split_sample(
         &mut self,
         formula: &mut Formula,

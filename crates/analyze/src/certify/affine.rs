@@ -90,8 +90,8 @@ fn is_piecewise_constant(node: Node) -> bool {
     )
 }
 
-/// The linear lane of a node that depends on the point of `level`. `known` holds the linear lanes of
-/// those of its arguments that do. Returns `None` if the node is not affine.
+/// The linear lane of a node that depends on the point of `level`. `known` holds the linear lanes
+/// of those of its arguments that do. Returns `None` if the node is not affine.
 pub(crate) fn linear_part(
     graph: &mut Graph,
     node: NodeId,
@@ -187,8 +187,8 @@ pub(crate) fn linear_part(
     }
 }
 
-/// True if the node does not depend on the point of `level`: it has a lower evaluation rate, or depends
-/// only on the points of enclosing formulas.
+/// True if the node does not depend on the point of `level`: it has a lower evaluation rate, or
+/// depends only on the points of enclosing formulas.
 pub(crate) fn is_fixed(graph: &Graph, node: NodeId, level: u16) -> bool {
     graph.stage(node) < Stage::Point
         || (graph.levels(node) <= level && graph.loops_around(node) == 0)

@@ -1,9 +1,9 @@
 //! The conservative field that rays march: the scene's distance, divided by Lipschitz constants.
 //!
-//! The pass descends from the root through hard `min` and `max`, sign changes and rigid samples, and
-//! divides each operand by its own Lipschitz constant. The operands of all other operations, such as
-//! blends and offsets, are expanded undivided, and their constants contribute to the constant of the
-//! whole. So no division moves a surface.
+//! The pass descends from the root through hard `min` and `max`, sign changes and rigid samples,
+//! and divides each operand by its own Lipschitz constant. The operands of all other operations,
+//! such as blends and offsets, are expanded undivided, and their constants contribute to the
+//! constant of the whole. So no division moves a surface.
 //!
 //! A constant that is stated with bounds, and is not known to hold beyond them, is used only within
 //! the bounds. Beyond them the field is continued ([`sdfc_graph::Graph::continued`]).
@@ -90,8 +90,8 @@ impl Pass<'_> {
         points.push(point);
         let contract = self.graph.shape(shape).contract;
         if constant.is_ok() && contract.lipschitz.is_some() && !everywhere {
-            // A stated constant assumes that the constants of the children hold wherever the formula
-            // samples them.
+            // A stated constant assumes that the constants of the children hold wherever the
+            // formula samples them.
             self.check_children(shape, self.graph.shape(shape).formula);
         }
         let bounds = local_bounds.or(contract.lipschitz.and(contract.bounds));
@@ -219,7 +219,8 @@ impl Pass<'_> {
         })
     }
 
-    /// Divides a formula by a constant that holds within bounds, and continues the field beyond them.
+    /// Divides a formula by a constant that holds within bounds, and continues the field beyond
+    /// them.
     fn continued(
         &mut self,
         shape: ShapeId,

@@ -1,7 +1,7 @@
 //! The descent from a formula's root through hard minima and maxima, sign changes and samples.
 //!
-//! A scene's field consists of these operations near its root. The descent ends at every other node,
-//! which callers treat as a whole.
+//! A scene's field consists of these operations near its root. The descent ends at every other
+//! node, which callers treat as a whole.
 
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Unary};

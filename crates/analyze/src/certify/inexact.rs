@@ -1,8 +1,8 @@
 //! Operators that need an exact distance and are applied to a field that is only a bound.
 //!
 //! `a - r` is the surface at distance r from the surface of `a`, and `abs(a) - w` is the pair of
-//! surfaces at distance w, only where `a` is the exact distance. If `a` is only a bound, the distance
-//! between the surfaces varies.
+//! surfaces at distance w, only where `a` is the exact distance. If `a` is only a bound, the
+//! distance between the surfaces varies.
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Unary};
 
@@ -86,8 +86,8 @@ fn absolute(graph: &Graph, node: NodeId) -> Option<NodeId> {
     if let Node::Unary(Unary::Abs, inner) = graph.node(node) { Some(inner) } else { None }
 }
 
-/// The lowest inexact shape whose children are all exact, on a path down from the child. Children that
-/// are inexact on a side that is used come first.
+/// The lowest inexact shape whose children are all exact, on a path down from the child. Children
+/// that are inexact on a side that is used come first.
 fn cause(graph: &Graph, qualities: &Qualities, level_set: LevelSet) -> Option<ShapeId> {
     let sides = |shape: ShapeId| qualities.get(shape).map(|quality| quality.sides);
     let lacks = |shape: ShapeId| {

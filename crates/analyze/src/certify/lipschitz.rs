@@ -1,8 +1,8 @@
 //! Lipschitz constants of the nodes of a formula, in the Euclidean norm.
 //!
 //! The constant of a node is itself a node of a lower evaluation rate than the point, so that a
-//! constant that depends on a param follows the param. The rules are those of the language reference,
-//! section "Promises".
+//! constant that depends on a param follows the param. The rules are those of the language
+//! reference, section "Promises".
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use sdfc_graph::{
@@ -23,7 +23,8 @@ const MAX_ITERATIONS: u32 = 16;
 
 /// The Lipschitz constants of the nodes of one formula.
 pub(crate) struct Slopes {
-    /// The nodes of the formula and the arguments of its annotated functions, arguments before uses.
+    /// The nodes of the formula and the arguments of its annotated functions, arguments before
+    /// uses.
     pub(crate) nodes: Vec<NodeId>,
     constants: FxHashMap<NodeId, Constant>,
     /// The affine maps of the formula, for instance the points where it samples its children.
@@ -289,9 +290,9 @@ impl Slopes {
         }
     }
 
-    /// A product of two bounded factors, such as sines: |xy - uv| <= max|x| |y - v| + max|y| |x - u|.
-    /// The two terms are combined by their hypotenuse if the factors depend on different components of
-    /// the point.
+    /// A product of two bounded factors, such as sines: |xy - uv| <= max|x| |y - v| + max|y| |x -
+    /// u|. The two terms are combined by their hypotenuse if the factors depend on different
+    /// components of the point.
     fn product(&self, graph: &mut Graph, a: NodeId, b: NodeId) -> Constant {
         let limit = |id| graph.range(id).lo.abs().max(graph.range(id).hi.abs());
         let (limit_a, limit_b) = (limit(a), limit(b));
@@ -338,10 +339,10 @@ impl Slopes {
         }
     }
 
-    /// The constant of a vector of lanes. If the lanes depend on different components of the point, it
-    /// is the largest constant of a lane, since the squares of the changes add up to no more than the
-    /// square of the point's change. Otherwise it is the hypotenuse of the constants, or less if the
-    /// lanes are linear combinations of folded values.
+    /// The constant of a vector of lanes. If the lanes depend on different components of the point,
+    /// it is the largest constant of a lane, since the squares of the changes add up to no more
+    /// than the square of the point's change. Otherwise it is the hypotenuse of the constants, or
+    /// less if the lanes are linear combinations of folded values.
     fn compose(&self, graph: &mut Graph, parts: &[NodeId]) -> Constant {
         let constants: Vec<NodeId> =
             parts.iter().map(|&part| self.constant(part)).collect::<Result<_, _>>()?;

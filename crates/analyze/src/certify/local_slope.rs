@@ -1,9 +1,9 @@
 //! Lipschitz constants within a box, by interval derivatives.
 //!
 //! They cover formulas that the rules of [`crate::certify::lipschitz`] do not, such as products of
-//! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound is split
-//! until another split gains little. Params have the intervals of their ranges, so the constant holds
-//! for all of their values.
+//! coordinates. The gradient is evaluated over intervals. The box with the largest upper bound is
+//! split until another split gains little. Params have the intervals of their ranges, so the
+//! constant holds for all of their values.
 
 use std::collections::BinaryHeap;
 
@@ -18,8 +18,8 @@ const MIN_BOXES: usize = 64;
 /// The search ends if the constant exceeds a slope that occurs by no more than this fraction.
 const TOLERANCE: f64 = 0.02;
 
-/// Largest ratio of the largest to the median slope. Above it, the short steps cost more than interval
-/// tracing, which is used if there is no constant.
+/// Largest ratio of the largest to the median slope. Above it, the short steps cost more than
+/// interval tracing, which is used if there is no constant.
 const MAX_RATIO: f64 = 16.0;
 /// Sample points for the median slope along each axis.
 const SAMPLES: usize = 5;
@@ -42,8 +42,8 @@ impl Slope {
     }
 }
 
-/// The slopes of a shape's formula within its bounds, for all values of the params. Returns `None` if
-/// the bounds or the slope are infinite, or the formula jumps.
+/// The slopes of a shape's formula within its bounds, for all values of the params. Returns `None`
+/// if the bounds or the slope are infinite, or the formula jumps.
 pub(crate) fn steepest_within(
     graph: &mut Graph,
     shape: ShapeId,

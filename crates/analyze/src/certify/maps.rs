@@ -54,8 +54,8 @@ impl Maps {
         self.is_similarity(graph, q, one)
     }
 
-    /// Applies the linear part of a node to a direction. Returns the direction unchanged if the node
-    /// is not affine.
+    /// Applies the linear part of a node to a direction. Returns the direction unchanged if the
+    /// node is not affine.
     pub(crate) fn direction(&mut self, graph: &mut Graph, q: NodeId, direction: NodeId) -> NodeId {
         match self.linear(graph, q) {
             Some(linear) => affine::applied(graph, linear, direction),
@@ -63,8 +63,8 @@ impl Maps {
         }
     }
 
-    /// True if the node divides all distances by `factor`, so that `factor` times a distance sampled
-    /// there is a distance again.
+    /// True if the node divides all distances by `factor`, so that `factor` times a distance
+    /// sampled there is a distance again.
     pub(crate) fn is_similarity(&mut self, graph: &mut Graph, q: NodeId, factor: NodeId) -> bool {
         let Some(linear) = self.linear(graph, q) else { return false };
         let Some(scale) = affine::similarity(graph, linear) else { return false };

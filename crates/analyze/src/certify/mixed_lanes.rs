@@ -2,8 +2,8 @@
 //!
 //! Such vectors occur where a folded point is rotated, as in kaleidoscopic fractals. Combining the
 //! constants of the single lanes loses that they share values, and the result grows with each
-//! rotation. Taken together, the lanes are a matrix over the shared values, and its operator norm is
-//! the constant.
+//! rotation. Taken together, the lanes are a matrix over the shared values, and its operator norm
+//! is the constant.
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Unary};
 
@@ -19,8 +19,8 @@ type Lane = (NodeId, usize);
 
 /// The Lipschitz constant of the vector of `parts` in the point of `level`.
 ///
-/// Every lane must be a linear combination of at most three values, the values must be folded lanes of
-/// such a vector again, and so on down to the point; otherwise returns `None`.
+/// Every lane must be a linear combination of at most three values, the values must be folded lanes
+/// of such a vector again, and so on down to the point; otherwise returns `None`.
 pub(crate) fn constant(graph: &Graph, parts: &[NodeId], level: u16) -> Option<f64> {
     let mut lanes: Vec<Lane> = parts.iter().map(|&part| (part, 0)).collect();
     let mut factor = 1.0;

@@ -62,8 +62,8 @@ impl Sides {
         self.outside >= Promise::Bound && self.inside >= Promise::Bound
     }
 
-    /// The promises that remain if a number in the interval is subtracted from the field (`outwards`)
-    /// or added to it.
+    /// The promises that remain if a number in the interval is subtracted from the field
+    /// (`outwards`) or added to it.
     pub(crate) fn offset(self, by: Interval, outwards: bool) -> Self {
         let (grows, shrinks) = match outwards {
             true => (by.lo() >= 0.0, by.hi() <= 0.0),
@@ -77,8 +77,8 @@ impl Sides {
     }
 }
 
-/// The promises that the clauses state. A condition that is not known when the scene compiles counts
-/// as false. `exact` and `bound` tell if all children keep that promise.
+/// The promises that the clauses state. A condition that is not known when the scene compiles
+/// counts as false. `exact` and `bound` tell if all children keep that promise.
 pub(crate) fn stated_sides(graph: &Graph, contract: &Contract, exact: bool, bound: bool) -> Sides {
     let holds = |condition: Option<NodeId>| {
         condition.is_some_and(

@@ -1,8 +1,8 @@
 //! What each shape's field promises outside and inside, and its Lipschitz constant.
 //!
-//! The two facts are independent: `|f| <= distance` lets a ray step by `f`, and "L-Lipschitz" limits
-//! how fast `f` changes. `exact` implies both, and a constant of at most 1 implies `bound` on both
-//! sides.
+//! The two facts are independent: `|f| <= distance` lets a ray step by `f`, and "L-Lipschitz"
+//! limits how fast `f` changes. `exact` implies both, and a constant of at most 1 implies `bound`
+//! on both sides.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::eval::{FrameValues, Interval};
@@ -24,7 +24,8 @@ pub struct Quality {
     pub lipschitz: Constant,
     /// True if the constant holds at every point, false if only within the shape's bounds.
     pub everywhere: bool,
-    /// The bounds for which interval derivatives gave the constant, if no rule and no clause gives one.
+    /// The bounds for which interval derivatives gave the constant, if no rule and no clause gives
+    /// one.
     pub local_bounds: Option<[NodeId; 2]>,
 }
 
@@ -159,7 +160,8 @@ impl Qualities {
                         }
                     });
                 let confirmed = at_most(graph, &derived, &stated);
-                // Beyond the bounds lies only the outside, and an exact distance has the constant 1.
+                // Beyond the bounds lies only the outside, and an exact distance has the constant
+                // 1.
                 let one =
                     stated.as_ref().is_ok_and(|&l| graph.as_number(l).is_some_and(|l| l >= 1.0));
                 let exact_beyond = outside == Promise::Exact && one;
@@ -257,8 +259,8 @@ impl Qualities {
                 Sides { outside: both.outside.min(Promise::Bound), inside: both.inside }
             }
             Node::Unary(Unary::Neg, a) => of(a).swapped(),
-            // An offset surface: beyond it the distance is the distance to the original surface minus
-            // the offset.
+            // An offset surface: beyond it the distance is the distance to the original surface
+            // minus the offset.
             Node::Binary(Binary::Sub | Binary::Add, a, r)
                 if graph.ty(node).width() == 1 && graph.stage(r) < Stage::Point =>
             {

@@ -61,8 +61,8 @@ pub fn refute_lipschitz(
     })
 }
 
-/// The shapes whose formulas contain the node. If simplification has removed it from all of them, the
-/// root of the scene.
+/// The shapes whose formulas contain the node. If simplification has removed it from all of them,
+/// the root of the scene.
 fn callers(graph: &Graph, root: Option<ShapeId>, value: NodeId) -> Vec<ShapeId> {
     let calls = |&shape: &ShapeId| {
         let shape = graph.shape(shape);

@@ -1,11 +1,11 @@
 //! Tests of stated clauses by samples.
 //!
-//! The field is compared with points of the surface, which bisection finds between points of opposite
-//! sign. They are at least as far away as the nearest point of the surface, so a value above their
-//! distance refutes `exact` and `bound`. If f is an exact distance with the gradient g, then p - f g is
-//! on the surface; a point where that is not so, and which has no surface as near, refutes `exact`. Two
-//! points refute a constant, and one point refutes bounds. A clause is tested as it is meant: for
-//! children that keep the same promise.
+//! The field is compared with points of the surface, which bisection finds between points of
+//! opposite sign. They are at least as far away as the nearest point of the surface, so a value
+//! above their distance refutes `exact` and `bound`. If f is an exact distance with the gradient g,
+//! then p - f g is on the surface; a point where that is not so, and which has no surface as near,
+//! refutes `exact`. Two points refute a constant, and one point refutes bounds. A clause is tested
+//! as it is meant: for children that keep the same promise.
 
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
@@ -64,9 +64,9 @@ pub enum Clause {
     Copies(CopiesViolation),
 }
 
-/// Searches for points at which clauses of the shapes fail, and returns at most one for each shape. The
-/// budget is about ten thousand evaluations for each shape. Shapes whose arguments depend on a point,
-/// and fields that do not expand, are skipped.
+/// Searches for points at which clauses of the shapes fail, and returns at most one for each shape.
+/// The budget is about ten thousand evaluations for each shape. Shapes whose arguments depend on a
+/// point, and fields that do not expand, are skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
     let mut graph = scene.graph.clone();
     let mut bounds = Bounds::new(&scene.params);

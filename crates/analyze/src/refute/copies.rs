@@ -1,8 +1,9 @@
 //! Tests of the clause `copies`.
 //!
-//! Within a ball around p, whose radius the formula states, the shape equals the copies that are sampled
-//! at p: a point of the ball is inside the shape if and only if it is inside one of these samples, under
-//! the maps that are valid at p. And every point inside the shape is inside a sample at that point.
+//! Within a ball around p, whose radius the formula states, the shape equals the copies that are
+//! sampled at p: a point of the ball is inside the shape if and only if it is inside one of these
+//! samples, under the maps that are valid at p. And every point inside the shape is inside a sample
+//! at that point.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Scene, ShapeId};
@@ -10,14 +11,14 @@ use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Scene, ShapeId};
 use crate::analytic::copies::{CopySample, split_copies};
 use crate::refute::probe::Random;
 
-/// Number of points around which balls are tested, and of points outside from which each point of the
-/// shape is tested.
+/// Number of points around which balls are tested, and of points outside from which each point of
+/// the shape is tested.
 const POINTS: usize = 2000;
 const OUTSIDE_POINTS: usize = 6;
 /// Newton steps towards the inside of the shape.
 const STEPS: usize = 12;
-/// Smallest half of the sampled interval on an axis without bounds, and the number of times it may be
-/// multiplied by four.
+/// Smallest half of the sampled interval on an axis without bounds, and the number of times it may
+/// be multiplied by four.
 const REACH: f64 = 2.0;
 const WIDENINGS: usize = 4;
 /// Rounding error of the field, as a fraction of the size of the shape.
@@ -37,8 +38,8 @@ pub struct CopiesViolation {
 }
 
 /// Searches for a point that refutes the clause `copies` of a shape, with the radius of all balls
-/// multiplied by `radius_factor`. Returns `None` also for a shape without the clause, or whose formula
-/// does not have the required form.
+/// multiplied by `radius_factor`. Returns `None` also for a shape without the clause, or whose
+/// formula does not have the required form.
 pub fn refute_copies(
     scene: &Scene,
     shape: ShapeId,
@@ -69,8 +70,8 @@ fn field(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
     Tape::new(graph, &[field]).ok()
 }
 
-/// A tape up a point p and an offset: the field at p + offset, the minimum there of the samples at p,
-/// and the radius of the ball around p.
+/// A tape up a point p and an offset: the field at p + offset, the minimum there of the samples at
+/// p, and the radius of the ball around p.
 fn ball_tape(graph: &mut Graph, shape: ShapeId) -> Option<Tape> {
     let copies = split_copies(graph, shape).ok()?;
     let [p, offset] = [0, 1].map(|level| graph.point(level, Dim::Three));
@@ -131,8 +132,8 @@ impl Sampler<'_> {
         self.radius_factor * self.around.eval_ray(p, [0.0; 3])[2][0]
     }
 
-    /// The normal of the surface near a point, and a point just inside the shape. The second may still
-    /// be outside if the Newton steps did not converge.
+    /// The normal of the surface near a point, and a point just inside the shape. The second may
+    /// still be outside if the Newton steps did not converge.
     fn within(&mut self, mut p: [f64; 3], size: f64) -> ([f64; 3], [f64; 3]) {
         let mut normal = [0.0; 3];
         for step in 0..STEPS {

@@ -6,13 +6,13 @@ use sdfc_graph::{Dim, Expander, Graph, NodeId, ShapeId};
 use crate::certify::promise::Promise;
 use crate::refute::frames::axes;
 
-/// Number of pairs of points for a constant, of points for bounds and promises, and of points on the
-/// surface.
+/// Number of pairs of points for a constant, of points for bounds and promises, and of points on
+/// the surface.
 const PAIRS: usize = 1500;
 const POINTS: usize = 400;
 const SURFACE: usize = 200;
-/// Bisections between points of opposite sign, and iterations of the search for the nearest point of a
-/// surface.
+/// Bisections between points of opposite sign, and iterations of the search for the nearest point
+/// of a surface.
 const BISECTIONS: usize = 50;
 const ITERATIONS: usize = 300;
 /// Half the sampled interval on an axis without bounds.
@@ -142,8 +142,8 @@ impl Probe {
         [0, 1, 2].map(|axis| p[axis].clamp(self.region[0][axis], self.region[1][axis]))
     }
 
-    /// A point at which the field breaks the promises for outside and inside, the field and the distance
-    /// there.
+    /// A point at which the field breaks the promises for outside and inside, the field and the
+    /// distance there.
     pub(super) fn wrong_distance(
         &mut self,
         promised: [Promise; 2],

@@ -1,8 +1,8 @@
 //! Tests of the clause `intersect`: the field along rays is compared with the stated intervals.
 //!
-//! The rays start near and far, inside the shape and on its surface. Some are parallel to axes, and some
-//! barely touch or miss the surface. Within the intervals the field must not be positive, and outside
-//! of them not negative. At their ends it must be 0.
+//! The rays start near and far, inside the shape and on its surface. Some are parallel to axes, and
+//! some barely touch or miss the surface. Within the intervals the field must not be positive, and
+//! outside of them not negative. At their ends it must be 0.
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
 use sdfc_graph::{Bounds, Dim, Expander, NodeId, Scene, ShapeId};
@@ -38,9 +38,9 @@ impl RayViolation {
     }
 }
 
-/// Searches for a ray that refutes the intervals of a shape. They are computed in the number type `N`,
-/// and `rounding` is the relative error that is accepted. Returns `None` also for a shape without the
-/// clause `intersect`.
+/// Searches for a ray that refutes the intervals of a shape. They are computed in the number type
+/// `N`, and `rounding` is the relative error that is accepted. Returns `None` also for a shape
+/// without the clause `intersect`.
 pub fn refute_intersect<N: Number + Into<f64>>(
     scene: &Scene,
     shape: ShapeId,
@@ -126,8 +126,8 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         None
     }
 
-    /// The intervals that are not empty. An end that is NaN makes no interval empty, so that the test
-    /// fails.
+    /// The intervals that are not empty. An end that is NaN makes no interval empty, so that the
+    /// test fails.
     fn intervals(&mut self, ray: [[f64; 3]; 2]) -> Vec<[f64; 2]> {
         let [origin, direction] = ray.map(|vector| vector.map(N::constant));
         let ends = self.hits.eval_ray(origin, direction);
@@ -136,8 +136,8 @@ impl<N: Number + Into<f64>> Sampler<'_, N> {
         intervals.filter(|interval| !is_empty(interval)).collect()
     }
 
-    /// A point that the ray goes through: in the window, often on its walls or at its centre, or next to
-    /// the surface.
+    /// A point that the ray goes through: in the window, often on its walls or at its centre, or
+    /// next to the surface.
     fn target(&mut self) -> [f64; 3] {
         let [lo, hi] = self.window;
         let mut point = [0, 1, 2].map(|axis| match self.random.below(6) {

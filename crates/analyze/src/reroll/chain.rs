@@ -20,7 +20,8 @@ pub(super) struct Step {
     pub(super) before: NodeId,
     /// The operand that this step adds.
     pub(super) operand: NodeId,
-    /// The width of the blend: it equals the minimum where its operands differ by at min_chain this.
+    /// The width of the blend: it equals the minimum where its operands differ by at min_chain
+    /// this.
     pub(super) width: NodeId,
 }
 

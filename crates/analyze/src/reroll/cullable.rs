@@ -1,15 +1,16 @@
 //! Cullable loops: loops that can skip iterations for a ray.
 //!
-//! If every operand of a chain is 1-Lipschitz, a ray hits the same surface without the operands that
-//! stay above a margin all along it. For hard minima at the root the margin is 0. For a chain of blends
-//! of width k it is [`WIDTHS`] k: operands of at least m k lower the chain's value to no less than
-//! (m - 1) k, and the blends that follow damp the difference by at least `exp(-2.45)` for each k that
-//! the value falls on its way to the surface. So for m = 4 the surface moves by less than k / 500.
+//! If every operand of a chain is 1-Lipschitz, a ray hits the same surface without the operands
+//! that stay above a margin all along it. For hard minima at the root the margin is 0. For a chain
+//! of blends of width k it is [`WIDTHS`] k: operands of at least m k lower the chain's value to no
+//! less than (m - 1) k, and the blends that follow damp the difference by at least `exp(-2.45)` for
+//! each k that the value falls on its way to the surface. So for m = 4 the surface moves by less
+//! than k / 500.
 //!
-//! The operations between a loop and the root change the margin: the surface of `loop - r` is where the
-//! loop has the value r, and a blend of width k uses values of up to [`WIDTHS`] k. `active_range`
-//! follows the values range the surface from the root down to the loops. Loops below any other operation
-//! run all of their iterations.
+//! The operations between a loop and the root change the margin: the surface of `loop - r` is where
+//! the loop has the value r, and a blend of width k uses values of up to [`WIDTHS`] k.
+//! `active_range` follows the values range the surface from the root down to the loops. Loops below
+//! any other operation run all of their iterations.
 
 use sdfc_graph::{CullableLoop, Graph, Node, NodeId, SkipCondition, reachable};
 
@@ -18,8 +19,8 @@ use crate::reroll::active_range::{ActiveRange, BlendContext, active_ranges};
 /// Largest number of cullable loops; others run all of their iterations.
 const MAX_LOOPS: usize = 8;
 
-/// The cullable loops that the roots depend on, those with the most iterations first. `lipschitz` is a
-/// Lipschitz constant of their operands, if one is known.
+/// The cullable loops that the roots depend on, those with the most iterations first. `lipschitz`
+/// is a Lipschitz constant of their operands, if one is known.
 pub(crate) fn cullable_loops(
     graph: &mut Graph,
     roots: &[NodeId],

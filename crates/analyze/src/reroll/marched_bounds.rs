@@ -7,9 +7,9 @@ use crate::reroll::chain::{Chain, min_chain};
 use crate::reroll::rewrite::MIN_OPERANDS;
 use crate::shapes::{is_bounded, minimum, shapes_below, unnamed_shape};
 
-/// Corners of a box around a scene's operands, without floors and the like: unbounded shapes that are
-/// too few and too simple for a loop. Returns `None` if there are none, so that the bounds of the scene
-/// serve.
+/// Corners of a box around a scene's operands, without floors and the like: unbounded shapes that
+/// are too few and too simple for a loop. Returns `None` if there are none, so that the bounds of
+/// the scene serve.
 pub(crate) fn looped_bounds(
     graph: &mut Graph,
     bounds: &mut Bounds,

@@ -1,12 +1,13 @@
 //! Loop rerolling: many similar operands as a loop over a list of their constants.
 //!
 //! The pass works on minima of many operands and on chains of blends. Operands that are equal up to
-//! constants become one formula that reads the constants from a list, and a loop over that list. The
-//! size of the shader then does not grow with the number of operands. The operands of a hard minimum
-//! may be reordered. A blend is not associative, so only consecutive operands of a blend are combined.
+//! constants become one formula that reads the constants from a list, and a loop over that list.
+//! The size of the shader then does not grow with the number of operands. The operands of a hard
+//! minimum may be reordered. A blend is not associative, so only consecutive operands of a blend
+//! are combined.
 //!
-//! The pass recognises formulas, not shapes: `chain` finds the chains, and `template` compares operands
-//! up to constants.
+//! The pass recognises formulas, not shapes: `chain` finds the chains, and `template` compares
+//! operands up to constants.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
@@ -52,8 +53,8 @@ pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<R
     (roots.iter().map(|&root| new.get(root).unwrap_or(root)).collect(), found)
 }
 
-/// Groups of positions of values that are equal up to constants. Groups that are too small for a loop
-/// are omitted.
+/// Groups of positions of values that are equal up to constants. Groups that are too small for a
+/// loop are omitted.
 pub(crate) fn similar_groups(graph: &mut Graph, values: &[NodeId]) -> Vec<Vec<usize>> {
     let mut keys = ShapeKeys::default();
     let mut groups = grouped(graph, &mut keys, values);
@@ -76,8 +77,8 @@ fn grouped(graph: &mut Graph, keys: &mut ShapeKeys, values: &[NodeId]) -> Vec<Ve
     groups
 }
 
-/// The parts that a chain becomes, first to last. The result of a minimum is the minimum of its parts;
-/// each part of a blend takes the result of the part before it.
+/// The parts that a chain becomes, first to last. The result of a minimum is the minimum of its
+/// parts; each part of a blend takes the result of the part before it.
 #[derive(Debug)]
 struct Plan {
     parts: Vec<Part>,

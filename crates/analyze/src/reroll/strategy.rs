@@ -20,9 +20,9 @@ pub enum LoopStrategy {
     Looped,
 }
 
-/// Numbers of operations above which loops that skip iterations compile and run faster than unrolled
-/// code: in scenes with primary rays only, in scenes whose secondary rays use the lists of culling
-/// cells, and in scenes with soft shadows, for which loops run all iterations.
+/// Numbers of operations above which loops that skip iterations compile and run faster than
+/// unrolled code: in scenes with primary rays only, in scenes whose secondary rays use the lists of
+/// culling cells, and in scenes with soft shadows, for which loops run all iterations.
 const UNROLLED_LIMITS: [usize; 3] = [425, 1200, 4500];
 /// Operations to add to the limit for each loop, which costs time to compile and to enter.
 const LOOP_COSTS: [usize; 3] = [125, 250, 0];

@@ -1,7 +1,7 @@
 //! Nodes that are equal up to constants, and the formulas they share.
 //!
-//! Equal shape keys mean equal structure. [`template`] builds the common formula of nodes with equal
-//! keys, in which lists hold the constants that differ.
+//! Equal shape keys mean equal structure. [`template`] builds the common formula of nodes with
+//! equal keys, in which lists hold the constants that differ.
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
@@ -35,8 +35,8 @@ enum Structure {
     Operation(u32, [u32; 4]),
 }
 
-/// A node as an operation and its arguments. The arguments of sums and products are in an order that
-/// does not depend on the order in which they were built.
+/// A node as an operation and its arguments. The arguments of sums and products are in an order
+/// that does not depend on the order in which they were built.
 enum View {
     /// A constant that may differ between similar nodes.
     Constant,
@@ -135,8 +135,8 @@ impl ShapeKeys {
         if self.rank(graph, b) < self.rank(graph, a) { vec![b, a] } else { vec![a, b] }
     }
 
-    /// The sort key of an operand. The steps of a blend have no shape key, so their kind of operation
-    /// comes first.
+    /// The sort key of an operand. The steps of a blend have no shape key, so their kind of
+    /// operation comes first.
     fn rank(&self, graph: &Graph, id: NodeId) -> (usize, u32) {
         let node = graph.node(id);
         let kinds = [
@@ -169,9 +169,9 @@ struct Merging<'a> {
     columns: Vec<Vec<Const>>,
 }
 
-/// Builds one formula for each list of nodes, whose value in iteration i of a loop of depth 0 is the
-/// list's node i. The first lane of the state stands for the nodes of `before`. Returns `None` if the
-/// nodes differ in more than constants.
+/// Builds one formula for each list of nodes, whose value in iteration i of a loop of depth 0 is
+/// the list's node i. The first lane of the state stands for the nodes of `before`. Returns `None`
+/// if the nodes differ in more than constants.
 pub(super) fn template(
     graph: &mut Graph,
     keys: &ShapeKeys,
@@ -263,8 +263,8 @@ impl Merging<'_> {
         values
     }
 
-    /// The nodes that read the columns: lanes of elements of lists with four numbers each. Wide columns
-    /// are placed first.
+    /// The nodes that read the columns: lanes of elements of lists with four numbers each. Wide
+    /// columns are placed first.
     fn reads(&mut self) -> Vec<NodeId> {
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_by_key(|&number| std::cmp::Reverse(self.columns[number][0].ty().width()));
