@@ -5,9 +5,7 @@
 //! reference, section "Promises".
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
-use sdfc_graph::{
-    Binary, Graph, LoopId, LoopVar, Node, NodeId, ShapeId, Stage, Ternary, Unary,
-};
+use sdfc_graph::{Binary, Graph, LoopId, LoopVar, Node, NodeId, ShapeId, Stage, Ternary, Unary};
 
 use crate::certify::affine;
 use crate::certify::components::Components;

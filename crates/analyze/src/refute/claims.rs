@@ -33,8 +33,8 @@ pub struct LipschitzViolation {
     pub params: ParamValues,
 }
 
-/// Searches for two points that refute the annotation of a function, of which `value` is the result.
-/// Calls in loops, and in shapes whose arguments depend on a point, are skipped.
+/// Searches for two points that refute the annotation of a function, of which `value` is the
+/// result. Calls in loops, and in shapes whose arguments depend on a point, are skipped.
 pub fn refute_lipschitz(
     scene: &Scene,
     value: NodeId,
