@@ -1,4 +1,4 @@
-//! What is said of arguments that find no parameter.
+//! Diagnostics for arguments that match no parameter.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, DeclKind};
@@ -12,7 +12,8 @@ use super::{Checker, DeclIndex};
 use crate::hir::Type;
 
 impl<'a> Checker<'a> {
-    /// Where else what was meant by a name for an argument may be: called on the shape, or in a shape of a longer name.
+    /// Adds a suggestion for an unknown parameter name: an operator of this name, which is called
+    /// on the shape, or a shape with a longer name that has this parameter.
     pub(super) fn elsewhere(&mut self, callee: &str, name: &str, found: Diagnostic) -> Diagnostic {
         let makes_shape = match self.look_up(callee) {
             Some(Found::Decls(decls)) => {
@@ -24,7 +25,7 @@ impl<'a> Checker<'a> {
             return found;
         }
         if self.library_decls(name).iter().any(|decl| self.takes_shape(*decl)) {
-            return found.help(format!("`{name}` is called on a shape: {callee}(...).{name}(...)"));
+            return found.help(format!("call `{name}` on the shape: {callee}(...).{name}(...)"));
         }
         let mut kin: Vec<&str> = Vec::new();
         for other in self.library.keys().filter(|other| *other != &callee && other.contains(callee))
@@ -39,8 +40,8 @@ impl<'a> Checker<'a> {
         kin.sort_unstable();
         match &kin[..] {
             [] => found,
-            [one] => found.help(format!("`{one}` has one")),
-            [one, other, ..] => found.help(format!("`{one}` and `{other}` have one")),
+            [one] => found.help(format!("`{one}` has this parameter")),
+            [one, other, ..] => found.help(format!("`{one}` and `{other}` have this parameter")),
         }
     }
 
@@ -51,7 +52,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Whether the first parameter is a shape, so that it is called on one.
+    /// True if the first parameter is a shape, so that the declaration is called on one.
     fn takes_shape(&self, decl: DeclIndex) -> bool {
         let first = self.decls[decl.0].ast.signature.parms.first();
         matches!(
@@ -60,7 +61,8 @@ impl<'a> Checker<'a> {
         )
     }
 
-    /// The name of a parameter where its value belongs: `mirror(x)`, and nothing else is called `x`.
+    /// The diagnostic for a parameter's name in the place of its value, as in `mirror(x)`, if
+    /// nothing else is called `x`.
     pub(super) fn parameter_for_value(
         &mut self,
         callee: Callee,
@@ -77,11 +79,12 @@ impl<'a> Checker<'a> {
         let value = if parameter.ty == Type::Bool { "true" } else { "..." };
         let message = format!("`{name}` has no value here; it is a parameter of `{}`", callee.name);
         let found = Diagnostic::error(Code::UNKNOWN_NAME, *span, message);
-        let found = found.help(format!("give it one: {name}: {value}"));
-        Some(found.help(format!("or name a value so, above this line: let {name} = ...")))
+        let found = found.help(format!("give the parameter a value: {name}: {value}"));
+        Some(found.help(format!("or define it above this line: let {name} = ...")))
     }
 }
 
+/// The diagnostic for too many arguments.
 pub(super) fn too_many(
     callee: Callee,
     parameters: &[ParameterSignature],
@@ -94,7 +97,7 @@ pub(super) fn too_many(
     Diagnostic::error(Code::ARGUMENTS, span, message).help(signature(callee.name, parameters))
 }
 
-/// How to call it: `capsule(a: vec3, b: vec3, r: number = 0.5)`
+/// The signature of a call, as in `capsule(a: vec3, b: vec3, r: number = 0.5)`.
 pub(super) fn signature(name: &str, parameters: &[ParameterSignature]) -> String {
     let parameters: Vec<String> = parameters
         .iter()

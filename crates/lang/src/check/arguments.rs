@@ -1,4 +1,4 @@
-//! Arguments find their parameters.
+//! Assigns arguments to parameters.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, Name};
@@ -14,8 +14,8 @@ use crate::hir::{Element, Expr, ExprKind, Type};
 use crate::spelling::nearest;
 
 impl<'a> Checker<'a> {
-    /// The arguments in the order of the parameters; `None` where the default is taken.
-    /// Everything that does not fit is reported.
+    /// The arguments in the order of the parameters; `None` means the default. Reports arguments
+    /// that do not fit.
     pub(super) fn arguments(
         &mut self,
         callee: Callee,
@@ -49,7 +49,7 @@ impl<'a> Checker<'a> {
             .collect()
     }
 
-    /// Which arguments go to which parameter.
+    /// The arguments of each parameter.
     fn bind(
         &mut self,
         callee: Callee,
@@ -133,7 +133,8 @@ impl<'a> Checker<'a> {
         Some(place)
     }
 
-    /// A literal without a name. Where it does not fit, but one of the `free` parameters, that is said.
+    /// Checks a literal without a name. If it does not fit but fits one of the `free` parameters,
+    /// the diagnostic suggests that one.
     fn literal(
         &mut self,
         e: &'a ast::Expr,
@@ -153,7 +154,7 @@ impl<'a> Checker<'a> {
         };
         let found = match free.iter().find(fits) {
             Some(parameter) => {
-                found.help(format!("or name it: {}: {}", parameter.name, written(e)))
+                found.help(format!("or name the parameter: {}: {}", parameter.name, written(e)))
             }
             None => found,
         };
@@ -184,7 +185,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// All that a variadic parameter, the first of the parameters, takes: values, lists and `for`.
+    /// The arguments of a variadic parameter, the first of `parameters`: values, lists and `for`.
     fn variadic(
         &mut self,
         parameters: &[ParameterSignature<'a>],
@@ -213,20 +214,20 @@ impl<'a> Checker<'a> {
         Expr { kind: ExprKind::List(elements), ty: parameter.ty.clone(), span }
     }
 
-    /// Reports an argument that only a name brings to its parameter.
+    /// Reports an argument for a parameter after the variadic one: it needs a name.
     fn needs_name(
         &mut self,
         given: &ast::Expr,
         parameter: &ParameterSignature<'a>,
         later: &ParameterSignature<'a>,
     ) -> Expr {
-        let message = format!("what follows `{}` is named", parameter.name);
+        let message = format!("parameters after `{}` must be named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
-        self.report(found.help(format!("{}: {}", later.name, written(given))));
+        self.report(found.help(format!("write {}: {}", later.name, written(given))));
         poison(given.span)
     }
 
-    /// A list among the arguments of a variadic parameter gives its elements.
+    /// Spreads a list among the arguments of a variadic parameter into its elements.
     fn spread(&mut self, element: Element, want: &Type, role: Role) -> Element {
         let element = match element {
             Element::One(value)
@@ -239,7 +240,7 @@ impl<'a> Checker<'a> {
         self.coerce_element(element, want, role)
     }
 
-    /// An argument that is one value.
+    /// Checks an argument that must be one value.
     pub(super) fn one_argument(&mut self, given: Given<'a>, want: &Type, role: Role) -> Expr {
         match given.value {
             Value::Expr(e) => self.check_expr(e, want, role),
@@ -248,7 +249,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// An argument that is one value of whatever type.
+    /// Checks an argument that must be one value of any type.
     pub(super) fn one_value(&mut self, given: Given<'a>) -> Expr {
         match given.value {
             Value::Expr(e) => self.infer(e),
@@ -260,19 +261,20 @@ impl<'a> Checker<'a> {
     fn not_one_value(&mut self, span: Span) -> Expr {
         let message = "`for` makes many values; this parameter takes one";
         self.report(
-            Diagnostic::error(Code::ARGUMENTS, span, message).help("a list: [for x in list: ...]"),
+            Diagnostic::error(Code::ARGUMENTS, span, message)
+                .help("make a list: [for x in list: ...]"),
         );
         poison(span)
     }
 }
 
-/// Whether an expression is a number, colour, text or truth value, as it is written.
+/// True for a literal: a number, colour, string or bool.
 fn is_literal(e: &ast::Expr) -> bool {
     use ast::ExprKind::{Bool, Color, Number, Text};
     matches!(e.kind, Number { .. } | Color(_) | Text(_) | Bool(_))
 }
 
-/// Whether a value that is no `want` fits a later parameter, which only its name can reach.
+/// True if a value does not have type `want` but fits a later parameter, which must be named.
 fn meant_for(ty: &Type, later: &ParameterSignature, want: &Type) -> bool {
     !types::poisoned(ty) && !types::same_value(ty, want) && types::same_value(ty, &later.ty)
 }

@@ -7,7 +7,7 @@ use super::Checker;
 use crate::hir::{Expr, ExprKind};
 
 impl<'a> Checker<'a> {
-    /// A block whose result has its own type.
+    /// Checks a block without an expected type.
     pub(super) fn infer_block(
         &mut self,
         lets: &'a [ast::Let],
@@ -17,7 +17,7 @@ impl<'a> Checker<'a> {
         self.block(lets, span, |checker| checker.infer(result))
     }
 
-    /// A block; `result` is called with the block's variables in scope.
+    /// Checks a block; `result` is called with the block's variables in scope.
     pub(super) fn block(
         &mut self,
         lets: &'a [ast::Let],

@@ -1,4 +1,4 @@
-//! Calls of the kernel.
+//! Calls of kernel functions.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph as graph;
@@ -38,7 +38,7 @@ fn number(value: f64, span: Span) -> Expr {
     Expr { kind: ExprKind::Number(value), ty: Type::Number, span }
 }
 
-/// What a field of a material is where nothing is said of it: the same as where nothing is painted.
+/// The default of a material's field, which is also the value for shapes without a material.
 fn default_of(field: MaterialField, span: Span) -> Expr {
     let [x, y, z, _] = match field {
         MaterialField::Color => graph::MaterialField::Color,
@@ -57,7 +57,7 @@ fn default_of(field: MaterialField, span: Span) -> Expr {
 }
 
 impl<'a> Checker<'a> {
-    /// A call of something that the kernel knows.
+    /// Checks a call of a kernel function.
     pub(super) fn call_builtin(
         &mut self,
         builtin: Builtin,
@@ -66,7 +66,7 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         match builtin {
             Builtin::Number(_) | Builtin::Time | Builtin::Frame | Builtin::Hard => {
-                let message = format!("`{}` is a value and takes no arguments", callee.name);
+                let message = format!("`{}` is a value, not a function", callee.name);
                 self.report(Diagnostic::error(Code::WRONG_CALL, callee.at, message));
                 self.give_up(given, callee.span)
             }
@@ -112,7 +112,7 @@ impl<'a> Checker<'a> {
         kernel(Kernel::GlyphCurves, arguments, Type::List(Box::new(curve)), span)
     }
 
-    /// Arguments of which none may be missing; those that are were reported.
+    /// Checks arguments that are all required; missing ones are reported elsewhere.
     fn all_arguments(
         &mut self,
         callee: Callee,
@@ -123,7 +123,7 @@ impl<'a> Checker<'a> {
         arguments.into_iter().map(|value| value.unwrap_or_else(|| poison(callee.span))).collect()
     }
 
-    /// Positional arguments of whatever type, so many of them; `None` if one is wrong.
+    /// Checks a number of positional arguments of any type; `None` if one is wrong.
     pub(super) fn positional(
         &mut self,
         callee: Callee,
@@ -154,7 +154,7 @@ impl<'a> Checker<'a> {
 
     pub(super) fn unnamed(&mut self, callee: Callee, given: &Given) {
         if let Some(name) = given.name {
-            let message = format!("the arguments of `{}` have no names", callee.name);
+            let message = format!("the arguments of `{}` cannot be named", callee.name);
             self.report(Diagnostic::error(Code::ARGUMENTS, name.span, message));
         }
     }
@@ -165,7 +165,7 @@ impl<'a> Checker<'a> {
         poison(callee.span)
     }
 
-    /// `vec3(v.xy, z)`: parts joined in order; one number fills all.
+    /// Checks `vec3(v.xy, z)`: joins its arguments in order; one number fills all components.
     fn vector(&mut self, width: u8, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let ty = Type::Vec(width);
         let Some(parts) = self.positional(callee, given, 1, 4) else { return poison(callee.span) };
@@ -183,7 +183,7 @@ impl<'a> Checker<'a> {
             return as_type(part.clone(), &ty);
         }
         if total != width {
-            let message = format!("`{}` joins {width} numbers; these are {total}", callee.name);
+            let message = format!("`{}` needs {width} numbers; these are {total}", callee.name);
             self.report(Diagnostic::error(Code::ARGUMENTS, callee.at, message));
             return poison(callee.span);
         }
@@ -214,7 +214,7 @@ impl<'a> Checker<'a> {
             (Kernel::Length | Kernel::Distance | Kernel::Dot, Type::Vec(_)) => {
                 kernel(function, values, Type::Number, span)
             }
-            // A number is a vector of one component.
+            // A number counts as a vector with one component.
             (Kernel::Length, Type::Number) => kernel(Kernel::Abs, values, ty, span),
             (Kernel::Dot, Type::Number) => kernel(Kernel::Mul, values, ty, span),
             (Kernel::Distance, Type::Number) => {
@@ -258,7 +258,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// `bounds(a)`: of a shape, or of a function that makes shapes.
+    /// Checks `bounds(a)` of a shape, or of a function that makes shapes.
     fn bounds(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let Some(values) = self.positional(callee, given, 1, 1) else { return poison(callee.span) };
         let dim = match &values[0].ty {
@@ -278,7 +278,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// `gradient(a, q)`, `material_at(a, q)`
+    /// Checks `gradient(a, q)` and `material_at(a, q)`.
     fn at_point(&mut self, function: Kernel, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let Some(values) = self.positional(callee, given, 2, 2) else { return poison(callee.span) };
         let Type::Shape(dim) = values[0].ty else {
@@ -294,7 +294,7 @@ impl<'a> Checker<'a> {
         kernel(function, values, ty, callee.span)
     }
 
-    /// `material(color: ..., roughness: ...)`, every field optional.
+    /// Checks `material(color: ..., roughness: ...)`; every field is optional.
     fn material(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let parameters = FIELDS.map(|(name, _, ty)| parameter(name, ty, true));
         let span = callee.span;
@@ -306,7 +306,7 @@ impl<'a> Checker<'a> {
         kernel(Kernel::Material, fields.collect(), Type::Material, span)
     }
 
-    /// `m.with(color: c)`
+    /// Checks `m.with(color: c)`.
     fn with(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let mut parameters = vec![parameter("material", Type::Material, false)];
         parameters.extend(FIELDS.map(|(name, _, ty)| parameter(name, ty, true)));
@@ -320,8 +320,8 @@ impl<'a> Checker<'a> {
         Expr { kind, ty: Type::Material, span: callee.span }
     }
 
-    /// `rgb(r, g, b)`, `hsv(h, s, v)` with h in turns, `oklch(l, c, h)` with h an angle; alpha
-    /// may follow.
+    /// Checks `rgb(r, g, b)`, `hsv(h, s, v)` with h in turns, and `oklch(l, c, h)` with h an angle;
+    /// alpha is optional.
     fn color(&mut self, function: Kernel, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         use Type::{Angle, Number};
         let names = match function {

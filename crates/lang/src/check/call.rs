@@ -1,4 +1,4 @@
-//! Calls: names that are called are looked up, values are applied or sampled.
+//! Calls: looks up the name that is called, applies function values and samples shapes.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Dim;
@@ -10,7 +10,7 @@ use super::types::{self, describe, show};
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
 
-/// An argument on its way to a parameter.
+/// An argument of a call.
 #[derive(Clone, Debug)]
 pub(super) struct Given<'a> {
     pub name: Option<&'a Name>,
@@ -18,14 +18,14 @@ pub(super) struct Given<'a> {
     pub span: Span,
 }
 
-/// How far an argument has come.
+/// The value of an argument, checked or not.
 #[derive(Clone, Debug)]
 pub(super) enum Value<'a> {
-    /// As written.
+    /// An expression that is not checked yet.
     Expr(&'a ast::Expr),
-    /// `for ...`, as written.
+    /// A `for` that is not checked yet.
     Element(&'a ast::Element),
-    /// Checked without knowing what is wanted.
+    /// A value that was checked without an expected type, and its type.
     Done(Element, Type),
 }
 
@@ -35,7 +35,7 @@ impl<'a> Given<'a> {
         Self { name: None, value: Value::Expr(e), span: e.span }
     }
 
-    /// A value that is checked already.
+    /// A value that is already checked.
     pub(super) fn done(value: Expr) -> Self {
         let (ty, span) = (value.ty.clone(), value.span);
         Self { name: None, value: Value::Done(Element::One(value), ty), span }
@@ -50,13 +50,13 @@ impl<'a> Given<'a> {
     }
 }
 
-/// The name that is called and where it stands.
+/// The name that is called and its position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Callee<'s> {
     pub name: &'s str,
-    /// The name.
+    /// The span of the name.
     pub at: Span,
-    /// The whole call.
+    /// The span of the whole call.
     pub span: Span,
 }
 
@@ -105,8 +105,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Looks at arguments of a call that came to nothing, for what is wrong inside them.
-    /// Lambdas are left out: nobody knows what they are given.
+    /// Checks the arguments of a failed call for errors inside them. Lambdas are skipped: the types
+    /// of their parameters are unknown.
     pub(super) fn give_up(&mut self, given: Vec<Given<'a>>, span: Span) -> Expr {
         for given in given {
             match given.value {
@@ -123,14 +123,14 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn misplaced_setting(&mut self, name: &str, at: Span) {
-        let message = format!("`{name}` is a setting and gives no value");
+        let message = format!("`{name}` is a setting, not a value");
         self.report(
             Diagnostic::error(Code::MISPLACED_SETTING, at, message)
-                .help("settings are lines of their own, at top level of the scene"),
+                .help("write it on a line of its own, at the top level of the scene"),
         );
     }
 
-    /// A value that is called: a function takes its arguments, a shape a point.
+    /// Calls a value: a function with its arguments, or a shape with a point.
     pub(super) fn apply(
         &mut self,
         function: Expr,
@@ -149,7 +149,7 @@ impl<'a> Checker<'a> {
                 let message = format!("{what} is {} and takes no arguments", describe(&other));
                 let at = called.map_or(function.span, |(callee, _)| callee.at);
                 let found = Diagnostic::error(Code::WRONG_CALL, at, message);
-                let found = found.help("write it without brackets");
+                let found = found.help("write it without parentheses");
                 let found = self.note_hidden(found, called);
                 self.report(found);
                 self.give_up(given, span)
@@ -167,21 +167,21 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         if given.len() != parameters.len() {
             let message = format!(
-                "this function takes {}; {} given",
+                "this function takes {}, but {} given",
                 count(parameters.len(), "argument"),
                 match given.len() {
                     1 => "1 is".into(),
                     n => format!("{n} are"),
                 }
             );
-            let note = format!("it is {}", describe(&function.ty));
+            let note = format!("its type is {}", show(&function.ty));
             self.report(Diagnostic::error(Code::ARGUMENTS, span, message).note(note));
             return self.give_up(given, span);
         }
         let mut arguments = Vec::with_capacity(given.len());
         for (at, (given, want)) in given.into_iter().zip(parameters).enumerate() {
             if let Some(name) = given.name {
-                let message = "the parameters of a function value have no names";
+                let message = "arguments of a function value cannot be named";
                 self.report(Diagnostic::error(Code::ARGUMENTS, name.span, message));
             }
             let argument = self.one_argument(given, want, Role::Positional(at + 1));
@@ -190,7 +190,7 @@ impl<'a> Checker<'a> {
         Expr { kind: ExprKind::Apply(Box::new(function), arguments), ty: result, span }
     }
 
-    /// A shape called with a point gives its distance there.
+    /// Calls a shape with a point, for its distance there.
     fn sample(
         &mut self,
         shape: Expr,
@@ -242,7 +242,7 @@ impl<'a> Checker<'a> {
         self.report(found);
     }
 
-    /// A note where a name of the scene hides what was probably meant.
+    /// Adds a note if a name of the scene hides the one that was probably meant.
     fn note_hidden(&mut self, found: Diagnostic, called: Option<(Callee, &Found)>) -> Diagnostic {
         let Some((callee, hiding)) = called else { return found };
         let (span, word) = match hiding {
@@ -259,14 +259,15 @@ impl<'a> Checker<'a> {
         let name = callee.name;
         let owner = match self.look_up_library(name) {
             Some(Found::Decls(_)) => "library",
-            Some(Found::Builtin(_) | Found::Setting(_)) => "kernel",
+            Some(Found::Builtin(_) | Found::Setting(_)) => "built-in",
             _ => return found,
         };
-        found.note_at(span, format!("`{word}{name}` hides the {owner}'s `{name}`; rename it"))
+        let owner = if owner == "library" { "library's" } else { owner };
+        found.note_at(span, format!("`{word}{name}` hides the {owner} `{name}`; rename it"))
     }
 }
 
-/// Whether the expression is a lambda, in whatever brackets.
+/// True if the expression is a lambda, or a block or `if` that gives one.
 pub(super) fn is_lambda(e: &ast::Expr) -> bool {
     let mut e = e;
     loop {

@@ -1,4 +1,4 @@
-//! The coercions, all of them, and what is said where there is none.
+//! All coercions between types, and the diagnostics for values that cannot be coerced.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Dim;
@@ -7,20 +7,20 @@ use super::types::{self, describe, is_scalar, poisoned, same_value};
 use super::{Checker, poison};
 use crate::hir::{Comprehension, Element, Expr, ExprKind, Kernel, Lambda, LocalId, Type};
 
-/// What a value is wanted for; the subject of the message where it does not fit.
+/// The purpose of a value: the subject of the message if its type is wrong.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Role<'r> {
     /// A parameter of a declaration, setting or kernel function.
     Argument(&'r str, &'r str),
-    /// Argument of a function value, counted from 1.
+    /// An argument of a function value, counted from 1.
     Positional(usize),
-    /// What a declaration gives.
+    /// The result of a function.
     Result(&'r str),
-    /// The distance that a declared shape is at.
+    /// The formula of a shape.
     Formula(&'r str),
-    /// What a lambda gives.
+    /// The result of a lambda.
     LambdaResult,
-    /// Something with a name of its own: `the condition`.
+    /// Any other value, described as in `the condition of if`.
     The(&'r str),
 }
 
@@ -39,7 +39,8 @@ impl Role<'_> {
 }
 
 impl Checker<'_> {
-    /// The value as one of type `want`, or a report and a poisoned value.
+    /// Coerces a value to type `want`. If that is impossible, reports it and returns a poisoned
+    /// value.
     pub(super) fn coerce(&mut self, value: Expr, want: &Type, role: Role) -> Expr {
         match self.try_coerce(value, want) {
             Ok(value) => value,
@@ -50,7 +51,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The value as one of type `want`, or the value itself if there is no coercion.
+    /// Coerces a value to type `want`, or returns the value itself as an error.
     pub(super) fn try_coerce(&mut self, mut value: Expr, want: &Type) -> Result<Expr, Expr> {
         if poisoned(&value.ty) || poisoned(want) {
             return Ok(poison(value.span));
@@ -66,7 +67,7 @@ impl Checker<'_> {
             (Type::Fn(parameters, result), Type::Fn(want, want_result)) => {
                 self.coerce_function(value, (&parameters, &result), (want, want_result))
             }
-            // A blend that ignores both distances is a slip: its width was meant.
+            // A constant blend would ignore both distances; the author meant its width.
             (_, Type::Fn(..)) if *want == types::blend() => Err(value),
             (_, Type::Fn(_, result)) => {
                 let span = value.span;
@@ -114,7 +115,7 @@ impl Checker<'_> {
         Ok(Expr { kind: ExprKind::List(vec![Element::For(Box::new(each))]), ty, span })
     }
 
-    /// A function around the function: its arguments and its result are coerced.
+    /// Wraps a function in a lambda that coerces its arguments and its result.
     fn coerce_function(
         &mut self,
         value: Expr,
@@ -157,7 +158,7 @@ impl Checker<'_> {
         Ok(bind(local, "f", value, lambda))
     }
 
-    /// A fresh variable for a value that is mentioned more than once, and a mention of it.
+    /// A fresh variable for a value that is used more than once, and an expression that reads it.
     pub(super) fn name_value(&mut self, value: &Expr) -> (LocalId, Expr) {
         let local = self.body.fresh();
         let mention = Expr { kind: ExprKind::Local(local), ty: value.ty.clone(), span: value.span };
@@ -172,14 +173,14 @@ pub(super) fn bind(local: LocalId, name: &str, value: Expr, result: Expr) -> Exp
     Expr { kind, ty, span }
 }
 
-/// A number, int or angle as a vector or colour of equal parts.
+/// A number, int or angle as a vector or colour with equal components.
 pub(super) fn splat(mut value: Expr, ty: &Type) -> Expr {
     value.ty = Type::Number;
     let span = value.span;
     Expr { kind: ExprKind::Splat(Box::new(value)), ty: ty.clone(), span }
 }
 
-/// Zero and infinity are the same in every unit.
+/// True for zero and infinity, which are the same in every unit.
 pub(super) fn has_no_need_of_a_unit(value: &Expr) -> bool {
     match &value.kind {
         ExprKind::Number(value) => *value == 0.0 || value.is_infinite(),
@@ -188,10 +189,10 @@ pub(super) fn has_no_need_of_a_unit(value: &Expr) -> bool {
     }
 }
 
-/// What to say of a value that does not fit.
+/// The diagnostic for a value of the wrong type.
 pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
     let subject = role.subject();
-    // A value may stand for a constant function: then what that function gives is wanted.
+    // A value can be used as a constant function: then its type must be the function's result.
     let want = match (&value.ty, want) {
         (Type::Fn(..), _) => want,
         (_, Type::Fn(_, result))
@@ -218,17 +219,18 @@ pub(super) fn mismatch(value: &Expr, want: &Type, role: Role) -> Diagnostic {
     }
 }
 
-/// A region where a solid is wanted.
+/// The diagnostic for a region where a solid is expected.
 pub(super) fn region_for_solid(span: Span, wanted: &str) -> Diagnostic {
     let message = format!("this is a region (2D); {wanted}");
-    Diagnostic::error(Code::REGION_FOR_SOLID, span, message).help(".extrude(0.2) or .revolve()")
+    Diagnostic::error(Code::REGION_FOR_SOLID, span, message)
+        .help("make it a solid: .extrude(0.2) or .revolve()")
 }
 
-/// A solid where a region is wanted.
+/// The diagnostic for a solid where a region is expected.
 pub(super) fn solid_for_region(span: Span, wanted: &str) -> Diagnostic {
     let message = format!("this is a solid (3D); {wanted}");
     Diagnostic::error(Code::SOLID_FOR_REGION, span, message)
-        .help("regions are made by circle, rect and the other 2D entries of the library")
+        .help("use a 2D shape of the library, such as circle or rect")
 }
 
 fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
@@ -242,13 +244,13 @@ fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
                 short if (short * 1000.0).fract() == 0.0 => format!(" {short}turn,"),
                 _ => String::new(),
             };
-            found.help(format!("{value}deg,{turn} or {value} * 1rad"))
+            found.help(format!("write {value}deg,{turn} or {value} * 1rad"))
         }
-        None => found.help("multiply it by a unit: `* 1deg`, `* 1turn`, or `* 1rad`"),
+        None => found.help("multiply it by a unit: `* 1deg`, `* 1turn` or `* 1rad`"),
     }
 }
 
-/// The number that was written, its sign included.
+/// The value of a literal, including its sign.
 fn literal(value: &Expr) -> Option<f64> {
     match &value.kind {
         ExprKind::Number(value) => Some(*value),
@@ -257,54 +259,54 @@ fn literal(value: &Expr) -> Option<f64> {
     }
 }
 
-/// How to come by what is wanted, best first.
+/// Suggestions for a value of the wrong type, best first.
 fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
     match (role, have, want, way_out(have, want)) {
         (Role::Formula(name), Type::Shape(_), _, sampled) => {
-            let made = format!("what is made of shapes is declared by `fn`: fn {name}(...) = ...");
+            let made = format!("to combine shapes, declare a function: fn {name}(...) = ...");
             std::iter::once(made).chain(sampled).collect()
         }
         (Role::Argument(callee, _), _, Type::Shape(_), None) => {
-            vec![format!("a shape comes first: {callee}(a, ...) or a.{callee}(...)")]
+            vec![format!("pass the shape first: {callee}(a, ...) or a.{callee}(...)")]
         }
         (_, _, _, way) => way.into_iter().collect(),
     }
 }
 
-/// How to turn one type into another where the language does not.
+/// How to convert one type to another where the language does not.
 fn way_out(have: &Type, want: &Type) -> Option<String> {
     match (have, want) {
-        (Type::Number | Type::Angle, Type::Int) => Some("round(x) or floor(x) make it whole".into()),
+        (Type::Number | Type::Angle, Type::Int) => Some("round it to a whole number: round(x) or floor(x)".into()),
         (Type::Vec(_) | Type::List(_), Type::Angle) => Some(
-            "each axis has a parameter of its own: rotate(x: 10deg, y: 45deg)".into(),
+            "give each axis by name: rotate(x: 10deg, y: 45deg)".into(),
         ),
         (Type::Number | Type::Int, Type::Fn(..)) if *want == types::blend() => {
-            Some("a blend of that width: smooth(0.1)".into())
+            Some("write a blend of that width: smooth(0.1)".into())
         }
         (Type::Shape(_), Type::Number) => {
-            Some("a shape called with a point gives its distance there: a(p)".into())
+            Some("to get a shape's distance, call it with a point: a(p)".into())
         }
         (Type::Fn(_, result), _) if **result == *want => {
-            Some("call it, with its arguments in brackets".into())
+            Some("call it, with its arguments in parentheses".into())
         }
         (Type::Fn(have, _), Type::Fn(want, _)) if have.len() != want.len() => {
             Some(format!("write a function of {} here: fn({}) = ...", count(want.len()), letters(want.len())))
         }
-        (Type::Vec(_), Type::Number) => Some("take one component, `.x`, or its `length(...)`".into()),
+        (Type::Vec(_), Type::Number) => Some("take one component, such as `.x`, or its `length(...)`".into()),
         (Type::Vec(width), Type::Vec(want)) if width > want => {
-            Some(format!("take some of its components: .{}", &"xyzw"[..usize::from(*want).min(4)]))
+            Some(format!("select components: .{}", &"xyzw"[..usize::from(*want).min(4)]))
         }
         (Type::Vec(width), Type::Vec(want)) if width < want => {
-            Some(format!("add what is missing: vec{want}(v, 0)"))
+            Some(format!("add the missing components: vec{want}(v, 0)"))
         }
-        (Type::Vec(3) | Type::Vec(4), Type::Color) => Some("rgb(v.x, v.y, v.z), or a literal: #d94f30".into()),
-        (Type::Number | Type::Int | Type::Text, Type::Color) => Some("a colour is written #d94f30, or made by rgb, hsv, oklch".into()),
+        (Type::Vec(3) | Type::Vec(4), Type::Color) => Some("write rgb(v.x, v.y, v.z), or a literal such as #d94f30".into()),
+        (Type::Number | Type::Int | Type::Text, Type::Color) => Some("write a colour as #d94f30, or with rgb, hsv or oklch".into()),
         (Type::Color, Type::Vec(3)) => Some("take its components: .rgb".into()),
         (Type::Color | Type::Text, Type::Material) => {
-            Some("a material is made of a colour: material(color: #d94f30)".into())
+            Some("make a material from a colour: material(color: #d94f30)".into())
         }
         (Type::Number | Type::Int, Type::Bool) => Some("compare it: x > 0".into()),
-        (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; `for` makes a list of its components: [for c in v: c]".into()),
+        (Type::Vec(_), Type::List(_)) => Some("two to four numbers in brackets are a vector; make a list of its components with `for`: [for c in v: c]".into()),
         _ => None,
     }
 }

@@ -15,23 +15,33 @@ use crate::hir::{
     Type,
 };
 
-/// One parameter, as calls see it.
+/// A parameter, as calls see it.
 #[derive(Clone, Debug)]
 pub(super) struct ParameterSignature<'a> {
     pub name: &'a str,
-    /// A list for a variadic one.
+    /// The type; a list for a variadic parameter.
     pub ty: Type,
     pub variadic: bool,
     pub optional: bool,
-    /// As written; kernel functions and settings have it in words.
+    /// The default's source; kernel functions and settings have none.
     pub default: Option<&'a ast::Expr>,
 }
 
-/// What a call makes.
+/// The declaration that a call refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Target {
     Fn(FnId),
     Shape(ShapeDefId),
+}
+
+impl Target {
+    /// Its node in the dependency graph.
+    pub(super) fn node(self) -> Node {
+        match self {
+            Self::Fn(id) => Node::Fn(id.0),
+            Self::Shape(id) => Node::Shape(id.0),
+        }
+    }
 }
 
 /// A declaration in one dimension, as calls see it.
@@ -43,14 +53,14 @@ pub(super) struct Signature<'a> {
     pub result: Type,
 }
 
-/// How far a declaration has come, in one dimension.
+/// The progress of checking a declaration in one dimension.
 #[derive(Debug)]
 pub(super) enum Instance<'a> {
     /// Its parameters are being checked.
     Opening,
-    /// Its result is being inferred from its body; the signature has an unknown one.
+    /// Its result type is being inferred from its body; it is unknown in the signature.
     Inferring(Shared<'a>),
-    /// Known.
+    /// Its signature is known.
     Known(Shared<'a>),
 }
 
@@ -63,7 +73,7 @@ pub(super) struct Pending<'a> {
     body: Body<'a>,
 }
 
-/// Clauses and body of a shape or function, as they are checked.
+/// The checked clauses of a shape or function.
 #[derive(Default)]
 struct Clauses {
     requires: Vec<Require>,
@@ -94,7 +104,7 @@ impl<'a> Checker<'a> {
         self.drain();
     }
 
-    /// Checks all bodies that wait.
+    /// Checks all pending bodies.
     pub(super) fn drain(&mut self) {
         while let Some(pending) = self.pending.pop() {
             self.with_stack(|checker| checker.check_pending(pending));
@@ -113,16 +123,16 @@ impl<'a> Checker<'a> {
             Some(Instance::Known(signature)) => Some(signature.clone()),
             Some(Instance::Inferring(signature)) => {
                 let signature = signature.clone();
-                let message = format!("`{}` calls itself, so it must say what it gives", name.text);
+                let message = format!("`{}` calls itself, so it needs a result type", name.text);
                 self.diagnostics.push(
                     Diagnostic::error(Code::NEEDS_RESULT_TYPE, name.span, message)
-                        .note_at(at, "it is needed here to know its own result")
+                        .note_at(at, "its result type is needed here")
                         .help("write the type after its parameters: `-> number`, `-> solid`"),
                 );
                 Some(signature)
             }
             Some(Instance::Opening) => {
-                let message = format!("a default of `{}` needs `{}` itself", name.text, name.text);
+                let message = format!("a default value of `{}` uses `{}`", name.text, name.text);
                 self.report(Diagnostic::error(Code::NEEDS_RESULT_TYPE, at, message));
                 None
             }
@@ -143,7 +153,7 @@ impl<'a> Checker<'a> {
             DeclKind::Shape => either,
         };
         let target = self.reserve(decl, body.point);
-        body.node = Some(Node::of(target));
+        body.node = Some(target.node());
         let outer = std::mem::replace(&mut self.body, body);
         let (checked, parameters) = self.check_parameters(decl);
         let result = self.declared_result(decl);
@@ -230,7 +240,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Parameters in order; each sees those to its left.
+    /// Checks the parameters in order; each can use those to its left.
     fn check_parameters(
         &mut self,
         decl: &'a ast::Decl,
@@ -268,7 +278,7 @@ impl<'a> Checker<'a> {
 
     fn check_variadic(&mut self, parm: &Parm, before: &[Parameter]) {
         let message = match (&parm.default, before.iter().any(|other| other.variadic)) {
-            (_, true) => "only one parameter can take all remaining arguments",
+            (_, true) => "only one parameter can take any number of arguments",
             (Some(_), false) => "a parameter that takes any number of arguments has no default",
             (None, false) => return,
         };
@@ -299,7 +309,7 @@ impl<'a> Checker<'a> {
         Parameter { name, ty, variadic: parm.variadic, default, range, span }
     }
 
-    /// `in lo..hi` of a parameter or param of a type.
+    /// Checks `in lo..hi` of a parameter or param.
     pub(super) fn check_values(
         &mut self,
         range: &'a ast::Expr,
@@ -320,7 +330,7 @@ impl<'a> Checker<'a> {
         Some(self.check_expr(range, &ty, Role::The(&format!("the range of `{name}`"))))
     }
 
-    /// Checks a body and puts it into the program; gives its type.
+    /// Checks a body, puts it into the program and returns its type.
     fn check_pending(&mut self, pending: Pending<'a>) -> Type {
         let Pending { decl, signature, parameters, body } = pending;
         let outer = std::mem::replace(&mut self.body, body);
@@ -368,7 +378,7 @@ impl<'a> Checker<'a> {
         ty
     }
 
-    /// The body, and for a shape the material rule: only they see `p`.
+    /// Checks the body, and for a shape the material rule. Only these can use `p`.
     fn check_formula(
         &mut self,
         decl: &'a ast::Decl,
@@ -403,11 +413,12 @@ impl<'a> Checker<'a> {
         match value.ty {
             Type::Material | Type::Error => value,
             _ if types::is_scalar(&value.ty) => value,
-            _ => self.coerce(value, &Type::Material, Role::The("what `material` states")),
+            _ => self.coerce(value, &Type::Material, Role::The("the value of `material`")),
         }
     }
 
-    /// `intersect e`: an interval `[enter, exit]`, or a list of such, in terms of the ray's origin `o` and direction `d`.
+    /// `intersect e`: an interval `[enter, exit]` or a list of intervals, in terms of the ray's
+    /// origin `o` and direction `d`.
     fn check_intersect(&mut self, kind: DeclKind, e: &'a ast::Expr) -> Intersect {
         if kind != DeclKind::Solid {
             self.report_rays("intersect", e.span);
@@ -422,15 +433,15 @@ impl<'a> Checker<'a> {
         let value = if value.ty == intervals {
             value
         } else {
-            self.coerce(value, &interval, Role::The("what `intersect` states"))
+            self.coerce(value, &interval, Role::The("the value of `intersect`"))
         };
         self.body.leave(mark);
         Intersect { origin, direction, value }
     }
 
-    /// A clause of what is no solid.
+    /// Reports a clause about 3D rays on a declaration that is not a solid.
     fn report_rays(&mut self, clause: &str, span: Span) {
-        let message = format!("`{clause}` speaks of rays in space, so only a solid can state it");
+        let message = format!("only a `solid` can have the clause `{clause}`: it is about 3D rays");
         self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, span, message));
     }
 
@@ -438,7 +449,7 @@ impl<'a> Checker<'a> {
         let mut clauses = Clauses::default();
         let mut material = false;
         for clause in &decl.signature.clauses {
-            // The parser has reported clauses of shapes that stand at a `fn`.
+            // The parser has already reported clauses of shapes on a `fn`.
             if self.body.point.is_none() && !belongs_to_functions(&clause.kind) {
                 continue;
             }
@@ -461,7 +472,7 @@ impl<'a> Checker<'a> {
                 ClauseKind::Bounds(e) => {
                     let dim = self.body.point.unwrap_or(Dim::Three);
                     let ty = Type::Range(Box::new(types::point(dim)));
-                    let bounds = self.check_expr(e, &ty, Role::The("what `bounds` states"));
+                    let bounds = self.check_expr(e, &ty, Role::The("the value of `bounds`"));
                     clauses.bounds.replace(bounds).is_some()
                 }
                 ClauseKind::Material(_) => std::mem::replace(&mut material, true),
@@ -481,7 +492,7 @@ impl<'a> Checker<'a> {
                 }
             };
             if twice {
-                let message = "this clause stands twice";
+                let message = "this clause appears twice";
                 self.report(Diagnostic::error(Code::MISPLACED_CLAUSE, clause.span, message));
             }
         }
@@ -495,7 +506,7 @@ impl<'a> Checker<'a> {
         message: &ast::Name,
         span: Span,
     ) -> Require {
-        let role = Role::The("what `require` demands");
+        let role = Role::The("the condition of `require`");
         let condition = self.check_expr(condition, &Type::Bool, role);
         Require { condition, message: message.text.clone(), span }
     }
@@ -507,7 +518,7 @@ impl<'a> Checker<'a> {
         condition: Option<&'a ast::Expr>,
         span: Span,
     ) -> Promise {
-        let role = Role::The("the condition of a promise");
+        let role = Role::The("the condition of this clause");
         Promise {
             exact,
             outside: side != Some(Side::Inside),
@@ -518,7 +529,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Whether a clause may stand at a `fn`.
+/// True for clauses that a `fn` can have.
 fn belongs_to_functions(clause: &ClauseKind) -> bool {
     match clause {
         ClauseKind::Lipschitz(..) | ClauseKind::Require(..) => true,

@@ -1,4 +1,4 @@
-//! Expressions: `infer` finds a type from the inside out, `check_expr` brings an expected one in.
+//! Expressions: `infer` finds the type of an expression, `check_expr` checks it against one.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, ExprKind as Ast, Name, Unit};
@@ -9,7 +9,7 @@ use super::{Checker, lambda, poison};
 use crate::hir::{Expr, ExprKind, Type};
 
 impl<'a> Checker<'a> {
-    /// The expression with its own type.
+    /// Checks an expression without an expected type.
     pub(super) fn infer(&mut self, e: &'a ast::Expr) -> Expr {
         self.with_stack(|checker| checker.infer_inner(e))
     }
@@ -38,8 +38,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The expression as a value of type `want`. What is wanted reaches the inside of
-    /// brackets, blocks, branches and lambdas, so that messages point there.
+    /// Checks an expression against type `want`. The type is passed into parentheses, lists,
+    /// blocks, branches and lambdas, so that messages point there.
     pub(super) fn check_expr(&mut self, e: &'a ast::Expr, want: &Type, role: Role) -> Expr {
         self.with_stack(|checker| checker.check_inner(e, want, role))
     }
@@ -81,7 +81,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A truth value.
+    /// Checks a condition.
     pub(super) fn check_condition(&mut self, e: &'a ast::Expr, what: &str) -> Expr {
         self.check_expr(e, &Type::Bool, Role::The(what))
     }
@@ -97,11 +97,11 @@ impl<'a> Checker<'a> {
         let (yes, no) = (self.infer(yes), self.infer(no));
         let Some(ty) = types::join(&yes.ty, &no.ty) else {
             let message =
-                format!("one branch is {}, the other {}", describe(&yes.ty), describe(&no.ty));
+                format!("one branch is {}, the other is {}", describe(&yes.ty), describe(&no.ty));
             self.report(
                 Diagnostic::error(Code::BRANCH_TYPES, no.span, message)
                     .note_at(yes.span, format!("this is {}", describe(&yes.ty)))
-                    .help("both branches of an `if` give one type"),
+                    .help("both branches of an `if` must have the same type"),
             );
             return poison(span);
         };
@@ -114,7 +114,7 @@ impl<'a> Checker<'a> {
         branch(condition, yes, no, span)
     }
 
-    /// `base.name` that is not called: a swizzle, or an end of a range.
+    /// Checks `base.name` without a call: a swizzle, or an end of a range.
     fn infer_field(&mut self, base: &'a ast::Expr, name: &'a Name, span: Span) -> Expr {
         let base = self.infer(base);
         if types::poisoned(&base.ty) {
@@ -139,10 +139,10 @@ impl<'a> Checker<'a> {
         let found = Diagnostic::error(Code::NO_FIELD, name.span, message);
         let found = match (self.look_up(&name.text), ty) {
             (Some(_), _) if !is_swizzle_word(&name.text) => {
-                found.help(format!("call it, with its arguments in brackets: .{}(...)", name.text))
+                found.help(format!("call it: .{}(...)", name.text))
             }
             (_, Type::Vec(_) | Type::Color) => found.help(format!(
-                "components are {} and {}, one to four of them",
+                "select one to four components of {} or {}",
                 &"xyzw"[..usize::from(lanes(ty).unwrap_or(4)).min(4)],
                 &"rgba"[..usize::from(lanes(ty).unwrap_or(4)).min(4)]
             )),
@@ -163,14 +163,14 @@ impl<'a> Checker<'a> {
         let ty = match (&base.ty, &index.ty) {
             (Type::List(_), Type::Range(_)) => {
                 let want = Type::Range(Box::new(Type::Int));
-                let index = self.coerce(index, &want, Role::The("what a list is cut to"));
+                let index = self.coerce(index, &want, Role::The("the range of a slice"));
                 let ty = base.ty.clone();
                 return Expr { kind: ExprKind::Slice(Box::new(base), Box::new(index)), ty, span };
             }
             (Type::List(of), _) => (**of).clone(),
             (Type::Vec(_) | Type::Color, _) => Type::Number,
             (other, _) => {
-                let message = format!("{} has no elements to index", describe(other));
+                let message = format!("{} cannot be indexed", describe(other));
                 self.report(Diagnostic::error(Code::BAD_OPERAND, base.span, message));
                 return poison(span);
             }
@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
         Expr { kind: ExprKind::Index(Box::new(base), Box::new(index)), ty, span }
     }
 
-    /// A lambda that nothing is expected of.
+    /// Checks a lambda without an expected type.
     fn infer_lambda(
         &mut self,
         signature: &'a ast::Signature,
@@ -190,7 +190,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Both branches have one type by now.
+/// An `if` whose branches have the same type.
 fn branch(condition: Expr, yes: Expr, no: Expr, span: Span) -> Expr {
     let ty = yes.ty.clone();
     let kind = ExprKind::If(Box::new(condition), Box::new(yes), Box::new(no));
@@ -209,7 +209,7 @@ fn number(value: f64, unit: Option<Unit>, whole: bool, span: Span) -> Expr {
     Expr { kind: ExprKind::Number(value), ty, span }
 }
 
-/// sRGB bytes to linear light (IEC 61966-2-1); alpha is linear already.
+/// Decodes sRGB bytes to linear values (IEC 61966-2-1); alpha is already linear.
 fn linear(bytes: [u8; 4]) -> [f64; 4] {
     let decode = |byte: u8| {
         let value = f64::from(byte) / 255.0;
@@ -223,7 +223,7 @@ fn is_swizzle_word(name: &str) -> bool {
     name.chars().all(|c| "xyzw".contains(c)) || name.chars().all(|c| "rgba".contains(c))
 }
 
-/// Positions of `xyzw` or `rgba`, if the vector is long enough for them.
+/// The indices of the letters in `xyzw` or `rgba`, if the vector has these components.
 fn swizzle(name: &str, lanes: u8) -> Option<Vec<u8>> {
     if name.is_empty() || name.len() > 4 {
         return None;

@@ -1,4 +1,4 @@
-//! The one loop: `iterate(over, start, step, while)`.
+//! The loop `iterate(over, start, step, while)`.
 
 use sdfc_diagnostics::{Code, Diagnostic};
 
@@ -11,9 +11,9 @@ use super::{Checker, poison};
 use crate::hir::{Element, Expr, Kernel, Type};
 
 impl<'a> Checker<'a> {
-    /// `iterate(over, start, step, while)`: the step sees the state, and the item if it wants.
+    /// Checks `iterate(over, start, step, while)`. `step` takes the state, and optionally the item.
     pub(super) fn iterate(&mut self, callee: Callee, mut given: Vec<Given<'a>>) -> Expr {
-        // What comes first decides what is wanted of the rest, so the first two are read here.
+        // The first two arguments determine the types of the others, so they are checked here.
         for given in given.iter_mut().filter(|given| given.name.is_none()).take(1) {
             self.read_sequence(given);
         }
@@ -39,7 +39,7 @@ impl<'a> Checker<'a> {
             Some(Type::List(of)) => *of,
             Some(other) if !types::poisoned(&other) => {
                 let message = format!(
-                    "`iterate` runs over an int, a range or a list; this is {}",
+                    "`iterate` needs a count, a range or a list; this is {}",
                     describe(&other)
                 );
                 self.report(Diagnostic::error(Code::TYPE_MISMATCH, callee.at, message));
@@ -70,7 +70,8 @@ impl<'a> Checker<'a> {
         kernel(Kernel::Iterate, arguments.into_iter().flatten().collect(), state, callee.span)
     }
 
-    /// How many arguments the step takes; one that is neither lambda nor name is read here.
+    /// The number of parameters of the step. A step that is neither a lambda nor a name is checked
+    /// here.
     fn step_arity(&mut self, given: &mut Given<'a>) -> Option<usize> {
         let Value::Expr(e) = given.value else { return None };
         if let Some(arity) = self.arity(e) {
@@ -93,14 +94,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The state of a loop is a number or a vector.
+    /// Checks the state of a loop: a number or a vector.
     fn as_state(&mut self, value: Expr, callee: Callee) -> Expr {
         match &value.ty {
             ty if is_scalar(ty) => as_type(value, &Type::Number),
             Type::Vec(_) | Type::Color | Type::Error => value,
             _ => {
                 let message = format!(
-                    "the state of `{}` is a number or a vector; this is {}",
+                    "the state of `{}` must be a number or a vector; this is {}",
                     callee.name,
                     describe(&value.ty)
                 );
@@ -111,7 +112,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The type of an argument that was read.
+/// The type of an argument that is already checked.
 fn done_type(given: &Given) -> Option<Type> {
     match &given.value {
         Value::Done(_, ty) => Some(ty.clone()),

@@ -1,4 +1,4 @@
-//! Lambdas: `fn(a, b) = body` with the variables that it takes along.
+//! Lambdas: `fn(a, b) = body` with the variables that it captures.
 
 use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
@@ -9,15 +9,15 @@ use super::types;
 use super::{Checker, poison};
 use crate::hir::{Expr, ExprKind, Lambda, LocalId, Require, Type};
 
-/// Parameter types and result of the function that is wanted.
+/// Parameter types and result type of the expected function.
 pub(super) type Expected<'t> = Option<(&'t [Type], &'t Type)>;
 
-/// Nothing is known about what the function is for.
+/// No expected type.
 pub(super) const NOTHING_EXPECTED: Expected<'static> = None;
 
 impl<'a> Checker<'a> {
-    /// A lambda. Parameters without a type take the expected one, else `number`; the result
-    /// is brought to the expected type, or to the one that is written.
+    /// Checks a lambda. A parameter without a type has the expected type, or `number`. The result
+    /// is coerced to the declared type, or to the expected one.
     pub(super) fn lambda(
         &mut self,
         signature: &'a ast::Signature,
@@ -58,10 +58,10 @@ impl<'a> Checker<'a> {
         let mut types = Vec::with_capacity(signature.parms.len());
         for (at, parm) in signature.parms.iter().enumerate() {
             if parm.default.is_some() || parm.range.is_some() || parm.variadic {
-                let message = "parameters of a lambda have neither default, nor `in`, nor `...`";
+                let message = "a parameter of a lambda cannot have a default, `in` or `...`";
                 self.report(
                     Diagnostic::error(Code::MISPLACED_CLAUSE, parm.span, message)
-                        .help("declare a `fn` with a name"),
+                        .help("declare a function with a name: fn name(...) = ..."),
                 );
             }
             types.push(match (&parm.ty, expected) {
@@ -73,7 +73,7 @@ impl<'a> Checker<'a> {
         types
     }
 
-    /// Opens a frame in which the variables that the lambda mentions come first.
+    /// Opens a frame whose first variables are those that the lambda captures.
     fn enter_lambda(&mut self, signature: &'a ast::Signature, body: &'a ast::Expr) -> Vec<LocalId> {
         let mut names = Names::default();
         names.signature(signature);
@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
         captures
     }
 
-    /// Closes the frame; what was used inside was used outside. Gives the number of locals.
+    /// Closes the frame, marks captured variables as used, and returns the number of locals.
     fn leave_lambda(&mut self, captures: &[LocalId]) -> u32 {
         let Some(inner) = self.body.frames.pop() else { return 0 };
         if let Some(outer) = self.body.frames.last_mut() {
@@ -121,7 +121,7 @@ impl<'a> Checker<'a> {
         (lipschitz, requires)
     }
 
-    /// The number of parameters of a lambda or named function; `None` for all else.
+    /// The number of parameters of a lambda or named function; `None` for other expressions.
     pub(super) fn arity(&mut self, e: &'a ast::Expr) -> Option<usize> {
         match &e.kind {
             Ast::Lambda(signature, _) => Some(signature.parms.len()),
@@ -148,7 +148,7 @@ pub(super) fn arity_of(ty: &Type) -> Option<usize> {
     }
 }
 
-/// All names that stand somewhere in a piece of tree, each once, in order.
+/// All names that occur in a syntax tree, each once, in order.
 #[derive(Default)]
 struct Names<'a> {
     in_order: Vec<&'a str>,
@@ -195,7 +195,7 @@ impl<'a> Names<'a> {
                 self.expr(callee);
                 args.iter().for_each(|Arg { value, .. }| self.element(value));
             }
-            // `x.f(...)` looks `f` up like any name.
+            // In `x.f(...)`, `f` is looked up like any other name.
             Ast::Field(base, name) => {
                 self.expr(base);
                 self.name(&name.text);

@@ -1,4 +1,4 @@
-//! Brackets: vectors, lists, and the elements made by `for`.
+//! Vectors and lists in brackets, and the elements made by `for`.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_syntax::ast::{self, ExprKind as Ast};
@@ -8,11 +8,11 @@ use super::types::{self, describe};
 use super::{Checker, poison};
 use crate::hir::{Comprehension, Element, Expr, ExprKind, Type};
 
-/// What each of a list's elements is wanted as.
+/// The expected type of each element of a list.
 type Want<'w> = Option<(&'w Type, Role<'w>)>;
 
 impl<'a> Checker<'a> {
-    /// `[...]`: two to four numbers are a vector, all else is a list of one type.
+    /// Checks `[...]`: two to four numbers are a vector, everything else is a list.
     pub(super) fn infer_brackets(&mut self, elements: &'a [ast::Element], span: Span) -> Expr {
         let plain = elements.iter().all(|element| matches!(element, ast::Element::Expr(_)));
         if !plain || !(2..=4).contains(&elements.len()) {
@@ -37,13 +37,13 @@ impl<'a> Checker<'a> {
         Expr { kind: ExprKind::Vector(parts.collect()), ty, span }
     }
 
-    /// `[...]` as a list, however many numbers it holds.
+    /// Checks `[...]` as a list, also if it contains two to four numbers.
     pub(super) fn infer_list(&mut self, elements: &'a [ast::Element], span: Span) -> Expr {
         let elements = elements.iter().map(|element| self.element(element, None)).collect();
         self.list_of(elements, span)
     }
 
-    /// `[...]` as a list of `want`.
+    /// Checks `[...]` as a list of elements of type `want`.
     pub(super) fn check_list(
         &mut self,
         elements: &'a [ast::Element],
@@ -65,10 +65,10 @@ impl<'a> Checker<'a> {
     /// A list of checked elements of one type.
     fn list_of(&mut self, elements: Vec<(Element, Type)>, span: Span) -> Expr {
         let Some((_, first)) = elements.first() else {
-            let message = "an empty list has no type here";
+            let message = "the type of this empty list is unknown";
             self.report(
                 Diagnostic::error(Code::DEGENERATE, span, message)
-                    .help("pass it to a parameter that says its type, such as `points: [vec2]`"),
+                    .help("pass it to a parameter with a list type, such as `points: [vec2]`"),
             );
             return poison(span);
         };
@@ -94,7 +94,7 @@ impl<'a> Checker<'a> {
         self.limit_depth(list(elements, ty, span))
     }
 
-    /// One element with its type; with a `want`, its type is that.
+    /// Checks an element, against the type in `want` if there is one. Returns its type too.
     pub(super) fn element(&mut self, element: &'a ast::Element, want: Want) -> (Element, Type) {
         self.with_stack(|checker| match element {
             ast::Element::Expr(e) => {
@@ -124,7 +124,7 @@ impl<'a> Checker<'a> {
         )
     }
 
-    /// What `for` or `iterate` runs over: numbers in brackets are a list here.
+    /// Checks the sequence of `for` or `iterate`. Numbers in brackets are a list here.
     pub(super) fn sequence(&mut self, over: &'a ast::Expr) -> Expr {
         match &over.kind {
             Ast::Paren(inner) => self.sequence(inner),
@@ -133,7 +133,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a sequence gives one by one.
+    /// The type of the elements of a sequence.
     fn item_type(&mut self, over: &Expr) -> Type {
         match &over.ty {
             Type::List(of) => (**of).clone(),
@@ -158,7 +158,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A checked element as one that gives `want`.
+    /// Coerces a checked element to type `want`.
     pub(super) fn coerce_element(&mut self, element: Element, want: &Type, role: Role) -> Element {
         match element {
             Element::One(value) => Element::One(self.coerce(value, want, role)),
@@ -188,7 +188,7 @@ fn element_span(element: &Element) -> Span {
 
 fn one_type(span: Span, ty: &Type, other: &Type) -> Diagnostic {
     let message = format!(
-        "a list has one type: this is {}, those before it {}",
+        "all elements of a list must have the same type: this is {}, the ones before it are {}",
         describe(other),
         describe(ty)
     );
@@ -197,7 +197,7 @@ fn one_type(span: Span, ty: &Type, other: &Type) -> Diagnostic {
         (Type::Vec(width), other) | (other, Type::Vec(width))
             if types::is_scalar(other) && *width < 4 =>
         {
-            found.help(format!("vec{}(v, z) joins vectors and numbers", width + 1))
+            found.help(format!("to join vectors and numbers, write vec{}(v, z)", width + 1))
         }
         _ => found,
     }

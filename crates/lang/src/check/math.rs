@@ -12,7 +12,7 @@ use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Kernel, Type};
 
 impl<'a> Checker<'a> {
-    /// Componentwise functions: numbers are spread to the vectors beside them.
+    /// Checks a call of a componentwise function. A number beside a vector fills all components.
     pub(super) fn math(&mut self, math: Math, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         let Some(arity) = math.arity else { return self.extreme(math, callee, given) };
         let Some(values) = self.positional(callee, given, arity, arity) else {
@@ -34,7 +34,7 @@ impl<'a> Checker<'a> {
         kernel(math.kernel, arguments, ty, callee.span)
     }
 
-    /// `min`, `max`: of any number of values or lists; of one vector, of its components.
+    /// Checks `min` and `max`: of any number of values or lists, or of one vector's components.
     fn extreme(&mut self, math: Math, callee: Callee, given: Vec<Given<'a>>) -> Expr {
         if given.is_empty() {
             let message = format!("`{}` takes at least 1 argument", callee.name);
@@ -95,7 +95,7 @@ impl<'a> Checker<'a> {
         kernel(math.kernel, vec![list], ty, callee.span)
     }
 
-    /// An argument as an element, lists spread; with the type of what it gives.
+    /// Checks an argument as an element; a list is spread. Returns the type of its values too.
     fn any_element(&mut self, given: Given<'a>) -> (Element, Type) {
         let (element, ty) = match given.value {
             Value::Expr(e) => {
@@ -122,7 +122,7 @@ impl<'a> Checker<'a> {
         Expr { span, ..bind(local, "v", vector, result) }
     }
 
-    /// The widest of the types, if all go together; scalars of all kinds are `number`.
+    /// The common type of some values: the vector type among them, or `number` for scalars.
     pub(super) fn common<'e>(
         &mut self,
         callee: Callee,
@@ -140,7 +140,7 @@ impl<'a> Checker<'a> {
             }
             if common != Type::Number {
                 let message = format!(
-                    "`{}` takes values of one width; these are {} and {}",
+                    "`{}` needs vectors of the same size; these are {} and {}",
                     callee.name,
                     describe(&common),
                     describe(ty)
@@ -158,7 +158,7 @@ fn list_of(elements: Vec<Element>, ty: &Type, span: Span) -> Expr {
     Expr { kind: ExprKind::List(elements), ty: Type::List(Box::new(ty.clone())), span }
 }
 
-/// What a componentwise function gives for scalars.
+/// The result type of a componentwise function for scalars.
 fn scalar_result(result: MathResult, values: &[Expr]) -> Type {
     match result {
         MathResult::Number => Type::Number,
@@ -175,7 +175,7 @@ fn scalar_result(result: MathResult, values: &[Expr]) -> Type {
     }
 }
 
-/// The type of scalars that are all of one kind, else `number`.
+/// The common type of scalars if all have the same type, otherwise `number`.
 fn one_kind<'t>(mut types: impl Iterator<Item = &'t Type>) -> Type {
     let Some(first) = types.next() else { return Type::Number };
     if types.all(|ty| ty == first) { first.clone() } else { Type::Number }

@@ -1,15 +1,20 @@
-//! Names and types: from parsed files to a [`Program`] in which nothing is left to guess.
+//! The checker: resolves names and types, and turns parsed files into a [`Program`].
 //!
-//! Every body of the scene is checked, called or not; bodies of the library only when the
-//! scene reaches them. Findings are collected; a value with an error has the type
-//! [`Type::Error`], about which nothing more is said.
+//! Every body of the scene is checked, called or not; bodies of the library only if the scene
+//! uses them. Diagnostics are collected. A value with an error has the type [`Type::Error`], for
+//! which no further errors are reported.
 //!
-//! One module per question: what a name means (`names`, `value`), which declaration a call
-//! means (`overload`), where its arguments go (`call`, `arguments`), what the kernel takes
-//! (`kernel`, `builtins`, `math`, `iterate`), what becomes of operators, brackets, blocks and
-//! lambdas, and what fits where (`types`, `coerce`). Declarations are opened when they are first
-//! mentioned (`decl`), what stands at top level drives it all (`top`), and circles are found at
-//! the end (`order`).
+//! The modules:
+//!
+//! - `names`, `value`: what a name refers to;
+//! - `overload`: which declaration a call refers to;
+//! - `call`, `arguments`: how arguments are assigned to parameters;
+//! - `kernel`, `builtins`, `math`, `iterate`: the functions of the kernel;
+//! - `operators`, `list`, `block`, `lambda`, `expr`: the forms of expressions;
+//! - `types`, `coerce`: which value can be used where;
+//! - `decl`: declarations, which are checked when they are first mentioned;
+//! - `top`: the top level of a file, which drives the others;
+//! - `order`: circular dependencies, which are found at the end.
 #![allow(
     clippy::wildcard_enum_match_arm,
     reason = "the rule for all other types and forms is an error message, also for new ones"
@@ -49,7 +54,7 @@ use crate::hir::{Expr, ExprKind, GlobalId, Param, ParamId, Program, Type};
 use crate::import::{self, Imported};
 use crate::settings::{self, SettingRow};
 
-/// Checks a scene that stands alone, as [`check_with_imports`] does; imports are errors.
+/// Checks a scene without access to other files: imports are errors. See [`check_with_imports`].
 pub fn check(
     library: &[(FileId, ast::File)],
     scene: (FileId, &ast::File),
@@ -61,13 +66,14 @@ pub fn check(
     (program, found)
 }
 
-/// Checks a scene and what it imports against the library. The program is complete and free of [`Type::Error`]
-/// if no error is among the findings, which come in the order of their places.
+/// Checks a scene and its imports against the library.
 ///
-/// Library bodies that the scene does not reach are not looked at; [`check_library`] does that.
+/// If there is no error among the diagnostics, the program is complete and free of
+/// [`Type::Error`]. The diagnostics are in the order of their positions. Library bodies that the
+/// scene does not use are not checked; see [`check_library`].
 ///
-/// `imports` are the files that [`load`](crate::import::load) gives for the scene; what it could
-/// not give, it has reported.
+/// `imports` are the files that [`load`](crate::import::load) returns for the scene; it reports
+/// those that it cannot load.
 pub fn check_with_imports(
     library: &[(FileId, ast::File)],
     imports: &[Imported],
@@ -76,7 +82,7 @@ pub fn check_with_imports(
     check_items(&whole(library), imports, scene)
 }
 
-/// As [`check_with_imports`], with those of the library's items that are given for each of its files.
+/// Like [`check_with_imports`], with only the given items of each library file.
 pub(crate) fn check_items<'a>(
     library: &[(FileId, Vec<&'a Item>)],
     imports: &'a [Imported],
@@ -95,12 +101,12 @@ pub(crate) fn check_items<'a>(
     checker.finish()
 }
 
-/// Checks every declaration of the library, in both dimensions where it has two.
+/// Checks every declaration of the library, once per dimension.
 pub fn check_library(library: &[(FileId, ast::File)]) -> (Program, Vec<Diagnostic>) {
     check_library_items(&whole(library))
 }
 
-/// As [`check_library`], of the items that are given for each file.
+/// Like [`check_library`], for the given items of each file.
 pub(crate) fn check_library_items(library: &[(FileId, Vec<&Item>)]) -> (Program, Vec<Diagnostic>) {
     let mut checker = Checker::new(library);
     for module in 0..library.len() {
@@ -114,22 +120,22 @@ fn whole(library: &[(FileId, ast::File)]) -> Vec<(FileId, Vec<&Item>)> {
     library.iter().map(|(file, ast)| (*file, ast.items.iter().collect())).collect()
 }
 
-/// Position in [`Checker::decls`].
+/// An index into [`Checker::decls`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct DeclIndex(usize);
-/// Position in [`Checker::lets`].
+/// An index into [`Checker::lets`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct LetIndex(usize);
-/// Position in [`Checker::params`].
+/// An index into [`Checker::params`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct ParamIndex(usize);
 
-/// A declaration of some file.
+/// A declaration of a file.
 #[derive(Debug)]
 struct DeclInfo<'a> {
     ast: &'a ast::Decl,
     module: usize,
-    /// Checked once per dimension.
+    /// True if it is checked once per dimension.
     generic: bool,
     used: bool,
 }
@@ -165,7 +171,7 @@ impl<'a> ParamInfo<'a> {
     }
 }
 
-/// How far a `let` or `param` has come.
+/// The progress of checking a `let` or `param`.
 #[derive(Clone, Debug)]
 enum State<Id> {
     Unseen,
@@ -175,7 +181,7 @@ enum State<Id> {
     Failed,
 }
 
-/// Everything that checking knows, in tables by index.
+/// The state of the checker.
 #[derive(Debug, Default)]
 struct Checker<'a> {
     modules: Vec<names::Module<'a>>,
@@ -185,11 +191,11 @@ struct Checker<'a> {
     decls: Vec<DeclInfo<'a>>,
     lets: Vec<LetInfo<'a>>,
     params: Vec<ParamInfo<'a>>,
-    /// What has been asked for of each declaration, by dimension where it has two.
+    /// The declarations that were used so far, by dimension if they have two.
     instances: FxHashMap<(DeclIndex, Option<Dim>), decl::Instance<'a>>,
-    /// Bodies whose type is known and that nobody has looked at yet.
+    /// Bodies that are not checked yet; their types are known.
     pending: Vec<decl::Pending<'a>>,
-    /// The body at hand.
+    /// The current body.
     body: body::Body<'a>,
     order: order::Order,
     program: Program,
@@ -206,13 +212,14 @@ impl<'a> Checker<'a> {
         checker
     }
 
-    /// Adds a finding; while a reading is tried out it may yet be forgotten.
+    /// Adds a diagnostic. During an attempt it may be discarded later.
     fn report(&mut self, found: Diagnostic) {
         self.body.attempts.last_mut().unwrap_or(&mut self.diagnostics).push(found);
     }
 
-    /// The result: at most one finding per place, in the order of places. A body with errors
-    /// may not mention all that it declares, so beside errors nothing is called unused.
+    /// The result, with at most one diagnostic per position, in the order of positions. If there
+    /// are errors, warnings about unused names are dropped: a body with errors may not use all
+    /// that it declares.
     fn finish(mut self) -> (Program, Vec<Diagnostic>) {
         self.check_order();
         let mut found = std::mem::take(&mut self.diagnostics);
@@ -225,13 +232,13 @@ impl<'a> Checker<'a> {
         (self.program, found)
     }
 
-    /// A type that was inferred somewhere deep needs stack for the way there.
+    /// Runs a function with enough stack for deeply nested types and expressions.
     fn with_stack<T>(&mut self, run: impl FnOnce(&mut Self) -> T) -> T {
         stacker::maybe_grow(128 * 1024, 1024 * 1024, || run(self))
     }
 }
 
-/// A value about which nothing more is said.
+/// A value for which no further errors are reported.
 fn poison(span: Span) -> Expr {
     Expr { kind: ExprKind::Error, ty: Type::Error, span }
 }

@@ -1,6 +1,7 @@
-//! What names mean: files, scopes, and what to suggest for a name that nothing has.
+//! Name resolution: files, scopes, and suggestions for unknown names.
 //!
-//! From the inside out: block, parameters, file, imports, library, kernel.
+//! A name is looked up in blocks, parameters, the file, imports, the library and the kernel, in
+//! this order.
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
@@ -12,68 +13,67 @@ use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
 use crate::settings::SettingRow;
 use crate::spelling::meant;
 
-/// What a name at top level of a file means there.
+/// What a top-level name of a file refers to.
 #[derive(Clone, Debug)]
 pub(super) enum Entry {
     /// One declaration, or one for solids and one for regions.
     Decls(Vec<DeclIndex>),
-    /// A `let`, visible from this offset on.
+    /// A `let`, visible after its end.
     Let(LetIndex),
-    /// A `param`, visible from this offset on.
+    /// A `param`, visible after its end.
     Param(ParamIndex),
 }
 
-/// One file.
+/// A file.
 #[derive(Debug)]
 pub(super) struct Module<'a> {
-    /// Its path below the folder of the scene, which has an empty one itself; `None` for the
-    /// library.
+    /// Its path below the folder of the scene; empty for the scene itself, `None` for the library.
     pub path: Option<&'a str>,
-    /// Whether all of it was parsed.
+    /// True if all of it was parsed.
     pub whole: bool,
     /// Its own top-level names.
     pub names: FxHashMap<&'a str, Entry>,
-    /// Names that it imports.
+    /// The names that it imports.
     pub imports: FxHashMap<&'a str, ImportedName>,
 }
 
-/// A name that came by `import`.
+/// An imported name.
 #[derive(Clone, Debug)]
 pub(super) struct ImportedName {
-    /// What it means in the file that declares it; `None` if that was reported as an error.
+    /// What it refers to in the file that declares it; `None` if an error was reported.
     pub entry: Option<Entry>,
     /// Where it was imported.
     pub span: Span,
-    /// Whether something uses it.
+    /// True if something uses it.
     pub used: bool,
 }
 
-/// What a name means at some place.
+/// What a name refers to at some position.
 #[derive(Clone, Debug)]
 pub(super) enum Found {
-    /// A variable of the body at hand.
+    /// A variable of the current body.
     Local(LocalIndex),
     /// A file-level `let`.
     Let(LetIndex),
     /// A `param`.
     Param(ParamIndex),
-    /// A declaration, or the two dimensions of one.
+    /// A declaration, or one for solids and one for regions.
     Decls(Vec<DeclIndex>),
-    /// Something of the kernel.
+    /// A name of the kernel.
     Builtin(Builtin),
-    /// A setting, by its row.
+    /// A setting: the index of its row.
     Setting(usize),
     /// An import that failed and was reported.
     Poisoned,
 }
 
-/// The names that share a word with a shape may still mean the kernel's function: `round`.
+/// The kernel's function with the name of a library entry, such as `round`.
 pub(super) fn kernel_alternative(name: &str) -> Option<Builtin> {
     kernel::builtin(name).filter(|builtin| matches!(builtin, Builtin::Math(_)))
 }
 
 impl<'a> Checker<'a> {
-    /// Takes in a file: its declarations, lets and params get indices, its names a table.
+    /// Adds a file with its declarations, lets, params and names. Returns its index.
     pub(super) fn add_module(
         &mut self,
         items: impl IntoIterator<Item = &'a Item>,
@@ -138,18 +138,18 @@ impl<'a> Checker<'a> {
         self.report(
             Diagnostic::error(Code::DECLARED_TWICE, name.span, message)
                 .note_at(first, "first declared here")
-                .help("rename one; only a solid and a region whose first parameters are a solid and a region may share a name"),
+                .help("rename one of them; only a `solid` and a `region` whose first parameters are a solid and a region may share a name"),
         );
     }
 
-    /// Hosts hand a scene its clock by the names `time` and `frame`, and its own params by theirs. Params of imported
-    /// files have those of their files before them.
+    /// Reports a param called `time` or `frame`: hosts set the clock and the params by name. Params
+    /// of imported files are safe, since they have the name of their file as a prefix.
     fn refuse_clock(&mut self, name: &ast::Name) {
         if !matches!(kernel::builtin(&name.text), Some(Builtin::Time | Builtin::Frame)) {
             return;
         }
-        let message = format!("`{}` is the clock's name: no param can have it", name.text);
-        let help = format!("use `{}` as it is, without `param`, or choose another name", name.text);
+        let message = format!("a param cannot be called `{}`: that name is built in", name.text);
+        let help = format!("use `{}` without declaring it, or choose another name", name.text);
         self.report(Diagnostic::error(Code::CLOCK, name.span, message).help(help));
     }
 
@@ -162,7 +162,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a name means at the place at hand.
+    /// What a name refers to at the current position.
     pub(super) fn look_up(&mut self, name: &str) -> Option<Found> {
         if let Some(local) = self.body.find(name) {
             return Some(Found::Local(local));
@@ -170,7 +170,7 @@ impl<'a> Checker<'a> {
         self.look_up_outside(name)
     }
 
-    /// What a name means outside the body at hand.
+    /// What a name refers to outside the current body.
     pub(super) fn look_up_outside(&mut self, name: &str) -> Option<Found> {
         let module = self.body.module;
         if let Some(entry) = self.modules[module].names.get(name)
@@ -188,7 +188,7 @@ impl<'a> Checker<'a> {
         self.look_up_library(name)
     }
 
-    /// What a name means to the library and the kernel.
+    /// What a name refers to in the library and the kernel.
     pub(super) fn look_up_library(&mut self, name: &str) -> Option<Found> {
         if let Some(entry) = self.library.get(name) {
             return Some(self.found(&entry.clone()));
@@ -218,7 +218,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// `let` and `param` are visible from their end on, declarations everywhere.
+    /// True if a name is visible at the current position: a `let` or `param` after its end, a
+    /// declaration everywhere.
     fn is_visible(&self, entry: &Entry) -> bool {
         match entry {
             Entry::Decls(_) => true,
@@ -227,7 +228,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Reports a name that nothing has here.
+    /// Reports an unknown name.
     pub(super) fn unknown_name(&mut self, name: &str, span: Span) {
         if name == "p" {
             self.report(
@@ -235,7 +236,7 @@ impl<'a> Checker<'a> {
                     match self.body.point {
                         None => "pass a function of the point: fn(q) = q.y",
                         Some(_) => {
-                            "clauses and defaults hold for the whole shape: use its parameters and `bounds(a)`"
+                            "clauses and defaults are about the whole shape: use its parameters and `bounds(a)`"
                         }
                     },
                 ),
@@ -246,7 +247,7 @@ impl<'a> Checker<'a> {
         let later = self.modules[self.body.module].names.get(name).map(|e| self.entry_span(e));
         let found = match (later, self.suggestion(name)) {
             (Some(later), _) => found
-                .note_at(later, "it is known only after this line")
+                .note_at(later, "it is declared here and can be used only after this line")
                 .help("move that line above this one"),
             (None, Some(meant)) => found.help(meant),
             (None, None) => found,
@@ -254,7 +255,7 @@ impl<'a> Checker<'a> {
         self.report(found);
     }
 
-    /// What to say of a name that nothing has.
+    /// A suggestion for an unknown name.
     fn suggestion(&self, name: &str) -> Option<String> {
         let module = &self.modules[self.body.module];
         let file = module.names.iter().filter(|(_, entry)| self.is_visible(entry));
@@ -270,13 +271,13 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Whether a name is private to its file.
+/// True if a name is private to its file.
 pub(super) fn is_private(name: &str) -> bool {
     name.starts_with('_')
 }
 
-/// Whether two declarations are one name's two dimensions: a solid and a region that the
-/// first argument tells apart.
+/// True if two declarations may share a name: a solid and a region that the first argument
+/// distinguishes.
 fn two_dimensions(a: &ast::Decl, b: &ast::Decl) -> bool {
     let kinds = matches!(
         (a.kind, b.kind),
@@ -285,7 +286,7 @@ fn two_dimensions(a: &ast::Decl, b: &ast::Decl) -> bool {
     kinds && first_dimension(a).is_some() && first_dimension(a) != first_dimension(b)
 }
 
-/// What the first parameter takes: `solid`, `region`, or a function that makes one.
+/// The dimension of the first parameter: `solid` or `region`, also for a function that makes one.
 pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
     fn of(ty: &ast::TypeExpr) -> Option<&str> {
         match &ty.kind {

@@ -1,4 +1,4 @@
-//! Operators: arithmetic on numbers, joining of shapes, comparisons, ranges.
+//! Operators: arithmetic, union, intersection and difference of shapes, comparisons, ranges.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Dim;
@@ -26,10 +26,10 @@ impl<'a> Checker<'a> {
                 UnaryOp::Neg => ("-", "a number, angle or vector"),
                 UnaryOp::Not => ("!", "a bool"),
             };
-            let message = format!("`{sign}` wants {wants}; this is {}", describe(&operand.ty));
+            let message = format!("`{sign}` needs {wants}; this is {}", describe(&operand.ty));
             let found = Diagnostic::error(Code::BAD_OPERAND, operand.span, message);
             let found = match operand.ty {
-                Type::Shape(_) => found.help("`a - b` takes b away from a"),
+                Type::Shape(_) => found.help("`a - b` subtracts b from a"),
                 _ => found,
             };
             self.report(found);
@@ -68,8 +68,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// `| & -` on shapes: the library's union, intersection, difference, whatever these names
-    /// mean in the scene. A chain of one operator is one call with many parts.
+    /// `| & -` on shapes: the library's union, intersection and difference, even if the scene
+    /// declares these names. A chain of one operator becomes one call with many arguments.
     fn shapes(
         &mut self,
         op: BinaryOp,
@@ -84,7 +84,7 @@ impl<'a> Checker<'a> {
         };
         if dim != other {
             let region = if *dim == Dim::Two { &a } else { &b };
-            let wanted = format!("`{}` joins it with a solid (3D)", sign(op));
+            let wanted = format!("`{}` combines it with a solid (3D)", sign(op));
             let found = region_for_solid(region.span, &wanted);
             self.report(found);
             return poison(span);
@@ -99,7 +99,7 @@ impl<'a> Checker<'a> {
             _ => "difference",
         };
         let Some(Found::Decls(decls)) = self.look_up_library(name) else {
-            let message = format!("the library has no `{name}`, which `{}` means", sign(op));
+            let message = format!("`{}` needs `{name}`, which the library lacks", sign(op));
             self.report(Diagnostic::error(Code::UNKNOWN_NAME, at, message));
             return poison(span);
         };
@@ -177,7 +177,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The parts of `a | b`, if that is what the left operand of one more `|` was.
+/// The operands of `a | b`, if that is the left operand of another `|`.
 fn chain<'e>(op: BinaryOp, left: &ast::Expr, a: &'e mut Expr) -> Option<&'e mut Vec<Element>> {
     if !matches!(&left.kind, Ast::Binary(before, ..) if *before == op) {
         return None;
@@ -193,7 +193,7 @@ fn is_shape(e: &Expr) -> bool {
     matches!(e.ty, Type::Shape(_))
 }
 
-/// The type of a sum, product or remainder; `None` if the operands do not go together.
+/// The type of a sum, product or remainder; `None` if the operands do not match.
 fn arithmetic_type(op: BinaryOp, a: &Expr, b: &Expr) -> Option<Type> {
     match (&a.ty, &b.ty) {
         (x, y) if is_scalar(x) && is_scalar(y) => Some(scalar_type(op, a, b)),
@@ -211,7 +211,8 @@ fn arithmetic_type(op: BinaryOp, a: &Expr, b: &Expr) -> Option<Type> {
     }
 }
 
-/// Ints stay ints but for `/`; angles add up, scale by numbers, and cancel.
+/// The type of an operation on scalars. Ints give an int, except for `/`. Angles can be added,
+/// multiplied by numbers, and divided by each other.
 fn scalar_type(op: BinaryOp, a: &Expr, b: &Expr) -> Type {
     use Type::{Angle, Int, Number};
     match (op, &a.ty, &b.ty) {
@@ -228,7 +229,7 @@ fn scalar_type(op: BinaryOp, a: &Expr, b: &Expr) -> Type {
     }
 }
 
-/// An operand at the width of the result. A number beside a colour leaves its alpha alone.
+/// An operand with the width of the result. A number beside a colour does not change its alpha.
 fn operand(value: Expr, ty: &Type, op: BinaryOp) -> Expr {
     if *ty != Type::Color || !is_scalar(&value.ty) {
         return as_type(value, ty);
@@ -243,7 +244,7 @@ fn operand(value: Expr, ty: &Type, op: BinaryOp) -> Expr {
     Expr { kind: ExprKind::Vector(vec![rgb, alpha]), ty: Type::Color, span }
 }
 
-/// A numeric value at the width of a type.
+/// A numeric value with the width of a type.
 pub(super) fn as_type(mut value: Expr, ty: &Type) -> Expr {
     if is_scalar(&value.ty) && !is_scalar(ty) {
         return splat(value, ty);
@@ -252,7 +253,7 @@ pub(super) fn as_type(mut value: Expr, ty: &Type) -> Expr {
     value
 }
 
-/// The operator as written.
+/// The operator's symbol.
 fn sign(op: BinaryOp) -> &'static str {
     match op {
         BinaryOp::Mul => "*",
@@ -274,20 +275,20 @@ fn sign(op: BinaryOp) -> &'static str {
     }
 }
 
-/// What the operator is for.
+/// The operator's purpose, for messages.
 fn purpose(op: BinaryOp) -> &'static str {
     match op {
         BinaryOp::Mul => "multiplies numbers",
         BinaryOp::Div => "divides numbers",
-        BinaryOp::Rem => "divides numbers with remainder",
+        BinaryOp::Rem => "takes the remainder of numbers",
         BinaryOp::Add => "adds numbers",
-        BinaryOp::Sub => "subtracts numbers, or takes shapes from a shape",
-        BinaryOp::Union => "unites shapes",
+        BinaryOp::Sub => "subtracts numbers or shapes",
+        BinaryOp::Union => "joins shapes",
         BinaryOp::Intersect => "intersects shapes",
-        BinaryOp::Range => "spans two numbers or vectors",
+        BinaryOp::Range => "makes a range of two numbers or vectors",
         BinaryOp::Eq | BinaryOp::Ne => "compares numbers, bools or strings",
         BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge => "compares numbers",
-        BinaryOp::And | BinaryOp::Or => "joins bools",
+        BinaryOp::And | BinaryOp::Or => "combines bools",
     }
 }
 
@@ -306,10 +307,10 @@ fn operand_help(op: BinaryOp, a: &Type, b: &Type) -> Option<&'static str> {
     let both = |test: fn(&Type) -> bool| test(a) && test(b);
     let shape = |ty: &Type| matches!(ty, Type::Shape(_));
     match op {
-        BinaryOp::Add if both(shape) => Some("`a | b` unites them"),
-        BinaryOp::Mul if both(shape) => Some("`a & b` is what they share"),
-        BinaryOp::And if both(shape) => Some("`a & b` is what they share"),
-        BinaryOp::Or if both(shape) => Some("`a | b` unites them"),
+        BinaryOp::Add if both(shape) => Some("`a | b` is their union"),
+        BinaryOp::Mul if both(shape) => Some("`a & b` is their intersection"),
+        BinaryOp::And if both(shape) => Some("`a & b` is their intersection"),
+        BinaryOp::Or if both(shape) => Some("`a | b` is their union"),
         BinaryOp::Mul | BinaryOp::Div if shape(a) || shape(b) => Some("a.scale(2) resizes a shape"),
         BinaryOp::Add | BinaryOp::Sub if shape(a) && is_scalar(b) => {
             Some("a.round(0.1) grows a shape; a.translate([1, 0, 0]) moves it")
@@ -318,12 +319,12 @@ fn operand_help(op: BinaryOp, a: &Type, b: &Type) -> Option<&'static str> {
             Some("a.translate([1, 0, 0]) moves a shape")
         }
         BinaryOp::Union | BinaryOp::Intersect if both(|ty| *ty == Type::Bool) => {
-            Some("bools are joined by `||` and `&&`")
+            Some("use `||` and `&&` for bools")
         }
         BinaryOp::Eq | BinaryOp::Ne | BinaryOp::Lt | BinaryOp::Le | BinaryOp::Gt | BinaryOp::Ge
             if matches!(a, Type::Vec(_)) || matches!(b, Type::Vec(_)) =>
         {
-            Some("compare components, or length(a - b)")
+            Some("compare components, or compare length(a - b) with a number")
         }
         BinaryOp::Mul
         | BinaryOp::Div
@@ -333,12 +334,12 @@ fn operand_help(op: BinaryOp, a: &Type, b: &Type) -> Option<&'static str> {
         | BinaryOp::Range
             if matches!((a, b), (Type::Color, Type::Vec(_)) | (Type::Vec(_), Type::Color)) =>
         {
-            Some("take the colour's components: .rgb")
+            Some("select the colour's components: .rgb")
         }
         BinaryOp::Mul | BinaryOp::Div | BinaryOp::Rem | BinaryOp::Add | BinaryOp::Sub
             if matches!((a, b), (Type::Vec(_), Type::Vec(_))) =>
         {
-            Some("both vectors need one width: take components by a swizzle, `.xy`")
+            Some("both vectors need the same size: select components, such as `.xy`")
         }
         BinaryOp::Mul
         | BinaryOp::Div

@@ -1,12 +1,11 @@
-//! What needs what: shapes must not need themselves, and a `let` must not need its own value.
+//! Dependencies between declarations: a shape must not depend on itself, nor a `let` on its value.
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
-use super::decl::Target;
 use super::{Checker, LetIndex};
 
-/// Something that is evaluated.
+/// A declaration in the dependency graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Node {
     Fn(u32),
@@ -15,71 +14,62 @@ pub(super) enum Node {
 }
 
 impl Node {
-    /// The node of what a call makes.
-    pub(super) fn of(target: Target) -> Self {
-        match target {
-            Target::Fn(id) => Self::Fn(id.0),
-            Target::Shape(id) => Self::Shape(id.0),
-        }
-    }
-
     /// The node of a `let`.
     pub(super) fn of_let(index: LetIndex) -> Self {
         Self::Let(index.0)
     }
 }
 
-/// Who mentions whom, and where.
+/// The edges of the dependency graph: which declaration mentions which, and where.
 #[derive(Debug, Default)]
 pub(super) struct Order {
     mentions: Vec<(Node, Node, Span)>,
 }
 
 impl Checker<'_> {
-    /// Notes that the body at hand needs something.
+    /// Records that the current body depends on a declaration.
     pub(super) fn needs(&mut self, what: Node, span: Span) {
         if let Some(node) = self.body.node {
             self.order.mentions.push((node, what, span));
         }
     }
 
-    /// Reports shapes that build themselves, and lets that need their own value, by whatever
-    /// way round. Functions may recurse: a condition known at compile time ends them.
+    /// Reports shapes and lets that depend on themselves, directly or through others. Functions may
+    /// recurse: a condition known at compile time ends the recursion.
     pub(super) fn check_order(&mut self) {
         let mentions = std::mem::take(&mut self.order.mentions);
         let circles = circles(&mentions);
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for (from, to, span) in &mentions {
             let (Some(circle), Some(other)) = (circles.get(from), circles.get(to)) else {
                 continue;
             };
-            if circle != other || told.contains(circle) {
+            if circle != other || reported.contains(circle) {
                 continue;
             }
             let found = match *from {
                 Node::Fn(_) => continue,
                 Node::Shape(id) => {
                     let name = self.program.shapes.get(id as usize).map_or("", |s| &s.name);
-                    let message = format!("`{name}` needs itself: shapes do not recurse");
-                    Diagnostic::error(Code::SELF_CALL, *span, message).help(
-                        "a `fn` that gives a shape may call itself: fn f(n: int) -> solid = ...",
-                    )
+                    let message = format!("`{name}` uses itself: a shape cannot be recursive");
+                    Diagnostic::error(Code::SELF_CALL, *span, message)
+                        .help("use a function, which may be recursive: fn f(n: int) -> solid = ...")
                 }
                 Node::Let(index) => {
                     let name = &self.lets[index].ast.name;
-                    let message = format!("`{}` needs its own value", name.text);
+                    let message = format!("`{}` is used in its own definition", name.text);
                     Diagnostic::error(Code::UNKNOWN_NAME, *span, message)
-                        .note_at(name.span, "it is not known before the end of its `let`")
+                        .note_at(name.span, "it has a value only after this `let`")
                 }
             };
-            told.push(*circle);
+            reported.push(*circle);
             self.report(found);
         }
     }
 }
 
-/// The strongly connected parts that hold a circle, as a number for each of their nodes
-/// (Tarjan's algorithm on an explicit stack).
+/// The strongly connected components that contain a cycle: the index of its component for each of
+/// their nodes. Uses Tarjan's algorithm with an explicit stack.
 fn circles(mentions: &[(Node, Node, Span)]) -> FxHashMap<Node, usize> {
     let mut nodes: Vec<Node> = mentions.iter().flat_map(|(a, b, _)| [*a, *b]).collect();
     nodes.sort_unstable();
@@ -95,24 +85,25 @@ fn circles(mentions: &[(Node, Node, Span)]) -> FxHashMap<Node, usize> {
         on_stack: vec![false; nodes.len()],
         stack: Vec::new(),
         seen: 0,
-        part: vec![0; nodes.len()],
+        component: vec![0; nodes.len()],
         sizes: Vec::new(),
     };
     for node in 0..nodes.len() {
         search.from(node, &next);
     }
-    let in_circle = |&at: &usize| search.sizes[search.part[at]] > 1 || next[at].contains(&at);
-    (0..nodes.len()).filter(in_circle).map(|at| (nodes[at], search.part[at])).collect()
+    let in_circle = |&at: &usize| search.sizes[search.component[at]] > 1 || next[at].contains(&at);
+    (0..nodes.len()).filter(in_circle).map(|at| (nodes[at], search.component[at])).collect()
 }
 
+/// The state of Tarjan's algorithm.
 struct Search {
     index: Vec<Option<usize>>,
     low: Vec<usize>,
     on_stack: Vec<bool>,
     stack: Vec<usize>,
     seen: usize,
-    /// The part of each node, and how many nodes each part has.
-    part: Vec<usize>,
+    /// The component of each node, and the number of nodes of each component.
+    component: Vec<usize>,
     sizes: Vec<usize>,
 }
 
@@ -161,7 +152,7 @@ impl Search {
         let mut size = 0;
         while let Some(member) = self.stack.pop() {
             self.on_stack[member] = false;
-            self.part[member] = self.sizes.len();
+            self.component[member] = self.sizes.len();
             size += 1;
             if member == node {
                 break;

@@ -1,4 +1,4 @@
-//! Which declaration a call means, and in which dimension.
+//! Overload resolution: which declaration a call refers to, and in which dimension.
 
 use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, DeclKind};
@@ -8,16 +8,15 @@ use super::coerce::{Role, region_for_solid, solid_for_region};
 use super::decl::Target;
 use super::kernel::Builtin;
 use super::names;
-use super::order::Node;
 use super::types;
 use super::{Checker, DeclIndex, Shared, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
 
-/// Lambdas inside lambdas are read in both dimensions down to this depth, since each level
-/// doubles the readings; deeper ones are read in 3D.
+/// Depth of nested lambdas down to which both dimensions are tried. Each level doubles the number
+/// of attempts, so deeper lambdas are checked in 3D only.
 const MAX_ATTEMPTS: usize = 4;
 
-/// What a call turned out to mean.
+/// What a call refers to.
 enum Picked<'a> {
     Declared(Shared<'a>),
     Kernel(Builtin),
@@ -26,7 +25,7 @@ enum Picked<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// A call of a declaration, by name.
+    /// Checks a call of a declaration.
     pub(super) fn call_decls(
         &mut self,
         decls: &[DeclIndex],
@@ -46,7 +45,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Reports an argument that only the name's other dimension has: `translate`'s `z`.
+    /// Reports an argument that only the other dimension of the name has, such as `z` of
+    /// `translate`.
     fn wants_other_dimension(
         &mut self,
         decls: &[DeclIndex],
@@ -66,14 +66,14 @@ impl<'a> Checker<'a> {
         };
         let (span, subject) = (given[0].span, format!("{}'s `{}`", callee.name, name.text));
         let found = match signature.result {
-            Type::Shape(Dim::Two) => region_for_solid(span, &format!("{subject} wants a solid")),
-            _ => solid_for_region(span, &format!("{subject} wants a region")),
+            Type::Shape(Dim::Two) => region_for_solid(span, &format!("{subject} needs a solid")),
+            _ => solid_for_region(span, &format!("{subject} needs a region")),
         };
         self.report(found);
         true
     }
 
-    /// The call itself, its arguments in place.
+    /// The call with its checked arguments.
     pub(super) fn make(
         &mut self,
         signature: &Shared<'a>,
@@ -84,7 +84,7 @@ impl<'a> Checker<'a> {
         if types::poisoned(&ty) {
             return poison(callee.span);
         }
-        self.needs(Node::of(signature.target), callee.span);
+        self.needs(signature.target.node(), callee.span);
         let kind = match signature.target {
             Target::Fn(id) => ExprKind::Call(id, arguments),
             Target::Shape(id) => ExprKind::Build(id, arguments),
@@ -92,8 +92,8 @@ impl<'a> Checker<'a> {
         Expr { kind, ty, span: callee.span }
     }
 
-    /// The first argument's kind picks among the meanings of a name; in an entry that takes
-    /// shapes of either dimension, the first argument for such a parameter decides.
+    /// Selects among the declarations of a name by the type of the first argument. In a declaration
+    /// that takes shapes of either dimension, the first argument for such a parameter decides.
     fn pick(&mut self, decls: &[DeclIndex], callee: Callee, given: &mut [Given<'a>]) -> Picked<'a> {
         let first = decls[0];
         let info = &self.decls[first.0];
@@ -131,7 +131,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Checks an argument before it is known what is wanted of it; gives its type.
+    /// Checks an argument without an expected type and returns its type.
     fn look_at(&mut self, given: &mut Given<'a>) -> Type {
         let (element, ty) = match &given.value {
             Value::Expr(e) => {
@@ -146,7 +146,7 @@ impl<'a> Checker<'a> {
         ty
     }
 
-    /// A lambda is read as 3D, and where that has errors as 2D; if both have, 3D counts.
+    /// Selects the dimension for a lambda: 3D, or 2D if 3D has errors; 3D if both have errors.
     fn pick_by_lambda(
         &mut self,
         decls: &[DeclIndex],
@@ -183,7 +183,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Makes a reading the one that counts.
+    /// Accepts one of the attempts: reports its diagnostics and keeps its value.
     fn settle(
         &mut self,
         signature: Shared<'a>,
@@ -207,7 +207,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The declaration whose first parameter is of a dimension; the first where none is.
+    /// The declaration whose first parameter has a dimension; the first declaration if none has.
     fn for_dimension(&self, decls: &[DeclIndex], dim: Dim) -> DeclIndex {
         let word = types::shape_word(dim);
         let takes =
@@ -216,7 +216,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The first parameter that takes a shape of either dimension; the first of all where none does.
+/// The index of the first parameter that takes a shape of either dimension; 0 if none does.
 fn deciding_parameter(decl: &ast::Decl) -> usize {
     let with_point = matches!(decl.kind, DeclKind::Fn | DeclKind::Shape);
     let decides = |parm: &ast::Parm| {
@@ -225,7 +225,7 @@ fn deciding_parameter(decl: &ast::Decl) -> usize {
     decl.signature.parms.iter().position(decides).unwrap_or(0)
 }
 
-/// The argument that goes to the parameter at a position.
+/// The index of the argument for the parameter at an index.
 fn argument_of(decl: &ast::Decl, at: usize, given: &[Given]) -> Option<usize> {
     let parm = decl.signature.parms.get(at)?;
     let by_name =

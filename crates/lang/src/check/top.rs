@@ -1,4 +1,4 @@
-//! What stands at top level: imports, params, lets, drawings and settings, in order.
+//! The top level of a file: imports, params, lets, shapes to draw and settings, in order.
 
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Span, has_errors};
 use sdfc_graph::Dim;
@@ -15,7 +15,7 @@ use crate::hir::{Setting, SettingKind, Type};
 use crate::import;
 use crate::spelling::nearest;
 
-/// What is evaluated at top level.
+/// An item that is evaluated at the top level.
 enum TopLevel<'a> {
     Let(LetIndex),
     Param(ParamIndex),
@@ -23,7 +23,7 @@ enum TopLevel<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// Checks all of the scene's file.
+    /// Checks the scene's file.
     pub(super) fn check_scene(&mut self, module: usize, (file, ast): (FileId, &'a ast::File)) {
         self.import(module, ast);
         self.find_union();
@@ -46,7 +46,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Checks what a file declares; what it draws and sets is its own affair.
+    /// Checks the declarations of an imported file, but not what it draws or its settings.
     pub(super) fn check_imported(&mut self, module: usize, ast: &'a ast::File) {
         self.import(module, ast);
         for item in self.named_items(module, ast) {
@@ -59,7 +59,7 @@ impl<'a> Checker<'a> {
         self.check_declarations(module);
     }
 
-    /// Lets, params and expressions of a file in their order.
+    /// The lets, params and expressions of a file, in order.
     fn named_items(&self, module: usize, ast: &'a ast::File) -> Vec<TopLevel<'a>> {
         let lets = (0..self.lets.len()).filter(|at| self.lets[*at].module == module);
         let params = (0..self.params.len()).filter(|at| self.params[*at].module == module);
@@ -80,7 +80,7 @@ impl<'a> Checker<'a> {
             let Item::Import(import) = item else { continue };
             let from = self.modules[module].path.unwrap_or("");
             let path = import::locate(from, &import.path.text).ok();
-            // Files come after those that they import, so a later one closes a circle.
+            // A file comes after those that it imports, so an import of a later file is circular.
             let earlier = &self.modules[..module];
             let source = path.and_then(|path| {
                 earlier.iter().position(|module| module.path == Some(path.as_str()))
@@ -100,12 +100,12 @@ impl<'a> Checker<'a> {
             Some(_) if is_private(&name.text) => {
                 let message = format!("`{}` is private to `{file}`", name.text);
                 Diagnostic::error(Code::IMPORT, name.span, message)
-                    .help("a name without a leading `_` can be imported")
+                    .help("to export it, remove the leading `_` from its name")
             }
             Some(_) => return entry,
             None if !self.modules[source].whole => return None,
             None => {
-                let message = format!("`{file}` declares no `{}`", name.text);
+                let message = format!("`{file}` does not declare `{}`", name.text);
                 let found = Diagnostic::error(Code::IMPORT, name.span, message);
                 let public = names.keys().copied().filter(|name| !is_private(name));
                 match nearest(&name.text, public) {
@@ -125,12 +125,12 @@ impl<'a> Checker<'a> {
             self.report(
                 Diagnostic::error(Code::DECLARED_TWICE, name.span, message)
                     .note_at(first.span, "first imported here")
-                    .help(format!("give one another name: {} as other", name.text)),
+                    .help(format!("rename one of them: {} as other", name.text)),
             );
         }
     }
 
-    /// The library's union of solids joins what is drawn.
+    /// Resolves the library's union of solids, which joins the shapes that are drawn.
     fn find_union(&mut self) {
         let Some(Found::Decls(decls)) = self.look_up_library("union") else { return };
         let first = decls[0];
@@ -143,14 +143,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Ends an expression at top level and goes back to what was being checked.
+    /// Ends a top-level expression and restores the outer body.
     pub(super) fn leave_top_level(&mut self, outer: Body<'a>) {
         let body = std::mem::replace(&mut self.body, outer);
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
         self.program.locals = self.program.locals.max(locals);
     }
 
-    /// A solid that is drawn, or a setting.
+    /// Checks a solid that is drawn, or a setting.
     fn check_top_level(&mut self, module: usize, e: &'a ast::Expr) {
         let outer = std::mem::replace(&mut self.body, Body::new(module, e.span.start));
         match self.as_setting(e) {
@@ -160,7 +160,7 @@ impl<'a> Checker<'a> {
         self.leave_top_level(outer);
     }
 
-    /// The setting that a call at top level means.
+    /// The setting that a top-level call refers to.
     fn as_setting(&mut self, e: &'a ast::Expr) -> Option<(usize, Callee<'a>, &'a [ast::Arg])> {
         let Ast::Call(callee, args) = &e.kind else { return None };
         let Ast::Name(name) = &callee.kind else { return None };
@@ -180,15 +180,15 @@ impl<'a> Checker<'a> {
                 self.program.drawn.push(value);
                 return;
             }
-            Type::Shape(Dim::Two) => region_for_solid(value.span, "what is drawn is a solid"),
+            Type::Shape(Dim::Two) => region_for_solid(value.span, "only solids can be drawn"),
             ty if types::poisoned(ty) => return,
             Type::List(of) if **of == Type::Shape(Dim::Three) => {
-                unused(value.span, &value.ty).help("unite them: union(...)")
+                unused(value.span, &value.ty).help("join them: union(...)")
             }
             Type::Fn(_, result) if **result == Type::Shape(Dim::Three) => {
-                unused(value.span, &value.ty).help("call it, with its arguments in brackets")
+                unused(value.span, &value.ty).help("call it, with its arguments in parentheses")
             }
-            ty => unused(value.span, ty).help("name it: let a = ..."),
+            ty => unused(value.span, ty).help("give it a name: let a = ..."),
         };
         self.report(found);
     }
@@ -209,7 +209,7 @@ impl<'a> Checker<'a> {
         let given = args.iter().map(Given::of).collect();
         let args = self.arguments(callee, &parameters, given);
         if let Some(first) = self.program.settings.iter().find(|s| s.kind == row.kind && row.once) {
-            let message = format!("`{}` stands twice", row.name);
+            let message = format!("`{}` appears twice", row.name);
             let found = Diagnostic::error(Code::SETTING_TWICE, callee.at, message)
                 .note_at(first.span, "the first one");
             self.report(found);
@@ -221,10 +221,10 @@ impl<'a> Checker<'a> {
             _ => None,
         };
         if let Some(first) = self.program.settings.iter().find(|s| Some(s.kind) == rival) {
-            let message = "a scene has either `sky` or `background`";
+            let message = "a scene can have `sky` or `background`, but not both";
             let found = Diagnostic::error(Code::SETTING_TWICE, callee.at, message)
                 .note_at(first.span, "the other one")
-                .help("both say what is seen where nothing is met: remove one");
+                .help("both set the colour of rays that hit nothing: remove one");
             self.report(found);
         }
         let place = |name: &str| parameters.iter().position(|parameter| parameter.name == name);
@@ -232,15 +232,15 @@ impl<'a> Checker<'a> {
             && let (Some(fov), Some(height)) = (place("fov"), place("height"))
             && let (Some(_), Some(height)) = (&args[fov], &args[height])
         {
-            let message = "a camera has either `fov` or `height`";
+            let message = "a camera can have `fov` or `height`, but not both";
             let found = Diagnostic::error(Code::ARGUMENTS, height.span, message)
-                .help("`fov` is an angle, for perspective; `height` a length, for a parallel view");
+                .help("`fov` is for a perspective view, `height` for a parallel view");
             self.report(found);
         }
         self.program.settings.push(Setting { kind: row.kind, args, span: callee.span });
     }
 
-    /// Private names and imports that nothing mentions.
+    /// Warns about unused private names and imports.
     fn warn_unused(&mut self, module: usize) {
         let decls =
             self.decls.iter().filter(|d| d.module == module && !d.used).map(|d| &d.ast.name);

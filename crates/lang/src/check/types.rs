@@ -1,4 +1,4 @@
-//! Types as written, as shown in messages, and how they relate.
+//! Types: their names, how messages show them, and how they relate.
 
 use sdfc_diagnostics::{Code, Diagnostic};
 use sdfc_graph::Dim;
@@ -8,11 +8,11 @@ use super::{Checker, poison};
 use crate::hir::{Expr, Type};
 use crate::spelling::meant;
 
-/// A word that names a type, and what it is for.
+/// The name of a type and its documentation.
 pub(crate) struct Word {
-    /// The word.
+    /// The name.
     pub name: &'static str,
-    /// What its values are, in a sentence or two.
+    /// Its values, in a sentence or two.
     pub summary: &'static str,
     /// A declaration that uses it.
     pub example: &'static str,
@@ -24,7 +24,7 @@ macro_rules! words {
     };
 }
 
-/// The words that name a type.
+/// The names of types.
 pub(crate) const WORDS: &[Word] = words! {
     "number" "A number. A parameter without a type is a number." "fn twice(x: number) = 2 * x";
     "length" "A number in scene units. It behaves like `number`; the name tells readers and sliders the unit." "fn half(h: length) = h / 2";
@@ -118,11 +118,11 @@ pub(super) fn describe(ty: &Type) -> String {
     }
 }
 
-/// How many functions and lists a type may be nested in. Types as written nest no deeper than
-/// the parser allows; inferred ones could grow by one with each `let`.
+/// The largest nesting depth of a type. The parser limits the depth of declared types; inferred
+/// types could grow by one level with each `let`.
 pub(super) const MAX_DEPTH: usize = 256;
 
-/// How many functions and lists the type is nested in.
+/// The nesting depth of a type: functions and lists.
 pub(super) fn depth(ty: &Type) -> usize {
     match ty {
         Type::Range(of) | Type::List(of) => 1 + depth(of),
@@ -143,7 +143,7 @@ pub(super) fn depth(ty: &Type) -> usize {
     }
 }
 
-/// Whether an error hides somewhere in the type.
+/// True if a type contains an error.
 pub(super) fn poisoned(ty: &Type) -> bool {
     match ty {
         Type::Error => true,
@@ -162,17 +162,17 @@ pub(super) fn poisoned(ty: &Type) -> bool {
     }
 }
 
-/// Whether it is a number of some kind.
+/// True for numbers, ints and angles.
 pub(super) fn is_scalar(ty: &Type) -> bool {
     matches!(ty, Type::Number | Type::Int | Type::Angle)
 }
 
-/// Whether arithmetic takes it.
+/// True for types that have arithmetic.
 pub(super) fn is_numeric(ty: &Type) -> bool {
     is_scalar(ty) || matches!(ty, Type::Vec(_) | Type::Color)
 }
 
-/// How many numbers a vector or colour holds.
+/// The number of components of a vector or colour.
 pub(super) fn lanes(ty: &Type) -> Option<u8> {
     match ty {
         Type::Vec(width) => Some(*width),
@@ -192,8 +192,8 @@ pub(super) fn lanes(ty: &Type) -> Option<u8> {
     }
 }
 
-/// The dimension that a value decides for an entry that takes either: its own, or that of
-/// the shapes it lists or makes, or that of the point it takes.
+/// The dimension that an argument's type selects for a declaration with two dimensions: that of the
+/// shape, of the shapes in a list or made by a function, or of the point that a function takes.
 pub(super) fn dimension(ty: &Type) -> Option<Dim> {
     match ty {
         Type::Shape(dim) => Some(*dim),
@@ -217,8 +217,8 @@ pub(super) fn dimension(ty: &Type) -> Option<Dim> {
     }
 }
 
-/// Whether a value of type `have` is one of type `want` without any conversion: ints and
-/// angles are numbers, also inside lists, ranges and functions.
+/// True if a value of type `have` is a value of type `want` without conversion. Ints and angles are
+/// numbers, also inside lists, ranges and functions.
 pub(super) fn same_value(have: &Type, want: &Type) -> bool {
     match (have, want) {
         (Type::Int | Type::Angle, Type::Number) => true,
@@ -232,8 +232,8 @@ pub(super) fn same_value(have: &Type, want: &Type) -> bool {
     }
 }
 
-/// The one type of two values that stand for the same thing: list elements, branches.
-/// Ints and angles are numbers; nothing else gives way.
+/// The common type of two list elements or two branches. Ints and angles can become numbers; there
+/// is no other conversion.
 pub(super) fn join(a: &Type, b: &Type) -> Option<Type> {
     if a == b {
         return Some(a.clone());
@@ -260,7 +260,7 @@ pub(super) fn join(a: &Type, b: &Type) -> Option<Type> {
     }
 }
 
-/// Whether the type as written is, or contains, `shape`, or where `with_point` is set `point`.
+/// True if a type contains `shape`, or `point` if `with_point` is set.
 pub(super) fn mentions_either(ty: &TypeExpr, with_point: bool) -> bool {
     match &ty.kind {
         TypeExprKind::Named(word) => word == "shape" || (with_point && word == "point"),
@@ -272,8 +272,8 @@ pub(super) fn mentions_either(ty: &TypeExpr, with_point: bool) -> bool {
     }
 }
 
-/// Whether a declaration is checked once per dimension: a `shape`, or anything whose
-/// signature takes `shape`s. `point` decides in a `fn` only; elsewhere it is the formula's own.
+/// True if a declaration is checked once per dimension: a `shape`, or one with `shape` in its
+/// signature. `point` counts in a `fn` only; elsewhere it has the dimension of the formula.
 pub(super) fn is_generic(kind: DeclKind, signature: &Signature) -> bool {
     let with_point = match kind {
         DeclKind::Shape => return true,
@@ -285,17 +285,17 @@ pub(super) fn is_generic(kind: DeclKind, signature: &Signature) -> bool {
 }
 
 impl Checker<'_> {
-    /// The value, unless its type is nested too deep: that is reported.
+    /// Reports a value whose type is nested too deeply.
     pub(super) fn limit_depth(&mut self, value: Expr) -> Expr {
         if depth(&value.ty) <= MAX_DEPTH {
             return value;
         }
-        let message = format!("functions and lists nest deeper than {MAX_DEPTH} levels here");
+        let message = format!("this type has more than {MAX_DEPTH} nested functions and lists");
         self.report(Diagnostic::error(Code::NESTING, value.span, message));
         poison(value.span)
     }
 
-    /// The type that was written. Unknown words are reported.
+    /// The type with a name in the source. Reports unknown names.
     pub(super) fn resolve_type(&mut self, ty: &TypeExpr) -> Type {
         match &ty.kind {
             TypeExprKind::Named(word) => self.resolve_word(word, ty),
@@ -337,7 +337,7 @@ impl Checker<'_> {
     }
 
     fn no_dimension(&mut self, ty: &TypeExpr, word: &str, instead: &str) -> Type {
-        let message = format!("{word} has one meaning per call of a declaration; here it has none");
+        let message = format!("the dimension of {word} is unknown here");
         self.report(
             Diagnostic::error(Code::TYPE_MISMATCH, ty.span, message)
                 .help(format!("write {instead}")),
@@ -352,7 +352,7 @@ impl Checker<'_> {
             Some(meant) => found.help(meant),
             None => {
                 let words: Vec<&str> = WORDS.iter().map(|word| word.name).collect();
-                found.help(format!("types are {}, [T], fn(A) -> R", words.join(", ")))
+                found.help(format!("the types are {}, [T] and fn(A) -> R", words.join(", ")))
             }
         };
         self.report(found);

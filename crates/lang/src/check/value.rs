@@ -15,7 +15,7 @@ use crate::hir::{Expr, ExprKind, Global, GlobalId, Kernel, Lambda, Param, ParamI
 use crate::import;
 
 impl<'a> Checker<'a> {
-    /// A name that is not called.
+    /// Checks a name that is not called.
     pub(super) fn infer_name(&mut self, name: &str, span: Span) -> Expr {
         match self.look_up(name) {
             Some(found) => self.value_of(&found, name, span),
@@ -26,8 +26,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// A name where a function of these parameters is expected: declarations and kernel
-    /// functions are wrapped in a lambda that takes them.
+    /// Checks a name where a function with these parameters is expected. Declarations and kernel
+    /// functions are wrapped in a lambda with these parameters.
     pub(super) fn name_as_function(&mut self, name: &str, want: &[Type], span: Span) -> Expr {
         match self.look_up(name) {
             Some(Found::Decls(decls)) => self.declared_function(&decls, name, want, span),
@@ -43,7 +43,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a name stands for as a value.
+    /// The value of a name.
     pub(super) fn value_of(&mut self, found: &Found, name: &str, span: Span) -> Expr {
         match found {
             Found::Local(index) => self.body.mention(*index, span).unwrap_or_else(|| poison(span)),
@@ -96,7 +96,7 @@ impl<'a> Checker<'a> {
         self.function_value(decls, name, span)
     }
 
-    /// A declaration as a value of its own type.
+    /// A declaration as a function value.
     fn function_value(&mut self, decls: &[DeclIndex], name: &str, span: Span) -> Expr {
         let [only] = *decls else { return self.no_single_type(name, span) };
         if self.decls[only.0].generic {
@@ -127,16 +127,18 @@ impl<'a> Checker<'a> {
     }
 
     fn no_single_type(&mut self, name: &str, span: Span) -> Expr {
-        let message = format!("`{name}` takes arguments of several types; as a value it has none");
-        self.report(Diagnostic::error(Code::TYPE_MISMATCH, span, message).help(format!(
-            "call it, or say what it takes: fn(a: number, b: number) = {name}(a, b)"
-        )));
+        let message =
+            format!("`{name}` accepts arguments of several types, so it needs a type as a value");
+        self.report(
+            Diagnostic::error(Code::TYPE_MISMATCH, span, message)
+                .help(format!("call it, or wrap it: fn(a: number, b: number) = {name}(a, b)")),
+        );
         poison(span)
     }
 
-    /// A function of the kernel that only a call makes a value of.
+    /// Reports a kernel function that can only be called.
     fn not_called(&mut self, name: &str, span: Span) -> Expr {
-        let message = format!("`{name}` stands for nothing without its arguments");
+        let message = format!("`{name}` is not a value: it needs its arguments");
         let found = Diagnostic::error(Code::TYPE_MISMATCH, span, message);
         self.report(match kernel::ROWS.iter().find(|row| row.name == name) {
             Some(row) => found.help(format!("call it: {}", row.example)),
@@ -192,18 +194,18 @@ impl<'a> Checker<'a> {
             State::Unseen | State::Failed => poison(span),
             State::Open => {
                 let name = &self.lets[index.0].ast.name;
-                let message = format!("`{}` needs its own value", name.text);
+                let message = format!("`{}` is used in its own definition", name.text);
                 self.report(
                     Diagnostic::error(Code::UNKNOWN_NAME, span, message)
-                        .note_at(name.span, "it is not known before the end of its `let`"),
+                        .note_at(name.span, "it has a value only after this `let`"),
                 );
                 poison(span)
             }
         }
     }
 
-    /// Checks a file-level `let` and everything that its value needs, so that lets are
-    /// numbered in an order in which each needs only earlier ones.
+    /// Checks a file-level `let` and everything that its value depends on. So lets are numbered in
+    /// an order in which each depends only on earlier ones.
     pub(super) fn check_let(&mut self, index: LetIndex) {
         let (item, module) = (self.lets[index.0].ast, self.lets[index.0].module);
         if !matches!(self.lets[index.0].state, State::Unseen) {
@@ -278,7 +280,7 @@ impl<'a> Checker<'a> {
             (Type::Text, None) => {
                 let message = format!("the string param `{name}` needs its choices");
                 let found = Diagnostic::error(Code::TYPE_MISMATCH, item.default.span, message);
-                self.report(found.help("in [\"round\", \"flat\"]"));
+                self.report(found.help("list them: in [\"round\", \"flat\"]"));
             }
             (_, Some(values)) => range = self.check_values(values, &ty, name),
             (_, None) => {}
@@ -294,7 +296,7 @@ impl<'a> Checker<'a> {
                 | Type::Error
         ) {
             let message = format!(
-                "a param is a number, int, angle, bool, color or one of some strings; this is {}",
+                "a param can be a number, int, angle, bool, color or string; this is {}",
                 types::describe(&ty)
             );
             self.report(Diagnostic::error(Code::TYPE_MISMATCH, item.default.span, message));
@@ -307,10 +309,11 @@ impl<'a> Checker<'a> {
         Param { name, ty, default, range, choices, span, docs }
     }
 
-    /// `in ["round", "flat"]`; the default is one of them.
+    /// Checks the choices of a string param, `in ["round", "flat"]`. The default must be one of
+    /// them.
     fn choices(&mut self, list: &'a ast::Expr, default: &Expr) -> Vec<String> {
         let want = Type::List(Box::new(Type::Text));
-        let checked = self.check_expr(list, &want, Role::The("what a string param chooses from"));
+        let checked = self.check_expr(list, &want, Role::The("the list of choices"));
         let ExprKind::List(elements) = checked.kind else { return Vec::new() };
         let text = |value: &Expr| match &value.kind {
             ExprKind::Text(text) => Some(text.clone()),
@@ -324,19 +327,19 @@ impl<'a> Checker<'a> {
             })
             .collect();
         let Some(choices) = choices else {
-            let message = "the choices of a param are written out as strings";
+            let message = "the choices of a param must be string literals";
             self.report(Diagnostic::error(Code::NOT_COMPILE_TIME, list.span, message));
             return Vec::new();
         };
         if let Some(default) = text(default).filter(|text| !choices.contains(text)) {
-            let message = format!("the default \"{default}\" is none of the choices");
+            let message = format!("the default \"{default}\" is not one of the choices");
             self.report(Diagnostic::error(Code::OUT_OF_RANGE, list.span, message));
         }
         choices
     }
 }
 
-/// The kernel's names that are values.
+/// The value of a kernel name that is a value and not a function.
 fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
     match builtin {
         Builtin::Number(value) => Some((ExprKind::Number(value), Type::Number)),

@@ -1,13 +1,14 @@
-//! Short expressions as they would be written, for messages.
+//! Short expressions as source, for messages.
 
 use sdfc_syntax::ast::{Arg, Element, Expr, ExprKind, UnaryOp, Unit};
 
-/// Longer texts are left out.
+/// Length of the longest source that is shown.
 const LONGEST: usize = 40;
-/// Deeper ones are not looked at.
+/// Depth of the deepest expression that is shown.
 const DEEPEST: usize = 3;
 
-/// The expression on one line, `...` for one that is long or not made of literals, names and calls.
+/// The expression on one line; `...` if it is long or does not consist of literals, names and
+/// calls.
 pub(super) fn written(expr: &Expr) -> String {
     let text = text(expr, DEEPEST).filter(|text| text.len() <= LONGEST);
     text.unwrap_or_else(|| "...".to_owned())
