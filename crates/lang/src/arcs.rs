@@ -1,27 +1,28 @@
-//! Quadratic curves as arcs of circles.
+//! Converts quadratic curves to circular arcs.
 //!
-//! The nearest point of a parabola is the root of a cubic; that of an arc takes one square root, and its range over a box is
-//! narrow. Two arcs that meet without a kink have the ends of a curve and its directions there (a biarc: Bolton, "Biarc
-//! curves", 1975), and are off by the third power of its length.
+//! The nearest point of a parabola is the root of a cubic. That of an arc needs one square root, and
+//! its interval bounds over a box are narrow. A curve is replaced by biarcs: two arcs that meet
+//! without a kink and match the curve's ends and directions (Bolton, "Biarc curves", 1975). Their
+//! error falls with the third power of the curve's length.
 
 use crate::outline::{Curve, Piece, Point, distance, mix, part, sub};
 
-/// How far arcs may be off the curves that they stand for, in ems: a fiftieth of a unit of most fonts.
+/// Largest distance of arcs from the curve that they replace, in ems: 1/50 of a unit of most fonts.
 pub const TOLERANCE: f64 = 2e-5;
-/// The middle of a straight piece is as near as this to its control point.
+/// Largest distance of a line's midpoint from its control point, in ems.
 const STRAIGHT: f64 = 1e-12;
-/// Most pairs of arcs for one curve.
+/// The largest number of pairs of arcs for a curve.
 const MAX_PAIRS: u32 = 64;
-/// Points of each part of a curve at which the arcs are held against it.
+/// Number of points of each part of a curve at which the error is measured.
 const SAMPLES: u32 = 16;
 
-/// The same boundary in arcs: of each the start, the point where the tangents at its ends meet, and the end. Straight pieces
-/// stay as they are.
+/// The boundary as arcs. Each arc is its start, the point where the tangents at its ends meet, and
+/// its end. Lines do not change.
 pub fn arcs(pieces: Vec<Piece>) -> Vec<Piece> {
     pieces.into_iter().flat_map(|piece| pairs(&piece)).collect()
 }
 
-/// The arcs of a piece; its corners are at the first one's start and the last one's end.
+/// The arcs of a piece. Its corners go to the start of the first arc and the end of the last.
 fn pairs(piece: &Piece) -> Vec<Piece> {
     let [a, b, c] = piece.curve;
     if distance(mix(a, c, 0.5), b) < STRAIGHT {
@@ -43,7 +44,7 @@ fn pairs(piece: &Piece) -> Vec<Piece> {
     arcs.into_iter().enumerate().map(piece).collect()
 }
 
-/// So many pairs of arcs for a curve, and how far they are off it.
+/// The error of `count` pairs of arcs for a curve, and the arcs.
 fn fitted(curve: &Curve, count: u32) -> (f64, Vec<Curve>) {
     let place = |index: u32| f64::from(index) / f64::from(count);
     let mut off = 0.0_f64;
@@ -51,7 +52,7 @@ fn fitted(curve: &Curve, count: u32) -> (f64, Vec<Curve>) {
     for index in 0..count {
         let mut part = part(curve, place(index), place(index + 1));
         if index + 1 == count {
-            part[2] = curve[2]; // to the last bit, since the next curve begins there
+            part[2] = curve[2]; // exactly, since the next curve begins there
         }
         let pair = biarc(&part);
         for sample in 1..SAMPLES {
@@ -64,7 +65,7 @@ fn fitted(curve: &Curve, count: u32) -> (f64, Vec<Curve>) {
     (off, arcs)
 }
 
-/// Two arcs from the start to the end, in the directions of the curve there, whose tangents are equally long.
+/// Two arcs with the ends of a curve and its directions there, whose tangents have the same length.
 fn biarc(&[a, b, c]: &Curve) -> [Curve; 2] {
     let dot = |u: Point, v: Point| u[0] * v[0] + u[1] * v[1];
     let unit = |from: Point, to: Point| {
@@ -73,7 +74,8 @@ fn biarc(&[a, b, c]: &Curve) -> [Curve; 2] {
     };
     let (leaves, arrives, chord) = (unit(a, b), unit(b, c), sub(c, a));
     let (square, along) = (dot(chord, chord), dot(chord, leaves) + dot(chord, arrives));
-    // The root of 2 (1 - leaves . arrives) d² + 2 d along = chord²: where the tangents' ends are 2 d apart.
+    // d is the root of 2 (1 - leaves . arrives) d² + 2 d along = chord²: then the tangents' ends are
+    // 2 d apart.
     let turn = 2.0 * (1.0 - dot(leaves, arrives)) * square;
     let d = square / (along + (along * along + turn).sqrt()).max(f64::MIN_POSITIVE);
     let first = [0, 1].map(|axis| a[axis] + d * leaves[axis]);
@@ -82,7 +84,8 @@ fn biarc(&[a, b, c]: &Curve) -> [Curve; 2] {
     [[a, first, middle], [middle, second, c]]
 }
 
-/// How far a point lies on the right of an arc's circle, without cancelling where that is large.
+/// The signed distance of a point to the right of an arc's circle, without cancellation for large
+/// circles.
 fn beside(&[a, b, c]: &Curve, q: Point) -> f64 {
     let half = 0.5 * distance(a, c);
     let along = sub(c, a).map(|part| part / (2.0 * half));
@@ -110,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn arcs_keep_to_their_curve_and_have_no_kinks() {
+    fn arcs_follow_their_curve_without_kinks() {
         let arcs = arcs(vec![Piece { curve: CURVE, corners: [1.0, -1.0] }]);
         assert!(arcs.len() > 4, "{}", arcs.len());
         assert_eq!((arcs[0].curve[0], arcs[arcs.len() - 1].curve[2]), (CURVE[0], CURVE[2]));
@@ -130,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tangents_of_each_arc_are_equally_long() {
+    fn the_tangents_of_each_arc_have_the_same_length() {
         let [first, second] = biarc(&CURVE);
         for [a, b, c] in [first, second] {
             assert!((distance(a, b) - distance(b, c)).abs() < 1e-12);
@@ -138,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_pieces_stay() {
+    fn lines_do_not_change() {
         let line = Piece { curve: [[0.0, 0.0], [0.5, 1.0], [1.0, 2.0]], corners: [1.0, 0.0] };
         assert_eq!(arcs(vec![line]), [line]);
     }

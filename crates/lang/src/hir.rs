@@ -1,8 +1,8 @@
-//! The typed scene: names resolved, types checked, coercions and defaults explicit.
+//! The typed scene: names are resolved, types checked, coercions and defaults explicit.
 //!
-//! What the checker promises the elaborator: every expression has its type, no
-//! `Type::Error` remains (unless errors were reported, and then nothing is elaborated), arguments
-//! stand in parameter order, and every coercion is written out.
+//! The checker guarantees to the elaborator that every expression has its type, that arguments are
+//! in the order of the parameters, and that every coercion is explicit. `Type::Error` occurs only
+//! if errors were reported; such a scene is not elaborated.
 
 use sdfc_diagnostics::{FileId, Span};
 use sdfc_graph::Dim;
@@ -14,9 +14,9 @@ pub enum Type {
     Number,
     /// A number known to be whole.
     Int,
-    /// A number of radians that came from a unit.
+    /// An angle in radians, written with a unit.
     Angle,
-    /// A truth value.
+    /// A bool.
     Bool,
     /// A string.
     Text,
@@ -26,7 +26,7 @@ pub enum Type {
     Color,
     /// A range of numbers, ints, angles or vectors.
     Range(Box<Type>),
-    /// A list of one type.
+    /// A list whose elements have the same type.
     List(Box<Type>),
     /// A function.
     Fn(Vec<Type>, Box<Type>),
@@ -34,9 +34,9 @@ pub enum Type {
     Shape(Dim),
     /// A material.
     Material,
-    /// How a light's shadow is computed: `hard`, `soft(k)`.
+    /// The shadow of a light: `hard` or `soft(k)`.
     Shadow,
-    /// Unknown because of an error that was reported.
+    /// Unknown, because an error was reported.
     Error,
 }
 
@@ -69,33 +69,33 @@ pub struct Program {
     pub shapes: Vec<ShapeDef>,
     /// All params, in order of declaration.
     pub params: Vec<Param>,
-    /// File-level `let`s, in an order in which each mentions only earlier ones.
+    /// File-level `let`s, in an order in which each depends only on earlier ones.
     pub globals: Vec<Global>,
-    /// The solids that stand alone at top level of the opened file, in order.
+    /// The solids to draw: those on lines of their own at the top level of the scene, in order.
     pub drawn: Vec<Expr>,
     /// The settings of the opened file, in order.
     pub settings: Vec<Setting>,
-    /// The library's `union` of solids, which joins what is drawn.
+    /// The library's `union` of solids, which joins the solids to draw.
     pub union: Option<ShapeDefId>,
-    /// How many locals any expression of a param, of `drawn` or of a setting needs at most;
-    /// each of these expressions counts its own from 0.
+    /// The largest number of locals of any expression of a param, a solid to draw or a setting.
+    /// Each of these expressions numbers its own locals from 0.
     pub locals: u32,
-    /// Files of the library: what goes wrong in one of them is reported at the scene's call.
+    /// Files of the library. An error in one of them is reported at the scene's call.
     pub library: Vec<FileId>,
 }
 
-/// One parameter of a function or shape; its local is its position.
+/// A parameter of a function or shape. Its index is also its local.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Its name.
     pub name: String,
-    /// Its type; a list for a variadic one.
+    /// Its type; a list for a variadic parameter.
     pub ty: Type,
-    /// Whether it takes all remaining positional arguments.
+    /// True if it takes all remaining positional arguments.
     pub variadic: bool,
-    /// Evaluated in the callee, where parameters to its left are known.
+    /// Its default, evaluated in the callee, where the parameters to its left are known.
     pub default: Option<Expr>,
-    /// `lo..hi`, evaluated in the callee; both ends included.
+    /// Its range `lo..hi`, evaluated in the callee; both ends are included.
     pub range: Option<Expr>,
     /// Where it is declared.
     pub span: Span,
@@ -104,9 +104,9 @@ pub struct Parameter {
 /// `require condition, "message"`
 #[derive(Clone, Debug)]
 pub struct Require {
-    /// Must hold.
+    /// The condition that must be true.
     pub condition: Expr,
-    /// What to say where it does not.
+    /// The message if it is false.
     pub message: String,
     /// Where it is declared.
     pub span: Span,
@@ -121,13 +121,13 @@ pub struct Function {
     pub file: FileId,
     /// Its name's place.
     pub span: Span,
-    /// Locals `0..parameters.len()`.
+    /// The parameters, which are the locals `0..parameters.len()`.
     pub parameters: Vec<Parameter>,
-    /// How many locals the body needs, parameters included.
+    /// The number of locals of the body, including parameters.
     pub locals: u32,
-    /// Checked before the body is elaborated.
+    /// Requirements, which are checked before the body is elaborated.
     pub requires: Vec<Require>,
-    /// A stated constant.
+    /// The stated Lipschitz constant.
     pub lipschitz: Option<Expr>,
     /// The body.
     pub body: Expr,
@@ -135,16 +135,16 @@ pub struct Function {
     pub docs: Vec<String>,
 }
 
-/// A promise with the condition under which it holds; both sides are spelled out.
+/// A clause `exact` or `bound`, and the condition under which it holds.
 #[derive(Clone, Debug)]
 pub struct Promise {
-    /// `exact` or `bound`.
+    /// True for `exact`, false for `bound`.
     pub exact: bool,
-    /// Outside the surface.
+    /// True if it holds outside the surface.
     pub outside: bool,
-    /// Inside the surface.
+    /// True if it holds inside the surface.
     pub inside: bool,
-    /// `if` condition.
+    /// The condition after `if`.
     pub condition: Option<Expr>,
     /// Where it is stated.
     pub span: Span,
@@ -161,25 +161,25 @@ pub struct ShapeDef {
     pub file: FileId,
     /// Its name's place.
     pub span: Span,
-    /// Locals `0..parameters.len()`; local `parameters.len()` is the point `p`.
+    /// The parameters, which are the locals `0..parameters.len()`. The next local is the point `p`.
     pub parameters: Vec<Parameter>,
-    /// How many locals clauses and body need together, parameters and `p` included.
+    /// The number of locals of the clauses and the body, including parameters and `p`.
     pub locals: u32,
-    /// Relations that the arguments must keep.
+    /// Requirements on the arguments.
     pub requires: Vec<Require>,
     /// Stated promises.
     pub promises: Vec<Promise>,
-    /// A stated Lipschitz constant.
+    /// The stated Lipschitz constant.
     pub lipschitz: Option<Expr>,
-    /// Whether it is stated to hold beyond the bounds too.
+    /// True if the constant is stated to hold outside the bounds too.
     pub everywhere: bool,
     /// Stated bounds: a range of points (a number is already a vector).
     pub bounds: Option<Expr>,
     /// `material e`: a material, or a number made of samples.
     pub material: Option<Expr>,
-    /// `intersect e`.
+    /// `intersect e`: the intervals of a ray that are inside.
     pub intersect: Option<Intersect>,
-    /// Where `copies` stands.
+    /// The span of the clause `copies`.
     pub copies: Option<Span>,
     /// The formula: a number.
     pub body: Expr,
@@ -187,14 +187,14 @@ pub struct ShapeDef {
     pub docs: Vec<String>,
 }
 
-/// Where a ray is inside a solid.
+/// The clause `intersect`: the intervals of a ray that are inside a solid.
 #[derive(Clone, Debug)]
 pub struct Intersect {
-    /// The ray's origin `o`, a point.
+    /// The local of the ray's origin `o`, a point.
     pub origin: LocalId,
-    /// Its direction `d`, of unit length.
+    /// The local of its direction `d`, of length 1.
     pub direction: LocalId,
-    /// Where it enters and leaves: a vector of two numbers, or a list of such.
+    /// The interval `[enter, exit]`, or a list of intervals.
     pub value: Expr,
 }
 
@@ -222,9 +222,9 @@ pub struct Param {
 pub struct Global {
     /// Its name.
     pub name: String,
-    /// Its value; needs `locals` variables.
+    /// Its value.
     pub value: Expr,
-    /// How many locals the value's blocks and comprehensions need.
+    /// The number of locals of the value's blocks and comprehensions.
     pub locals: u32,
     /// Its name's place.
     pub span: Span,
@@ -233,15 +233,15 @@ pub struct Global {
 /// A setting with its arguments in the order of its table row; `None` is the default.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// Which.
+    /// The kind of setting.
     pub kind: SettingKind,
-    /// One per parameter of the row.
+    /// One argument per parameter of the row.
     pub args: Vec<Option<Expr>>,
-    /// The whole call.
+    /// The span of the whole call.
     pub span: Span,
 }
 
-/// The settings, one per row of `settings::TABLE`.
+/// The kinds of settings, one per row of [`settings::table`](crate::settings::table).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum SettingKind {
@@ -262,26 +262,26 @@ pub enum SettingKind {
 /// A typed expression.
 #[derive(Clone, Debug)]
 pub struct Expr {
-    /// What it is.
+    /// Its form.
     pub kind: ExprKind,
     /// Its type.
     pub ty: Type,
-    /// Where it was written.
+    /// Its span in the source.
     pub span: Span,
 }
 
 /// The forms of a typed expression.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
-    /// A literal number, its unit applied (radians); also `pi`, `tau`, `inf`.
+    /// A literal number, angles in radians; also `pi`, `tau` and `inf`.
     Number(f64),
     /// Linear red, green, blue, and alpha.
     Color([f64; 4]),
     /// A string.
     Text(String),
-    /// A truth value.
+    /// A bool.
     Bool(bool),
-    /// A variable of the body at hand.
+    /// A variable of the current body.
     Local(LocalId),
     /// A param.
     Param(ParamId),
@@ -291,13 +291,13 @@ pub enum ExprKind {
     Time,
     /// `frame`, a whole number.
     Frame,
-    /// Elements of one type; also what a variadic parameter gets.
+    /// A list of elements of one type; also the argument of a variadic parameter.
     List(Vec<Element>),
     /// `lo..hi`
     Range(Box<Expr>, Box<Expr>),
     /// A vector or colour from 2 to 4 parts, numbers or vectors, joined in order.
     Vector(Vec<Expr>),
-    /// Components by index; a number for one, else a vector.
+    /// Components by index: a number for one, a vector for several.
     Swizzle(Box<Expr>, Vec<u8>),
     /// `.lo` (true), `.hi` (false) of a range.
     RangeEnd(Box<Expr>, bool),
@@ -305,35 +305,35 @@ pub enum ExprKind {
     Index(Box<Expr>, Box<Expr>),
     /// Part of a list: a half-open range.
     Slice(Box<Expr>, Box<Expr>),
-    /// Each local gets its value in order, then the result.
+    /// Variables with their values in order, and the result.
     Block(Vec<(LocalId, String, Expr)>, Box<Expr>),
-    /// Both branches have the type of the whole.
+    /// Condition and two branches, which have the type of the whole.
     If(Box<Expr>, Box<Expr>, Box<Expr>),
     /// A function value.
     Lambda(Box<Lambda>),
     /// A declared function as a value.
     FnValue(FnId),
-    /// A declared function called; `None` takes the default.
+    /// A call of a declared function; `None` is a default.
     Call(FnId, Vec<Option<Expr>>),
-    /// A shape built; `None` takes the default.
+    /// A call of a shape's declaration, which builds an instance; `None` is a default.
     Build(ShapeDefId, Vec<Option<Expr>>),
     /// A shape's distance at a point.
     Sample(Box<Expr>, Box<Expr>),
-    /// A function value called.
+    /// A call of a function value.
     Apply(Box<Expr>, Vec<Expr>),
     /// An operation of the kernel.
     Kernel(Kernel, Vec<Expr>),
     /// `m.with(field: value)`: a material with fields changed.
     With(Box<Expr>, Vec<(MaterialField, Expr)>),
-    /// Number, int or angle to a vector of equal parts (the expression's type).
+    /// A number, int or angle as a vector with equal components.
     Splat(Box<Expr>),
-    /// A value to the constant function of the expression's type.
+    /// A value as a constant function.
     Constant(Box<Expr>),
-    /// Something with an error that was reported.
+    /// An expression with a reported error.
     Error,
 }
 
-/// `fn(a, b) = body` with its own variables: captures first, then parameters, then the rest.
+/// `fn(a, b) = body` with its own locals: captures first, then parameters, then the others.
 #[derive(Clone, Debug)]
 pub struct Lambda {
     /// Variables of the enclosing body, copied to locals `0..captures.len()`.
@@ -342,11 +342,11 @@ pub struct Lambda {
     pub parameters: Vec<Type>,
     /// Names of the parameters.
     pub names: Vec<String>,
-    /// How many locals the body needs in all.
+    /// The number of locals of the body.
     pub locals: u32,
-    /// A stated constant (sees captures and locals of the lambda).
+    /// The stated Lipschitz constant, in terms of the lambda's locals.
     pub lipschitz: Option<Expr>,
-    /// Relations checked at each call.
+    /// Requirements, which are checked at each call.
     pub requires: Vec<Require>,
     /// The body.
     pub body: Expr,
@@ -357,7 +357,7 @@ pub struct Lambda {
 pub enum Element {
     /// One value.
     One(Expr),
-    /// All values of a list, in order (a list given for a variadic parameter).
+    /// All values of a list, in order: a list that is passed to a variadic parameter.
     Spread(Expr),
     /// `for local in over [if condition]: body`; `over` is a range, a list or a vector.
     For(Box<Comprehension>),
@@ -368,34 +368,34 @@ pub enum Element {
 pub struct Comprehension {
     /// The variable.
     pub local: LocalId,
-    /// The sequence: a list, a vector, or a half-open range. The ends of a range of `Number`
-    /// are whole where elaboration knows them, else the sequence is not known.
+    /// The sequence: a list, a vector or a half-open range. Elaboration checks that the ends of a
+    /// range are known and whole.
     pub over: Expr,
-    /// Which values to keep.
+    /// The condition for values to keep.
     pub condition: Option<Expr>,
-    /// What each gives.
+    /// The element made from each value.
     pub body: Element,
-    /// All of it.
+    /// The span of the whole.
     pub span: Span,
 }
 
 /// A field of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MaterialField {
-    /// Base colour with alpha: what of it covers what was there.
+    /// Base colour; its alpha is the fraction that covers the colour beneath.
     Color,
-    /// 0 mirror to 1 matt.
+    /// From 0 (mirror) to 1 (matt).
     Roughness,
-    /// 0 dielectric to 1 metal.
+    /// From 0 (dielectric) to 1 (metal).
     Metallic,
-    /// Light given off, linear.
+    /// Light that the surface gives off, linear.
     Emission,
-    /// 0 dark to 1 open.
+    /// From 0 (no ambient light) to 1 (all of it).
     Occlusion,
 }
 
-/// What the Rust kernel knows. Componentwise operations have arguments of one type
-/// (number or vector), all equal to the result's unless stated.
+/// The operations of the kernel. The arguments of a componentwise operation have the type of its
+/// result, a number or vector, unless stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Kernel {
@@ -407,7 +407,7 @@ pub enum Kernel {
     Div,
     /// Floored: the result has the divisor's sign.
     Rem,
-    /// On numbers, bools or texts; gives a bool.
+    /// For numbers, bools or strings; gives a bool.
     Eq,
     Ne,
     Lt,
@@ -443,7 +443,7 @@ pub enum Kernel {
     Tanh,
     Saturate,
     // componentwise, more arguments
-    /// Any number of arguments; a list argument (one, alone) gives the least of its elements.
+    /// Any number of arguments, or one list: the smallest of its elements.
     Min,
     Max,
     Pow,
@@ -461,15 +461,17 @@ pub enum Kernel {
     // the rest
     /// `[x, y]` to `[x, y, 0]`, `vec3` as it is.
     Lift,
-    /// Arguments: the seeded values (numbers or vectors); gives a number in 0..1.
+    /// Arguments: numbers or vectors. Gives a number in 0..1.
     Hash,
-    /// As `Hash`, gives a vec3.
+    /// Like `Hash`, but gives a vec3.
     Hash3,
     /// Length of a list, range of ints or vector; an int.
     Len,
-    /// Arguments: over (int, range or list), start, step (function of the state, or of state and item), while (a function of the state, or absent).
+    /// Arguments: `over` (int, range or list), `start`, `step` (function of the state, or of the
+    /// state and the item), `while` (function of the state; optional).
     Iterate,
-    /// Bounds of a shape: a range of points. Of a function to shapes: the hull over all arguments.
+    /// The bounds of a shape, a range of points. For a function that makes shapes: the bounds over
+    /// all arguments.
     Bounds,
     /// Arguments: shape, point.
     Gradient,
@@ -483,7 +485,8 @@ pub enum Kernel {
     Oklch,
     /// A shadow without penumbra.
     Hard,
-    /// Text, font, alignment, spacing, leading: a list of curves, each a list of three points.
+    /// Arguments: text, font, alignment, spacing, leading. Gives a list of arcs, each a list of four
+    /// vectors.
     GlyphCurves,
     /// Argument: sharpness.
     Soft,

@@ -1,29 +1,29 @@
-//! Files that a scene imports: their paths, their texts, circles among them.
+//! Imports: loads the files that a scene imports, and reports circular imports.
 //!
-//! Nothing here opens a file: whoever compiles a scene hands in a [`Resolver`].
+//! This module opens no files: the caller passes a [`Resolver`].
 
 use rustc_hash::FxHashMap;
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, Span, has_errors};
 use sdfc_syntax::ast::{self, Item};
 
-/// How many files one scene may import, those of its imports included.
+/// The largest number of files that a scene can import, directly or indirectly.
 pub const MAX_FILES: usize = 256;
 
-/// Gives the texts of files.
+/// Reads files for the compiler.
 pub trait Resolver {
-    /// The text of a file by its path below the folder of the opened scene, with `/` between
-    /// its parts and neither `.` nor `..` among them: `parts/gear.sdf`.
+    /// Reads a source file. The path is relative to the folder of the opened scene, with `/` as
+    /// separator and without `.` and `..`, as in `parts/gear.sdf`.
     ///
     /// # Errors
     ///
-    /// Why there is none, in one line: `no such file`.
+    /// Returns the reason in one line, such as `no such file`.
     fn read(&self, path: &str) -> Result<String, String>;
 
-    /// The bytes of a file, by its path as in [`Resolver::read`]: a font.
+    /// Reads a binary file, such as a font. The path is as for [`Resolver::read`].
     ///
     /// # Errors
     ///
-    /// Why there are none, in one line.
+    /// Returns the reason in one line.
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
         self.read(path).map(String::into_bytes)
     }
@@ -31,7 +31,7 @@ pub trait Resolver {
 
 const WITHOUT_FILES: &str = "this scene was opened without access to files";
 
-/// Gives nothing, for scenes that stand alone.
+/// A resolver without files, for scenes without imports.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoFiles;
 
@@ -41,30 +41,35 @@ impl Resolver for NoFiles {
     }
 }
 
-/// A file that was imported.
+/// An imported file.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// Its place in the [`Sources`].
+    /// Its id in the [`Sources`].
     pub file: FileId,
-    /// Its path below the folder of the scene.
+    /// Its path relative to the folder of the scene.
     pub path: String,
-    /// Its tree.
+    /// Its syntax tree.
     pub tree: ast::File,
-    /// Whether it was parsed without errors: a name that it lacks may stand where it was not.
+    /// True if it was parsed without errors. Otherwise a missing name may be in a part that could
+    /// not be parsed.
     pub whole: bool,
 }
 
-/// A file on its way: how many of its imports have been followed.
+/// A file whose imports are being loaded.
 struct Open {
-    /// Position among the imported; `None` is the scene itself.
+    /// Its index among the imported files; `None` for the scene itself.
     at: Option<usize>,
     path: String,
+    /// The imports that are not loaded yet, last first.
     imports: Vec<(String, Span)>,
 }
 
-/// Reads and parses all files that a scene imports, each once, those first that others need.
-/// What cannot be followed is reported, as is everything wrong with how the files are written. `sources` has them by the
-/// names that the scene would have in their place: beside `parts/lamp.sdf`, `bulb.sdf` is `parts/bulb.sdf`.
+/// Reads and parses all files that a scene imports, each once. A file comes after the files that it
+/// imports itself.
+///
+/// Returns the files with diagnostics about imports that cannot be loaded and about their syntax.
+/// In `sources` a file has the name of the scene with its last part replaced: beside
+/// `parts/lamp.sdf`, the import `bulb.sdf` is called `parts/bulb.sdf`.
 pub fn load(
     sources: &mut Sources,
     (scene, tree): (FileId, &ast::File),
@@ -88,8 +93,7 @@ pub fn load(
         };
         if let Some(first) = open.iter().position(|file| file.at.is_some() && file.path == path) {
             let circle: Vec<&str> = open[first..].iter().map(|file| file.path.as_str()).collect();
-            let why =
-                format!("files import each other in a circle: {} -> {path}", circle.join(" -> "));
+            let why = format!("these files import each other: {} -> {path}", circle.join(" -> "));
             found.push(error(span, why));
             continue;
         }
@@ -97,7 +101,7 @@ pub fn load(
             continue;
         }
         if known.len() >= MAX_FILES {
-            found.push(error(span, format!("a scene imports at most {MAX_FILES} files")));
+            found.push(error(span, format!("a scene can import at most {MAX_FILES} files")));
             break;
         }
         let text = match resolver.read(&path) {
@@ -122,13 +126,13 @@ pub fn load(
     (ordered, found)
 }
 
-/// The folder in a name that is a path, with the separator at its end; empty in another.
+/// The folder in a path, with the separator at its end; empty if there is none.
 fn folder_of(name: &str) -> &str {
     let end = name.rfind(std::path::is_separator).map_or(0, |last| last + 1);
     &name[..end]
 }
 
-/// What a file imports, last first.
+/// The imports of a file, last first.
 fn imports(tree: &ast::File) -> Vec<(String, Span)> {
     let import = |item: &Item| match item {
         Item::Import(import) => Some((import.path.text.clone(), import.path.span)),
@@ -137,7 +141,7 @@ fn imports(tree: &ast::File) -> Vec<(String, Span)> {
     tree.items.iter().rev().filter_map(import).collect()
 }
 
-/// What is said of an import where no files can be had.
+/// The diagnostic for an import in a scene without access to files.
 pub(crate) fn refuse_without_files(item: &Item) -> Option<Diagnostic> {
     match item {
         Item::Import(import) => Some(error(import.path.span, WITHOUT_FILES.into())),
@@ -149,18 +153,18 @@ fn error(span: Span, why: String) -> Diagnostic {
     Diagnostic::error(Code::IMPORT, span, why)
 }
 
-/// The path of an import below the folder of the scene; `from` is the path of the file that
-/// imports, empty for the scene.
+/// The path of an import relative to the folder of the scene. `from` is the path of the importing
+/// file, empty for the scene.
 ///
 /// # Errors
 ///
-/// Why it is no such path.
+/// Returns the reason if the path is invalid.
 pub(crate) fn locate(from: &str, written: &str) -> Result<String, String> {
     if written.is_empty() {
         return Err("the path of an import is empty".into());
     }
     if written.starts_with('/') || written.contains([':', '\\', '\0']) {
-        return Err(format!("`{written}` is not a path relative to this file, written with `/`"));
+        return Err(format!("`{written}` must be a path relative to this file, with `/`"));
     }
     let folder = from.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
@@ -169,19 +173,19 @@ pub(crate) fn locate(from: &str, written: &str) -> Result<String, String> {
             "" | "." => {}
             ".." => {
                 if parts.pop().is_none() {
-                    return Err(format!("`{written}` leaves the folder of the scene"));
+                    return Err(format!("`{written}` is outside the folder of the scene"));
                 }
             }
             part => parts.push(part),
         }
     }
     match parts.is_empty() {
-        true => Err(format!("`{written}` names a folder")),
+        true => Err(format!("`{written}` is a folder")),
         false => Ok(parts.join("/")),
     }
 }
 
-/// The name under which the params of a file appear: `gear` for `parts/gear.sdf`.
+/// The prefix of the names of a file's params: `gear` for `parts/gear.sdf`.
 pub(crate) fn stem(path: &str) -> &str {
     let name = path.rsplit_once('/').map_or(path, |(_, name)| name);
     name.split_once('.').map_or(name, |(stem, _)| stem)
@@ -192,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn paths_stay_below_the_scene() {
+    fn paths_outside_the_scenes_folder_are_refused() {
         assert_eq!(locate("", "parts/gear.sdf").as_deref(), Ok("parts/gear.sdf"));
         assert_eq!(locate("parts/gear.sdf", "./tooth.sdf").as_deref(), Ok("parts/tooth.sdf"));
         assert_eq!(locate("a/b/c.sdf", "../../d.sdf").as_deref(), Ok("d.sdf"));
@@ -202,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn params_are_named_after_their_file() {
+    fn the_prefix_of_params_is_the_name_of_their_file() {
         assert_eq!(stem("parts/gear.sdf"), "gear");
         assert_eq!(stem("gear"), "gear");
     }

@@ -1,16 +1,18 @@
-//! Names, types, stages and elaboration of sdfc scenes; the library in `std`.
+//! The front end of sdfc: name resolution, type checking and elaboration of scenes, and the shape
+//! library in `std`.
 //!
 //! # What
 //!
-//! [`front`] takes a scene from text to graph: parsed, checked against the library, elaborated to
-//! shape instances and the math that they are made of. [`reference::entries`] says what a scene
-//! can name.
+//! [`front`] compiles a scene from source to graph: it parses the scene, checks it against the
+//! library, and elaborates it to shape instances and their formulas. [`reference::entries`] lists
+//! the names that a scene can use.
 //!
 //! # How
 //!
-//! The checker resolves names and types and writes every coercion out ([`hir`]); the elaborator
-//! ([`elab`]) inlines, unrolls and builds the graph, in which each value's stage (compile time,
-//! per frame, per point) follows from what it depends on. Both collect their findings and go on.
+//! The checker resolves names and types and makes every coercion explicit ([`hir`]). The elaborator
+//! ([`elab`]) inlines functions, unrolls lists and builds the graph. The graph derives each value's
+//! evaluation rate (compile time, per frame, per point) from its arguments. Both phases collect
+//! diagnostics and continue after an error.
 //!
 //! ```
 //! use sdfc_diagnostics::Sources;
@@ -19,16 +21,16 @@
 //! let file = sources.add("scene.sdf", "let ball = sphere(0.5)\nball | plane(y: -0.5)\n");
 //! let (elaborated, found) = sdfc_lang::front(&mut sources, file);
 //! assert!(found.is_empty());
-//! let scene = elaborated.expect("the scene is right").scene;
-//! let root = scene.graph.shape(scene.root.expect("it draws something"));
+//! let scene = elaborated.expect("the scene has no errors").scene;
+//! let root = scene.graph.shape(scene.root.expect("the scene draws a solid"));
 //! assert_eq!(root.definition, "union");
 //! assert_eq!(scene.graph.shape(root.children[0]).name.as_deref(), Some("ball"));
 //! ```
 //!
 //! # Limits
 //!
-//! Those of the parser ([`sdfc_syntax`]), of [`import`] and of elaboration ([`elab`]). A ray
-//! method that this version does not have is refused with `E0411`.
+//! The parser ([`sdfc_syntax`]), [`import`] and the elaborator ([`elab`]) have limits. A ray method
+//! that this version does not have is the error `E0411`.
 
 pub mod arcs;
 mod check;
@@ -39,7 +41,7 @@ pub mod import;
 pub mod library;
 pub mod live_literals;
 pub mod outline;
-mod reach;
+mod reachability;
 pub mod reference;
 pub mod settings;
 mod spelling;
@@ -51,14 +53,16 @@ pub use check::{check, check_library, check_with_imports};
 pub use elab::{Claimed, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
 
-/// Parses, checks and elaborates a scene. The library's files are added to `sources`, since
-/// messages show lines of them. Without a scene there is at least one error among the findings;
-/// all findings of the phases that ran are there, in the order of the phases.
+/// Parses, checks and elaborates a scene without imports.
+///
+/// Adds the library's files to `sources`, since messages show lines of them. Returns the scene and
+/// the diagnostics of all phases that ran, in the order of the phases. If there is no scene, at
+/// least one diagnostic is an error.
 pub fn front(sources: &mut Sources, file: FileId) -> (Option<Elaborated>, Vec<Diagnostic>) {
     front_with_imports(sources, file, &NoFiles)
 }
 
-/// As [`front`], for scenes that import files: the resolver gives their texts, which are added
+/// Like [`front`], for scenes with imports. The resolver reads the imported files, which are added
 /// to `sources` under their paths.
 pub fn front_with_imports(
     sources: &mut Sources,
@@ -68,7 +72,7 @@ pub fn front_with_imports(
     front_with(sources, file, resolver, Options::default())
 }
 
-/// How a scene is elaborated.
+/// Options of the front end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Numbers written in the scene become params, see [`live_literals`].
@@ -78,7 +82,7 @@ pub struct Options {
     pub focus: Option<u32>,
 }
 
-/// As [`front_with_imports`], with options.
+/// Like [`front_with_imports`], with options.
 pub fn front_with(
     sources: &mut Sources,
     file: FileId,
@@ -86,17 +90,17 @@ pub fn front_with(
     options: Options,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let (scene, mut found) = sdfc_syntax::parse(sources, file);
-    // The parser gave up in the middle: the rest would seem to lack what it declares.
+    // The parser stopped early: declarations in the rest of the file would seem to be missing.
     if found.iter().any(|it| matches!(it.code, Code::NESTING | Code::TOO_LARGE)) {
         return (None, found);
     }
-    // The library comes before the imports, so that its places are the same in every scene.
+    // The library comes before the imports, so that its file ids are the same in every scene.
     let library = library::add_to(sources);
     let (imports, of_imports) = import::load(sources, (file, &scene), resolver);
     found.extend(of_imports);
-    let (program, of_check) = reach::check(sources, &library, &imports, (file, &scene));
+    let (program, of_check) = reachability::check(sources, &library, &imports, (file, &scene));
     let parsed = !has_errors(&found);
-    // What could not be read may have used or drawn what seems to be idle.
+    // A part that could not be parsed may use or draw the items that warnings call unused.
     found.extend(of_check.into_iter().filter(|it| parsed || it.is_error()));
     if has_errors(&found) {
         return (None, found);

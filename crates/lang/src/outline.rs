@@ -1,37 +1,39 @@
-//! Outlines as the boundary of what they fill.
+//! The boundary of the area that outlines fill.
 //!
-//! Fonts may lay outlines over each other; the inside is what they go round (the nonzero rule). Here curves are cut
-//! where they cross, and what is left has inside on one side only: so the distance to the nearest piece is that to
-//! the boundary on both sides, and its own side there is the sign.
+//! Outlines of a font may overlap; they fill by the nonzero rule. This module cuts curves where
+//! they cross and keeps the pieces that have the inside on exactly one side. The distance to the
+//! nearest piece is then the distance to the boundary, and the side of that piece gives the sign.
 
 /// A point in ems.
 pub type Point = [f64; 2];
-/// Start, control point, end. The control point of a straight one is its middle.
+/// A quadratic curve: start, control point, end. The control point of a line is its midpoint.
 pub type Curve = [Point; 3];
 
-/// A curve of the boundary, inside on its left.
+/// A curve of the boundary, with the inside on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// The curve.
     pub curve: Curve,
-    /// What a point is whose nearest point is the start, the end: 1 outside, -1 inside, 0 what the side tells.
+    /// The side of points whose nearest point is the start or the end: 1 outside, -1 inside, 0 if
+    /// the side of the curve tells.
     pub corners: [f64; 2],
 }
 
-/// Boxes this small are one point, in ems: a thousandth of a unit of most fonts.
+/// Size of a box that counts as a point, in ems: a thousandth of a unit of most fonts.
 const POINT: f64 = 5e-7;
-/// Ends this near are one point.
+/// Distance of two ends that count as one point, in ems.
 const SAME: f64 = 1e-5;
-/// How far from a piece its sides are looked at.
+/// Distance from a piece at which its sides are tested, in ems.
 const ASIDE: f64 = 1e-5;
-/// Cuts nearer to an end than this part of a curve are none.
+/// Fraction of a curve near its ends in which cuts are ignored.
 const LEAST_PART: f64 = 1e-4;
-/// Pairs of parts looked at for two curves. Those that lie on each other would take more.
+/// Largest number of pairs of parts that are tested for two curves. Curves that coincide would need
+/// more.
 const MAX_PAIRS: usize = 4096;
-/// Ends that turn by less, in radians, are smooth.
+/// Largest turn of a smooth joint, in radians.
 const SMOOTH: f64 = 0.5;
 
-/// The boundary of what outlines go round, in the order of the outlines or its reverse.
+/// The boundary of the area that outlines fill, in the order of the outlines or its reverse.
 pub fn boundary(mut outlines: Vec<Curve>) -> Vec<Piece> {
     // TrueType has the inside on the right, PostScript on the left.
     if outlines.iter().map(doubled_area).sum::<f64>() < 0.0 {
@@ -50,19 +52,21 @@ pub fn boundary(mut outlines: Vec<Curve>) -> Vec<Piece> {
     pieces
 }
 
-/// Twice the area between the curve's control points and the origin, positive if it turns left about it.
+/// Twice the signed area between the curve's control polygon and the origin, positive if the curve
+/// turns left about the origin.
 fn doubled_area([a, b, c]: &Curve) -> f64 {
     let cross = |p: &Point, q: &Point| p[0] * q[1] - p[1] * q[0];
     cross(a, b) + cross(b, c)
 }
 
-/// The curve with the inside on its left; none that has it on both sides or neither.
+/// The curve, reversed if needed, with the inside on its left. `None` if the inside is on both sides
+/// or on neither.
 fn side(outlines: &[Curve], [a, b, c]: Curve) -> Option<Curve> {
     let middle = at(&[a, b, c], 0.5);
     let [x, y] = sub(c, a);
     let long = x.hypot(y);
     if long == 0.0 {
-        return None; // goes back on itself
+        return None; // the curve returns to its start
     }
     let aside = [-y / long * ASIDE, x / long * ASIDE];
     let is_inside = |q: Point| outlines.iter().map(|curve| rounds(curve, q)).sum::<i32>() != 0;
@@ -75,7 +79,7 @@ fn side(outlines: &[Curve], [a, b, c]: Curve) -> Option<Curve> {
     }
 }
 
-/// How often a curve crosses the ray from a point to the right, upwards less downwards.
+/// How often a curve crosses the ray from a point to the right: upward minus downward crossings.
 fn rounds(curve: &Curve, [x, y]: Point) -> i32 {
     let [low, high] = extent(curve);
     if y < low[1] || y > high[1] || x > high[0] {
@@ -92,7 +96,7 @@ fn rounds(curve: &Curve, [x, y]: Point) -> i32 {
         if from == to || (first <= 0.0) == (last <= 0.0) {
             continue;
         }
-        // The height only rises or only falls here.
+        // The height is monotonic here.
         let (mut below, mut above) = if first <= 0.0 { (from, to) } else { (to, from) };
         for _ in 0..50 {
             let middle = 0.5 * (below + above);
@@ -105,7 +109,7 @@ fn rounds(curve: &Curve, [x, y]: Point) -> i32 {
     count
 }
 
-/// For each curve the places, 0 and 1 among them, at which others cross it, in ascending order.
+/// For each curve, the parameters at which others cross it, with 0 and 1, in ascending order.
 fn cuts(outlines: &[Curve]) -> Vec<Vec<f64>> {
     let mut cuts: Vec<Vec<f64>> = vec![vec![0.0, 1.0]; outlines.len()];
     let extents: Vec<[Point; 2]> = outlines.iter().map(extent).collect();
@@ -128,7 +132,7 @@ fn cuts(outlines: &[Curve]) -> Vec<Vec<f64>> {
     cuts
 }
 
-/// Where two curves meet, by halving whatever may meet; nothing where they lie on each other.
+/// The parameters at which two curves meet, by bisection of boxes; empty if the curves coincide.
 fn crossings(first: &Curve, second: &Curve) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     let mut pending = vec![([0.0, 1.0], [0.0, 1.0])];
@@ -153,7 +157,7 @@ fn crossings(first: &Curve, second: &Curve) -> Vec<(f64, f64)> {
     Vec::new()
 }
 
-/// Finds the next of each piece, and says what is about the corner between them.
+/// Finds the piece that follows each piece, and sets the side of the corner between them.
 fn turn_corners(pieces: &mut [Piece]) {
     let starts: Vec<Point> = pieces.iter().map(|piece| piece.curve[0]).collect();
     for index in 0..pieces.len() {
@@ -181,7 +185,7 @@ fn arriving(&[a, b, c]: &Curve) -> Point {
     if a == b { sub(c, a) } else { sub(b, a) }
 }
 
-/// A box about a curve: lowest and highest coordinates.
+/// The box around a curve's control points: lowest and highest coordinates.
 fn extent(&[a, b, c]: &Curve) -> [Point; 2] {
     let ends = |pick: fn(f64, f64) -> f64| [0, 1].map(|axis| pick(pick(a[axis], b[axis]), c[axis]));
     [ends(f64::min), ends(f64::max)]
@@ -191,12 +195,12 @@ fn apart([low, high]: [Point; 2], [other_low, other_high]: [Point; 2]) -> bool {
     (0..2).any(|axis| low[axis] > other_high[axis] || other_low[axis] > high[axis])
 }
 
-/// A point of a curve.
+/// The point of a curve at parameter t.
 pub(crate) fn at(&[a, b, c]: &Curve, t: f64) -> Point {
     mix(mix(a, b, t), mix(b, c, t), t)
 }
 
-/// The part of a curve from s to t, by blossoming.
+/// The part of a curve from parameter s to t, by its blossom.
 pub(crate) fn part(curve: &Curve, s: f64, t: f64) -> Curve {
     if (s, t) == (0.0, 1.0) {
         return *curve;
@@ -205,17 +209,17 @@ pub(crate) fn part(curve: &Curve, s: f64, t: f64) -> Curve {
     [at(curve, s), mix(mix(a, b, s), mix(b, c, s), t), at(curve, t)]
 }
 
-/// The point that divides two.
+/// The linear interpolation of two points.
 pub(crate) fn mix(a: Point, b: Point, t: f64) -> Point {
     [0, 1].map(|axis| a[axis] + (b[axis] - a[axis]) * t)
 }
 
-/// The way from the second point to the first.
+/// The vector from `b` to `a`.
 pub(crate) fn sub(a: Point, b: Point) -> Point {
     [0, 1].map(|axis| a[axis] - b[axis])
 }
 
-/// How far apart two points are.
+/// The distance of two points.
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
     let [x, y] = sub(a, b);
     x.hypot(y)
@@ -235,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_square_keeps_its_sides_whichever_way_it_goes() {
+    fn a_square_keeps_its_sides_in_both_directions() {
         let mut square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         for _ in 0..2 {
             let pieces = boundary(polygon(&square));
@@ -251,18 +255,18 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_within_another_outline_is_dropped() {
+    fn curves_inside_another_outline_are_dropped() {
         let mut outlines = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
         outlines.extend(polygon(&[[1.0, -0.5], [1.5, -0.5], [1.5, 0.5], [1.0, 0.5]]));
         let pieces = boundary(outlines);
-        // The smaller one stands half a unit out below, and covers half a unit of the lower side.
+        // The smaller outline extends half a unit below and covers half a unit of the lower side.
         assert!((length(&pieces) - (6.0 - 0.5 + 0.5 + 0.5 + 0.5)).abs() < 1e-5);
         let reflex = pieces.iter().filter(|piece| piece.corners.contains(&-1.0)).count();
         assert_eq!(reflex, 4, "two corners are reflex, and two pieces meet at each");
     }
 
     #[test]
-    fn a_hole_stays() {
+    fn a_hole_is_kept() {
         let mut outlines = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
         let hole = polygon(&[[0.5, 0.5], [0.5, 1.5], [1.5, 1.5], [1.5, 0.5]]);
         outlines.extend(&hole);
@@ -271,12 +275,12 @@ mod tests {
         assert!(pieces[4..].iter().all(|piece| piece.corners == [-1.0, -1.0]));
         outlines.truncate(4);
         outlines.extend(hole.iter().rev().map(|&[a, b, c]| [c, b, a]));
-        assert_eq!(boundary(outlines).len(), 4, "one that goes round the same way adds nothing");
+        assert_eq!(boundary(outlines).len(), 4, "an outline in the same direction adds nothing");
     }
 
     #[test]
-    fn curves_that_cross_are_cut_there() {
-        // Two parabolas that open towards each other, as the outlines of two lenses.
+    fn crossing_curves_are_cut() {
+        // Each lens consists of two parabolas.
         let arc = |a: Point, b: Point, c: Point| [a, b, c];
         let lens = |x: f64| {
             vec![
@@ -289,7 +293,7 @@ mod tests {
         let pieces = boundary(outlines);
         assert_eq!(pieces.len(), 4);
         let meeting = pieces.iter().flat_map(|piece| [piece.curve[0], piece.curve[2]]);
-        // y = (x² - 1) / 2 and its copy one to the right meet at x = 1/2.
+        // y = (x² - 1) / 2 and its copy shifted by 1 meet at x = 1/2.
         let met = meeting.filter(|p| distance([p[0], p[1].abs()], [0.5, 0.375]) < 1e-5).count();
         assert_eq!(met, 4);
     }

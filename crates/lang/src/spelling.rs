@@ -1,9 +1,9 @@
-//! What was probably meant by a name that nothing has.
+//! Suggestions for unknown names.
 
 use crate::synonyms;
 
-/// What to say of a name that is none of these, if it is one of them in another spelling, has a name of its own here, or is
-/// near to one.
+/// A suggestion for a name that is not among `names`: one of them in another spelling, its name in
+/// this language, or one with a similar spelling.
 pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
     let names: Vec<&str> = names.collect();
     let ask = |name: &str| format!("did you mean `{name}`?");
@@ -13,8 +13,8 @@ pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Str
         .or_else(|| nearest(name, names.into_iter()).map(ask))
 }
 
-/// The name that is fewest edits away, if that is near enough to be a slip of the pen;
-/// among equals the first in alphabetical order.
+/// The name with the smallest edit distance, if that is small enough for a spelling mistake. Among
+/// equals it is the first in alphabetical order.
 pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let limit = (name.chars().count() / 3).clamp(1, 3);
     names
@@ -25,28 +25,14 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
         .map(|(_, other)| other)
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`
-/// (optimal string alignment). Names longer than 64 characters are never near.
+/// The edit distance of two names (optimal string alignment: swapping two neighbours is one edit).
+/// It is `usize::MAX` if a name has more than 64 characters or the lengths differ by more than 3.
 fn edits(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) =
-        (a.chars().take(65).collect(), b.chars().take(65).collect());
-    if a.len() > 64 || b.len() > 64 || a.len().abs_diff(b.len()) > 3 {
+    let [long, other] = [a, b].map(|name| name.chars().take(65).count());
+    if long > 64 || other > 64 || long.abs_diff(other) > 3 {
         return usize::MAX;
     }
-    let mut rows = [vec![0; b.len() + 1], (0..=b.len()).collect(), vec![0; b.len() + 1]];
-    for i in 1..=a.len() {
-        let [before, last, next] = &mut rows;
-        next[0] = i;
-        for j in 1..=b.len() {
-            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            next[j] = replaced.min(last[j] + 1).min(next[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                next[j] = next[j].min(before[j - 2] + 1);
-            }
-        }
-        rows.rotate_left(1);
-    }
-    rows[1][b.len()]
+    strsim::osa_distance(a, b)
 }
 
 #[cfg(test)]
@@ -54,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edits_count_swaps_once() {
+    fn a_swap_is_one_edit() {
         assert_eq!(edits("spere", "sphere"), 1);
         assert_eq!(edits("shpere", "sphere"), 1);
         assert_eq!(edits("", "abc"), 3);
@@ -62,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn a_suggestion_is_near_or_absent() {
+    fn only_similar_names_are_suggested() {
         let names = ["sphere", "plane", "box"];
         assert_eq!(nearest("spere", names.into_iter()), Some("sphere"));
         assert_eq!(nearest("teapot", names.into_iter()), None);

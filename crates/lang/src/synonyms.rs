@@ -1,6 +1,8 @@
-//! What has another name elsewhere: in Quilez's articles, GLSL, OpenSCAD, Curv, Bauble, CSS.
+//! Names from other tools and their equivalents here: from Quilez's articles, GLSL, OpenSCAD, Curv,
+//! Bauble and CSS.
 
-/// What to write here, and for which names: of several words in lower case, without what joins them.
+/// The expression to write here, and the names from other tools for which it is suggested. Names
+/// are in lower case and without underscores.
 const ROWS: &[(&str, &str)] = &[
     // Shapes.
     ("sphere", "ball orb"),
@@ -112,7 +114,7 @@ const ROWS: &[(&str, &str)] = &[
     ("#ffd700", "gold"),
 ];
 
-/// What is written here for what has this name elsewhere.
+/// The expression to write here for a name from another tool.
 pub fn here(name: &str) -> Option<&'static str> {
     let name = plain(name);
     // Quilez's functions: sdSphere, opTwist.
@@ -123,8 +125,8 @@ pub fn here(name: &str) -> Option<&'static str> {
     })
 }
 
-/// The name among these that is the same but for capitals, underscores and the prefixes of Quilez's functions.
-/// Of several the first in alphabetical order.
+/// The name among `names` that differs only in capitals, underscores or the prefixes of Quilez's
+/// functions. Among several it is the first in alphabetical order.
 pub fn respelt<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     let name = plain(name);
     let bare = name.strip_prefix("sd").or(name.strip_prefix("op"));
@@ -135,6 +137,7 @@ pub fn respelt<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     names.iter().copied().filter(same).min()
 }
 
+/// The name in lower case, without underscores.
 fn plain(name: &str) -> String {
     name.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
 }
@@ -145,7 +148,7 @@ mod tests {
     use crate::reference;
 
     #[test]
-    fn every_row_begins_with_something_that_there_is() {
+    fn every_row_begins_with_a_known_name() {
         let entries = reference::entries();
         let known = ["a", "x", "if", "[for", "fn", "let", "param", "import"];
         for (here, _) in ROWS.iter().filter(|(here, _)| !here.starts_with('#')) {
@@ -155,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn no_name_is_of_the_language_or_stands_twice() {
+    fn no_foreign_name_exists_here_or_appears_twice() {
         let entries = reference::entries();
         let mut all: Vec<&str> = ROWS.iter().flat_map(|(_, others)| others.split(' ')).collect();
         for name in &all {

@@ -1,4 +1,4 @@
-//! What there is where no fonts are built in.
+//! The stand-in for [`Fonts`] in builds without the feature `fonts`.
 
 use std::marker::PhantomData;
 
@@ -6,19 +6,19 @@ use super::Setting;
 use crate::import::Resolver;
 use crate::outline::Piece;
 
-/// No fonts.
+/// A set of fonts that is always empty.
 pub struct Fonts<'r>(PhantomData<&'r dyn Resolver>);
 
 impl<'r> Fonts<'r> {
-    /// None, whatever the resolver has.
+    /// Ignores the resolver.
     pub fn new(_: &'r dyn Resolver) -> Self {
         Self(PhantomData)
     }
 
     /// # Errors
     ///
-    /// That there are no fonts.
+    /// Always: there are no fonts.
     pub fn curves(&self, _: &str, _: &str, _: Setting) -> Result<Vec<Piece>, String> {
-        Err("this sdfc was built without fonts, its feature `fonts`".to_owned())
+        Err("this sdfc was built without fonts (the feature `fonts`)".to_owned())
     }
 }

@@ -1,9 +1,9 @@
 //! Letters as curves.
 //!
-//! The font's own tables are read and its kerning, ligatures and scripts applied by `harfrust`; what is left
-//! here are the curves of the glyphs, all of them quadratic, which are given out as arcs of circles.
+//! `harfrust` reads the font's tables and applies kerning, ligatures and scripts. This module takes
+//! the outlines of the glyphs, converts them to quadratic curves, and these to circular arcs.
 //!
-//! Lengths are in ems; the first line's baseline is y = 0.
+//! Lengths are in ems; the baseline of the first line is y = 0.
 
 use std::cell::RefCell;
 
@@ -17,25 +17,26 @@ use crate::import::{self, Resolver};
 use crate::outline::{Curve, Piece, Point, boundary, mix, sub};
 use outline::{DrawMemory, DrawOptions, PathElement};
 
-/// Its name in scenes.
+/// The name of the built-in font in scenes.
 const SANS_NAME: &str = "sans";
-/// Most curves of one text.
+/// The largest number of curves of a text.
 pub const MAX_CURVES: usize = 4096;
-/// How far quadratic curves may be off the cubic ones that they stand for, in ems: 1/8 of a unit of most fonts.
+/// Largest distance of quadratic curves from the cubic curve that they replace, in ems: 1/8 of a
+/// unit of most fonts.
 pub const TOLERANCE: f64 = 1.25e-4;
-/// A curve whose control point is as near as this to the line between its ends is that line.
+/// A curve is a line if its control point is nearer than this to the line between its ends, in ems.
 const STRAIGHT: f64 = 1e-6;
-/// Most quadratic curves for one cubic one.
+/// The largest number of quadratic curves for a cubic one.
 const MAX_PARTS: f64 = 16.0;
 
-/// Fonts by name, each read once.
+/// The fonts of a scene by name; each is read once.
 pub struct Fonts<'r> {
     resolver: &'r dyn Resolver,
     known: RefCell<FxHashMap<String, Result<Font, String>>>,
 }
 
 impl<'r> Fonts<'r> {
-    /// Fonts that are `"sans"` or files of the resolver's.
+    /// Fonts that are `"sans"` or files of a resolver.
     pub fn new(resolver: &'r dyn Resolver) -> Self {
         Self { resolver, known: RefCell::default() }
     }
@@ -57,17 +58,17 @@ impl<'r> Fonts<'r> {
         let bytes = self
             .resolver
             .read_bytes(&path)
-            .map_err(|why| format!("the font `{path}` cannot be read: {why}"))?;
+            .map_err(|why| format!("the font file `{path}` cannot be read: {why}"))?;
         Font::new(bytes, 0)
             .filter(|font| font.num_glyphs() > 0 && font.units_per_em() > 0)
-            .ok_or_else(|| format!("`{path}` is no TrueType or OpenType font"))
+            .ok_or_else(|| format!("`{path}` is not a TrueType or OpenType font"))
     }
 
-    /// The boundary of a text, in arcs. Lines end at `\n`.
+    /// The outline of a text, as arcs. Lines end at `\n`.
     ///
     /// # Errors
     ///
-    /// Why they cannot be had, in one sentence.
+    /// Returns the reason in one sentence: the font cannot be read, or lacks a letter.
     pub fn curves(&self, text: &str, font: &str, setting: Setting) -> Result<Vec<Piece>, String> {
         let font = self.font(font)?;
         let mut curves = Vec::new();
@@ -114,7 +115,7 @@ fn set_line(
     Ok(())
 }
 
-/// Adds a glyph's outline; white space has none.
+/// Adds the outline of a glyph. White space has none.
 fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> Result<(), String> {
     let Some(outline) = font.outline_glyphs().get(glyph) else { return Ok(()) };
     let mut path: Vec<PathElement> = Vec::new();
@@ -161,13 +162,15 @@ fn line(from: Point, to: Point, curves: &mut Vec<Curve>) {
     }
 }
 
-/// As many quadratic curves as keep within [`TOLERANCE`]: one is off by at most sqrt(3) / 36 of the third
-/// difference of the control points, which falls with the cube of their number.
+/// Adds a cubic curve as quadratic curves within [`TOLERANCE`]. The error of one quadratic curve is
+/// at most sqrt(3) / 36 of the third difference of the control points, which falls with the cube of
+/// the number of curves.
 fn cubic([a, b, c, d]: [Point; 4], curves: &mut Vec<Curve>) {
     let third = [0, 1].map(|axis| d[axis] - 3.0 * c[axis] + 3.0 * b[axis] - a[axis]);
     let off = 3f64.sqrt() / 36.0 * third[0].hypot(third[1]);
     let parts = (off / TOLERANCE).cbrt().ceil().clamp(1.0, MAX_PARTS);
-    // The part from s to t in Bernstein form, by blossoming: its control points are the values at (s, s, t), ...
+    // The control points of the part from s to t are the blossom's values at (s, s, s), (s, s, t),
+    // (s, t, t) and (t, t, t).
     let blossom = |r: f64, s: f64, t: f64| {
         let (ab, bc, cd) = (mix(a, b, r), mix(b, c, r), mix(c, d, r));
         mix(mix(ab, bc, s), mix(bc, cd, s), t)
@@ -181,7 +184,7 @@ fn cubic([a, b, c, d]: [Point; 4], curves: &mut Vec<Curve>) {
     }
 }
 
-/// A curve, or the line that it cannot be told from.
+/// Adds a quadratic curve, or a line if the curve is straight.
 fn quadratic(from: Point, control: Point, to: Point, curves: &mut Vec<Curve>) {
     let (chord, bend) = (sub(to, from), sub(control, from));
     let off = (bend[0] * chord[1] - bend[1] * chord[0]).abs();
@@ -205,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_are_set_with_kerning_spacing_and_alignment() {
+    fn kerning_spacing_and_alignment_move_letters() {
         let fonts = Fonts::new(&NoFiles);
         let width = |text: &str, setting| {
             let [left, right] = extent(&fonts.curves(text, "sans", setting).unwrap_or_default());
@@ -223,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn cubic_curves_become_quadratic_ones_within_the_tolerance() {
+    fn quadratic_curves_follow_a_cubic_one_within_the_tolerance() {
         let ends = [[0.0, 0.0], [0.1, 0.9], [0.9, -0.5], [1.0, 0.3]];
         let mut curves = Vec::new();
         cubic(ends, &mut curves);
@@ -250,12 +253,12 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_said() {
+    fn text_that_cannot_be_drawn_is_an_error() {
         let fonts = Fonts::new(&NoFiles);
         let why = |text: &str, font: &str| fonts.curves(text, font, LEFT).err().unwrap_or_default();
         assert!(why("a\u{2603}", "sans").contains("U+2603"));
         assert!(why("a", "missing.ttf").contains("missing.ttf"));
-        assert!(why("a", "../up.ttf").contains("leaves the folder"));
+        assert!(why("a", "../up.ttf").contains("outside the folder"));
         assert!(why(&"ø".repeat(500), "sans").contains("4096"));
     }
 }

@@ -1,5 +1,5 @@
-//! Letters as curves: text laid out in an outline font. Without the feature `fonts` there are none, and a scene that
-//! writes something is refused.
+//! Fonts: lays out text and returns its outline as curves. Without the feature `fonts`, a scene
+//! with text is an error.
 
 #[cfg(not(feature = "fonts"))]
 mod absent;
@@ -11,16 +11,16 @@ pub use absent::Fonts;
 #[cfg(feature = "fonts")]
 pub use letters::{Fonts, MAX_CURVES, TOLERANCE};
 
-/// The font that comes with the library: Roboto, an OpenType file.
+/// The built-in font: Roboto, an OpenType file.
 pub const SANS: &[u8] = include_bytes!("../../fonts/Roboto-Regular.ttf");
 
-/// How lines are set.
+/// The layout of lines of text.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Which part of a line lies at x = 0: 0 its start, 1 its end.
+    /// The fraction of a line that is left of x = 0: 0 to start there, 1 to end there.
     pub align: f64,
-    /// Added between letters.
+    /// Extra space between letters, in ems.
     pub spacing: f64,
-    /// From one baseline to the next.
+    /// Distance from one baseline to the next, in ems.
     pub leading: f64,
 }

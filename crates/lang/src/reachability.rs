@@ -1,8 +1,8 @@
-//! What a scene can reach of the library: only that is parsed and checked for it.
+//! Finds the library items that a scene can use; only these are parsed and checked.
 //!
-//! A library item is reached by its name. So what a scene's check can ask for is among the items whose names
-//! stand somewhere in the scene's text, and those whose names stand in these, and so on. Where a check fails, it
-//! is done again with all of the library, since messages propose names that the scene does not have.
+//! A library item is used by its name. So a scene can use only the items whose names occur in its
+//! source, the items whose names occur in those, and so on. If the check of a scene fails, it is
+//! repeated with the whole library, since messages suggest names that the scene does not mention.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -16,7 +16,8 @@ use crate::hir::Program;
 use crate::import::Imported;
 use crate::library;
 
-/// What `|`, `&` and `-` mean, which name nothing; `union` joins what is drawn, too.
+/// The library items that scenes use without a name: `|`, `&` and `-` call them, and `union` also
+/// joins the shapes that are drawn.
 const OPERATORS: [&str; 3] = ["union", "intersection", "difference"];
 
 /// Checks a scene and its imports against the library, whose files have these ids in `sources`.
@@ -26,8 +27,8 @@ pub(crate) fn check(
     imports: &[Imported],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
-    // Ids are part of every span, so what was read can be used again only where the files have the
-    // same ids: always, where scenes are read into fresh `Sources`.
+    // File ids are part of every span. So parsed items can be reused only if the library's files
+    // have the same ids, which is always the case for fresh `Sources`.
     static FIRST: OnceLock<Library> = OnceLock::new();
     let other;
     let first = FIRST.get_or_init(|| Library::new(library));
@@ -46,7 +47,7 @@ pub(crate) fn check(
     checked
 }
 
-/// The library's items by name, each read when a scene first reaches it.
+/// The library's items by name. An item is parsed when a scene first uses it.
 #[derive(Debug)]
 struct Library {
     files: Vec<FileId>,
@@ -54,21 +55,22 @@ struct Library {
     by_name: FxHashMap<&'static str, Vec<usize>>,
 }
 
-/// Where an item stands.
+/// The source of an item.
 #[derive(Debug)]
 struct Part {
-    /// Position among the files.
+    /// Index of its file.
     file: usize,
-    /// The item with its documentation, up to the next one's.
-    place: Range<usize>,
+    /// The bytes of the item with its documentation, up to the next item.
+    range: Range<usize>,
     read: OnceLock<Read>,
 }
 
+/// A parsed part.
 #[derive(Debug)]
 struct Read {
-    /// One item: a part holds no more.
+    /// Its item.
     items: Vec<Item>,
-    /// The parts whose names stand in it.
+    /// Indices of the parts whose names occur in it.
     mentions: Vec<usize>,
 }
 
@@ -77,22 +79,22 @@ impl Library {
         let mut library =
             Self { files: files.to_vec(), parts: Vec::new(), by_name: FxHashMap::default() };
         for (file, (_, text)) in library::FILES.iter().enumerate() {
-            for (name, place) in parts(text) {
+            for (name, range) in parts(text) {
                 library.by_name.entry(name).or_default().push(library.parts.len());
-                library.parts.push(Part { file, place, read: OnceLock::new() });
+                library.parts.push(Part { file, range, read: OnceLock::new() });
             }
         }
         library
     }
 
     fn read(&self, sources: &Sources, part: usize) -> &Read {
-        let Part { file, place, read } = &self.parts[part];
+        let Part { file, range, read } = &self.parts[part];
         read.get_or_init(|| {
             let file = self.files[*file];
-            let lines = sources.text(file)[place.clone()].lines();
+            let lines = sources.text(file)[range.clone()].lines();
             let code = lines.map(|line| line.split("//").next().unwrap_or(line));
             let mentions = code.flat_map(words).flat_map(|word| self.named(word)).collect();
-            let (tree, _) = sdfc_syntax::parse_part(sources, file, place.clone());
+            let (tree, _) = sdfc_syntax::parse_part(sources, file, range.clone());
             Read { items: tree.items, mentions }
         })
     }
@@ -101,7 +103,7 @@ impl Library {
         self.by_name.get(word).into_iter().flatten().copied()
     }
 
-    /// The items of each file that can be reached from these texts.
+    /// The items of each file that these sources can use.
     fn reached<'a>(
         &self,
         sources: &Sources,
@@ -136,8 +138,8 @@ impl Library {
     }
 }
 
-/// Name and place of each item of a file in the one layout: there an item begins with a letter in the first
-/// column, or with documentation on the lines above.
+/// Name and byte range of each item of a formatted file. An item begins with a letter in the first
+/// column, or with comments on the lines above.
 fn parts(text: &str) -> Vec<(&str, Range<usize>)> {
     let mut parts: Vec<(&str, Range<usize>)> = Vec::new();
     let (mut at, mut documentation) = (0, None);
@@ -158,7 +160,7 @@ fn parts(text: &str) -> Vec<(&str, Range<usize>)> {
     parts
 }
 
-/// What may be names in a text, and more.
+/// All words in a source: names, keywords and numbers.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).filter(|word| !word.is_empty())
 }
@@ -174,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parts_of_the_library_are_all_of_it() {
+    fn the_parts_cover_the_whole_library() {
         let (sources, library) = with_library();
         for (file, items) in library.whole(&sources) {
             let (whole, found) = sdfc_syntax::parse(&sources, file);
@@ -183,9 +185,8 @@ mod tests {
         }
     }
 
-    /// Each declaration is reached by its name, with all that its own check asks for.
     #[test]
-    fn what_is_reached_is_enough() {
+    fn the_items_reached_from_a_name_are_enough_to_check_it() {
         let (sources, library) = with_library();
         for name in library.by_name.keys() {
             let reached = library.reached(&sources, [*name].into_iter());
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_name_leads_to_is_left_unread() {
+    fn items_that_no_name_leads_to_are_not_parsed() {
         let (sources, library) = with_library();
         let count = |files: Vec<(FileId, Vec<&Item>)>| {
             files.iter().map(|(_, items)| items.len()).sum::<usize>()
