@@ -1,18 +1,20 @@
-//! Calls: arguments, defaults, ranges, requirements, recursion.
+//! Function calls: arguments, defaults, ranges, requirements and recursion.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{LipschitzClaim, NodeId, Stage};
 
-use super::report::{Frame, show_lanes, show_number};
+use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison};
+use super::limits::MAX_RECURSION;
+use super::output::Claimed;
+use super::report::{show_lanes, show_number};
 use super::value::{Closure, Code, Value};
-use super::{Claimed, Elaborator, Env, MAX_RECURSION, Outcome};
 use crate::hir::{Expr, FnId, Lambda, Parameter, Require};
 
-/// An argument as the caller wrote it: its value, and its place if it has one.
+/// The value and span of an argument; `None` for a default.
 pub(super) type Given<'p> = Option<(Value<'p>, Span)>;
 
 impl<'p> Elaborator<'p> {
-    /// `f(a, b)` of a declared function.
+    /// Elaborates a call of a declared function.
     pub(super) fn call(
         &mut self,
         env: &mut Env<'p>,
@@ -24,7 +26,7 @@ impl<'p> Elaborator<'p> {
         self.call_function(id, given, span)
     }
 
-    /// The values of the arguments that were written.
+    /// Evaluates the arguments of a call.
     pub(super) fn given(
         &mut self,
         env: &mut Env<'p>,
@@ -41,12 +43,12 @@ impl<'p> Elaborator<'p> {
     fn call_function(&mut self, id: FnId, given: Vec<Given<'p>>, span: Span) -> Outcome<Value<'p>> {
         let program = self.program;
         let index = id.0 as usize;
-        let function = program.functions.get(index).ok_or(super::Poison)?;
+        let function = program.functions.get(index).ok_or(Poison)?;
         if self.active[index] >= MAX_RECURSION {
             return Err(self.too_deep(&function.name, &given, span));
         }
         self.active[index] += 1;
-        self.frames.push(Frame { name: &function.name, span });
+        self.frames.push(CallFrame { name: &function.name, span });
         let mut env = Env::new(function.locals);
         let result = self
             .bind(&mut env, &function.parameters, given, span)
@@ -62,12 +64,12 @@ impl<'p> Elaborator<'p> {
         result
     }
 
-    fn too_deep(&mut self, name: &str, given: &[Given<'p>], span: Span) -> super::Poison {
+    fn too_deep(&mut self, name: &str, given: &[Given<'p>], span: Span) -> Poison {
         let args: Vec<String> =
             given.iter().flatten().map(|(value, _)| self.show_value(value)).collect();
         let message =
-            format!("recursion passes {MAX_RECURSION} levels: {name}({})", args.join(", "));
-        let help = "a recursive function ends by an `if` whose condition is known at compile time";
+            format!("more than {MAX_RECURSION} levels of recursion: {name}({})", args.join(", "));
+        let help = "end the recursion with an `if` whose condition is known at compile time";
         self.stop(Diagnostic::error(ErrorCode::RECURSION, span, message).help(help))
     }
 
@@ -76,7 +78,7 @@ impl<'p> Elaborator<'p> {
         lanes.map_or("…".to_owned(), |(lanes, width)| show_lanes(&lanes[..width]))
     }
 
-    /// A function value called.
+    /// Calls a function value.
     pub(super) fn apply(
         &mut self,
         closure: &Closure<'p>,
@@ -85,7 +87,7 @@ impl<'p> Elaborator<'p> {
     ) -> Outcome<Value<'p>> {
         self.tick(span)?;
         match closure.code {
-            Code::Constant => closure.captures.first().cloned().ok_or(super::Poison),
+            Code::Constant => closure.captures.first().cloned().ok_or(Poison),
             Code::Function(id) => {
                 let given = args.into_iter().map(|value| Some((value, span))).collect();
                 self.call_function(id, given, span)
@@ -106,7 +108,7 @@ impl<'p> Elaborator<'p> {
             env.set(local, value);
         }
         let varying = env.locals[..lambda.captures.len() + lambda.parameters.len()].to_vec();
-        self.frames.push(Frame { name: "this function", span });
+        self.frames.push(CallFrame { name: "this function", span });
         let result = self
             .requirements(&mut env, &lambda.requires)
             .and_then(|()| self.eval(&mut env, &lambda.body))
@@ -118,8 +120,9 @@ impl<'p> Elaborator<'p> {
         result
     }
 
-    /// Notes a stated constant at the value it is about. It speaks of numbers and vectors: where a
-    /// shape or function among the arguments and captures moves with the point, nothing is noted.
+    /// Records a stated Lipschitz constant with the result of the call. The clause is about numbers
+    /// and vectors, so it is ignored if a shape or function among the arguments and captures
+    /// depends on the point.
     fn claim(
         &mut self,
         env: &mut Env<'p>,
@@ -157,7 +160,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// Gives each parameter its argument or default and checks its range. All errors are reported.
+    /// Binds each parameter to its argument or default and checks its range. Reports all errors.
     pub(super) fn bind(
         &mut self,
         env: &mut Env<'p>,
@@ -171,8 +174,8 @@ impl<'p> Elaborator<'p> {
             let bound = match (given.next().flatten(), &parameter.default) {
                 (Some((value, span)), _) => Ok((value, span)),
                 (None, Some(default)) => self.eval(env, default).map(|value| (value, call)),
-                // The checker reports a missing argument.
-                (None, None) => Err(super::Poison),
+                // The checker has reported a missing argument.
+                (None, None) => Err(Poison),
             };
             let bound = bound.and_then(|(value, span)| {
                 env.set(local, value.clone());
@@ -206,7 +209,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// `a <= b` for each component of the wider one.
+    /// The conditions `a <= b`, one for each component.
     fn not_above(&mut self, a: NodeId, b: NodeId) -> Vec<NodeId> {
         let width = self.graph.ty(a).width().max(self.graph.ty(b).width()) as u8;
         let compare = |lane| {
@@ -223,9 +226,9 @@ impl<'p> Elaborator<'p> {
         range: [NodeId; 2],
         found: &super::probe::Refutation,
         span: Span,
-    ) -> super::Poison {
+    ) -> Poison {
         let show = |node| self.value_at(node, found).map_or("…".to_owned(), |v| show_lanes(&v));
-        // A range of one number for all components was widened to the vector's type.
+        // A range whose ends are numbers was widened to the vector's type.
         let end = |node| match self.value_at(node, found).as_deref() {
             Some([first, rest @ ..]) if rest.iter().all(|lane| lane == first) => {
                 show_number(*first)
@@ -236,21 +239,21 @@ impl<'p> Elaborator<'p> {
         let (value, lo, hi) = (show(value), end(range[0]), end(range[1]));
         let name = &parameter.name;
         let message = if found.inputs.is_empty() {
-            format!("argument `{name}` is {value}, outside {lo}..{hi}")
+            format!("argument `{name}` is {value}, outside its range {lo}..{hi}")
         } else {
-            format!("argument `{name}` can be {value}, outside {lo}..{hi}")
+            format!("argument `{name}` can be {value}, outside its range {lo}..{hi}")
         };
         let mut error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, span, message);
         for (input, at) in &found.inputs {
-            error = error.note(format!("so it is where {input} is {}", show_number(*at)));
+            error = error.note(format!("this happens if {input} is {}", show_number(*at)));
         }
         if !found.inputs.is_empty() {
-            error = error.help("give the param a range whose values all fit, or `clamp` the value");
+            error = error.help("give the param a range that fits, or `clamp` the value");
         }
         self.report(error.note_at(parameter.span, "the range is declared here"))
     }
 
-    /// Checks relations; the first that does not hold is reported.
+    /// Checks requirements and reports the first that is false.
     pub(super) fn requirements(
         &mut self,
         env: &mut Env<'p>,
@@ -265,15 +268,15 @@ impl<'p> Elaborator<'p> {
             let place = self.frames.last().map_or(require.span, |frame| frame.span);
             let mut error = Diagnostic::error(ErrorCode::REQUIREMENT, place, &require.message);
             for (input, at) in &found.inputs {
-                error = error.note(format!("so it is where {input} is {}", show_number(*at)));
+                error = error.note(format!("this happens if {input} is {}", show_number(*at)));
             }
             return Err(self.report(error.note_at(require.span, "required here")));
         }
         Ok(())
     }
 
-    /// A stated relation that is false: always, or somewhere within the params' ranges. Nothing
-    /// is said of what depends on the point.
+    /// A counterexample to a condition: it is false always, or for some values of the params.
+    /// Conditions that depend on the point are not tested.
     pub(super) fn refute(&self, holds: NodeId) -> Option<super::probe::Refutation> {
         match self.graph.stage(holds) {
             Stage::Const | Stage::Frame => self.probe(holds),

@@ -1,10 +1,10 @@
-//! `rgb`, `hsv`, `oklch`: numbers and alpha to linear colours.
+//! `rgb`, `hsv` and `oklch`: convert numbers and an alpha to linear colours.
 
 use sdfc_graph::{NodeId, Unary};
 
+use super::elaborator::{Elaborator, Env, Outcome};
 use super::kernel::Application;
 use super::value::Value;
-use super::{Elaborator, Env, Outcome};
 
 /// Oklab to the cube roots of the cone responses (Ottosson 2020).
 const OKLAB_TO_CONES: [[f64; 3]; 3] = [
@@ -20,13 +20,13 @@ const CONES_TO_LINEAR: [[f64; 3]; 3] = [
 ];
 
 impl<'p> Elaborator<'p> {
-    /// `rgb(red, green, blue, alpha)`, each 0..1 and sRGB as colours are written.
+    /// `rgb(red, green, blue, alpha)`, each in 0..1 and encoded as sRGB.
     pub(super) fn rgb(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let [red, green, blue, alpha] = self.numbers(env, at.args)?;
         self.joined(at, [red, green, blue].map(Channel::Srgb), alpha)
     }
 
-    /// `hsv(hue, saturation, value, alpha)`, each 0..1: a hue of 1 is a full turn.
+    /// `hsv(hue, saturation, value, alpha)`, each in 0..1; a hue of 1 is a full turn.
     pub(super) fn hsv(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let [hue, saturation, value, alpha] = self.numbers(env, at.args)?;
         let channels = [1.0, 2.0 / 3.0, 1.0 / 3.0].map(|shift| {
@@ -48,8 +48,8 @@ impl<'p> Elaborator<'p> {
         self.joined(at, channels, alpha)
     }
 
-    /// `oklch(lightness, chroma, hue, alpha)`: lightness 0..1, hue an angle; clipped to what a
-    /// screen shows.
+    /// `oklch(lightness, chroma, hue, alpha)`: lightness in 0..1, hue an angle. The result is
+    /// clipped to the sRGB gamut.
     pub(super) fn oklch(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let [lightness, chroma, hue, alpha] = self.numbers(env, at.args)?;
         let [cosine, sine] = [Unary::Cos, Unary::Sin].map(|op| self.graph.unary(op, hue));
@@ -90,7 +90,7 @@ impl<'p> Elaborator<'p> {
         self.checked(at, &[], color)
     }
 
-    /// sRGB's transfer function (IEC 61966-2-1) from encoded to linear, 0 below 0.
+    /// Decodes an sRGB value to linear (IEC 61966-2-1); negative values become 0.
     fn decode(&mut self, encoded: NodeId) -> NodeId {
         let graph = &mut self.graph;
         let [zero, knee, slope, offset, scale, gamma] =
@@ -105,7 +105,7 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// A colour channel and how it is encoded.
+/// A colour channel and its encoding.
 #[derive(Clone, Copy)]
 enum Channel {
     Linear(NodeId),

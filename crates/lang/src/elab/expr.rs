@@ -1,16 +1,17 @@
-//! Expressions to values.
+//! Evaluates expressions to values.
 
 use std::rc::Rc;
 
 use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::{Expander, FrameInput, Node, NodeId, ShapeId, Stage, Type};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::kernel::Application;
 use super::value::{Closure, Code, Value, highest};
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir::{self, Expr, ExprKind, GlobalId, MaterialField};
 
-/// Stack left before a new segment is taken, and its size: scenes may chain thousands of operators.
+/// Bytes of stack below which a new segment is allocated, and its size in bytes. Scenes may chain
+/// thousands of operators.
 const RED_ZONE: usize = 128 * 1024;
 const STACK_SEGMENT: usize = 2 * 1024 * 1024;
 
@@ -111,8 +112,8 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// A shape at a point. In a clause, at a point that is known early, it is the number itself, if that can be
-    /// had: clauses are asked for their values.
+    /// A shape's distance at a point. In a clause, at a point that is known at compile time or per
+    /// frame, the shape is expanded if possible, since the compiler needs the values of clauses.
     fn sample(&mut self, shape: ShapeId, point: NodeId) -> NodeId {
         if self.in_clause
             && self.graph.stage(point) < Stage::Point
@@ -123,13 +124,13 @@ impl<'p> Elaborator<'p> {
         self.graph.sample(shape, point)
     }
 
-    /// All values; all their errors are reported.
+    /// Evaluates all expressions and reports the errors of all.
     pub(super) fn all(&mut self, env: &mut Env<'p>, exprs: &'p [Expr]) -> Outcome<Vec<Value<'p>>> {
         let values: Vec<_> = exprs.iter().map(|expr| self.eval(env, expr)).collect();
         values.into_iter().collect()
     }
 
-    /// The node of a number, vector, colour or truth value.
+    /// Evaluates an expression to the node of a number, vector, colour or bool.
     pub(super) fn number(&mut self, env: &mut Env<'p>, expr: &'p Expr) -> Outcome<NodeId> {
         match self.eval(env, expr)? {
             Value::Node(node) | Value::Choice(node, _) => Ok(node),
@@ -137,7 +138,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The shape that an expression gives.
+    /// Evaluates an expression to a shape.
     pub(super) fn shape(
         &mut self,
         env: &mut Env<'p>,
@@ -149,11 +150,12 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The checker promises types, so this is reached only where it fails to keep the promise.
+    /// Reports a value of the wrong type. The checker guarantees types, so this is a fault of the
+    /// checker.
     pub(super) fn unexpected(&mut self, span: Span, wanted: &str, found: &Value<'p>) -> Poison {
         let found = match found {
             Value::Node(_) => "a number",
-            Value::Choice(..) | Value::Text(_) => "a text",
+            Value::Choice(..) | Value::Text(_) => "a string",
             Value::Range(..) => "a range",
             Value::List(_) => "a list",
             Value::Closure(_) => "a function",
@@ -161,11 +163,11 @@ impl<'p> Elaborator<'p> {
             Value::Material(_) => "a material",
             Value::Shadow(_) => "a shadow",
         };
-        let message = format!("this is {found}, {wanted} is wanted");
+        let message = format!("this is {found}, but {wanted} is expected here");
         self.fail(ErrorCode::TYPE_MISMATCH, span, message)
     }
 
-    /// A function value; equal ones get equal numbers.
+    /// A function value. Equal functions get equal ids.
     pub(super) fn closure(&mut self, code: Code<'p>, captures: Vec<Value<'p>>) -> Value<'p> {
         let key = (code.key(), captures.iter().map(Value::to_arg).collect());
         let next = self.closures.len() as u32;
@@ -195,7 +197,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(self.graph.compose(&lanes)))
     }
 
-    /// `m.with(...)`. A colour's alpha is what it covers of the colour beneath.
+    /// `m.with(...)`. A colour's alpha is the fraction that covers the colour beneath.
     fn with(
         &mut self,
         env: &mut Env<'p>,
@@ -227,7 +229,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Material([color, coverage, rough, metal, emit, open]))
     }
 
-    /// `a + (b - a) * t`; `a` and `b` themselves at a constant 0 and 1.
+    /// `a + (b - a) * t`; exactly `a` or `b` if t is the constant 0 or 1.
     pub(super) fn mix(&mut self, a: NodeId, b: NodeId, t: NodeId) -> NodeId {
         match self.graph.as_number(t) {
             Some(0.0) => a,
@@ -236,12 +238,12 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The truth value of a constant node.
+    /// The value of a constant bool node.
     pub(super) fn as_bool(&self, node: NodeId) -> Option<bool> {
         self.as_lanes(node).map(|(lanes, _)| lanes[0] != 0.0)
     }
 
-    /// The lanes of a constant node and how many there are.
+    /// The components of a constant node and their number.
     pub(super) fn as_lanes(&self, node: NodeId) -> Option<([f64; 4], usize)> {
         if let Node::Const(value) = self.graph.node(node) {
             Some((value.lanes(), value.ty().width()))

@@ -1,29 +1,31 @@
-//! `iterate`, the one loop: written out where that is short, a loop of the graph where it is long.
+//! The loop `iterate`: unrolled if it is short, a loop of the graph if it is long.
 //!
-//! A loop needs a body that is the same in each round. It is elaborated once over variables; where that
-//! fails, because the body builds or samples shapes that differ from round to round or wants constants, the rounds
-//! are written out as if nothing had been tried. So are those that no point takes part in: they are computed here.
+//! A loop of the graph needs a body that is the same in each iteration. The body is elaborated once
+//! over variables. If that fails, because it needs constants or builds or samples shapes that
+//! differ between iterations, the loop is unrolled. A loop that does not depend on a point is
+//! unrolled too: it is computed at compile time or per frame.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{Const, Loop, LoopVar, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, reachable};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::expr::node_type;
+use super::limits::{MAX_ITERATIONS, MAX_NESTED_ITERATIONS};
 use super::report::show_number;
 use super::value::{Closure, Value};
-use super::{Elaborator, Env, MAX_NESTED_ROUNDS, MAX_ROUNDS, Outcome};
 use crate::hir::{Expr, Type};
 
-/// Rounds up to this many are written out: what a driver would do anyway.
-const WRITTEN_OUT: usize = 16;
-/// As many if any of them may be the last: a loop ends there, what is written out is computed.
-const WRITTEN_OUT_WHILE: usize = 4;
+/// The largest number of iterations that are unrolled; a driver would unroll them anyway.
+const UNROLLED: usize = 16;
+/// The same for loops with a condition: a loop can end early, unrolled iterations are all computed.
+const UNROLLED_WHILE: usize = 4;
 
-/// What the rounds run over.
-struct Rounds<'p> {
+/// The iterations of a loop.
+struct Iterations<'p> {
     items: Vec<Value<'p>>,
-    /// The count, where it moves: rounds from it on keep the state.
+    /// The count, if it is not constant: later iterations keep the state.
     limit: Option<NodeId>,
-    /// Of a count or range, the number of the first round.
+    /// For a count or range, the item of the first iteration.
     first: Option<f64>,
 }
 
@@ -31,12 +33,13 @@ struct Rounds<'p> {
 struct Steps<'p> {
     step: std::rc::Rc<Closure<'p>>,
     with_item: bool,
-    go_on: Option<std::rc::Rc<Closure<'p>>>,
+    condition: Option<std::rc::Rc<Closure<'p>>>,
     span: Span,
 }
 
 impl<'p> Elaborator<'p> {
-    /// `iterate(over, start, step, while)`: a round runs as long as every `while` before it held.
+    /// `iterate(over, start, step, while)`: an iteration runs if `while` was true before it and
+    /// before all earlier ones.
     pub(super) fn iterate(
         &mut self,
         env: &mut Env<'p>,
@@ -44,42 +47,42 @@ impl<'p> Elaborator<'p> {
         span: Span,
     ) -> Outcome<Value<'p>> {
         let [over, start, step, rest @ ..] = args else {
-            return Err(super::Poison);
+            return Err(Poison);
         };
-        let rounds = self.rounds(env, over)?;
+        let iterations = self.iterations(env, over)?;
         let state = self.eval(env, start)?;
         let with_item = matches!(&step.ty, Type::Fn(takes, _) if takes.len() == 2);
         let step = self.function(env, step)?;
-        let go_on = rest.first().map(|expr| self.function(env, expr)).transpose()?;
-        let most = if go_on.is_some() { WRITTEN_OUT_WHILE } else { WRITTEN_OUT };
-        let steps = Steps { step, with_item, go_on, span };
-        if rounds.items.len() > most
+        let condition = rest.first().map(|expr| self.function(env, expr)).transpose()?;
+        let most = if condition.is_some() { UNROLLED_WHILE } else { UNROLLED };
+        let steps = Steps { step, with_item, condition, span };
+        if iterations.items.len() > most
             && let Value::Node(start) = state
-            && let Some(end) = self.in_a_loop(&rounds, start, &steps)?
+            && let Some(end) = self.as_graph_loop(&iterations, start, &steps)?
         {
             return Ok(Value::Node(end));
         }
-        self.written_out(rounds, state, &steps)
+        self.unrolled(iterations, state, &steps)
     }
 
-    /// The state after all rounds, each elaborated by itself.
-    fn written_out(
+    /// The state after all iterations, each elaborated separately.
+    fn unrolled(
         &mut self,
-        rounds: Rounds<'p>,
+        iterations: Iterations<'p>,
         mut state: Value<'p>,
         steps: &Steps<'p>,
     ) -> Outcome<Value<'p>> {
-        // Whether the loop is still running, where that is not known to be so.
+        // The condition that the loop is still running; `None` if it certainly is.
         let mut running: Option<NodeId> = None;
-        for (round, item) in rounds.items.into_iter().enumerate() {
-            if let Some(holds) = self.goes_on(steps, state.clone())? {
+        for (index, item) in iterations.items.into_iter().enumerate() {
+            if let Some(holds) = self.condition(steps, state.clone())? {
                 self.must_stay_constant(holds);
                 running = Some(self.both(running, holds));
             }
             let mut active = running;
-            if let Some(limit) = rounds.limit {
-                let round = self.graph.number(round as f64);
-                let within = self.graph.lt(round, limit);
+            if let Some(limit) = iterations.limit {
+                let index = self.graph.number(index as f64);
+                let within = self.graph.lt(index, limit);
                 active = Some(self.both(active, within));
             }
             if active.and_then(|node| self.as_bool(node)) == Some(false) {
@@ -94,10 +97,10 @@ impl<'p> Elaborator<'p> {
         Ok(state)
     }
 
-    /// Whether there is another round, as a node; `None` without a `while`.
-    fn goes_on(&mut self, steps: &Steps<'p>, state: Value<'p>) -> Outcome<Option<NodeId>> {
-        let Some(go_on) = &steps.go_on else { return Ok(None) };
-        match self.apply(go_on, vec![state], steps.span)? {
+    /// The condition for another iteration; `None` without a `while`.
+    fn condition(&mut self, steps: &Steps<'p>, state: Value<'p>) -> Outcome<Option<NodeId>> {
+        let Some(condition) = &steps.condition else { return Ok(None) };
+        match self.apply(condition, vec![state], steps.span)? {
             Value::Node(holds) => Ok(Some(holds)),
             other => Err(self.unexpected(steps.span, "a condition", &other)),
         }
@@ -108,10 +111,10 @@ impl<'p> Elaborator<'p> {
         self.apply(&steps.step, args, steps.span)
     }
 
-    /// The state after a loop of the graph; `None` where the rounds must be written out.
-    fn in_a_loop(
+    /// The state after a loop of the graph; `None` if the loop must be unrolled.
+    fn as_graph_loop(
         &mut self,
-        rounds: &Rounds<'p>,
+        iterations: &Iterations<'p>,
         start: NodeId,
         steps: &Steps<'p>,
     ) -> Outcome<Option<NodeId>> {
@@ -119,29 +122,29 @@ impl<'p> Elaborator<'p> {
         if depth >= MAX_LOOP_DEPTH {
             return Ok(None);
         }
-        let Some(item) = self.item(rounds) else { return Ok(None) };
-        let around = self.loop_rounds;
-        let nested = around.saturating_mul(rounds.items.len());
-        if depth > 0 && nested > MAX_NESTED_ROUNDS {
+        let Some(item) = self.item(iterations) else { return Ok(None) };
+        let around = self.loop_iterations;
+        let nested = around.saturating_mul(iterations.items.len());
+        if depth > 0 && nested > MAX_NESTED_ITERATIONS {
             let message = format!(
-                "the loops around this and it run {nested} rounds; at most {MAX_NESTED_ROUNDS} are possible"
+                "these nested loops have {nested} iterations; the limit is {MAX_NESTED_ITERATIONS}"
             );
             return Err(self.stop(Diagnostic::error(ErrorCode::ITERATIONS, steps.span, message)));
         }
         let before = self.attempt();
         self.loop_depth += 1;
-        self.loop_rounds = nested;
+        self.loop_iterations = nested;
         let ty = self.graph.ty(start);
         let state = self.graph.variable(depth, LoopVar::State(0), ty);
-        let body = self.goes_on(steps, Value::Node(state)).and_then(|go_on| {
+        let body = self.condition(steps, Value::Node(state)).and_then(|condition| {
             let next = self.next(steps, Value::Node(state), Value::Node(item))?;
-            Ok((go_on, next))
+            Ok((condition, next))
         });
         self.loop_depth -= 1;
-        self.loop_rounds = around;
-        let (go_on, next) = match body {
-            Ok((go_on, Value::Node(next))) if self.graph.ty(next) == ty => (go_on, next),
-            // A limit that was reached would be reached again.
+        self.loop_iterations = around;
+        let (condition, next) = match body {
+            Ok((condition, Value::Node(next))) if self.graph.ty(next) == ty => (condition, next),
+            // A limit that was exceeded would be exceeded again.
             Err(poison) if self.stopped => return Err(poison),
             Ok(_) | Err(_) => {
                 self.take_back(before);
@@ -149,7 +152,7 @@ impl<'p> Elaborator<'p> {
             }
         };
         let mut roots = vec![next];
-        roots.extend(go_on);
+        roots.extend(condition);
         let bit = 1 << depth;
         let differs = |&id: &NodeId| {
             let is_shape = matches!(self.graph.node(id), Node::Sample(..) | Node::MaterialAt(..));
@@ -163,32 +166,24 @@ impl<'p> Elaborator<'p> {
             self.take_back(before);
             return Ok(None);
         }
-        if let Some(limit) = rounds.limit {
+        if let Some(limit) = iterations.limit {
             self.must_stay_constant(limit);
         }
-        let (cap, count) = (rounds.items.len() as u32, rounds.limit);
-        let (start, next) = (vec![start], vec![next]);
-        let repeated = Loop {
-            depth,
-            max_iterations: cap,
-            count,
-            condition: go_on,
-            init: start,
-            step: next,
-            skip: None,
-        };
-        Ok(self.graph.add_loop(repeated).first().copied())
+        let (max_iterations, count) = (iterations.items.len() as u32, iterations.limit);
+        let (init, step) = (vec![start], vec![next]);
+        let graph_loop = Loop { depth, max_iterations, count, condition, init, step, skip: None };
+        Ok(self.graph.add_loop(graph_loop).first().copied())
     }
 
-    /// What a round of a loop is given: its number, or an element of a list of constants.
-    fn item(&mut self, rounds: &Rounds<'p>) -> Option<NodeId> {
-        let round = self.graph.variable(self.loop_depth, LoopVar::Index, sdfc_graph::Type::Scalar);
-        if let Some(first) = rounds.first {
+    /// The item of an iteration: its index, or an element of a list of constants.
+    fn item(&mut self, iterations: &Iterations<'p>) -> Option<NodeId> {
+        let index = self.graph.variable(self.loop_depth, LoopVar::Index, sdfc_graph::Type::Scalar);
+        if let Some(first) = iterations.first {
             let first = self.graph.number(first);
-            return Some(self.graph.add(round, first));
+            return Some(self.graph.add(index, first));
         }
-        let table = self.table(&rounds.items)?;
-        Some(self.graph.element(table, round))
+        let table = self.table(&iterations.items)?;
+        Some(self.graph.element(table, index))
     }
 
     /// A list of constants of one type.
@@ -196,7 +191,7 @@ impl<'p> Elaborator<'p> {
         let mut elements: Vec<Const> = Vec::with_capacity(items.len());
         for item in items {
             let Value::Node(node) = item else { return None };
-            // A literal that moves is none: it is left as it is.
+            // A live literal is not a constant, so it must stay a literal.
             self.must_stay_constant(*node);
             elements.push(self.graph.as_const(*node)?);
         }
@@ -213,19 +208,19 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    fn rounds(&mut self, env: &mut Env<'p>, over: &'p Expr) -> Outcome<Rounds<'p>> {
+    fn iterations(&mut self, env: &mut Env<'p>, over: &'p Expr) -> Outcome<Iterations<'p>> {
         if node_type(&over.ty).is_none() {
-            let items = self.sequence(env, over, "what `iterate` runs over")?;
-            // The elements of a list were made one by one; a range can be long in few words.
+            let items = self.sequence(env, over, "the sequence of `iterate`")?;
+            // A list was limited when it was made; a range can be long.
             let is_range = matches!(over.ty, Type::Range(_));
             if is_range {
-                self.check_rounds(items.len() as f64, over.span)?;
+                self.check_iterations(items.len() as f64, over.span)?;
             }
             let first = items.first().filter(|_| is_range).and_then(|item| match item {
                 Value::Node(node) => self.graph.as_number(*node),
                 _ => None,
             });
-            return Ok(Rounds { items, limit: None, first });
+            return Ok(Iterations { items, limit: None, first });
         }
         let count = self.number(env, over)?;
         self.must_stay_constant(count);
@@ -233,28 +228,28 @@ impl<'p> Elaborator<'p> {
             Some(count) => (count, None),
             None => (self.highest(count, over.span)?, Some(count)),
         };
-        self.check_rounds(cap, over.span)?;
+        self.check_iterations(cap, over.span)?;
         let numbers = 0..cap.max(0.0) as u32;
         let items = numbers.map(|i| Value::Node(self.graph.number(f64::from(i)))).collect();
-        Ok(Rounds { items, limit, first: Some(0.0) })
+        Ok(Iterations { items, limit, first: Some(0.0) })
     }
 
-    /// The most that a moving count can be, by the ranges of the params in it.
+    /// The largest value of a per-frame count, from the ranges of its params.
     fn highest(&mut self, count: NodeId, span: Span) -> Outcome<f64> {
         let highest = self.graph.range(count).hi;
         if highest.is_finite() && self.graph.stage(count) == Stage::Frame {
             return Ok(highest.floor());
         }
-        let what = "the most rounds that `iterate` may run";
+        let what = "the largest number of iterations of `iterate`";
         Err(self.not_constant(span, what, count))
     }
 
-    fn check_rounds(&mut self, count: f64, span: Span) -> Outcome<()> {
-        if count <= MAX_ROUNDS as f64 {
+    fn check_iterations(&mut self, count: f64, span: Span) -> Outcome<()> {
+        if count <= MAX_ITERATIONS as f64 {
             return Ok(());
         }
         let message = format!(
-            "`iterate` runs {} rounds; at most {MAX_ROUNDS} are possible",
+            "`iterate` has {} iterations; the limit is {MAX_ITERATIONS}",
             show_number(count)
         );
         Err(self.report(Diagnostic::error(ErrorCode::ITERATIONS, span, message)))

@@ -1,15 +1,15 @@
-//! The kernel's operations on numbers as graph nodes.
+//! The kernel's operations on numbers, as graph nodes.
 
 use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{Binary, NodeId, Shadow, Stage, Ternary, Unary};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::report::show_lanes;
 use super::value::Value;
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir::{Expr, Kernel};
 
-/// An operation as it stands in the text.
+/// An operation with its arguments and its span.
 #[derive(Clone, Copy)]
 pub(super) struct Application<'p> {
     pub op: Kernel,
@@ -17,7 +17,7 @@ pub(super) struct Application<'p> {
     pub span: Span,
 }
 
-/// Whether the arguments change places: `a > b` is `b < a`.
+/// Says if the arguments are swapped: `a > b` is `b < a`.
 #[derive(Clone, Copy)]
 enum Swapped {
     No,
@@ -25,7 +25,7 @@ enum Swapped {
 }
 
 impl<'p> Elaborator<'p> {
-    /// The value of an operation.
+    /// Evaluates an operation.
     pub(super) fn kernel(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         match at.op {
             Kernel::Neg => self.unary(env, at, Unary::Neg),
@@ -109,7 +109,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The nodes of exactly so many arguments; all their errors are reported.
+    /// Evaluates exactly `N` arguments to nodes and reports the errors of all.
     pub(super) fn numbers<const N: usize>(
         &mut self,
         env: &mut Env<'p>,
@@ -139,7 +139,7 @@ impl<'p> Elaborator<'p> {
     ) -> Outcome<Value<'p>> {
         let [a, b] = self.numbers(env, at.args)?;
         if op == Binary::Pow {
-            // A power with a moving exponent has no value below 0.
+            // A power whose exponent is not constant has no value for a negative base.
             self.must_stay_constant(b);
         }
         let result = match swapped {
@@ -160,8 +160,8 @@ impl<'p> Elaborator<'p> {
         self.checked(at, &[a, b, c], result)
     }
 
-    /// A result that is infinite only because an argument is (`inf + 1`) passes: ranges are
-    /// made of such. In a clause anything passes: infinite means unbounded there.
+    /// Reports a result that is not finite. It is allowed if an argument is infinite (`inf + 1`),
+    /// since ranges need that, and in clauses, where infinite means unbounded.
     pub(super) fn checked(
         &mut self,
         at: Application<'p>,
@@ -179,11 +179,12 @@ impl<'p> Elaborator<'p> {
             return Ok(Value::Node(result));
         }
         let (name, value) = (name(at.op), show_lanes(lanes));
-        let message = format!("the result of `{name}` is {value}, which no shader can hold");
+        let message = format!("the result of `{name}` is {value}, but shaders need finite numbers");
         Err(self.fail(ErrorCode::NOT_FINITE, at.span, message))
     }
 
-    /// A constant node as a literal; any other as it is. The graph folds finite results only.
+    /// Folds a constant node to a literal, also if it is not finite; the graph folds finite results
+    /// only. Other nodes do not change.
     pub(super) fn settled(&mut self, node: NodeId) -> NodeId {
         if self.graph.stage(node) != Stage::Const || self.as_lanes(node).is_some() {
             return node;
@@ -194,7 +195,7 @@ impl<'p> Elaborator<'p> {
         self.graph.constant(ty, &lanes)
     }
 
-    /// `==` on numbers, truth values and texts.
+    /// `==` for numbers, bools and strings.
     fn equal(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let values = self.all(env, at.args)?;
         let [a, b] = &values[..] else { return Err(Poison) };
@@ -208,7 +209,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(equal))
     }
 
-    /// `&&`, `||`: the right side is elaborated only where the left one does not decide.
+    /// `&&` and `||`. The right side is evaluated only if the left one does not decide.
     fn logic(&mut self, env: &mut Env<'p>, at: Application<'p>, op: Binary) -> Outcome<Value<'p>> {
         let [a, b] = at.args else { return Err(Poison) };
         let a = self.number(env, a)?;
@@ -224,7 +225,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// `min`, `max` of any number of values, or of a list alone.
+    /// `min` and `max` of any number of values, or of a list.
     fn extreme(
         &mut self,
         env: &mut Env<'p>,
@@ -243,7 +244,7 @@ impl<'p> Elaborator<'p> {
         }
         let mut rest = nodes.into_iter();
         let Some(mut result) = rest.next() else {
-            let message = format!("`{}` of an empty list has no value", name(at.op));
+            let message = format!("`{}` needs at least one value; this list is empty", name(at.op));
             return Err(self.fail(ErrorCode::DEGENERATE, at.span, message));
         };
         for node in rest {
@@ -254,7 +255,7 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// An operation as the language writes it.
+/// The name or symbol of an operation in the language.
 pub(super) fn name(op: Kernel) -> String {
     let symbols = [
         (Kernel::Neg, "-"),
@@ -267,7 +268,7 @@ pub(super) fn name(op: Kernel) -> String {
     if let Some((_, symbol)) = symbols.iter().find(|(other, _)| *other == op) {
         return (*symbol).to_owned();
     }
-    // The variants are named after the functions: `InverseSqrt`, `inverseSqrt`.
+    // The variants are named after the functions: `InverseSqrt` for `inverseSqrt`.
     let name = format!("{op:?}");
     let (first, rest) = name.split_at(1);
     format!("{}{rest}", first.to_lowercase())

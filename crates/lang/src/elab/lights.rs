@@ -1,19 +1,19 @@
-//! Lights: where their light comes from, its colour and its shadow.
+//! Lights: their source, colour and shadow.
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
 use sdfc_graph::{Light, LightSource, NodeId, Settings, Shadow, Type};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::report::show_lanes;
 use super::settings::POSITIVE;
 use super::value::Value;
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir::{Expr, Setting};
 
-/// As many as the shader has room for.
+/// The largest number of lights, which is also that of the shader.
 const MAX_LIGHTS: usize = 8;
-/// Towards a `sun()` without direction.
+/// The default direction towards the sun.
 const DEFAULT_SUN: [f64; 3] = [1.0, 2.0, 1.0];
-/// From the middle of a `spot_light`'s cone to its edge: 30 degrees.
+/// The default angle from the axis of a `spot_light`'s cone to its edge: 30 degrees.
 const DEFAULT_CONE: f64 = 30.0 * std::f64::consts::PI / 180.0;
 
 impl<'p> Elaborator<'p> {
@@ -39,24 +39,24 @@ impl<'p> Elaborator<'p> {
         })
     }
 
-    /// An angle between 0 and a right one.
+    /// Evaluates an angle that must be between 0 and 90 degrees.
     fn cone(&mut self, expr: &'p Expr) -> Outcome<NodeId> {
         let angle = self.number(&mut Env::new(self.program.locals), expr)?;
         let degrees = self.graph.as_number(angle).map(f64::to_degrees);
         match degrees {
             Some(degrees) if !(degrees > 0.0 && degrees < 90.0) => {
                 let degrees = show_lanes(&[degrees]);
-                let message = format!("`angle` is {degrees}deg; it is above 0deg and below 90deg");
+                let message =
+                    format!("`angle` is {degrees}deg, but must be above 0deg and below 90deg");
                 let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);
-                let help =
-                    "it is from the middle of the cone to its edge; a point_light shines all round";
+                let help = "it is measured from the cone's axis; for light in all directions use point_light";
                 Err(self.report(error.help(help)))
             }
             Some(_) | None => Ok(angle),
         }
     }
 
-    /// Adds a light. Its colour, strength and shadow stand from the place `first` on.
+    /// Adds a light. Its colour, strength and shadow are the arguments from index `first` on.
     pub(super) fn light(
         &mut self,
         setting: &'p Setting,
@@ -68,10 +68,10 @@ impl<'p> Elaborator<'p> {
         let shadow = self.argument(setting, first + 2).map(|expr| self.shadow(expr));
         let shadow = shadow.transpose()?.unwrap_or_default();
         if out.lights.len() == MAX_LIGHTS {
-            let message = format!("a scene has at most {MAX_LIGHTS} lights");
+            let message = format!("a scene can have at most {MAX_LIGHTS} lights");
             let error = Diagnostic::error(ErrorCode::TOO_MANY_LIGHTS, setting.span, message);
             return Err(
-                self.report(error.help("remove one, or let `ambient` stand for the weakest"))
+                self.report(error.help("remove one, or replace the weakest ones by `ambient`"))
             );
         }
         out.lights.push(Light { source, color, shadow });
@@ -91,15 +91,15 @@ impl<'p> Elaborator<'p> {
             self.soft_shadows.push(expr.span);
         }
         if sharpness.is_some_and(|value| !(POSITIVE[0]..=POSITIVE[1]).contains(&value)) {
-            let message = "the sharpness of a soft shadow is above 0";
+            let message = "the sharpness of a soft shadow must be above 0";
             let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);
-            let help = "soft(8) fades over about an eighth of the distance to what throws it";
+            let help = "with soft(8), the penumbra is 1/8 of the distance to the occluder wide";
             return Err(self.report(error.help(help)));
         }
         Ok(shadow)
     }
 
-    /// Linear colour times strength, from the places of both.
+    /// The linear colour times the strength, from the indices of both arguments.
     pub(super) fn light_color(
         &mut self,
         setting: &'p Setting,

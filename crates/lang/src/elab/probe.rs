@@ -1,32 +1,32 @@
-//! Relations that move with params and time, looked for a value where they fail.
+//! Searches for counterexamples to conditions that depend on params and time.
 //!
-//! A relation known at compile time is decided. One that is per frame is tried at the ends, the
-//! middle and the default of every param's range, in all combinations up to [`MAX_COMBINATIONS`],
-//! and at some times; a counterexample is a proof and can be shown, whereas an interval that
-//! merely reaches too far would refuse scenes that are right.
+//! A condition that is known at compile time is decided. A per-frame condition is tested at the
+//! ends, the middle and the default of every param's range, in up to [`MAX_COMBINATIONS`]
+//! combinations, and at some times. A counterexample is a proof and can be shown. Interval
+//! arithmetic would reject correct scenes whenever its result is too wide.
 
 use sdfc_graph::eval::{FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{FrameInput, Node, NodeId, Param, ParamKind};
 
-use super::Elaborator;
+use super::elaborator::Elaborator;
 
-/// How many combinations of values are tried.
+/// The largest number of combinations of values that are tested.
 const MAX_COMBINATIONS: usize = 1024;
-/// Tried of a param without a range, and in place of an infinite end.
+/// Values for a param without a range, or with an infinite end.
 const UNBOUNDED: [f64; 5] = [-1000.0, -1.0, 0.0, 1.0, 1000.0];
-/// Tried of `time`, in seconds; whole parts for `frame`.
+/// Values for `time`, in seconds; rounded down for `frame`.
 const TIMES: [f64; 8] = [0.0, 0.25, 0.7, 1.6, 3.1, 4.7, 10.3, 1234.5];
 
-/// Where a relation fails.
+/// A counterexample to a condition.
 #[derive(Clone, Debug)]
 pub(super) struct Refutation {
     frame: FrameValues,
-    /// The inputs that it depends on, by name, with their values there.
+    /// The inputs that the condition depends on, with their values.
     pub inputs: Vec<(String, f64)>,
 }
 
 impl Elaborator<'_> {
-    /// A frame at which the truth value is false; `None` if none is found.
+    /// A frame at which a condition is false; `None` if none is found.
     pub(super) fn probe(&self, holds: NodeId) -> Option<Refutation> {
         let start = FrameValues::defaults(&self.params);
         if let Some(holds) = self.as_bool(holds) {
@@ -37,7 +37,7 @@ impl Elaborator<'_> {
         let tape = Tape::new(&self.graph, &[holds]).ok()?;
         let combinations = choices.iter().map(Vec::len).fold(1, usize::saturating_mul);
         (0..combinations.min(MAX_COMBINATIONS)).find_map(|combination| {
-            // Beyond the limit, an odd stride keeps every input moving.
+            // If there are too many combinations, an odd stride still varies every input.
             let mut index = combination.wrapping_mul(combinations.div_ceil(MAX_COMBINATIONS) | 1);
             let mut frame = start.clone();
             for (&input, values) in inputs.iter().zip(&choices) {
@@ -59,7 +59,8 @@ impl Elaborator<'_> {
         Refutation { frame, inputs }
     }
 
-    /// The lanes of a node that is not per point, at that frame.
+    /// The components of a node at the frame of a counterexample. The node must not depend on a
+    /// point.
     pub(super) fn value_at(&self, node: NodeId, found: &Refutation) -> Option<Vec<f64>> {
         let lanes = evaluate_frame(&self.graph, &[node], &found.frame);
         Some(lanes.first()?[..self.graph.ty(node).width()].to_vec())

@@ -1,24 +1,16 @@
-//! Errors of elaboration: where they are shown, and the limits that end it.
+//! Diagnostics of elaboration: their positions, and the limits that end it.
 
 use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 use sdfc_graph::{FrameInput, Node, NodeId, Stage};
 
-use super::{Elaborator, MAX_NODES, MAX_STEPS, Outcome, Poison};
+use super::elaborator::{Elaborator, Outcome, Poison};
+use super::limits::{MAX_NODES, MAX_STEPS};
 
-/// How many enclosing calls a message shows.
+/// The number of enclosing calls that a message shows.
 const SHOWN_CALLS: usize = 3;
 
-/// A call that is being elaborated.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame<'p> {
-    /// Name of what is called.
-    pub name: &'p str,
-    /// The call.
-    pub span: Span,
-}
-
-/// See [`Elaborator::attempt`].
+/// A saved state, see [`Elaborator::attempt`].
 pub(super) struct Attempt {
     diagnostics: usize,
     reported: FxHashSet<Span>,
@@ -32,8 +24,8 @@ impl<'p> Elaborator<'p> {
         self.report(Diagnostic::error(code, span, message))
     }
 
-    /// Reports a diagnostic. One that lies in the library is shown at the scene's innermost call,
-    /// with the library's line as a note. Each place is reported once.
+    /// Reports a diagnostic. If its position is in the library, it is shown at the innermost call
+    /// in the scene, with the library's line as a note. Each position is reported once.
     pub(super) fn report(&mut self, mut found: Diagnostic) -> Poison {
         let origin = found.span;
         let mut calls = self.frames.iter().rev().filter(|frame| !self.is_library(frame.span));
@@ -47,7 +39,7 @@ impl<'p> Elaborator<'p> {
             }
         }
         let place = found.span;
-        // A call around the place is seen anyway; recursion comes by one call many times.
+        // A call around the position is visible anyway. With recursion, one call occurs many times.
         let mut shown = vec![place];
         let outer: Vec<Note> = calls
             .filter(|call| {
@@ -68,7 +60,7 @@ impl<'p> Elaborator<'p> {
         Poison
     }
 
-    /// What an elaboration that may fail without a word can be taken back to.
+    /// Saves the state before an elaboration that may fail silently, for [`Self::take_back`].
     pub(super) fn attempt(&self) -> Attempt {
         Attempt {
             diagnostics: self.diagnostics.len(),
@@ -78,7 +70,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// Forgets what was reported and recorded since.
+    /// Discards what was reported and recorded since a saved state.
     pub(super) fn take_back(&mut self, attempt: Attempt) {
         self.diagnostics.truncate(attempt.diagnostics);
         self.reported = attempt.reported;
@@ -88,7 +80,7 @@ impl<'p> Elaborator<'p> {
         self.in_clause = attempt.in_clause;
     }
 
-    /// Reports that a limit is reached and ends elaboration.
+    /// Reports that a limit is exceeded and ends elaboration.
     pub(super) fn stop(&mut self, found: Diagnostic) -> Poison {
         if !self.stopped {
             self.report(found);
@@ -97,14 +89,14 @@ impl<'p> Elaborator<'p> {
         Poison
     }
 
-    /// A value is missing without an error only where the checker let something pass that it
-    /// should have refused: better an error here than a picture without the value.
+    /// Reports a missing value without an error. This is a fault of the checker, but an error is
+    /// better than an image without the value.
     pub(super) fn explain_silence(&mut self) {
         if let Some(span) = self.missing
             && !sdfc_diagnostics::has_errors(&self.diagnostics)
         {
             let message =
-                "this could not be elaborated, for a reason that should have been found before";
+                "this has no value, and the checker did not find the reason: please report this";
             self.fail(Code::TYPE_MISMATCH, span, message);
         }
     }
@@ -122,21 +114,21 @@ impl<'p> Elaborator<'p> {
         let (what, limit) = if self.graph.len() > MAX_NODES {
             ("graph nodes", MAX_NODES as u64)
         } else if self.steps > MAX_STEPS {
-            ("steps of elaboration", MAX_STEPS)
+            ("evaluation steps", MAX_STEPS)
         } else {
             return Ok(());
         };
-        let message = format!("this scene takes more than {limit} {what}");
-        let help = "everything is inlined: a comprehension or recursion inside another multiplies";
+        let message = format!("this scene needs more than {limit} {what}");
+        let help = "functions and lists are expanded: nested lists and recursion multiply";
         Err(self.stop(Diagnostic::error(Code::TOO_MANY_NODES, span, message).help(help)))
     }
 
-    /// Reports that something must be known at compile time, and why it is not.
+    /// Reports a value that must be known at compile time, and why it is not.
     pub(super) fn not_constant(&mut self, span: Span, what: &str, node: NodeId) -> Poison {
         self.must_stay_constant(node);
         let why = self.why_not_constant(node);
         let message = format!("{what} must be known at compile time; {why}");
-        let help = "write the value here, or make it a `let`";
+        let help = "write the value here, or define it with `let`";
         self.report(Diagnostic::error(Code::NOT_COMPILE_TIME, span, message).help(help))
     }
 
@@ -150,17 +142,17 @@ impl<'p> Elaborator<'p> {
                 return match input {
                     FrameInput::Param(index) => {
                         let name = self.params.get(index as usize).map_or("", |param| &param.name);
-                        format!("`{name}` is a param, which moves without a recompile")
+                        format!("`{name}` is a param, which can change without a recompile")
                     }
                     FrameInput::Time => "`time` changes from frame to frame".to_owned(),
                     FrameInput::Frame => "`frame` changes from frame to frame".to_owned(),
                 };
             }
-            // A node of stage `Frame` has an argument of that stage, so this follows one path.
+            // A per-frame node has a per-frame argument, so this follows one path.
             let arguments = self.graph.arguments(node);
             stack.extend(arguments.filter(|&a| self.graph.stage(a) == Stage::Frame).take(1));
         }
-        "this is not".to_owned()
+        "this value is not constant".to_owned()
     }
 }
 
@@ -168,7 +160,7 @@ fn encloses(outer: Span, inner: Span) -> bool {
     outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }
 
-/// A number as messages show it: at most six digits after the point.
+/// A number for messages, with at most six digits after the decimal point.
 pub(super) fn show_number(value: f64) -> String {
     if value.is_nan() {
         return "not a number".to_owned();
@@ -177,11 +169,11 @@ pub(super) fn show_number(value: f64) -> String {
         return if value > 0.0 { "inf" } else { "-inf" }.to_owned();
     }
     let rounded = (value * 1e6).round() / 1e6;
-    // Adding 0 turns -0 into 0; a value that would round to 0 is shown as it is.
+    // Adding 0 turns -0 into 0. A value that would round to 0 is shown with all its digits.
     if rounded == 0.0 && value != 0.0 { format!("{value:e}") } else { format!("{}", rounded + 0.0) }
 }
 
-/// A number or vector as messages show it.
+/// A number or vector for messages.
 pub(super) fn show_lanes(lanes: &[f64]) -> String {
     if let [one] = lanes {
         return show_number(*one);

@@ -1,17 +1,17 @@
-//! The whole scene: params, named values, settings, what is drawn.
+//! The whole scene: params, lets, settings and the shapes to draw.
 
 use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{FrameInput, Graph, MaterialRule, ParamKind, Range, Scene, ShapeId, Type};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::expr::node_type;
 use super::report::{show_lanes, show_number};
 use super::value::Value;
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir;
 
 impl<'p> Elaborator<'p> {
-    /// Elaborates all of it; every independent part shows its errors.
+    /// Elaborates the scene. Errors of independent parts are all reported.
     pub(super) fn scene(&mut self) -> Scene {
         let program = self.program;
         for param in &program.params {
@@ -27,13 +27,13 @@ impl<'p> Elaborator<'p> {
         let settings = self.settings();
         let root = self.drawn();
         self.add_intersections();
-        let has_materials = root.is_some_and(|root| is_painted(&self.graph, root));
+        let has_materials = root.is_some_and(|root| has_material(&self.graph, root));
         let graph = std::mem::take(&mut self.graph);
         let params = std::mem::take(&mut self.params);
         Scene { graph, root, params, settings, has_materials }
     }
 
-    /// The union of all that stands alone; one shape stays itself.
+    /// The union of the shapes to draw; one shape is returned unchanged.
     fn drawn(&mut self) -> Option<ShapeId> {
         let program = self.program;
         let mut shapes = Vec::with_capacity(program.drawn.len());
@@ -50,7 +50,7 @@ impl<'p> Elaborator<'p> {
         let parts = Value::List(shapes.into_iter().map(|(value, _)| value).collect());
         match self.instance(program.union?, vec![Some((parts, span))], span) {
             Ok(Value::Shape(shape)) => {
-                // Nobody wrote this call.
+                // The scene's source does not contain this call.
                 self.sites.retain(|site| (site.shape, site.span) != (shape, span));
                 Some(shape)
             }
@@ -61,7 +61,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// Adds a param; one with an error keeps its place, with what is known of it.
+    /// Adds a param. A param with an error is added too, so that indices do not change.
     fn param(&mut self, param: &'p hir::Param) {
         let ty = node_type(&param.ty).unwrap_or(Type::Scalar);
         let default = self.param_constant(&param.default, ty, &param.choices);
@@ -69,7 +69,7 @@ impl<'p> Elaborator<'p> {
         let range = param.range.as_ref().and_then(|expr| self.param_range(expr));
         if let Some([lo, hi]) = range.filter(|[lo, hi]| !(*lo..=*hi).contains(&default[0])) {
             let message = format!(
-                "the default of `{}` is {}, outside {}..{}",
+                "the default of `{}` is {}, outside its range {}..{}",
                 param.name,
                 show_number(default[0]),
                 show_number(lo),
@@ -115,7 +115,7 @@ impl<'p> Elaborator<'p> {
                 self.constant_lanes(node, expr.span, "the default of a param").ok()
             }
             other => {
-                self.unexpected(expr.span, "a value that can move", &other);
+                self.unexpected(expr.span, "a number, bool, color or string", &other);
                 None
             }
         }
@@ -131,7 +131,7 @@ impl<'p> Elaborator<'p> {
         Some([lo[0], hi[0]])
     }
 
-    /// The lanes of a node that must be constant.
+    /// The components of a node that must be constant.
     pub(super) fn constant_lanes(
         &mut self,
         node: sdfc_graph::NodeId,
@@ -144,7 +144,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The moving value of a param.
+    /// The value of a param, a per-frame input.
     pub(super) fn param_value(&mut self, index: usize) -> Outcome<Value<'p>> {
         let param = self.params.get(index).ok_or(Poison)?;
         let (kind, ty) = (param.kind, param.ty);
@@ -159,7 +159,7 @@ impl<'p> Elaborator<'p> {
         })
     }
 
-    /// A constant number within a range.
+    /// Evaluates a number that must be constant and within a range.
     pub(super) fn number_within(
         &mut self,
         expr: &'p hir::Expr,
@@ -176,8 +176,8 @@ impl<'p> Elaborator<'p> {
             [lo, hi] if hi < f64::from(f32::MAX) => {
                 format!("{what} is {value}, outside {}..{}", show_number(lo), show_number(hi))
             }
-            [0.0, _] => format!("{what} is {value}; it is 0 or above, and finite"),
-            _ => format!("{what} is {value}; it is above 0, and finite"),
+            [0.0, _] => format!("{what} is {value}, but must be at least 0 and finite"),
+            _ => format!("{what} is {value}, but must be above 0 and finite"),
         };
         Err(self.fail(ErrorCode::OUT_OF_RANGE, expr.span, message))
     }
@@ -202,8 +202,8 @@ fn kind(ty: &hir::Type) -> ParamKind {
     }
 }
 
-/// Whether the shape or anything within it states a material.
-fn is_painted(graph: &Graph, root: ShapeId) -> bool {
+/// True if a shape or any of its descendants has a material.
+fn has_material(graph: &Graph, root: ShapeId) -> bool {
     let mut seen = FxHashSet::default();
     let mut stack = vec![root];
     while let Some(id) = stack.pop() {

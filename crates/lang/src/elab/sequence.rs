@@ -1,18 +1,19 @@
-//! Lists, comprehensions, indices and conditions.
+//! Lists, comprehensions, indices, slices and conditions.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::{Arg, Binary, Contract, MaterialRule, NodeId, Shape, ShapeId};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::limits::MAX_NODES;
 use super::report::show_number;
 use super::value::Value;
-use super::{Elaborator, Env, MAX_NODES, Outcome, Poison};
 use crate::hir::{Comprehension, Element, Expr};
 
-/// Elements of a list up to this many are selected by comparisons, more are looked up.
+/// The largest list whose elements are selected by comparisons; larger ones become tables.
 const SELECTED: usize = 4;
 
 impl<'p> Elaborator<'p> {
-    /// The values of a list's elements, comprehensions unrolled.
+    /// Evaluates the elements of a list; comprehensions are unrolled.
     pub(super) fn elements(
         &mut self,
         env: &mut Env<'p>,
@@ -58,7 +59,7 @@ impl<'p> Elaborator<'p> {
                     Some(true) => {}
                     Some(false) => continue,
                     None => {
-                        let what = "which elements `for` keeps";
+                        let what = "the condition of `for`";
                         return Err(self.not_constant(condition.span, what, keep));
                     }
                 }
@@ -68,7 +69,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// The values of a list, vector or half-open range.
+    /// Evaluates a sequence: a list, a vector or a half-open range.
     pub(super) fn sequence(
         &mut self,
         env: &mut Env<'p>,
@@ -91,19 +92,17 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// Refuses a repetition that alone would pass the limit of nodes.
+    /// Reports a sequence that alone exceeds the limit of graph nodes.
     fn count(&mut self, count: f64, span: Span) -> Outcome<()> {
         if count <= MAX_NODES as f64 {
             return Ok(());
         }
-        let message = format!(
-            "a sequence of {} values; at most {MAX_NODES} are possible",
-            show_number(count)
-        );
+        let message =
+            format!("this sequence has {} values; the limit is {MAX_NODES}", show_number(count));
         Err(self.stop(Diagnostic::error(Code::TOO_MANY_NODES, span, message)))
     }
 
-    /// A constant whole number.
+    /// A number that must be constant and whole.
     pub(super) fn whole(&mut self, node: NodeId, span: Span, what: &str) -> Outcome<f64> {
         let Some(value) = self.graph.as_number(node) else {
             return Err(self.not_constant(span, what, node));
@@ -111,7 +110,7 @@ impl<'p> Elaborator<'p> {
         if value.fract() == 0.0 && value.abs() <= 2f64.powi(53) {
             return Ok(value);
         }
-        let message = format!("{what} needs whole numbers, this is {}", show_number(value));
+        let message = format!("{what} needs whole numbers; this is {}", show_number(value));
         let help = "round it with `floor`, `round` or `ceil`";
         Err(self.report(Diagnostic::error(Code::DEGENERATE, span, message).help(help)))
     }
@@ -136,18 +135,19 @@ impl<'p> Elaborator<'p> {
 
     fn no_such_index(&mut self, position: f64, length: usize, span: Span) -> Poison {
         let message = if length == 0 {
-            "this list is empty: it has no elements to index".to_owned()
+            "this list is empty and cannot be indexed".to_owned()
         } else {
             let last = length - 1;
             format!(
-                "index {} is outside 0 to {last}: there are {length} elements",
+                "index {} is outside 0 to {last}: the list has {length} elements",
                 show_number(position)
             )
         };
         self.fail(Code::DEGENERATE, span, message)
     }
 
-    /// An index that moves: numbers only, the first element below 0, the last one past the end.
+    /// Selects an element by an index that is not constant. The elements must be numbers. An index
+    /// below 0 gives the first element, one past the end the last.
     fn select_index(&mut self, items: &[Value<'p>], at: NodeId, span: Span) -> Outcome<Value<'p>> {
         let mut nodes = Vec::with_capacity(items.len());
         for item in items {
@@ -177,7 +177,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(result))
     }
 
-    /// `list[a..b]`
+    /// `list[a..b]`.
     pub(super) fn slice(
         &mut self,
         env: &mut Env<'p>,
@@ -192,21 +192,17 @@ impl<'p> Elaborator<'p> {
         let lo = self.whole(lo, range.span, "a slice")?;
         let hi = self.whole(hi, range.span, "a slice")?;
         let within = lo >= 0.0 && lo <= hi && hi <= items.len() as f64;
-        // Copying counts as work: a slice of a slice of a slice is quadratic.
+        // Copying counts as work: repeated slices take quadratic time.
         self.steps += items.len() as u64;
         if let Some(part) = within.then(|| items.get(lo as usize..hi as usize)).flatten() {
             return Ok(Value::List(part.into()));
         }
-        let message = format!(
-            "slice {}..{} does not lie in 0..{}",
-            show_number(lo),
-            show_number(hi),
-            items.len()
-        );
+        let message =
+            format!("slice {}..{} is outside 0..{}", show_number(lo), show_number(hi), items.len());
         Err(self.fail(Code::DEGENERATE, range.span, message))
     }
 
-    /// `if`: one branch where the condition is known, else a selection of both.
+    /// `if`: one branch if the condition is constant, otherwise a selection of both.
     pub(super) fn branch(
         &mut self,
         env: &mut Env<'p>,
@@ -227,7 +223,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// `yes` where the condition holds, else `no`, for every type that can be selected.
+    /// Selects `yes` if the condition is true, otherwise `no`, for every type that allows it.
     pub(super) fn select(
         &mut self,
         condition: NodeId,
@@ -258,13 +254,13 @@ impl<'p> Elaborator<'p> {
             (Value::Shape(yes), Value::Shape(no)) => self.select_shape(condition, *yes, *no, span),
             _ => Err(self.not_constant(
                 span,
-                "a condition that chooses between functions, texts or lists of different length",
+                "a condition that selects functions, strings or lists of different lengths",
                 condition,
             )),
         }
     }
 
-    /// The shape that is one or the other by a condition.
+    /// A shape that is one of two shapes by a condition.
     fn select_shape(
         &mut self,
         condition: NodeId,
@@ -295,7 +291,7 @@ impl<'p> Elaborator<'p> {
         self.add_shape(shape, span)
     }
 
-    /// Compares two texts, or a text with a text param.
+    /// Compares two strings, or a string with a string param.
     pub(super) fn texts_equal(&mut self, a: &Value<'p>, b: &Value<'p>) -> Option<NodeId> {
         match (a, b) {
             (Value::Text(a), Value::Text(b)) => Some(self.graph.boolean(a == b)),

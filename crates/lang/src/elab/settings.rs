@@ -1,42 +1,43 @@
-//! Settings: camera, background, method; lights are beside it.
+//! Settings, such as camera, background and ray method. Lights are in [`super::lights`].
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
 use sdfc_graph::{Camera, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky, Type};
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::value::Value;
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir::{Expr, Setting, SettingKind};
 use crate::settings::RAY_METHODS;
 
-/// Field of view without `fov`: 40 degrees.
+/// Default field of view: 40 degrees.
 const DEFAULT_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
-/// Strength of `ambient()` without one.
+/// Default strength of `ambient()`.
 const DEFAULT_AMBIENT: f64 = 0.2;
-/// Linear colours of `sky()`: those of #4477bb and #dde8f0.
+/// Default linear colours of `sky()`: #4477bb and #dde8f0.
 const DEFAULT_ZENITH: [f64; 3] = [0.0578, 0.1845, 0.4969];
 const DEFAULT_HORIZON: [f64; 3] = [0.7230, 0.8070, 0.8714];
-/// Density of `fog()`, per scene unit.
+/// Default density of `fog()`, per scene unit.
 const DEFAULT_DENSITY: f64 = 0.05;
-/// Radius of `ambient_occlusion()`, in scene units.
+/// Default radius of `ambient_occlusion()`, in scene units.
 const DEFAULT_OCCLUSION_RADIUS: f64 = 0.3;
-/// How often `reflections()` mirrors.
+/// Default number of reflections of `reflections()`.
 const DEFAULT_MIRRORS: u32 = 1;
-/// What the first mirror of `reflections()` counts.
+/// Default factor of each reflection of `reflections()`.
 const DEFAULT_REFLECTION: f64 = 0.3;
-/// As `march` has it: each mirror repeats the whole of the work.
+/// The largest number of reflections, which is also that of `march`: each one repeats all work.
 const MAX_MIRRORS: f64 = 8.0;
-/// Rays for each pixel of `antialias()`.
+/// Default number of rays per pixel of `antialias()`.
 const DEFAULT_SAMPLES: u32 = 4;
-/// As many as the renderer takes.
+/// The largest number of rays per pixel, which is also that of the renderer.
 const MAX_SAMPLES: f64 = 1024.0;
-/// Most steps of a ray: some drivers end a loop silently at 65,535 rounds.
+/// The largest number of steps of a ray: some drivers silently end a loop after 65,535 iterations.
 const MAX_MARCH_STEPS: f64 = 65_535.0;
-/// Lengths and other numbers that must be above 0.
+/// The range of numbers that must be above 0.
 pub(super) const POSITIVE: [f64; 2] = [f32::MIN_POSITIVE as f64, f32::MAX as f64];
-const SHARE: [f64; 2] = [0.0, 1.0];
+/// The range of fractions.
+const FRACTION: [f64; 2] = [0.0, 1.0];
 
 impl<'p> Elaborator<'p> {
-    /// All settings of the scene.
+    /// Elaborates all settings of the scene.
     pub(super) fn settings(&mut self) -> Settings {
         let mut settings = Settings::default();
         for setting in &self.program.settings {
@@ -81,7 +82,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// The argument at a place of the setting's row, if it was written.
+    /// The argument with an index, if it was given.
     pub(super) fn argument(&self, setting: &'p Setting, place: usize) -> Option<&'p Expr> {
         setting.args.get(place).and_then(Option::as_ref)
     }
@@ -101,7 +102,7 @@ impl<'p> Elaborator<'p> {
         Ok(color.map(|color| self.graph.swizzle(color, &[0, 1, 2])))
     }
 
-    /// A number within a range; one that moves is looked at when its frame is drawn.
+    /// A number that must be within a range. A per-frame number is checked when its frame is drawn.
     pub(super) fn setting_within(
         &mut self,
         setting: &'p Setting,
@@ -116,7 +117,7 @@ impl<'p> Elaborator<'p> {
         Ok(node)
     }
 
-    /// A number that is known when the scene compiles, within a range.
+    /// A number that must be known at compile time and within a range.
     fn known_within(
         &mut self,
         setting: &'p Setting,
@@ -162,7 +163,7 @@ impl<'p> Elaborator<'p> {
 
     fn occlusion(&mut self, setting: &'p Setting) -> Outcome<Occlusion> {
         let radius = self.setting_within(setting, 0, "`radius`", POSITIVE);
-        let strength = self.setting_within(setting, 1, "`strength`", SHARE);
+        let strength = self.setting_within(setting, 1, "`strength`", FRACTION);
         Ok(Occlusion {
             radius: radius?.unwrap_or_else(|| self.graph.number(DEFAULT_OCCLUSION_RADIUS)),
             strength: strength?.unwrap_or_else(|| self.graph.number(1.0)),
@@ -171,7 +172,7 @@ impl<'p> Elaborator<'p> {
 
     fn reflections(&mut self, setting: &'p Setting) -> Outcome<Reflections> {
         let count = self.known_within(setting, 0, "`count`", [0.0, MAX_MIRRORS]);
-        let strength = self.setting_within(setting, 1, "`strength`", SHARE);
+        let strength = self.setting_within(setting, 1, "`strength`", FRACTION);
         Ok(Reflections {
             count: count?.map_or(DEFAULT_MIRRORS, |count| count as u32),
             strength: strength?.unwrap_or_else(|| self.graph.number(DEFAULT_REFLECTION)),
@@ -199,12 +200,12 @@ impl<'p> Elaborator<'p> {
             if let Value::Choice(node, _) = value {
                 return Err(self.not_constant(expr.span, "the ray method", node));
             }
-            return Err(self.unexpected(expr.span, "a text", &value));
+            return Err(self.unexpected(expr.span, "a string", &value));
         };
         if RAY_METHODS.contains(&&**text) {
             return Ok(text.to_string());
         }
-        let message = format!("there is no ray method \"{text}\" in this version");
+        let message = format!("there is no ray method \"{text}\"");
         let help = format!("the methods are {}", RAY_METHODS.join(", "));
         let error = Diagnostic::error(ErrorCode::NOT_YET, expr.span, message);
         Err(self.report(error.help(help)))

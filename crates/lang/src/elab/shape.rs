@@ -1,63 +1,20 @@
-//! Shape instances: arguments, clauses, formula, material.
+//! Shape instances: arguments, clauses, formula and material.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{
-    Binary, Contract, Dim, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
+    Binary, Contract, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
 };
 
-use super::report::{Frame, show_lanes};
+use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison};
+use super::limits::MAX_DEPTH;
+use super::output::Site;
+use super::report::show_lanes;
 use super::value::{Value, highest};
-use super::{Declared, DeclaredPromise, Elaborator, Env, MAX_DEPTH, Outcome, Poison, Site};
-use crate::hir::{self, Expr, Promise, ShapeDef, ShapeDefId};
-
-/// A name for each definition: its own, with a number where the program has several of that name
-/// and dimension (a scene's `sphere` beside the library's).
-pub(super) fn definition_names(program: &hir::Program) -> Vec<String> {
-    let mut count: FxHashMap<(&str, Dim), u32> = FxHashMap::default();
-    let taken: FxHashSet<&str> = program.shapes.iter().map(|shape| shape.name.as_str()).collect();
-    let mut names = Vec::with_capacity(program.shapes.len());
-    for shape in &program.shapes {
-        let times = count.entry((&shape.name, shape.dim)).or_insert(0);
-        *times += 1;
-        let mut name = shape.name.clone();
-        while *times > 1 && taken.contains(name.as_str()) {
-            name = format!("{}_{times}", shape.name);
-            *times += 1;
-        }
-        names.push(name);
-    }
-    names
-}
-
-/// The shapes that are not the library's; `names` are those of all definitions.
-pub(super) fn declared(program: &hir::Program, names: &[String]) -> Vec<Declared> {
-    let own = program.shapes.iter().zip(names).filter(|(s, _)| !program.library.contains(&s.file));
-    let promise = |stated: &Promise| DeclaredPromise {
-        exact: stated.exact,
-        outside: stated.outside,
-        inside: stated.inside,
-        span: stated.span,
-    };
-    own.map(|(shape, name)| Declared {
-        definition: name.clone(),
-        promises: shape.promises.iter().map(promise).collect(),
-        lipschitz: shape.lipschitz.as_ref().map(|stated| stated.span),
-        bounds: shape.bounds.as_ref().map(|stated| stated.span),
-        intersect: shape.intersect.as_ref().map(|stated| stated.value.span),
-        copies: shape.copies,
-    })
-    .collect()
-}
-
-/// Whether any shape of the program states a material; one that states shares alone mixes those of others.
-pub(super) fn paints(program: &hir::Program) -> bool {
-    let mut stated = program.shapes.iter().filter_map(|shape| shape.material.as_ref());
-    stated.any(|material| material.ty == hir::Type::Material)
-}
+use crate::hir::{Expr, Promise, ShapeDef, ShapeDefId};
 
 impl<'p> Elaborator<'p> {
-    /// The instance that a call of a shape's definition makes.
+    /// Builds an instance from a call of a shape's declaration.
     pub(super) fn build(
         &mut self,
         env: &mut Env<'p>,
@@ -69,7 +26,7 @@ impl<'p> Elaborator<'p> {
         self.instance(id, given, span)
     }
 
-    /// As [`Self::build`], from values.
+    /// Like [`Self::build`], from values.
     pub(super) fn instance(
         &mut self,
         id: ShapeDefId,
@@ -78,7 +35,7 @@ impl<'p> Elaborator<'p> {
     ) -> Outcome<Value<'p>> {
         let program = self.program;
         let definition = program.shapes.get(id.0 as usize).ok_or(Poison)?;
-        self.frames.push(Frame { name: &definition.name, span });
+        self.frames.push(CallFrame { name: &definition.name, span });
         let in_clause = std::mem::replace(&mut self.in_clause, false);
         let result = self.instance_inside(definition, id, given, span);
         self.in_clause = in_clause;
@@ -134,26 +91,26 @@ impl<'p> Elaborator<'p> {
         };
         let built = self.add_shape(shape, span)?;
         if let Value::Shape(shape) = built {
-            self.may_be_hit(id, shape, env);
+            self.queue_intersection(id, shape, env);
         }
         Ok(built)
     }
 
-    /// The bounds beyond which a formula is to be continued, and how fast.
+    /// The bounds outside which the field is extended, and the slope of the extension.
     fn continuation(&mut self, contract: &Contract) -> Option<([NodeId; 2], NodeId)> {
         let constant = contract.lipschitz.filter(|_| contract.is_extended)?;
         let bounds = contract.bounds.filter(|_| self.graph.is_finite(constant))?;
-        // A field that is nowhere above the distance goes on as one.
+        // A field that never exceeds the distance is extended with slope 1.
         let is_bound = contract.outside != SidePromise::default();
         Some((bounds, if is_bound { self.graph.number(1.0) } else { constant }))
     }
 
-    /// Adds an instance whose children are yet to be found.
+    /// Adds an instance; finds its children first.
     pub(super) fn add_shape(&mut self, mut shape: Shape, span: Span) -> Outcome<Value<'p>> {
         let formula = survey(&self.graph, shape.formula);
         if formula.infinite {
             let message = format!("`{}` computes with an infinite value here", shape.definition);
-            let help = "no shader can hold one; give a large number instead";
+            let help = "shaders need finite numbers: use a large number instead";
             let error = Diagnostic::error(ErrorCode::NOT_FINITE, span, message).help(help);
             return Err(self.report(error));
         }
@@ -161,8 +118,8 @@ impl<'p> Elaborator<'p> {
         let deepest = shape.children.iter().map(|&child| self.graph.shape(child).depth).max();
         shape.depth = 1 + deepest.unwrap_or(0);
         if shape.depth > MAX_DEPTH {
-            let message = format!("shapes stand more than {MAX_DEPTH} deep inside one another");
-            let help = "join many shapes in one `union(...)` instead of one by one";
+            let message = format!("shapes are nested more than {MAX_DEPTH} levels deep");
+            let help = "join many shapes with one `union(...)` instead of one by one";
             let error = Diagnostic::error(ErrorCode::SHAPE_NESTING, span, message).help(help);
             return Err(self.stop(error));
         }
@@ -171,7 +128,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Shape(id))
     }
 
-    /// Records a call of the scene's own; what the library builds for itself stands below it.
+    /// Records a call in the scene's files. Shapes that the library builds are not recorded.
     fn add_site(&mut self, shape: ShapeId, span: Span) {
         if !self.is_library(span) && self.seen_sites.insert((shape, span)) {
             let name = self.graph.shape(shape).definition.clone();
@@ -185,7 +142,7 @@ impl<'p> Elaborator<'p> {
         definition: &'p ShapeDef,
         formula: NodeId,
     ) -> Outcome<MaterialRule> {
-        let Some(stated) = definition.material.as_ref().filter(|_| self.paints) else {
+        let Some(stated) = definition.material.as_ref().filter(|_| self.has_materials) else {
             return Ok(MaterialRule::Weighted(formula));
         };
         match self.eval(env, stated)? {
@@ -195,8 +152,8 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// What the clauses state, in terms of constants and per-frame values. A clause that depends
-    /// on an outer formula's point states nothing.
+    /// Evaluates the clauses to constants and per-frame values. A clause that depends on an outer
+    /// formula's point is ignored.
     fn contract(&mut self, env: &mut Env<'p>, definition: &'p ShapeDef) -> Outcome<Contract> {
         self.in_clause = true;
         let contract = self.clauses(env, definition);
@@ -210,12 +167,12 @@ impl<'p> Elaborator<'p> {
             self.promise(env, promise, &mut contract)?;
         }
         if let Some(stated) = &definition.lipschitz {
-            self.asked_bounds = false;
+            self.used_bounds = false;
             let constant = self.stated_constant(env, stated)?;
             contract.lipschitz = Some(constant).filter(|&node| self.is_early(node));
             contract.everywhere = definition.everywhere;
             let steep = self.graph.as_number(constant).is_none_or(|constant| constant > 1.0);
-            contract.is_local = self.asked_bounds && !definition.everywhere;
+            contract.is_local = self.used_bounds && !definition.everywhere;
             contract.is_extended = contract.is_local && steep;
         }
         contract.copies = definition.copies.is_some();
@@ -257,7 +214,7 @@ impl<'p> Elaborator<'p> {
         Ok(())
     }
 
-    /// A stated Lipschitz constant, infinite where it is no number. One below 0 is refused.
+    /// A stated Lipschitz constant; infinite if it is not a number. A negative one is an error.
     pub(super) fn stated_constant(
         &mut self,
         env: &mut Env<'p>,
@@ -270,8 +227,8 @@ impl<'p> Elaborator<'p> {
         let Some(found) = self.refute(holds) else { return Ok(constant) };
         let value = self.value_at(constant, &found).map_or("…".to_owned(), |v| show_lanes(&v));
         let can_be = if found.inputs.is_empty() { "is" } else { "can be" };
-        let message = format!("this Lipschitz constant {can_be} {value}, and none is below 0");
-        let help = "it is the most by which the value changes where its argument changes by 1";
+        let message = format!("this Lipschitz constant {can_be} {value}, but must be at least 0");
+        let help = "it is the largest change of the value when its argument changes by 1";
         Err(self
             .report(Diagnostic::error(ErrorCode::OUT_OF_RANGE, stated.span, message).help(help)))
     }
@@ -280,8 +237,8 @@ impl<'p> Elaborator<'p> {
         self.graph.stage(node) != Stage::Point
     }
 
-    /// A constant with `otherwise` in place of what is not a number: 0 times infinity, for
-    /// example, where a shape without bounds is twisted by 0.
+    /// Replaces components of a constant that are not a number by `otherwise`. An example is 0
+    /// times infinity, if a shape without bounds is twisted by 0.
     fn known(&mut self, node: NodeId, otherwise: f64) -> NodeId {
         let node = self.settled(node);
         let Some((lanes, width)) = self.as_lanes(node) else { return node };
@@ -290,12 +247,12 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// What a walk over a formula finds.
+/// The result of a walk over a formula.
 #[derive(Default)]
 struct Formula {
     /// The shapes that it samples, in order of first use.
     children: Vec<ShapeId>,
-    /// Whether it computes with a constant that is not finite.
+    /// True if it computes with a constant that is not finite.
     infinite: bool,
 }
 
@@ -308,7 +265,7 @@ fn survey(graph: &Graph, root: NodeId) -> Formula {
         if let Some(value) = graph.as_const(id) {
             found.infinite |= value.lanes().iter().any(|lane| !lane.is_finite());
         }
-        // Only what depends on a point can hold a sample.
+        // Only nodes that depend on a point can contain a sample.
         if graph.stage(id) != Stage::Point || !seen.insert(id) {
             continue;
         }

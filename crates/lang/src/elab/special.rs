@@ -7,12 +7,12 @@ use sdfc_graph::{
     reachable,
 };
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::kernel::Application;
 use super::value::{Closure, Value};
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::hir;
 
-/// The largest whole number up to which 32-bit floats hold every one.
+/// 2^24: 32-bit floats represent all whole numbers up to this one.
 const MAX_INDEX: f64 = 16_777_216.0;
 
 impl<'p> Elaborator<'p> {
@@ -27,7 +27,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(self.graph.compose(&[x, y, zero])))
     }
 
-    /// `len(x)` of a list, range of whole numbers or vector.
+    /// `len(x)` of a list, a range of whole numbers or a vector.
     pub(super) fn len(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let over = at.args.first().ok_or(Poison)?;
         let length = match self.eval(env, over)? {
@@ -43,10 +43,10 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Node(self.graph.number(length)))
     }
 
-    /// `bounds(a)`: what the graph knows of where the shape lies; of a function that gives shapes, where any of
-    /// them lies.
+    /// `bounds(a)`: the bounds that the graph knows for a shape, or for all shapes that a function
+    /// makes.
     pub(super) fn bounds(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
-        self.asked_bounds = true;
+        self.used_bounds = true;
         let over = at.args.first().ok_or(Poison)?;
         match self.eval(env, over)? {
             Value::Shape(shape) => {
@@ -58,13 +58,13 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// The hull of the bounds of all shapes that a function gives.
+    /// The box around all shapes that a function makes.
     fn bounds_of_all(&mut self, closure: &Closure<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
         let takes = match at.args.first().map(|arg| &arg.ty) {
             Some(hir::Type::Fn(takes, _)) => takes.clone(),
             _ => return Err(Poison),
         };
-        // A shape whose arguments depend on an outer point has bounds that hold for all of them.
+        // If a shape's arguments depend on an outer point, its bounds hold for all arguments.
         let before = self.attempt();
         let mut anything = Vec::with_capacity(takes.len());
         for ty in &takes {
@@ -79,8 +79,9 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Range(lo, hi))
     }
 
-    /// A value of a type that no point outside decides: a shape made of it stands for all such shapes. Indices
-    /// beyond what 32-bit floats count exactly are left out, since no remainder of those is known.
+    /// An unknown value of a type, computed from a new outer point: a shape made with it represents
+    /// all such shapes. Values are limited to [`MAX_INDEX`], since nothing is known about
+    /// remainders of larger ones.
     fn anything(&mut self, ty: &hir::Type, level: u16, span: Span) -> Outcome<Value<'p>> {
         let point = self.graph.point(level, Dim::Three);
         let [lo, hi] = [-MAX_INDEX, MAX_INDEX].map(|end| self.graph.number(end));
@@ -96,14 +97,14 @@ impl<'p> Elaborator<'p> {
                 self.graph.swizzle(point, &lanes)
             }
             _ => {
-                let message = "`bounds` of a function needs one of numbers or points";
+                let message = "`bounds` needs a function of numbers or points";
                 return Err(self.fail(ErrorCode::TYPE_MISMATCH, span, message));
             }
         };
         Ok(Value::Node(node))
     }
 
-    /// `gradient(shape, point)`: the shape's formula, those of its parts put in, differentiated.
+    /// `gradient(shape, point)`: expands the shape's formula and differentiates it.
     pub(super) fn gradient(
         &mut self,
         env: &mut Env<'p>,
@@ -113,7 +114,7 @@ impl<'p> Elaborator<'p> {
         let (shape, place) = (self.shape(env, shape), self.number(env, place));
         let (shape, place) = (shape?, place?);
         let (level, dim) = (self.graph.shape(shape).level, self.graph.shape(shape).dim);
-        // Points of the formulas around it stay; its own is replaced by the place in the end.
+        // Points of outer formulas stay; the shape's own point is replaced at the end.
         let mut points: Vec<NodeId> =
             (0..level).map(|outer| self.outer_point(shape, outer)).collect();
         let own = self.graph.point(level, dim);
@@ -129,7 +130,7 @@ impl<'p> Elaborator<'p> {
         })
     }
 
-    /// The point of a formula around a shape, as the shape's formulas speak of it.
+    /// The node of an outer formula's point in the formulas of a shape.
     fn outer_point(&mut self, shape: ShapeId, level: u16) -> NodeId {
         let mut pending = vec![shape];
         let mut seen = rustc_hash::FxHashSet::default();
@@ -144,16 +145,16 @@ impl<'p> Elaborator<'p> {
             }
             pending.extend(self.graph.shape(shape).children.iter().copied());
         }
-        self.graph.point(level, Dim::Three) // no formula speaks of it
+        self.graph.point(level, Dim::Three) // no formula uses it
     }
 
-    /// Derived once per shape. All params are known by then: only they stand before shapes.
+    /// The bounds of a shape, derived once per shape. All params are known by then.
     fn shape_bounds(&mut self, shape: ShapeId) -> [NodeId; 2] {
         let bounds = self.bounds.get_or_insert_with(|| Bounds::new(&self.params));
         bounds.of(&mut self.graph, shape)
     }
 
-    /// `material(...)`: the colour's alpha is the coverage.
+    /// `material(...)`. The colour's alpha is the coverage.
     pub(super) fn new_material(
         &mut self,
         env: &mut Env<'p>,
@@ -166,7 +167,7 @@ impl<'p> Elaborator<'p> {
         Ok(Value::Material([color, coverage, roughness, metallic, emission, occlusion]))
     }
 
-    /// `material_at(shape, point)`
+    /// `material_at(shape, point)`.
     pub(super) fn material_at(
         &mut self,
         env: &mut Env<'p>,
@@ -191,7 +192,7 @@ impl<'p> Elaborator<'p> {
         self.hashed(env, at, start)
     }
 
-    /// The lanes of all arguments, hashed one after the other.
+    /// Hashes the components of all arguments in order.
     fn hashed(
         &mut self,
         env: &mut Env<'p>,
@@ -212,5 +213,6 @@ impl<'p> Elaborator<'p> {
     }
 }
 
-/// Where the three numbers of `hash3` start: far apart, since a start and a coordinate are added.
+/// The start values of the three numbers of `hash3`. They are far apart, since a start value and a
+/// coordinate are added.
 const HASH_STARTS: [f64; 3] = [0.0, 10_368_889.0, 4_370_562.0];

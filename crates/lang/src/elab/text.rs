@@ -1,20 +1,21 @@
-//! Letters: `glyph_curves`.
+//! Text: the kernel function `glyph_curves`.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Type;
 
+use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::kernel::Application;
 use super::value::Value;
-use super::{Elaborator, Env, Outcome, Poison};
 use crate::font::Setting;
 use crate::hir::Expr;
 use crate::outline::Piece;
 
-/// Values of `align`, and which part of a line each puts at x = 0.
+/// The values of `align`, and the fraction of a line that each puts to the left of x = 0.
 const ALIGNMENTS: [(&str, f64); 3] = [("left", 0.0), ("center", 0.5), ("right", 1.0)];
 
 impl<'p> Elaborator<'p> {
-    /// `glyph_curves(text, font, align, spacing, leading)`: known at compile time.
+    /// `glyph_curves(text, font, align, spacing, leading)`. All arguments must be known at compile
+    /// time.
     pub(super) fn glyph_curves(
         &mut self,
         env: &mut Env<'p>,
@@ -28,7 +29,7 @@ impl<'p> Elaborator<'p> {
         let leading = self.fixed(env, leading, "the leading of a text")?;
         let pieces = self.fonts.curves(&words, &font, Setting { align, spacing, leading });
         let pieces = pieces.map_err(|why| {
-            let help = "write letters that the font has; `font:` names `sans` or a font file beside the scene";
+            let help = "use letters that the font has; `font:` is \"sans\" or a font file beside the scene";
             self.report(Diagnostic::error(Code::TEXT, at.span, why).help(help))
         })?;
         self.steps += 4 * pieces.len() as u64;
@@ -44,7 +45,7 @@ impl<'p> Elaborator<'p> {
         match self.eval(env, e)? {
             Value::Text(text) => Ok(text),
             Value::Choice(node, _) => Err(self.not_constant(e.span, what, node)),
-            other => Err(self.unexpected(e.span, "a text", &other)),
+            other => Err(self.unexpected(e.span, "a string", &other)),
         }
     }
 
@@ -55,7 +56,7 @@ impl<'p> Elaborator<'p> {
     }
 
     fn unknown_alignment(&mut self, name: &str, span: Span) -> Poison {
-        let message = format!("a text is aligned `left`, `center` or `right`, not `{name}`");
+        let message = format!("`align` must be \"left\", \"center\" or \"right\", not \"{name}\"");
         self.fail(Code::TEXT, span, message)
     }
 

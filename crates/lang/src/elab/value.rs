@@ -1,4 +1,4 @@
-//! Values of elaboration.
+//! The values of elaboration.
 
 use std::rc::Rc;
 
@@ -6,12 +6,12 @@ use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId, Stage};
 
 use crate::hir::{FnId, Lambda};
 
-/// What an expression evaluates to.
+/// The value of an expression.
 #[derive(Clone, Debug)]
 pub(super) enum Value<'p> {
-    /// A number, vector, colour (linear red, green, blue, alpha) or truth value.
+    /// A number, vector, colour (linear red, green, blue, alpha) or bool.
     Node(NodeId),
-    /// A text param: the node is the index of the choice, the number the param's position.
+    /// A string param: the node of the choice's index, and the index of the param.
     Choice(NodeId, usize),
     Text(Rc<str>),
     Range(NodeId, NodeId),
@@ -26,18 +26,18 @@ pub(super) enum Value<'p> {
 /// A function value.
 #[derive(Debug)]
 pub(super) struct Closure<'p> {
-    /// Equal for closures of one text with equal captures.
+    /// The id; equal for closures with the same code and equal captures.
     pub id: u32,
     pub code: Code<'p>,
-    /// Captured values; of a constant function, its value alone.
+    /// The captured values; for a constant function, its value.
     pub captures: Vec<Value<'p>>,
     /// The highest level among the captures.
     pub levels: u16,
-    /// Whether a capture moves, see [`Value::moves`].
+    /// True if a capture depends on a point, see [`Value::moves`].
     pub moves: bool,
 }
 
-/// What a call of a closure runs.
+/// The code of a closure.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Code<'p> {
     Lambda(&'p Lambda),
@@ -45,11 +45,11 @@ pub(super) enum Code<'p> {
     Constant,
 }
 
-/// What makes closures equal: the text (by its address in the program, which outlives
-/// elaboration; constant functions have none) and the captures.
+/// Identifies equal closures: their code (by its address in the program, which outlives
+/// elaboration; constant functions have none) and their captures.
 pub(super) type ClosureKey = (Option<CodeKey>, Vec<Arg>);
 
-/// A closure's text.
+/// Identifies the code of a closure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum CodeKey {
     Lambda(*const Lambda),
@@ -67,7 +67,7 @@ impl Code<'_> {
 }
 
 impl Value<'_> {
-    /// One more than the highest level of a point that the value depends on; 0 for none.
+    /// One more than the highest level of a point that the value depends on; 0 if there is none.
     pub(super) fn levels(&self, graph: &Graph) -> u16 {
         match self {
             Self::Node(node) | Self::Choice(node, _) => graph.levels(*node),
@@ -82,7 +82,7 @@ impl Value<'_> {
         }
     }
 
-    /// Whether the value changes with a point or from one round of a loop to the next.
+    /// True if the value depends on a point or on the iteration of a loop.
     pub(super) fn moves(&self, graph: &Graph) -> bool {
         let varies = |node: &NodeId| graph.stage(*node) == Stage::Point;
         match self {
@@ -100,7 +100,7 @@ impl Value<'_> {
         }
     }
 
-    /// The value as an argument that identifies a shape instance.
+    /// The value as an argument of a shape instance, which identifies the instance.
     pub(super) fn to_arg(&self) -> Arg {
         match self {
             Self::Node(node) | Self::Choice(node, _) => Arg::Node(*node),
@@ -119,7 +119,7 @@ impl Value<'_> {
     }
 }
 
-/// The highest of some levels.
+/// The highest of some levels; 0 if there are none.
 pub(super) fn highest(levels: impl Iterator<Item = u16>) -> u16 {
     levels.max().unwrap_or(0)
 }
