@@ -17,7 +17,7 @@ fn every_library_entry_checks_in_both_dimensions() {
 }
 
 #[test]
-fn a_scene_reaches_only_what_it_needs() {
+fn a_scene_uses_only_the_library_items_it_needs() {
     let (program, found, _) = Library::new().check("sphere(1)\n");
     assert!(found.is_empty());
     let names: Vec<&str> = program.shapes.iter().map(|shape| shape.name.as_str()).collect();
@@ -35,7 +35,7 @@ fn all_example_scenes_check() {
 }
 
 #[test]
-fn the_typed_program_of_a_blend() {
+fn a_blend_becomes_a_typed_program() {
     insta::assert_snapshot!(printed(
         "param k = 0.4 in 0..1
 let ball = sphere(0.8).translate(y: 1)
@@ -45,7 +45,7 @@ camera(eye: [4, 3, 5], fov: 35deg)"
 }
 
 #[test]
-fn captures_come_first_and_through_every_level() {
+fn a_lambda_captures_through_every_level() {
     insta::assert_snapshot!(printed(
         "solid bumpy(a: solid, h = 0.1) = {
   let n = 8
@@ -60,7 +60,7 @@ bumpy(sphere())"
 }
 
 #[test]
-fn coercions_are_written_out() {
+fn coercions_are_explicit() {
     insta::assert_snapshot!(printed(
         "fn far(a: vec3 = 1, f: fn(vec3) -> vec3 = 2, l: [vec2] = [1, [2, 3]]) = length(a + 1 - f(0))
 shape grow(a: shape, by: fn(point) -> length) bounds -1..bounds(a).hi = a(p) - by(p)

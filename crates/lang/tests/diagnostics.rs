@@ -1,17 +1,17 @@
-//! Every finding of the checker, rendered below its scene, by theme.
+//! The checker's diagnostics: scenes with the rendered messages below them, by theme.
 #![allow(missing_docs)]
 
 mod common;
 
 use common::findings;
 
-/// Scenes separated by lines of dashes, each followed by what is found in it.
+/// Scenes separated by lines of dashes, each followed by its diagnostics.
 fn all(scenes: &[&str]) -> String {
     let found: Vec<String> = scenes.iter().map(|scene| findings(scene)).collect();
     found.join("\n\n================\n\n")
 }
 
-/// A snapshot without the expression: the scenes stand in it already.
+/// A snapshot without the expression, since it already contains the scenes.
 macro_rules! assert_findings {
     ($found:expr) => {
         insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!($found) })
@@ -19,7 +19,7 @@ macro_rules! assert_findings {
 }
 
 #[test]
-fn names() {
+fn wrong_names_are_reported() {
     assert_findings!(all(&[
         "spere(1)",
         "let r = 2 * raduis\nsphere(r).color(#fff)",
@@ -38,7 +38,7 @@ fn names() {
 }
 
 #[test]
-fn calls() {
+fn wrong_calls_are_reported() {
     assert_findings!(all(&[
         "sphere(1, 2)\nsphere(radius: 1)\nsphere(r: 1, r: 2)\nsphere(r: 1, 2)",
         "plane().color(checker(size: 1))",
@@ -64,7 +64,7 @@ fn calls() {
 }
 
 #[test]
-fn intervals_of_rays() {
+fn wrong_ray_intersections_are_reported() {
     assert_findings!(all(&[
         "region r() intersect [0, 1] = length(p) - 1\nr().extrude(1)",
         "shape s() intersect [0, 1] = length(p) - 1\nsphere(1)",
@@ -77,7 +77,7 @@ fn intervals_of_rays() {
 }
 
 #[test]
-fn dimensions() {
+fn wrong_dimensions_are_reported() {
     assert_findings!(all(&[
         "circle(1)",
         "circle(1).translate(z: 1).extrude(1)",
@@ -92,7 +92,7 @@ fn dimensions() {
 }
 
 #[test]
-fn angles() {
+fn missing_angle_units_are_reported() {
     assert_findings!(all(&[
         "sphere(1).rotate(y: 90)",
         "param turn = 10 in 0..90\nsphere(1).rotate(y: turn).rotate(x: -1.5, z: 45deg + 10)",
@@ -103,7 +103,7 @@ fn angles() {
 }
 
 #[test]
-fn types() {
+fn wrong_types_are_reported() {
     assert_findings!(all(&[
         "sphere(\"big\")\nsphere([1, 2, 3])\nsphere(true)",
         "sphere(1).color(0.5)\nsphere(1).color([1, 0, 0])\nsphere(1).color(fn(q) = q.x)",
@@ -125,7 +125,7 @@ fn types() {
 }
 
 #[test]
-fn operators() {
+fn wrong_operands_are_reported() {
     assert_findings!(all(&[
         "sphere(1) + box(1)",
         "sphere(1) * 2\nsphere(1) - 0.5\n-sphere(1)\n!sphere(1)",
@@ -137,7 +137,7 @@ fn operators() {
 }
 
 #[test]
-fn points() {
+fn wrong_uses_of_the_point_are_reported() {
     assert_findings!(all(&[
         "sphere(p.x)",
         "fn f(a) = a + p.y\nsphere(f(1))",
@@ -148,7 +148,7 @@ fn points() {
 }
 
 #[test]
-fn circles() {
+fn circular_definitions_are_reported() {
     assert_findings!(all(&[
         "solid a(n: int) = if n == 0 { length(p) } else { a(n - 1)(p) }\na(3)",
         "solid a() = b()(p)\nsolid b() = c()(p)\nfn c() -> solid = a()\na()",
@@ -159,7 +159,7 @@ fn circles() {
 }
 
 #[test]
-fn params() {
+fn wrong_params_are_reported() {
     assert_findings!(all(&[
         "param a = [1, 2]\nparam b = \"round\"\nparam c = \"x\" in [\"a\", \"b\"]\nparam d = true in 0..1\nparam e: int = 1.5 in 0..3\nparam f = 3 in [1, 2]\nparam g = \"a\" in [\"a\", 1]\nsphere(1)",
         "param a = 8 in 2..12\nparam n: int = 6 in 3..12\nparam lid = true\nparam wood = #8a5a34\nparam style = \"round\" in [\"round\", \"flat\"]\nparam tilt = 10deg in 0deg..45deg\nsphere(if lid && style == \"flat\" { a } else { n }).color(wood).rotate(y: tilt)",
@@ -167,7 +167,7 @@ fn params() {
 }
 
 #[test]
-fn unused() {
+fn unused_names_are_reported() {
     assert_findings!(all(&[
         "let _a = 1\nfn _b() = 2\nsolid _c() = { let q = p\n let r = 1\n length(q) }\nsphere(1)",
         "let _a = 1\nfn _b() = { let k = 2\n fn(x) = x + k + _a }\nsphere(_b()(1))",
@@ -175,7 +175,7 @@ fn unused() {
 }
 
 #[test]
-fn one_mistake_is_told_once() {
+fn each_mistake_is_reported_once() {
     assert_findings!(all(&[
         "let a = spere(1)\nlet b = a.translate(x: 1) | box(1)\nb.rotate(y: 90deg)\nfn f() = a\nf() - b",
         "import spur from \"gear.sdf\"\nspur(3).extrude(1)",

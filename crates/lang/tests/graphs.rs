@@ -1,4 +1,4 @@
-//! What scenes become: the flat math, the instances, the stages.
+//! The graphs that scenes become: formulas, instances, evaluation rates.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ mod support;
 use sdfc_graph::{Stage, dump};
 use support::{elaborated, flat, root};
 
-/// The flat distance of a scene.
+/// The expanded distance of a scene.
 fn distance(text: &str) -> String {
     let mut scene = elaborated(text).scene;
     let root = scene.root.expect("the scene draws something");
@@ -16,17 +16,17 @@ fn distance(text: &str) -> String {
 }
 
 #[test]
-fn a_sphere() {
+fn a_sphere_becomes_a_formula() {
     support::snapshot!(distance("sphere(0.5)"));
 }
 
 #[test]
-fn a_torus() {
+fn a_torus_becomes_a_formula() {
     support::snapshot!(distance("torus(major: 0.8, minor: 0.25)"));
 }
 
 #[test]
-fn a_smooth_union_whose_width_moves() {
+fn the_width_of_a_smooth_union_can_be_a_param() {
     support::snapshot!(distance(
         "param k = 0.4 in 0..1\nunion(sphere(0.5), sphere(1).translate(x: 1), blend: smooth(k))"
     ));
@@ -38,19 +38,19 @@ fn a_hard_union_folds_to_minima() {
 }
 
 #[test]
-fn a_shape_of_the_scene() {
+fn a_shape_of_the_scene_becomes_a_formula() {
     support::snapshot!(distance(
         "solid egg(r: length = 0.5) = length([p.x, p.y * 0.8, p.z]) - r\negg(0.3)"
     ));
 }
 
 #[test]
-fn a_twist() {
+fn a_twist_becomes_a_formula() {
     support::snapshot!(distance("sphere(0.5).translate(x: 1).twist(90deg)"));
 }
 
 #[test]
-fn equal_calls_share_an_instance_and_keep_their_places() {
+fn equal_calls_share_an_instance_but_not_a_site() {
     let scene = elaborated("sphere(0.5) | sphere(0.5).translate(x: 1)\nsphere(0.5)");
     let spheres: Vec<_> = scene.sites.iter().filter(|site| site.name == "sphere").collect();
     assert_eq!(spheres.len(), 3);
@@ -58,12 +58,12 @@ fn equal_calls_share_an_instance_and_keep_their_places() {
     assert_eq!(
         spheres.iter().map(|site| site.span.start).collect::<Vec<_>>(),
         [0, 14, 42],
-        "each call has its own place"
+        "each call has its own site"
     );
 }
 
 #[test]
-fn a_shape_of_the_scene_has_the_standing_of_a_library_entry() {
+fn a_shape_of_the_scene_is_equal_to_a_library_entry() {
     let own = "solid ball(r: length = 1 in 0..inf)\n  exact\n  bounds -r..r\n  = length(p) - r\n";
     let own = elaborated(&format!("{own}ball(0.5)")).scene;
     let library = elaborated("sphere(0.5)").scene;
@@ -74,7 +74,7 @@ fn a_shape_of_the_scene_has_the_standing_of_a_library_entry() {
 }
 
 #[test]
-fn stages_follow_from_what_values_depend_on() {
+fn the_evaluation_rate_of_a_value_follows_from_its_inputs() {
     let text = "param r = 0.5 in 0..1\nlet big = r * 2\nsphere(big)\nsphere(0.5 * 2)\nsphere(0.5 + 0.1 * sin(time))";
     let scene = elaborated(text).scene;
     let stage = |child: usize| {
@@ -95,25 +95,25 @@ fn a_shape_built_at_a_point_has_the_next_level() {
     assert_eq!(beads.level, 0);
     let ball = scene.graph.shape(beads.children[0]);
     assert_eq!((ball.definition.as_str(), ball.level), ("sphere", 1));
-    assert_eq!(ball.contract.bounds, None, "bounds that move with the point state nothing");
+    assert_eq!(ball.contract.bounds, None, "bounds that depend on the point are ignored");
 }
 
 #[test]
-fn only_scenes_that_state_a_material_are_painted() {
+fn only_drawn_materials_count() {
     assert!(!elaborated("sphere(1) | box(1)").scene.has_materials);
     assert!(elaborated("sphere(1).color(#f00) | box(1)").scene.has_materials);
     assert!(!elaborated("let unused = sphere(1).color(#f00)\nbox(1)").scene.has_materials);
 }
 
 #[test]
-fn a_stated_constant_of_a_function_is_kept_with_its_value() {
+fn a_function_s_lipschitz_constant_is_recorded_with_its_result() {
     let scene = elaborated("union(sphere(1), box(1), blend: smooth(0.2))").scene;
     let union = root(&scene);
     let claim = scene.graph.lipschitz_claim(union.formula).expect("`smooth` states a constant");
     assert_eq!(scene.graph.as_number(claim.lipschitz), Some(1.0));
     let point = scene.graph.clone().point(0, sdfc_graph::Dim::Three);
     let samples = union.children.iter().map(|&child| scene.graph.clone().sample(child, point));
-    // The blend's width, which it captures, does not vary.
+    // The blend's width, a capture, does not depend on the point.
     assert_eq!(claim.arguments.len(), 2);
     assert!(samples.into_iter().all(|sample| claim.arguments.contains(&sample)));
     let text = "fn wave(q: vec3, by: number) lipschitz 2 * by = by * sin(q.x + q.y)\n\
@@ -121,6 +121,6 @@ fn a_stated_constant_of_a_function_is_kept_with_its_value() {
     let scene = elaborated(text).scene;
     let claims = scene.graph.ids().filter_map(|id| scene.graph.lipschitz_claim(id));
     let constants: Vec<_> = claims.map(|claim| scene.graph.as_number(claim.lipschitz)).collect();
-    // Of the sine, which changes 1 / 0.25 times as much, and of the product.
+    // The constant of the sine, which changes 1 / 0.25 times as much, and that of the product.
     assert_eq!(constants, [Some(2.0), Some(0.5)]);
 }

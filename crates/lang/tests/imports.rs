@@ -46,7 +46,7 @@ camera(eye: [1, 2, 3])
 ";
 
 #[test]
-fn names_come_without_drawings_and_settings() {
+fn an_import_brings_names_but_not_drawings_or_settings() {
     let (program, rendered) = check(
         "import gear, rim from \"parts/gear.sdf\"
 import tooth from \"parts/tooth.sdf\"
@@ -60,7 +60,7 @@ gear(rim + tooth(depth))",
 }
 
 #[test]
-fn a_param_of_another_file_may_have_the_clock_s_name() {
+fn a_param_of_an_imported_file_can_be_called_time() {
     let clock = "param time = 1 in 0..2\nsolid ball() = length(p) - time\n";
     let (_, rendered) = check("import ball from \"clock.sdf\"\nball()", &[("clock.sdf", clock)]);
     assert_eq!(rendered, "");
@@ -79,7 +79,7 @@ fn a_scene_of_several_files_elaborates() {
 }
 
 #[test]
-fn imports_that_cannot_be_followed() {
+fn imports_that_cannot_be_loaded_are_errors() {
     let scene = "import a from \"none.sdf\"
 import b from \"../up.sdf\"
 import c from \"/etc/passwd\"
@@ -101,7 +101,7 @@ sphere(a(b) + c + x + y)";
 }
 
 #[test]
-fn an_import_that_nothing_uses() {
+fn an_unused_import_is_a_warning() {
     let scene = "import tooth, depth as d from \"parts/tooth.sdf\"\nsphere(d)";
     insta::assert_snapshot!(check(scene, &[("parts/tooth.sdf", TOOTH)]).1);
 }

@@ -20,7 +20,7 @@ fn repeat(open: &str, middle: &str, close: &str, times: usize) -> String {
 }
 
 #[test]
-fn long_chains_do_not_overflow() {
+fn long_chains_do_not_overflow_the_stack() {
     let none: [&str; 0] = [];
     assert_eq!(codes(&format!("sphere({}1)", "1 + ".repeat(4000))), none);
     assert_eq!(codes(&format!("sphere(1){}", " | sphere(2)".repeat(4000))), none);
@@ -37,7 +37,7 @@ fn one_operator_in_a_chain_makes_one_shape() {
 }
 
 #[test]
-fn deep_nesting_does_not_overflow() {
+fn deep_nesting_does_not_overflow_the_stack() {
     let none: [&str; 0] = [];
     assert_eq!(codes(&format!("sphere({})", repeat("(", "1", ")", 200))), none);
     assert_eq!(codes(&format!("sphere({})", repeat("{ let a = 1\n a + ", "1", "}", 200))), none);
@@ -48,7 +48,7 @@ fn deep_nesting_does_not_overflow() {
 }
 
 #[test]
-fn types_that_grow_with_each_let_are_stopped() {
+fn the_depth_of_inferred_types_is_limited() {
     let lets: Vec<String> =
         (1..2000).map(|at| format!("let f{at} = fn(x) = f{}", at - 1)).collect();
     assert_eq!(codes(&format!("let f0 = 1\n{}\nsphere(1)", lets.join("\n"))), ["E0107"]);
@@ -59,15 +59,15 @@ fn types_that_grow_with_each_let_are_stopped() {
 }
 
 #[test]
-fn functions_that_call_one_another_in_a_long_row() {
+fn a_long_row_of_calls_does_not_overflow_the_stack() {
     let fns: Vec<String> = (1..5000).map(|at| format!("fn f{at}() = f{}() + 1", at - 1)).collect();
     let none: [&str; 0] = [];
     assert_eq!(codes(&format!("sphere(f4999())\nfn f0() = 1\n{}", fns.join("\n"))), none);
 }
 
 #[test]
-fn lambdas_in_lambdas_are_not_read_exponentially_often() {
-    // `pick` takes a lambda for either dimension, and each body is wrong in both.
+fn nested_lambdas_are_not_checked_exponentially_often() {
+    // `pick` takes a lambda for either dimension, and each body has an error in both.
     let pick = "solid pick(a: fn(vec3) -> solid) = 1\nregion pick(a: fn(vec2) -> region) = 1\n";
     let scene = format!("{pick}{}", repeat("pick(fn(c) = ", "1", ")", 100));
     assert_eq!(codes(&scene), ["E0303"]);
@@ -76,13 +76,13 @@ fn lambdas_in_lambdas_are_not_read_exponentially_often() {
 const SCENE: &str = include_str!("scenes/everything.sdf");
 
 #[test]
-fn the_scene_that_is_mangled_below_is_right() {
+fn the_scene_that_is_mutated_below_has_no_errors() {
     let (program, _, rendered) = Library::new().check(SCENE);
     assert_eq!(rendered, "");
     verify(&program);
 }
 
-/// Pieces that a scene is mangled with.
+/// Pieces that are inserted into a scene.
 const PIECES: &[&str] = &[
     "sphere(1)",
     "circle(1)",
@@ -137,7 +137,7 @@ const PIECES: &[&str] = &[
     "camera",
 ];
 
-/// Words of a scene and what stands between them.
+/// The words of a scene and the characters between them.
 fn pieces(text: &str) -> Vec<String> {
     let mut pieces = vec![String::new()];
     let mut word = false;
@@ -173,8 +173,8 @@ fn change() -> impl Strategy<Value = Change> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
 
-    /// Whatever is done to a scene, the checker answers; and what it finds nothing wrong with
-    /// keeps all its promises.
+    /// The checker handles every mutation of a scene. If it reports no error, the program keeps all
+    /// guarantees.
     #[test]
     fn mangled_scenes_are_answered(changes in proptest::collection::vec(change(), 1..6)) {
         let mut text = pieces(SCENE);

@@ -1,4 +1,4 @@
-//! `iterate`: where it becomes a loop, where it is written out, and that both give the same.
+//! `iterate`: when it becomes a loop, when it is unrolled, and that both give the same values.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,7 +15,7 @@ fn values(formula: &str) -> Vec<f64> {
     places.iter().map(|&x| field.at([x, 0.5 * x + 0.1, 0.3 - x])).collect()
 }
 
-/// How many loops the formula has.
+/// The number of loops in a formula.
 fn loops(formula: &str) -> usize {
     let scene =
         elaborated(&format!("param count: int = 7 in 0..40\nsolid it() = {formula}\nit()")).scene;
@@ -39,7 +39,7 @@ fn same(looped: &str, written: &str) {
 }
 
 #[test]
-fn long_counts_and_ranges_loop() {
+fn long_counts_and_ranges_become_loops() {
     same(
         "iterate(20, p.x, fn(s, i) = sin(s) + i * p.y)",
         "iterate(10..20, iterate(10, p.x, fn(s, i) = sin(s) + i * p.y), fn(s, i) = sin(s) + i * p.y)",
@@ -51,7 +51,7 @@ fn long_counts_and_ranges_loop() {
 }
 
 #[test]
-fn a_while_ends_a_loop() {
+fn a_condition_ends_a_loop() {
     same(
         "iterate(8, p, fn(q) = 1.5 * q.yzx + 0.1, while: fn(q) = length(q) < 3).x",
         "iterate(4, iterate(4, p, fn(q) = 1.5 * q.yzx + 0.1, while: fn(q) = length(q) < 3), \
@@ -60,13 +60,13 @@ fn a_while_ends_a_loop() {
 }
 
 #[test]
-fn a_list_of_constants_is_looked_up() {
+fn a_list_of_constants_becomes_a_table() {
     let list = "[for i in 0..20: [sin(i), cos(3 * i), 0.1 * i]]";
     same(
         &format!("iterate({list}, 100, fn(s, c) = min(s, length(p - c)))"),
         &format!("min([for c in {list}: length(p - c)])"),
     );
-    // The neighbour in the list is found by the number of the round.
+    // The neighbour in the list is found by the index of the iteration.
     same(
         &format!(
             "{{ let l = {list}\n iterate(len(l), 0, fn(s, i) = s + dot(l[i], l[(i + 1) % len(l)] - p)) }}"
@@ -79,7 +79,7 @@ fn a_list_of_constants_is_looked_up() {
 }
 
 #[test]
-fn an_index_that_moves_reads_the_element_below_it() {
+fn a_fractional_index_reads_the_element_below_it() {
     let field = Field::drawn("let l = [2, 3, 5, 7, 11, 13]\nsolid it() = l[floor(p.x)]\nit()");
     for (x, expected) in [(-7.5, 2.0), (0.0, 2.0), (2.9, 5.0), (5.0, 13.0), (1e9, 13.0)] {
         assert_eq!(field.at([x, 0.0, 0.0]), expected, "at {x}");
@@ -87,12 +87,12 @@ fn an_index_that_moves_reads_the_element_below_it() {
 }
 
 #[test]
-fn a_count_that_moves_caps_its_loop() {
+fn a_param_can_be_the_count_of_a_loop() {
     same("iterate(count, p.x, fn(s, i) = 0.5 * s + i)", "iterate(7, p.x, fn(s, i) = 0.5 * s + i)");
 }
 
 #[test]
-fn loops_nest() {
+fn loops_can_be_nested() {
     let nested =
         "iterate(20, p.x, fn(s, i) = 0.1 * iterate(18, s, fn(t, j) = 0.9 * t + j + i + p.y))";
     assert_eq!(loops(nested), 2);
@@ -104,17 +104,17 @@ fn loops_nest() {
 }
 
 #[test]
-fn what_differs_from_round_to_round_is_written_out() {
+fn loops_whose_iterations_differ_are_unrolled() {
     for formula in [
-        // Shapes at places that change, and shapes that change.
+        // Shapes at points that change, and shapes that change.
         "iterate(20, 9, fn(s, i) = min(s, sphere(0.5)(p - i)))",
         "iterate(20, 9, fn(s, i) = min(s, sphere(0.1 * i)(p)))",
-        // A list of shapes, and one of numbers at the point.
+        // A list of shapes, and a list of numbers that depend on the point.
         "iterate([for i in 0..20: sphere(0.1 * i)], 9, fn(s, a) = min(s, a(p)))",
         "iterate([for i in 0..20: p.x * i], 9, min)",
         // A count that must be constant.
         "iterate(20, p.x, fn(s, i) = s + len([for k in 0..i: k]))",
-        // No point takes part.
+        // A loop that does not depend on a point.
         "iterate(1000, 1, fn(s) = s * 0.5)",
         "iterate(count, 1, fn(s) = s * 0.5)",
     ] {
@@ -124,7 +124,7 @@ fn what_differs_from_round_to_round_is_written_out() {
 }
 
 #[test]
-fn an_error_in_a_body_is_told_once() {
+fn an_error_in_a_loop_body_is_reported_once() {
     let (_, scene, found) =
         support::front("solid it() = iterate(20, p.x, fn(s) = s + 1 / 0)\nit()");
     assert!(scene.is_none());
@@ -132,7 +132,7 @@ fn an_error_in_a_body_is_told_once() {
 }
 
 #[test]
-fn rounds_of_loops_in_loops_are_limited_together() {
+fn the_iterations_of_nested_loops_are_limited_together() {
     let nested = |inner: u32| {
         format!(
             "solid it() = iterate(4000, p.x, fn(s) = iterate({inner}, s, fn(t) = sin(t)))\nit()"

@@ -1,4 +1,4 @@
-//! Which material shows where.
+//! The materials of surfaces.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -11,7 +11,7 @@ use support::elaborated;
 const RED: [f64; 3] = [1.0, 0.0, 0.0];
 const BLUE: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// The base colour of what is drawn.
+/// The base colour of a scene at a point.
 fn color(text: &str, at: [f64; 3]) -> [f64; 3] {
     let scene = elaborated(text).scene;
     let mut graph = scene.graph.clone();
@@ -29,12 +29,12 @@ fn unpainted() -> [f64; 3] {
 }
 
 #[test]
-fn a_material_of_which_nothing_is_said_looks_unpainted() {
+fn an_empty_material_is_the_default_material() {
     assert_eq!(color("sphere(1).paint(material())", [1.0, 0.0, 0.0]), unpainted());
 }
 
 #[test]
-fn how_materials_mix_is_told_only_where_something_is_painted() {
+fn material_rules_exist_only_if_a_shape_has_a_material() {
     let is_told = |text: &str| {
         let scene = elaborated(text).scene;
         let root = scene.graph.shape(scene.root.expect("the scene draws something"));
@@ -45,9 +45,9 @@ fn how_materials_mix_is_told_only_where_something_is_painted() {
 }
 
 #[test]
-fn a_face_that_an_unpainted_shape_cuts_shows_the_body() {
+fn a_face_cut_by_a_shape_without_material_shows_the_body() {
     for blend in ["", ", blend: smooth(0.1)"] {
-        // At x = 0.5 the ball, at x = 0.8 the box has the larger distance.
+        // The ball has the larger distance at x = 0.5, the box at x = 0.8.
         let cut = |a: &str, b: &str, x: f64| {
             color(&format!("intersection({a}, {b}{blend})"), [x, 0.0, 0.0])
         };

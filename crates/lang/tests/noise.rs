@@ -1,4 +1,4 @@
-//! Noises keep their ranges and constants, across the walls of cells too.
+//! Noises keep their ranges and Lipschitz constants, also across the walls of cells.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -36,9 +36,9 @@ const NOISES: [Noise; 7] = [
     Noise { formula: "turbulence(p)", range: [0.0, 1.0], lipschitz: 8.321 },
 ];
 
-/// Pairs of near points find jumps at the walls of cells as well as slopes.
+/// Pairs of near points detect jumps at the walls of cells as well as slopes.
 #[test]
-fn no_pair_of_points_is_farther_apart_than_the_constant_allows() {
+fn noises_keep_their_ranges_and_lipschitz_constants() {
     for Noise { formula, range, lipschitz } in NOISES {
         let field = Field::drawn(&format!("solid it() = {formula}\nit()"));
         let mut value = field.evaluator();
@@ -59,7 +59,7 @@ fn no_pair_of_points_is_farther_apart_than_the_constant_allows() {
 }
 
 #[test]
-fn a_constant_coordinate_leaves_half_of_the_corners() {
+fn a_constant_coordinate_halves_the_number_of_corners() {
     let nodes = |formula: &str| {
         let scene = support::elaborated(&format!("solid it() = {formula}\nit()")).scene;
         sdfc_graph::operation_count(&scene.graph, &[support::root(&scene).formula])

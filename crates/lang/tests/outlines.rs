@@ -1,5 +1,5 @@
-//! What each region of the library means: its outline, drawn here point by point and without its formula.
-//! The field is compared with the distance to that outline, outside and inside.
+//! Compares each region of the library with an outline that is drawn here point by point, without
+//! the region's formula, on the outside and the inside.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,19 +13,19 @@ use support::Field;
 
 type Point = [f64; 2];
 
-/// Points of a circle or curve.
+/// Number of points of a circle or curve.
 const STEPS: usize = 3000;
-/// What the straight lines between them are off the curve by, in scene units.
+/// Largest distance of the lines between these points from the curve, in scene units.
 const NEAR: f64 = 3e-6;
 const POINTS: usize = 500;
-/// How far beyond the outline the field is looked at.
+/// Distance around the outline within which the field is compared, in scene units.
 const REACH: f64 = 0.8;
 
-/// What a region is.
+/// The definition of a region.
 enum Expected {
-    /// The points about which these closed outlines go an odd number of times.
+    /// The points that these closed outlines surround an odd number of times.
     Filled(Vec<Vec<Point>>),
-    /// The points within a distance of an open line.
+    /// The points within a distance of an open polyline.
     Stroke(Vec<Point>, f64),
 }
 
@@ -44,7 +44,7 @@ fn stroke(text: &'static str, line: Vec<Point>, r: f64) -> Case {
     Case { text, expected: Stroke(line, r) }
 }
 
-/// A point in a direction, counted clockwise from the top in degrees.
+/// A point in a direction, measured clockwise from the top in degrees.
 fn clock(r: f64, degrees: f64) -> Point {
     let angle = degrees.to_radians();
     [r * angle.sin(), r * angle.cos()]
@@ -54,7 +54,7 @@ fn curve(at: impl Fn(f64) -> Point) -> Vec<Point> {
     (0..=STEPS).map(|i| at(i as f64 / STEPS as f64)).collect()
 }
 
-/// Part of a circle, from one direction to another, in degrees clockwise from the top.
+/// An arc of a circle from one direction to another, in degrees clockwise from the top.
 fn bow([x, y]: Point, r: f64, from: f64, to: f64) -> Vec<Point> {
     curve(|t| {
         let [dx, dy] = clock(r, from + (to - from) * t);
@@ -70,13 +70,13 @@ fn mirrored(line: &[Point]) -> Vec<Point> {
     line.iter().rev().map(|[x, y]| [-x, *y]).collect()
 }
 
-/// An outline from its right half, from top to bottom.
+/// A symmetric outline from its right half, given from top to bottom.
 fn both_halves(right: Vec<Point>) -> Vec<Point> {
     let left = mirrored(&right);
     joined([right, left])
 }
 
-/// The outline of what contains all discs of a list and has no dents.
+/// The outline of the convex hull of some discs.
 fn hull(discs: &[(Point, f64)]) -> Vec<Point> {
     curve(|t| {
         let n = clock(1.0, 360.0 * t);
@@ -101,7 +101,7 @@ fn polygon(n: usize, r: f64) -> Vec<Point> {
     (0..n).map(|i| clock(r, 360.0 / n as f64 * i as f64)).collect()
 }
 
-/// A band about a bow of radius 0.5 that spans `angle`, its ends square.
+/// A band around an arc of radius 0.5 that covers `angle`, with square ends.
 fn band(width: f64, angle: f64) -> Vec<Point> {
     let (from, to) = (-angle / 2.0, angle / 2.0);
     let (outer, inner) = (0.5 + width / 2.0, 0.5 - width / 2.0);
@@ -189,10 +189,11 @@ fn plain() -> Vec<Case> {
         filled("regular_polygon(3, r: 0.6)", polygon(3, 0.6)),
         filled("regular_polygon(8, r: 0.5)", polygon(8, 0.5)),
         filled("regular_polygon(41, r: 0.7)", polygon(41, 0.7)),
-        // In a pentagram the inner corners lie at 1 / (golden ratio)² of the tips' distance.
+        // The inner corners of a pentagram are at 1 / (golden ratio)² of the tips' distance.
         filled("star(5, r: 0.6)", tips(5, 0.6, 0.6 * (3.0 - 5f64.sqrt()) / 2.0)),
         filled("star(7, m: 7, r: 0.6)", polygon(7, 0.6)),
-        // As sharp as a triangle's corner: half of it is 30 degrees, and the sine rule gives the rest.
+        // As sharp as a triangle's corner: half of the angle is 30 degrees, and the sine rule gives
+        // the rest.
         filled(
             "star(9, m: 3, r: 0.6)",
             tips(9, 0.6, 0.6 * 0.5 / (30f64.to_radians() + PI / 9.0).sin()),
@@ -223,7 +224,7 @@ fn plain() -> Vec<Case> {
                 .map(|[x, y]| [0.7 * x, 0.4 * y])
                 .collect(),
         ),
-        // A loop within a loop, which is empty.
+        // A loop within a loop; the inner one is empty.
         filled(
             "polygon([for i in 0..150: (0.2 + 0.5 * cos(2.4deg * i)) * [cos(2.4deg * i), sin(2.4deg * i)]])",
             (0..150)
@@ -255,7 +256,7 @@ fn round() -> Vec<Case> {
         slice.push(centre);
         slice
     };
-    // Where a circle of radius 0.6 is cut by a line below or above its centre.
+    // The points where a line below or above the centre cuts a circle of radius 0.6.
     let cut = |height: f64| {
         let corner = f64::acos(height / 0.6).to_degrees();
         bow(centre, 0.6, -corner, corner)
@@ -306,7 +307,8 @@ fn round() -> Vec<Case> {
         },
         filled("rounded_cross(1.2, width: 0.3)", rounded_cross(0.45, 0.15)),
         filled("rounded_cross(1, width: 0.5)", rounded_cross(0.25, 0.25)),
-        // Three arcs: c from the axis, such that the side's arc touches both ends.
+        // Three arcs; c is the distance of the side arc's centre from the axis, such that it
+        // touches both ends.
         filled("egg(0.4, 0.1, h: 1.2)", egg(0.4, 0.1, 1.2)),
         filled("egg(0.5, 0.45, h: 1)", egg(0.5, 0.45, 1.0)),
         filled("egg(0.3, 0.3, h: 1)", hull(&[([0.0, 0.2], 0.3), ([0.0, -0.2], 0.3)])),
@@ -366,7 +368,7 @@ fn round() -> Vec<Case> {
     ]
 }
 
-/// The part of a circle outside another, which crosses it at `corner`.
+/// The part of a circle outside another one that crosses it at `corner`.
 fn moon(r: f64, bite: f64, offset: f64) -> Vec<Point> {
     let x = (r * r - bite * bite + offset * offset) / (2.0 * offset);
     let outer = f64::acos(x / r).to_degrees();
@@ -418,7 +420,7 @@ fn closed(outline: &[Point]) -> Vec<Point> {
     outline.iter().chain(outline.first()).copied().collect()
 }
 
-/// How often a ray to the right crosses the outline.
+/// The number of times that a ray to the right crosses the outline.
 fn crossings(p: Point, outline: &[Point]) -> usize {
     let crosses = |ends: &[Point]| {
         let (a, b) = (ends[0], ends[1]);
@@ -442,7 +444,7 @@ impl Expected {
         }
     }
 
-    /// The extent of all lines, in x and y, grown by what is about them.
+    /// The box around all lines, grown by their thickness.
     fn box_of(&self) -> [Point; 2] {
         let (points, r): (Vec<Point>, f64) = match self {
             Stroke(line, r) => (line.clone(), *r),
@@ -457,7 +459,7 @@ impl Expected {
     }
 }
 
-/// Outlines of letters, in which every arc is drawn by points.
+/// The outlines of letters, with every arc drawn by points.
 fn letters(words: &str, size: f64, setting: Setting) -> Expected {
     let curves = Fonts::new(&NoFiles).curves(words, "sans", setting).expect("the font has them");
     let mut outlines: Vec<Vec<Point>> = Vec::new();
@@ -474,7 +476,8 @@ fn letters(words: &str, size: f64, setting: Setting) -> Expected {
     Filled(outlines)
 }
 
-/// A point of an arc of a circle from a to c whose tangents there meet in b, which is the middle of a straight one.
+/// A point of a circular arc from a to c whose tangents at both ends meet in b; b is the midpoint
+/// of a straight one.
 fn on_arc([a, b, c]: [Point; 3], t: f64) -> Point {
     let middle = [0, 1].map(|i| (a[i] + c[i]) / 2.0);
     let (half, up) = ([0, 1].map(|i| (c[i] - a[i]) / 2.0), [0, 1].map(|i| b[i] - middle[i]));
@@ -506,7 +509,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
-fn regions_are_what_their_outlines_say() {
+fn the_distance_of_a_region_is_that_to_its_outline() {
     let mut wrong = Vec::new();
     for Case { text, expected } in cases() {
         let drawn = format!("{text}.extrude(10)");
@@ -552,7 +555,7 @@ fn bounds_of_regions_are_tight() {
 
 #[test]
 fn every_region_has_an_outline() {
-    // Not of other shapes, nor of functions that give them.
+    // Regions that take other shapes, or functions that make them, are not included.
     let of_shapes = [": region", ": solid", "-> region", "-> solid"];
     let made_here = |entry: &library::Entry| {
         entry.kind == "region" && !of_shapes.iter().any(|part| entry.signature.contains(part))
@@ -572,7 +575,7 @@ fn every_region_has_an_outline() {
 struct Random(u64);
 
 impl Random {
-    /// In 0..1.
+    /// A number in 0..1.
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

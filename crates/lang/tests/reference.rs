@@ -1,4 +1,4 @@
-//! What the reference says is true: its examples compile, and nothing in it is blank.
+//! The reference is complete, and its examples compile.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ mod support;
 use sdfc_lang::{library, reference, settings};
 use support::front;
 
-/// A scene around an example, by the kind of its entry.
+/// A scene with an entry's example.
 fn scene(entry: &library::Entry) -> String {
     match entry.kind {
         "kernel" => format!("let it = {}\nsphere(1)", entry.example),
@@ -42,14 +42,14 @@ fn every_summary_is_a_sentence() {
 }
 
 #[test]
-fn every_entry_of_the_library_says_where_its_formula_is_from() {
+fn every_library_entry_names_its_source() {
     for entry in library::entries() {
         assert!(!entry.source.is_empty(), "{}", entry.name);
     }
 }
 
 #[test]
-fn every_setting_is_there_with_its_parameters() {
+fn every_setting_has_an_entry_with_its_parameters() {
     let entries = reference::entries();
     for row in settings::table() {
         let entry = entries.iter().find(|it| it.kind == "setting" && it.name == row.name);
@@ -59,7 +59,7 @@ fn every_setting_is_there_with_its_parameters() {
 }
 
 #[test]
-fn a_misspelt_name_has_a_near_one() {
+fn a_misspelt_name_gets_a_suggestion() {
     let entries = reference::entries();
     assert_eq!(reference::meant(&entries, "spere").as_deref(), Some("did you mean `sphere`?"));
     assert_eq!(reference::meant(&entries, "cube").as_deref(), Some("that is `box` here"));

@@ -15,7 +15,7 @@ fn assert_at(text: &str, points: &[([f64; 3], f64)]) {
 }
 
 #[test]
-fn solids() {
+fn solids_have_the_distances_worked_out_by_hand() {
     assert_at("sphere(0.5)", &[([0.0; 3], -0.5), ([0.0, 3.0, 4.0], 4.5)]);
     assert_at(
         "box([2, 4, 6])",
@@ -41,16 +41,16 @@ fn solids() {
             ([0.5, 0.0, 0.0], -0.5),
         ],
     );
-    // The unit ball's field, stretched and shrunk by the least radius.
+    // The unit ball's field, scaled by the smallest radius.
     assert_at("ellipsoid([1, 0.5, 2])", &[([2.0, 0.0, 0.0], 0.5), ([0.0; 3], -0.5)]);
     // On an axis the first-order estimate is r (k0 - 1): the distance itself.
     assert_at("ellipsoid_fast([1, 0.5, 2])", &[([3.0, 0.0, 0.0], 2.0), ([0.0; 3], -0.5)]);
 }
 
-/// Which way round they stand.
+/// The orientation of solids.
 #[test]
-fn solids_with_a_top_or_a_front() {
-    // The middle of the arc is on x; half of it leaves negative x free.
+fn solids_stand_the_right_way_round() {
+    // The middle of the arc is on the x axis; half a ring does not reach negative x.
     assert_at(
         "capped_torus(arc: 180deg, major: 2, minor: 0.5)",
         &[([2.0, 0.0, 0.0], -0.5), ([-3.0, 0.0, 2.0], 2.5)],
@@ -68,7 +68,7 @@ fn solids_with_a_top_or_a_front() {
         &[([0.0, -2.0, 0.0], -0.1), ([2.0, 1.0, 0.0], 0.9)],
     );
     assert_at("death_star(r1: 2, r2: 1, d: 2)", &[([0.0, 2.0, 0.0], 1.0), ([0.0, -3.0, 0.0], 1.0)]);
-    // Counter-clockwise from x, a quarter turn reaches -z.
+    // A quarter turn counter-clockwise from x is -z.
     assert_at(
         "helix(major: 2, minor: 0.5, pitch: 4, h: 9)",
         &[([2.0, 0.0, 0.0], -0.5), ([0.0, 1.0, -2.0], -0.5), ([-2.0, 2.0, 0.0], -0.5)],
@@ -82,14 +82,14 @@ fn solids_with_a_top_or_a_front() {
 }
 
 #[test]
-fn profiles() {
+fn regions_have_the_distances_worked_out_by_hand() {
     assert_at("circle(0.5).extrude(2)", &[([3.0, 4.0, 0.0], 4.5), ([0.0, 0.0, 5.0], 4.0)]);
     assert_at("rect([2, 4]).extrude(6)", &[([4.0, 4.0, 4.0], 14f64.sqrt())]);
     assert_at("circle(0.5).translate(x: 2).revolve()", &[([0.0, 0.0, 2.0], -0.5), ([0.0; 3], 1.5)]);
 }
 
 #[test]
-fn maps() {
+fn maps_move_points_the_right_way() {
     assert_at("sphere(1).translate([1, 2, 3], y: 1)", &[([1.0, 3.0, 3.0], -1.0)]);
     // A quarter turn about z takes x to y; about y takes z to x; about x takes y to z.
     let ball = "sphere(0.5).translate";
@@ -109,7 +109,7 @@ fn maps() {
 }
 
 #[test]
-fn combinations() {
+fn combinations_have_the_distances_worked_out_by_hand() {
     let pair = "sphere(1), sphere(1).translate(x: 3)";
     assert_at(&format!("union({pair})"), &[([0.0; 3], -1.0), ([3.0, 0.0, 0.0], -1.0)]);
     assert_at(&format!("intersection({pair})"), &[([0.0; 3], 2.0)]);
@@ -128,12 +128,12 @@ fn combinations() {
 }
 
 #[test]
-fn several_drawings_are_united_in_order() {
+fn drawn_solids_are_joined_in_order() {
     assert_at("sphere(1)\nsphere(1).translate(x: 3)", &[([0.0; 3], -1.0), ([3.0, 0.0, 0.0], -1.0)]);
 }
 
 #[test]
-fn the_language_itself() {
+fn expressions_have_the_values_worked_out_by_hand() {
     let value = |expression: &str, expected: f64| {
         assert_at(&format!("solid it() = {expression}\nit()"), &[([0.25, 0.5, -0.75], expected)]);
     };
@@ -155,7 +155,7 @@ fn the_language_itself() {
 }
 
 #[test]
-fn loops_that_move_run_to_the_end_of_the_range() {
+fn a_loop_with_a_param_as_count_runs_to_its_range() {
     let text = "param n: int = 3 in 0..5\nsolid it() = iterate(n, 1, fn(s) = s * 2)\nit()";
     assert_at(text, &[([0.0; 3], 8.0)]);
 }
@@ -167,8 +167,8 @@ fn recursion_ends_at_compile_time() {
 }
 
 #[test]
-fn colours_become_linear() {
-    // In a shape's formula a colour's channels can be looked at like any vector's.
+fn colours_are_decoded_to_linear() {
+    // A shape's formula can use a colour's channels like the components of a vector.
     let assert_color = |color: &str, expected: [f64; 4]| {
         for (lane, expected) in ["r", "g", "b", "a"].into_iter().zip(expected) {
             let found = Field::drawn(&format!("solid it() = {color}.{lane}\nit()")).at([0.0; 3]);
@@ -205,7 +205,7 @@ fn hashes_are_spread_over_0_to_1_and_depend_on_every_argument() {
 }
 
 #[test]
-fn ten_thousand_shapes_are_one_union() {
+fn ten_thousand_shapes_become_one_union() {
     let text = "union(for i in 0..10000: sphere(0.1).translate(x: i))";
     assert_at(text, &[([9999.0, 0.0, 0.0], -0.1)]);
 }

@@ -1,4 +1,4 @@
-//! What the tests of the checker share.
+//! Shared code of the checker's tests.
 #![allow(
     dead_code,
     clippy::expect_used,
@@ -39,12 +39,12 @@ impl Library {
         Self { sources, files }
     }
 
-    /// Everything of the library, checked.
+    /// Checks the whole library.
     pub fn check_all(&self) -> (Program, Vec<Diagnostic>) {
         check_library(&self.files)
     }
 
-    /// The scene checked, and all that was found as text; findings of the parser come first.
+    /// Checks a scene. Also returns the rendered diagnostics, those of the parser first.
     pub fn check(&self, text: &str) -> (Program, Vec<Diagnostic>, String) {
         let mut sources = self.sources.clone();
         let file = sources.add("scene.sdf", text);
@@ -56,13 +56,13 @@ impl Library {
     }
 }
 
-/// What is found in a scene, below its text.
+/// A scene with its rendered diagnostics below it.
 pub fn findings(text: &str) -> String {
     let (_, _, rendered) = Library::new().check(text);
     format!("{}\n----\n{}", text.trim_end(), rendered.trim_end())
 }
 
-/// The typed program of a scene, as short text.
+/// The typed program of a scene as short text.
 pub fn printed(text: &str) -> String {
     let (program, _, rendered) = Library::new().check(text);
     assert_eq!(rendered, "");

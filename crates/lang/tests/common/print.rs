@@ -2,7 +2,7 @@
 
 use sdfc_lang::hir::*;
 
-/// All of a program but what the library declares.
+/// A program without the declarations of the library.
 pub fn print(program: &Program) -> String {
     let own = |file| !program.library.contains(&file);
     let mut lines = Vec::new();

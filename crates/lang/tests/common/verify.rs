@@ -1,11 +1,10 @@
-//! What the checker promises the elaborator, checked on a whole program.
+//! Verifies the guarantees of the checker to the elaborator on a whole program.
 
 use sdfc_graph::Dim;
 use sdfc_lang::hir::*;
 
-/// Panics unless every expression of the program keeps its form's rules: variables are
-/// declared before they are mentioned, arguments have their parameters' types, nothing is
-/// unknown.
+/// Panics unless every expression of a program is well formed: variables are declared before they
+/// are used, arguments have the types of their parameters, and no type is unknown.
 pub fn verify(program: &Program) {
     let verifier = Verifier { program, globals: program.globals.len() as u32 };
     for function in &program.functions {
@@ -58,7 +57,7 @@ fn point(dim: Dim) -> Type {
     if dim == Dim::Two { Type::Vec(2) } else { Type::Vec(3) }
 }
 
-/// The type with ints and angles as the numbers that they are.
+/// The type with ints and angles replaced by numbers.
 fn plain(ty: &Type) -> Type {
     match ty {
         Type::Int | Type::Angle => Type::Number,
@@ -92,7 +91,7 @@ impl Frame {
 
 struct Verifier<'p> {
     program: &'p Program,
-    /// How many globals may be mentioned.
+    /// The number of globals that can be used.
     globals: u32,
 }
 
@@ -322,7 +321,7 @@ impl Verifier<'_> {
             Kernel::GlyphCurves => {
                 assert_eq!(types, [Type::Text, Type::Text, Type::Text, Type::Number, Type::Number]);
             }
-            // All others are componentwise, or vectors to vectors.
+            // All others are componentwise or map vectors to vectors.
             _ => assert!(types.iter().all(|other| other == ty), "{kernel:?} {types:?} {ty:?}"),
         }
     }

@@ -1,4 +1,4 @@
-//! Scenes in tests: from text to a field that can be asked.
+//! Scenes in tests: from source to a field that can be evaluated.
 #![allow(dead_code, unused_macros, unused_imports, reason = "each test binary uses its part")]
 
 use sdfc_diagnostics::{Diagnostic, Sources, render};
@@ -6,7 +6,7 @@ use sdfc_graph::eval::{Evaluator, FrameValues, Tape};
 use sdfc_graph::{Dim, Expander, Graph, NodeId, Scene, Shape, ShapeId};
 use sdfc_lang::Elaborated;
 
-/// Compares a text with the file of the test's name in `snapshots`.
+/// Compares a text with the snapshot of the test's name.
 macro_rules! snapshot {
     ($text:expr) => {
         insta::with_settings!({ omit_expression => true }, {
@@ -16,13 +16,13 @@ macro_rules! snapshot {
 }
 pub(crate) use snapshot;
 
-/// The scene, or a panic that shows what is wrong with it.
+/// The scene, or a panic that shows its diagnostics.
 pub fn elaborated(text: &str) -> Elaborated {
     let (sources, scene, found) = front(text);
     scene.unwrap_or_else(|| panic!("{text}\n{}", render(&sources, &found, false)))
 }
 
-/// All of what the front end says.
+/// The result of the front end.
 pub fn front(text: &str) -> (Sources, Option<Elaborated>, Vec<Diagnostic>) {
     let mut sources = Sources::new();
     let file = sources.add("scene.sdf", text);
@@ -30,18 +30,18 @@ pub fn front(text: &str) -> (Sources, Option<Elaborated>, Vec<Diagnostic>) {
     (sources, scene, found)
 }
 
-/// The scene's text and what the front end says of it, side by side.
+/// A scene with its rendered diagnostics.
 pub fn findings(text: &str) -> String {
     let (sources, _, found) = front(text);
     format!("{}\n\n{}", text.trim_end(), render(&sources, &found, false))
 }
 
-/// The drawn shape.
+/// The shape that the scene draws.
 pub fn root(scene: &Scene) -> &Shape {
     scene.graph.shape(scene.root.expect("the scene draws something"))
 }
 
-/// The shape's distance as flat math in the scene's point; a region's in its x and y.
+/// The shape's expanded distance at the scene's point; for a region at its x and y.
 pub fn flat(graph: &mut Graph, shape: ShapeId) -> NodeId {
     let point = graph.point(0, Dim::Three);
     let point = match graph.shape(shape).dim {
@@ -51,7 +51,7 @@ pub fn flat(graph: &mut Graph, shape: ShapeId) -> NodeId {
     Expander::new().field(graph, shape, point).expect("the shape expands")
 }
 
-/// A field in f64 at the params' defaults.
+/// A field in f64 with the params at their defaults.
 pub struct Field {
     tape: Tape,
     frame: FrameValues,
@@ -65,7 +65,7 @@ impl Field {
         Self { tape, frame: FrameValues::defaults(&scene.params) }
     }
 
-    /// Of a whole scene.
+    /// The field of a whole scene.
     pub fn drawn(text: &str) -> Self {
         let scene = elaborated(text).scene;
         Self::of(&scene, scene.root.expect("the scene draws something"))
