@@ -46,11 +46,11 @@ fn pairs(piece: &Piece) -> Vec<Piece> {
 
 /// The error of `count` pairs of arcs for a curve, and the arcs.
 fn fitted(curve: &Curve, count: u32) -> (f64, Vec<Curve>) {
-    let place = |index: u32| f64::from(index) / f64::from(count);
+    let parameter = |index: u32| f64::from(index) / f64::from(count);
     let mut off = 0.0_f64;
     let mut arcs = Vec::with_capacity(2 * count as usize);
     for index in 0..count {
-        let mut part = part(curve, place(index), place(index + 1));
+        let mut part = part(curve, parameter(index), parameter(index + 1));
         if index + 1 == count {
             part[2] = curve[2]; // exactly, since the next curve begins there
         }

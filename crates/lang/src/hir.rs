@@ -97,7 +97,7 @@ pub struct Parameter {
     pub default: Option<Expr>,
     /// Its range `lo..hi`, evaluated in the callee; both ends are included.
     pub range: Option<Expr>,
-    /// Where it is declared.
+    /// The span of its declaration.
     pub span: Span,
 }
 
@@ -108,7 +108,7 @@ pub struct Require {
     pub condition: Expr,
     /// The message if it is false.
     pub message: String,
-    /// Where it is declared.
+    /// The span of its declaration.
     pub span: Span,
 }
 
@@ -119,7 +119,7 @@ pub struct Function {
     pub name: String,
     /// The file that declares it.
     pub file: FileId,
-    /// Its name's place.
+    /// The span of its name.
     pub span: Span,
     /// The parameters, which are the locals `0..parameters.len()`.
     pub parameters: Vec<Parameter>,
@@ -146,7 +146,7 @@ pub struct Promise {
     pub inside: bool,
     /// The condition after `if`.
     pub condition: Option<Expr>,
-    /// Where it is stated.
+    /// The span of the clause.
     pub span: Span,
 }
 
@@ -159,7 +159,7 @@ pub struct ShapeDef {
     pub dim: Dim,
     /// The file that declares it.
     pub file: FileId,
-    /// Its name's place.
+    /// The span of its name.
     pub span: Span,
     /// The parameters, which are the locals `0..parameters.len()`. The next local is the point `p`.
     pub parameters: Vec<Parameter>,
@@ -211,7 +211,7 @@ pub struct Param {
     pub range: Option<Expr>,
     /// The choices of a text param.
     pub choices: Vec<String>,
-    /// Its name's place.
+    /// The span of its name.
     pub span: Span,
     /// Documentation lines.
     pub docs: Vec<String>,
@@ -226,7 +226,7 @@ pub struct Global {
     pub value: Expr,
     /// The number of locals of the value's blocks and comprehensions.
     pub locals: u32,
-    /// Its name's place.
+    /// The span of its name.
     pub span: Span,
 }
 

@@ -121,8 +121,8 @@ pub fn load(
         loaded.push(Imported { file: id, path, tree, whole });
     }
     done.extend(open.iter().rev().filter_map(|file| file.at));
-    let mut places: Vec<Option<Imported>> = loaded.into_iter().map(Some).collect();
-    let ordered = done.into_iter().filter_map(|at| places[at].take()).collect();
+    let mut files: Vec<Option<Imported>> = loaded.into_iter().map(Some).collect();
+    let ordered = done.into_iter().filter_map(|at| files[at].take()).collect();
     (ordered, found)
 }
 

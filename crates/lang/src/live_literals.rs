@@ -20,7 +20,7 @@ const MAX_ELABORATIONS: usize = 64;
 /// Most live literals of a scene: a uniform buffer of 16 KiB holds them, with room for params.
 pub const MAX_LIVE_LITERALS: usize = 512;
 
-/// What earlier elaborations found out about the literals.
+/// The facts that earlier elaborations found about the literals.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct LiteralFacts {
     /// Literals that must stay constant.
@@ -101,7 +101,7 @@ struct Lifting<'a> {
     facts: &'a LiteralFacts,
     /// The literals to choose from; `None` for all.
     chosen: Option<BTreeSet<Span>>,
-    /// How many literals to lift at most.
+    /// The largest number of literals to lift.
     most: usize,
     params: Vec<hir::Param>,
     literals: Vec<LiveLiteral>,
@@ -240,14 +240,14 @@ impl<'a> Lifting<'a> {
         let param = self.first + self.literals.len();
         let number = |value| Expr { kind: ExprKind::Number(value), ty: hir::Type::Number, span };
         let ty = if *ty == hir::Type::Angle { hir::Type::Angle } else { hir::Type::Number };
-        let place = self.sources.line_column(span.file, span.start);
+        let at = self.sources.line_column(span.file, span.start);
         let range = self.facts.ranges.get(&span).map(|[lo, hi]| Expr {
             kind: ExprKind::Range(Box::new(number(*lo)), Box::new(number(*hi))),
             ty: hir::Type::Range(Box::new(ty.clone())),
             span,
         });
         self.params.push(hir::Param {
-            name: format!("at_{}_{}", place.line, place.column),
+            name: format!("at_{}_{}", at.line, at.column),
             default: Expr { ty: ty.clone(), ..number(value) },
             ty,
             range,

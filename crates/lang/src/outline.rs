@@ -124,10 +124,10 @@ fn cuts(outlines: &[Curve]) -> Vec<Vec<f64>> {
             }
         }
     }
-    for places in &mut cuts {
-        places.retain(|&t| t == 0.0 || t == 1.0 || (t > LEAST_PART && t < 1.0 - LEAST_PART));
-        places.sort_unstable_by(f64::total_cmp);
-        places.dedup_by(|later, earlier| *later - *earlier < LEAST_PART);
+    for parameters in &mut cuts {
+        parameters.retain(|&t| t == 0.0 || t == 1.0 || (t > LEAST_PART && t < 1.0 - LEAST_PART));
+        parameters.sort_unstable_by(f64::total_cmp);
+        parameters.dedup_by(|later, earlier| *later - *earlier < LEAST_PART);
     }
     cuts
 }

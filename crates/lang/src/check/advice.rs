@@ -61,7 +61,7 @@ impl<'a> Checker<'a> {
         )
     }
 
-    /// The diagnostic for a parameter's name in the place of its value, as in `mirror(x)`, if
+    /// The diagnostic for a parameter's name instead of its value, as in `mirror(x)`, if
     /// nothing else is called `x`.
     pub(super) fn parameter_for_value(
         &mut self,

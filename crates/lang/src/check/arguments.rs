@@ -65,26 +65,26 @@ impl<'a> Checker<'a> {
                 self.report(found);
                 given = Given::done(poison(given.span));
             }
-            let place = match given.name {
+            let index = match given.name {
                 None if named => {
                     let message = "positional arguments come before named ones";
                     self.report(Diagnostic::error(Code::ARGUMENTS, given.span, message));
                     None
                 }
                 None => {
-                    let place = (next < parameters.len()).then_some(next);
+                    let index = (next < parameters.len()).then_some(next);
                     next += usize::from(
                         parameters.get(next).is_some_and(|parameter| !parameter.variadic),
                     );
-                    place
+                    index
                 }
                 Some(name) => {
                     named = true;
-                    self.named_place(callee, parameters, name, &bound)
+                    self.index_of_named(callee, parameters, name, &bound)
                 }
             };
-            match place {
-                Some(place) => bound[place].push(given),
+            match index {
+                Some(index) => bound[index].push(given),
                 None => excess.push(given),
             }
         }
@@ -100,14 +100,14 @@ impl<'a> Checker<'a> {
         bound
     }
 
-    fn named_place(
+    fn index_of_named(
         &mut self,
         callee: Callee,
         parameters: &[ParameterSignature<'a>],
         name: &Name,
         bound: &[Vec<Given<'a>>],
     ) -> Option<usize> {
-        let Some(place) = parameters.iter().position(|parameter| parameter.name == name.text)
+        let Some(index) = parameters.iter().position(|parameter| parameter.name == name.text)
         else {
             let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
             let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
@@ -123,14 +123,14 @@ impl<'a> Checker<'a> {
             self.report(found);
             return None;
         };
-        if let Some(first) = bound[place].first() {
+        if let Some(first) = bound[index].first() {
             let message = format!("`{}` is given twice", name.text);
             let found = Diagnostic::error(Code::ARGUMENTS, name.span, message)
                 .note_at(first.span, "the first one");
             self.report(found);
             return None;
         }
-        Some(place)
+        Some(index)
     }
 
     /// Checks a literal without a name. If it does not fit but fits one of the `free` parameters,

@@ -16,7 +16,7 @@ pub(super) struct Variable<'a> {
     pub name: &'a str,
     pub id: LocalId,
     pub ty: Type,
-    /// Where it was declared.
+    /// The span of its declaration.
     pub span: Span,
     /// True if something uses it.
     pub used: bool,

@@ -273,7 +273,7 @@ fn ways_out(have: &Type, want: &Type, role: Role) -> Vec<String> {
     }
 }
 
-/// How to convert one type to another where the language does not.
+/// A suggestion to convert one type to another.
 fn way_out(have: &Type, want: &Type) -> Option<String> {
     match (have, want) {
         (Type::Number | Type::Angle, Type::Int) => Some("round it to a whole number: round(x) or floor(x)".into()),

@@ -179,7 +179,7 @@ impl<'a> Checker<'a> {
         shared
     }
 
-    /// An id, with a place in the program that is filled when the body is checked.
+    /// Reserves an id in the program; its item is filled in when the body is checked.
     fn reserve(&mut self, decl: &ast::Decl, point: Option<Dim>) -> Target {
         let (name, file, span) = (decl.name.text.clone(), decl.name.span.file, decl.name.span);
         let (parameters, requires, docs) = (Vec::new(), Vec::new(), decl.docs.lines.clone());

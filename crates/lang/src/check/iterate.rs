@@ -20,13 +20,13 @@ impl<'a> Checker<'a> {
         for given in given.iter_mut().filter(|g| g.name.is_some_and(|n| n.text == "over")) {
             self.read_sequence(given);
         }
-        let place = |name: &str, at: usize, given: &[Given]| {
+        let index_of = |name: &str, at: usize, given: &[Given]| {
             let named = given.iter().position(|g| g.name.is_some_and(|n| n.text == name));
             let positional = given.iter().take_while(|g| g.name.is_none()).count();
             named.or((at < positional).then_some(at))
         };
-        let over = place("over", 0, &given).and_then(|at| done_type(&given[at]));
-        let state = place("start", 1, &given).map(|at| {
+        let over = index_of("over", 0, &given).and_then(|at| done_type(&given[at]));
+        let state = index_of("start", 1, &given).map(|at| {
             let value = self.one_value(given[at].clone());
             let value = self.as_state(value, callee);
             let ty = value.ty.clone();
@@ -48,14 +48,14 @@ impl<'a> Checker<'a> {
             _ => Type::Error,
         };
         let state = state.unwrap_or(Type::Error);
-        let arity = place("step", 2, &given).and_then(|at| self.step_arity(&mut given[at]));
+        let arity = index_of("step", 2, &given).and_then(|at| self.step_arity(&mut given[at]));
         let takes = match arity {
             Some(2) => vec![state.clone(), item],
             _ => vec![state.clone()],
         };
         let step = Type::Fn(takes, Box::new(state.clone()));
         let goes_on = Type::Fn(vec![state.clone()], Box::new(Type::Bool));
-        let over = over_type(&given, place("over", 0, &given));
+        let over = over_type(&given, index_of("over", 0, &given));
         let parameters = [
             parameter("over", over, false),
             parameter("start", state.clone(), false),

@@ -2,7 +2,7 @@
 
 use crate::hir::Kernel;
 
-/// What a name of the kernel stands for.
+/// The meaning of a name of the kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Builtin {
     /// `pi`, `tau`, `inf`
@@ -72,7 +72,7 @@ pub(super) enum MathResult {
 pub(crate) struct Row {
     /// The name.
     pub name: &'static str,
-    /// What it stands for.
+    /// Its meaning.
     pub(super) builtin: Builtin,
     /// The section of the reference that lists it, such as `maths`.
     pub topic: &'static str,
@@ -186,7 +186,7 @@ pub(crate) const ROWS: &[Row] = rows! {
     }
 };
 
-/// What a name stands for in the kernel, if anything.
+/// The meaning of a name in the kernel, if it has one.
 pub(super) fn builtin(name: &str) -> Option<Builtin> {
     ROWS.iter().find(|row| row.name == name).map(|row| row.builtin)
 }

@@ -54,10 +54,10 @@ impl<'a> Checker<'a> {
             let Some((Element::One(value), _)) = elements.pop() else { return poison(callee.span) };
             return self.extreme_component(math.kernel, value, width, callee.span);
         }
-        let place = poison(callee.span);
+        let unknown = poison(callee.span);
         let shown = elements.iter().map(|(element, ty)| match element {
             Element::One(value) | Element::Spread(value) => (value, ty),
-            Element::For(_) => (&place, ty),
+            Element::For(_) => (&unknown, ty),
         });
         let Some(ty) = self.common(callee, shown) else { return poison(callee.span) };
         let plain: Option<Vec<&Expr>> = elements

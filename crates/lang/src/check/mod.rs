@@ -226,8 +226,8 @@ impl<'a> Checker<'a> {
         if has_errors(&found) {
             found.retain(|found| found.code != sdfc_diagnostics::Code::UNUSED);
         }
-        let mut places = FxHashSet::default();
-        found.retain(|found| places.insert(found.span));
+        let mut spans = FxHashSet::default();
+        found.retain(|found| spans.insert(found.span));
         found.sort_by_key(|found| (found.span.file, found.span.start, found.span.end));
         (self.program, found)
     }

@@ -13,7 +13,7 @@ use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
 use crate::settings::SettingRow;
 use crate::spelling::meant;
 
-/// What a top-level name of a file refers to.
+/// The item that a top-level name of a file refers to.
 #[derive(Clone, Debug)]
 pub(super) enum Entry {
     /// One declaration, or one for solids and one for regions.
@@ -40,15 +40,15 @@ pub(super) struct Module<'a> {
 /// An imported name.
 #[derive(Clone, Debug)]
 pub(super) struct ImportedName {
-    /// What it refers to in the file that declares it; `None` if an error was reported.
+    /// The item in the file that declares it; `None` if an error was reported.
     pub entry: Option<Entry>,
-    /// Where it was imported.
+    /// The span of the import.
     pub span: Span,
     /// True if something uses it.
     pub used: bool,
 }
 
-/// What a name refers to at some position.
+/// The item that a name refers to at some position.
 #[derive(Clone, Debug)]
 pub(super) enum Found {
     /// A variable of the current body.
@@ -153,7 +153,7 @@ impl<'a> Checker<'a> {
         self.report(Diagnostic::error(Code::CLOCK, name.span, message).help(help));
     }
 
-    /// Where the name of an entry was declared.
+    /// The span of an entry's name.
     pub(super) fn entry_span(&self, entry: &Entry) -> Span {
         match entry {
             Entry::Decls(decls) => self.decls[decls[0].0].ast.name.span,
@@ -162,7 +162,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// What a name refers to at the current position.
+    /// Looks up a name at the current position.
     pub(super) fn look_up(&mut self, name: &str) -> Option<Found> {
         if let Some(local) = self.body.find(name) {
             return Some(Found::Local(local));
@@ -170,7 +170,7 @@ impl<'a> Checker<'a> {
         self.look_up_outside(name)
     }
 
-    /// What a name refers to outside the current body.
+    /// Looks up a name outside the current body.
     pub(super) fn look_up_outside(&mut self, name: &str) -> Option<Found> {
         let module = self.body.module;
         if let Some(entry) = self.modules[module].names.get(name)
@@ -188,7 +188,7 @@ impl<'a> Checker<'a> {
         self.look_up_library(name)
     }
 
-    /// What a name refers to in the library and the kernel.
+    /// Looks up a name in the library and the kernel.
     pub(super) fn look_up_library(&mut self, name: &str) -> Option<Found> {
         if let Some(entry) = self.library.get(name) {
             return Some(self.found(&entry.clone()));

@@ -16,7 +16,7 @@ use crate::hir::{Element, Expr, ExprKind, Type};
 /// of attempts, so deeper lambdas are checked in 3D only.
 const MAX_ATTEMPTS: usize = 4;
 
-/// What a call refers to.
+/// The declaration or kernel function that a call refers to.
 enum Picked<'a> {
     Declared(Shared<'a>),
     Kernel(Builtin),

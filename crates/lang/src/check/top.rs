@@ -227,9 +227,9 @@ impl<'a> Checker<'a> {
                 .help("both set the colour of rays that hit nothing: remove one");
             self.report(found);
         }
-        let place = |name: &str| parameters.iter().position(|parameter| parameter.name == name);
+        let index_of = |name: &str| parameters.iter().position(|parameter| parameter.name == name);
         if row.kind == SettingKind::Camera
-            && let (Some(fov), Some(height)) = (place("fov"), place("height"))
+            && let (Some(fov), Some(height)) = (index_of("fov"), index_of("height"))
             && let (Some(_), Some(height)) = (&args[fov], &args[height])
         {
             let message = "a camera can have `fov` or `height`, but not both";

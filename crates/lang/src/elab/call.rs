@@ -265,8 +265,8 @@ impl<'p> Elaborator<'p> {
             let Some(found) = self.refute(condition) else {
                 continue;
             };
-            let place = self.frames.last().map_or(require.span, |frame| frame.span);
-            let mut error = Diagnostic::error(ErrorCode::REQUIREMENT, place, &require.message);
+            let at = self.frames.last().map_or(require.span, |frame| frame.span);
+            let mut error = Diagnostic::error(ErrorCode::REQUIREMENT, at, &require.message);
             for (input, at) in &found.inputs {
                 error = error.note(format!("this happens if {input} is {}", show_number(*at)));
             }

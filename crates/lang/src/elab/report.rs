@@ -38,12 +38,12 @@ impl<'p> Elaborator<'p> {
                 found = found.note_at(origin, "in the library, here");
             }
         }
-        let place = found.span;
+        let position = found.span;
         // A call around the position is visible anyway. With recursion, one call occurs many times.
-        let mut shown = vec![place];
+        let mut shown = vec![position];
         let outer: Vec<Note> = calls
             .filter(|call| {
-                let fresh = !encloses(call.span, place) && !shown.contains(&call.span);
+                let fresh = !encloses(call.span, position) && !shown.contains(&call.span);
                 shown.push(call.span);
                 fresh
             })
@@ -54,7 +54,7 @@ impl<'p> Elaborator<'p> {
             })
             .collect();
         found.notes.extend(outer);
-        if self.reported.insert(place) {
+        if self.reported.insert(position) {
             self.diagnostics.push(found);
         }
         Poison

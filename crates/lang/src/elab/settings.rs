@@ -83,22 +83,22 @@ impl<'p> Elaborator<'p> {
     }
 
     /// The argument with an index, if it was given.
-    pub(super) fn argument(&self, setting: &'p Setting, place: usize) -> Option<&'p Expr> {
-        setting.args.get(place).and_then(Option::as_ref)
+    pub(super) fn argument(&self, setting: &'p Setting, index: usize) -> Option<&'p Expr> {
+        setting.args.get(index).and_then(Option::as_ref)
     }
 
     pub(super) fn setting_number(
         &mut self,
         setting: &'p Setting,
-        place: usize,
+        index: usize,
     ) -> Outcome<Option<NodeId>> {
         let mut env = Env::new(self.program.locals);
-        self.argument(setting, place).map(|expr| self.number(&mut env, expr)).transpose()
+        self.argument(setting, index).map(|expr| self.number(&mut env, expr)).transpose()
     }
 
     /// A colour without its alpha.
-    fn setting_color(&mut self, setting: &'p Setting, place: usize) -> Outcome<Option<NodeId>> {
-        let color = self.setting_number(setting, place)?;
+    fn setting_color(&mut self, setting: &'p Setting, index: usize) -> Outcome<Option<NodeId>> {
+        let color = self.setting_number(setting, index)?;
         Ok(color.map(|color| self.graph.swizzle(color, &[0, 1, 2])))
     }
 
@@ -106,13 +106,13 @@ impl<'p> Elaborator<'p> {
     pub(super) fn setting_within(
         &mut self,
         setting: &'p Setting,
-        place: usize,
+        index: usize,
         what: &str,
         range: [f64; 2],
     ) -> Outcome<Option<NodeId>> {
-        let node = self.setting_number(setting, place)?;
+        let node = self.setting_number(setting, index)?;
         if node.is_some_and(|node| self.graph.as_number(node).is_some()) {
-            self.known_within(setting, place, what, range)?;
+            self.known_within(setting, index, what, range)?;
         }
         Ok(node)
     }
@@ -121,17 +121,17 @@ impl<'p> Elaborator<'p> {
     fn known_within(
         &mut self,
         setting: &'p Setting,
-        place: usize,
+        index: usize,
         what: &str,
         range: [f64; 2],
     ) -> Outcome<Option<f64>> {
-        let expr = self.argument(setting, place);
+        let expr = self.argument(setting, index);
         expr.map(|expr| self.number_within(expr, what, range)).transpose()
     }
 
     fn camera(&mut self, setting: &'p Setting) -> Outcome<Camera> {
         let eye = self.setting_number(setting, 0)?.ok_or(Poison)?;
-        let [target, up, fov] = [1, 2, 3].map(|place| self.setting_number(setting, place));
+        let [target, up, fov] = [1, 2, 3].map(|index| self.setting_number(setting, index));
         let height = self.setting_within(setting, 4, "`height`", POSITIVE);
         Ok(Camera {
             eye,
@@ -146,7 +146,7 @@ impl<'p> Elaborator<'p> {
     }
 
     fn sky(&mut self, setting: &'p Setting) -> Outcome<Sky> {
-        let [zenith, horizon] = [0, 1].map(|place| self.setting_color(setting, place));
+        let [zenith, horizon] = [0, 1].map(|index| self.setting_color(setting, index));
         let mut or = |color: Option<NodeId>, default: [f64; 3]| {
             color.unwrap_or_else(|| self.graph.constant(Type::Vec3, &default))
         };

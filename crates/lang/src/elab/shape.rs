@@ -205,8 +205,8 @@ impl<'p> Elaborator<'p> {
             [(promise.outside, &mut contract.outside), (promise.inside, &mut contract.inside)];
         for (_, side) in sides.into_iter().filter(|(stated, _)| *stated) {
             let SidePromise { exact, bound } = side;
-            let place = if promise.exact { exact } else { bound };
-            *place = Some(match *place {
+            let side_condition = if promise.exact { exact } else { bound };
+            *side_condition = Some(match *side_condition {
                 Some(other) => self.graph.binary(Binary::Or, other, condition),
                 None => condition,
             });

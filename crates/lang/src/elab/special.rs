@@ -110,9 +110,9 @@ impl<'p> Elaborator<'p> {
         env: &mut Env<'p>,
         at: Application<'p>,
     ) -> Outcome<Value<'p>> {
-        let [shape, place] = at.args else { return Err(Poison) };
-        let (shape, place) = (self.shape(env, shape), self.number(env, place));
-        let (shape, place) = (shape?, place?);
+        let [shape, position] = at.args else { return Err(Poison) };
+        let (shape, position) = (self.shape(env, shape), self.number(env, position));
+        let (shape, position) = (shape?, position?);
         let (level, dim) = (self.graph.shape(shape).level, self.graph.shape(shape).dim);
         // Points of outer formulas stay; the shape's own point is replaced at the end.
         let mut points: Vec<NodeId> =
@@ -122,7 +122,7 @@ impl<'p> Elaborator<'p> {
         let gradient =
             expander.field_under(&mut self.graph, shape, &points, own).and_then(|field| {
                 let gradient = sdfc_graph::gradient(&mut self.graph, field, own);
-                points.push(place);
+                points.push(position);
                 expander.node(&mut self.graph, gradient, &points)
             });
         gradient.map(Value::Node).map_err(|error| {

@@ -96,7 +96,7 @@ fn set_line(
     let em = f64::from(font.units_per_em());
     let first = curves.len();
     let mut pen: f64 = 0.0;
-    for (info, place) in buffer.glyph_infos().iter().zip(buffer.glyph_positions()) {
+    for (info, position) in buffer.glyph_infos().iter().zip(buffer.glyph_positions()) {
         if info.glyph_id == 0 {
             let character = line.get(info.cluster as usize..).and_then(|rest| rest.chars().next());
             let character = character.unwrap_or('\u{fffd}');
@@ -104,9 +104,9 @@ fn set_line(
             return Err(format!("the font has no letter for `{character}` (U+{code:04X})"));
         }
         let origin =
-            [pen + f64::from(place.x_offset) / em, baseline + f64::from(place.y_offset) / em];
+            [pen + f64::from(position.x_offset) / em, baseline + f64::from(position.y_offset) / em];
         draw(font, GlyphId::new(info.glyph_id), origin, curves)?;
-        pen += f64::from(place.x_advance) / em + setting.spacing;
+        pen += f64::from(position.x_advance) / em + setting.spacing;
     }
     let shift = -setting.align * (pen - setting.spacing).max(0.0);
     for point in curves[first..].as_flattened_mut() {
@@ -123,25 +123,25 @@ fn draw(font: &Font, glyph: GlyphId, origin: Point, curves: &mut Vec<Curve>) -> 
         .draw(&DrawOptions::new(), DrawMemory::default(), &mut path)
         .map_err(|why| format!("a letter of the font cannot be read: {why}"))?;
     let em = f64::from(font.units_per_em());
-    let place = |x: f32, y: f32| [origin[0] + f64::from(x) / em, origin[1] + f64::from(y) / em];
+    let point = |x: f32, y: f32| [origin[0] + f64::from(x) / em, origin[1] + f64::from(y) / em];
     let (mut start, mut at) = (origin, origin);
     for element in path {
         let end = match element {
             PathElement::MoveTo { x, y } => {
-                start = place(x, y);
+                start = point(x, y);
                 start
             }
             PathElement::LineTo { x, y } => {
-                line(at, place(x, y), curves);
-                place(x, y)
+                line(at, point(x, y), curves);
+                point(x, y)
             }
             PathElement::QuadTo { cx0, cy0, x, y } => {
-                quadratic(at, place(cx0, cy0), place(x, y), curves);
-                place(x, y)
+                quadratic(at, point(cx0, cy0), point(x, y), curves);
+                point(x, y)
             }
             PathElement::CurveTo { cx0, cy0, cx1, cy1, x, y } => {
-                cubic([at, place(cx0, cy0), place(cx1, cy1), place(x, y)], curves);
-                place(x, y)
+                cubic([at, point(cx0, cy0), point(cx1, cy1), point(x, y)], curves);
+                point(x, y)
             }
             PathElement::Close => {
                 line(at, start, curves);
@@ -203,8 +203,8 @@ mod tests {
     const LEFT: Setting = Setting { align: 0.0, spacing: 0.0, leading: 1.2 };
 
     fn extent(pieces: &[Piece]) -> [f64; 2] {
-        let places = pieces.iter().flat_map(|piece| piece.curve).map(|point| point[0]);
-        [places.clone().fold(f64::INFINITY, f64::min), places.fold(f64::NEG_INFINITY, f64::max)]
+        let xs = pieces.iter().flat_map(|piece| piece.curve).map(|point| point[0]);
+        [xs.clone().fold(f64::INFINITY, f64::min), xs.fold(f64::NEG_INFINITY, f64::max)]
     }
 
     #[test]
