@@ -1,4 +1,4 @@
-//! Scenes compiled while a Rust program is built: called from its `build.rs`, read by `include!`.
+//! Compiles scenes in the build script of a Rust program, which reads the result with `include!`.
 //!
 //! ```no_run
 //! // build.rs
@@ -14,15 +14,20 @@
 //! }
 //! ```
 //!
-//! The module has `SHADER`, the text (`&[u32]` in SPIR-V); `REFLECTION`, JSON as of `sdfc compile --reflect`; `GROUP` and
-//! `BINDING` of the structure of params, which is `Params`: a member for each param, `time` and `frame` that the shader
-//! reads, in the layout of the uniform buffer, with the scene's defaults as its `Default`; and `LISTS`, what the
-//! storage buffer of long lists holds. `Params` has no padding that is not a member, so that [`Build::bytemuck`] may derive
-//! `Pod` for it; without, `to_bytes` copies.
+//! The module has these items:
 //!
-//! The program that includes it needs no part of sdfc when it runs. A build script runs again only when the
-//! scene, or a file that it imports, has changed: an edit of the program's own text does not compile the scene again, as a
-//! procedural macro would, at each keystroke where an editor checks the program.
+//! - `SHADER`: the source (`&[u32]` for SPIR-V).
+//! - `REFLECTION`: JSON as `sdfc compile --reflect` writes it.
+//! - `Params`: a structure with a member for each param, `time` and `frame` that the shader reads. It
+//!   has the layout of the uniform buffer, and the scene's defaults are its `Default`. All padding is
+//!   made of members, so that [`Build::bytemuck`] can derive `Pod` for it; without that, `to_bytes`
+//!   copies the members.
+//! - `GROUP` and `BINDING` of that uniform buffer.
+//! - `LISTS`: the contents of the storage buffer for long lists.
+//!
+//! The program that includes the module needs no part of sdfc at run time. The build script runs
+//! again only when the scene or a file that it imports has changed. A procedural macro would compile
+//! the scene again after every edit of the program, in editors at every keystroke.
 
 mod module;
 
@@ -32,17 +37,17 @@ use std::path::{Path, PathBuf};
 use sdfc::{Compiled, Resolver, ShaderOptions};
 use sdfc_files::Folder;
 
-/// How scenes are compiled.
+/// The options for compiling scenes.
 #[derive(Clone, Debug, Default)]
 pub struct Build {
     options: ShaderOptions,
     bytemuck: bool,
 }
 
-/// Why a scene is not compiled, with the places in its file.
+/// The reason why a scene was not compiled, with positions in its source.
 pub struct Error(String);
 
-/// Shows as [`Display`](std::fmt::Display) does, since that is how a failing `main` shows it.
+/// The same as [`Display`](std::fmt::Display), because a failing `main` prints this one.
 impl std::fmt::Debug for Error {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.0)
@@ -57,67 +62,72 @@ impl std::fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What was made of a scene.
+/// The result of compiling a scene.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The module's text.
+    /// The source of the module.
     pub text: String,
-    /// Warnings, a line each: `src/ball.sdf:3:7: W0601: ...`.
+    /// The warnings, one line each: `src/ball.sdf:3:7: W0601: ...`.
     pub warnings: Vec<String>,
 }
 
 impl Build {
-    /// The field in WGSL.
+    /// Creates the default options: the field in WGSL.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Which part of the shader is written, in which language, with which names.
+    /// Sets the part of the shader that is written, its language and its names.
     pub fn options(mut self, options: ShaderOptions) -> Self {
         self.options = options;
         self
     }
 
-    /// Whether `Params` derives `bytemuck::Pod` and `bytemuck::Zeroable`, of the program's own `bytemuck`, whose feature
-    /// `derive` it needs.
+    /// Sets if `Params` derives `bytemuck::Pod` and `bytemuck::Zeroable`. The program must depend
+    /// on `bytemuck` with its feature `derive`.
     pub fn bytemuck(mut self, derive: bool) -> Self {
         self.bytemuck = derive;
         self
     }
 
-    /// Compiles a scene to `$OUT_DIR/NAME.rs`, called as the file, and tells Cargo of all files that it was made from.
+    /// Compiles a scene to `$OUT_DIR/NAME.rs`, where `NAME` is the name of its file. Cargo will run
+    /// the build script again when the scene or one of its imports changes.
     ///
     /// # Errors
     ///
-    /// What is wrong with the scene; Cargo has been told each with its place.
+    /// The scene has errors, or a file cannot be read or written. Each error is also printed for
+    /// Cargo with its position.
     pub fn scene(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let folder = std::env::var_os("OUT_DIR");
-        let folder =
-            folder.ok_or_else(|| Error("OUT_DIR is not set: is this a build script?".into()))?;
+        let folder = folder
+            .ok_or_else(|| Error("OUT_DIR is not set; call this from a build script".into()))?;
         let name = path.file_stem().unwrap_or_default();
         let mut read = Vec::new();
-        let made = self.generate(path, &mut read);
-        read.iter().for_each(|path| tell("rerun-if-changed", &path.display().to_string()));
-        match made {
+        let generated = self.generate(path, &mut read);
+        read.iter()
+            .for_each(|path| instruct_cargo("rerun-if-changed", &path.display().to_string()));
+        match generated {
             Ok(Generated { text, warnings }) => {
-                warnings.iter().for_each(|warning| tell("warning", warning));
+                warnings.iter().for_each(|warning| instruct_cargo("warning", warning));
                 let to = PathBuf::from(folder).join(name).with_extension("rs");
                 std::fs::write(&to, text)
                     .map_err(|why| Error(format!("cannot write {}: {why}", to.display())))
             }
             Err((lines, error)) => {
-                lines.iter().for_each(|line| tell("error", line));
+                lines.iter().for_each(|line| instruct_cargo("error", line));
                 Err(error)
             }
         }
     }
 
-    /// The module of a scene; `read` gets the files that it was made from, also where there is none.
+    /// Compiles a scene and returns its module. Appends the files that were read to `read`, also on
+    /// errors.
     ///
     /// # Errors
     ///
-    /// A line for each finding, `src/ball.sdf:3:7: E0201: ...`, and all of them with the lines of the scene.
+    /// Returns one line for each diagnostic, such as `src/ball.sdf:3:7: E0201: ...`, and an error
+    /// that shows all of them with source lines.
     pub fn generate(
         &self,
         path: &Path,
@@ -126,13 +136,13 @@ impl Build {
         read.push(path.to_owned());
         let one = |why: String| (vec![why.clone()], Error(why));
         let input = sdfc_files::read(path).map_err(|why| one(why.to_string()))?;
-        let files = Noted { folder: Folder::of(path), asked: RefCell::default() };
+        let files = RecordingFolder { folder: Folder::of(path), requested: RefCell::default() };
         let compiled = sdfc::compile_with_imports(&input.name, &input.text, &files);
-        let beside = path.parent().unwrap_or(Path::new(""));
-        let asked = files.asked.into_inner();
-        read.extend(asked.iter().map(|asked| beside.join(asked)));
-        let lines = lines(&compiled, |file| match asked.contains(file) {
-            true => beside.join(file).display().to_string(),
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let requested = files.requested.into_inner();
+        read.extend(requested.iter().map(|path| folder.join(path)));
+        let lines = lines(&compiled, |file| match requested.contains(file) {
+            true => folder.join(file).display().to_string(),
             false => file.clone(),
         });
         let scene = match compiled.into_scene() {
@@ -147,7 +157,7 @@ impl Build {
     }
 }
 
-/// The findings as compilers show them in one line; `path` of a file's name is where it lies.
+/// Formats each diagnostic as one line. `path` returns the path of a file with a given name.
 fn lines(compiled: &Compiled, path: impl Fn(&String) -> String) -> Vec<String> {
     let rows = compiled.rows().into_iter();
     let line = rows.map(|row| {
@@ -159,25 +169,25 @@ fn lines(compiled: &Compiled, path: impl Fn(&String) -> String) -> Vec<String> {
     line.collect()
 }
 
-#[allow(clippy::print_stdout, reason = "that is how a build script speaks to Cargo")]
-fn tell(what: &str, value: &str) {
-    println!("cargo::{what}={}", value.replace('\n', " "));
+#[allow(clippy::print_stdout, reason = "build scripts instruct Cargo on stdout")]
+fn instruct_cargo(instruction: &str, value: &str) {
+    println!("cargo::{instruction}={}", value.replace('\n', " "));
 }
 
-/// The files below a folder, and which of them were asked for.
-struct Noted {
+/// A resolver for the files below a folder that records the requested paths.
+struct RecordingFolder {
     folder: Folder,
-    asked: RefCell<Vec<String>>,
+    requested: RefCell<Vec<String>>,
 }
 
-impl Resolver for Noted {
+impl Resolver for RecordingFolder {
     fn read(&self, path: &str) -> Result<String, String> {
-        self.asked.borrow_mut().push(path.to_owned());
+        self.requested.borrow_mut().push(path.to_owned());
         self.folder.read(path)
     }
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
-        self.asked.borrow_mut().push(path.to_owned());
+        self.requested.borrow_mut().push(path.to_owned());
         self.folder.read_bytes(path)
     }
 }

@@ -1,17 +1,17 @@
-//! The text of the module that a program includes.
+//! Generates the module that a program includes.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 use sdfc::{Code, ParamRow, ShaderReflection};
 
-/// Rust's words that WGSL lets through as names.
+/// The reserved words of Rust that are valid names in WGSL.
 const RAW: [&str; 2] = ["box", "gen"];
 
-/// The module of a written shader.
+/// Generates the module of a shader.
 ///
 /// # Errors
 ///
-/// The reflection cannot be written as JSON, or its members do not follow each other.
+/// The reflection cannot be written as JSON, or its members overlap.
 pub(crate) fn text(
     code: &Code,
     reflection: &ShaderReflection,
@@ -28,10 +28,10 @@ pub(crate) fn text(
             let params = params(&reflection.params, uniform.size, bytemuck)?;
             let (group, binding) = (uniform.group, uniform.binding);
             quote! {
-                /// Bind group of the uniform buffer that holds [`Params`].
+                /// The bind group of the uniform buffer with [`Params`].
                 #[allow(dead_code)]
                 pub const GROUP: u32 = #group;
-                /// Its binding in the group.
+                /// The binding of the uniform buffer in its group.
                 #[allow(dead_code)]
                 pub const BINDING: u32 = #binding;
                 #params
@@ -39,15 +39,15 @@ pub(crate) fn text(
         }
         None => TokenStream::new(),
     };
-    // Few programs need all of it.
+    // Few programs need all items, so each allows dead code.
     let module = quote! {
         /// The shader.
         #[allow(dead_code)]
         #shader
-        /// What it offers and reads, and what is certified of its field, as JSON.
+        /// The reflection as JSON: functions, inputs, and the certificate of the field.
         #[allow(dead_code)]
         pub const REFLECTION: &str = #described;
-        /// What its storage buffer of long lists holds; empty without one.
+        /// The contents of the storage buffer for long lists; empty without such a buffer.
         #[allow(dead_code)]
         pub const LISTS: &[[f32; 4]] = &[#(#lists),*];
         #params
@@ -55,13 +55,13 @@ pub(crate) fn text(
     Ok(module.to_string())
 }
 
-/// A member of the structure.
+/// A member of the structure of params.
 struct Member {
     declared: TokenStream,
     default: TokenStream,
 }
 
-/// The structure of params, with its padding as members.
+/// Generates the structure of params. Its padding is made of members.
 fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, String> {
     let mut members = Vec::new();
     let mut end = 0;
@@ -80,7 +80,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
     let copies = rows.iter().map(copy);
     let bytes = size as usize;
     Ok(quote! {
-        /// What the shader reads per frame, laid out as its uniform buffer.
+        /// The values that the shader reads per frame, in the layout of its uniform buffer.
         #[repr(C)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         #derive
@@ -89,7 +89,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
         const _: () = assert!(size_of::<Params>() == #bytes);
 
         impl Default for Params {
-            /// The scene's defaults, at time 0.
+            /// Returns the scene's defaults, at time 0.
             fn default() -> Self {
                 Self { #(#defaults),* }
             }
@@ -97,7 +97,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
 
         #[allow(dead_code)]
         impl Params {
-            /// The bytes of the uniform buffer.
+            /// Returns the bytes of the uniform buffer.
             pub fn to_bytes(&self) -> [u8; #bytes] {
                 let mut bytes = [0; #bytes];
                 #(#copies)*
@@ -107,7 +107,7 @@ fn params(rows: &[ParamRow], size: u32, bytemuck: bool) -> Result<TokenStream, S
     })
 }
 
-/// What lies between two members, named after its place.
+/// Generates the padding between two members, named after its offset.
 fn padding(from: u32, to: u32) -> Result<Option<Member>, String> {
     let gap = to.checked_sub(from).ok_or("members of the uniform buffer overlap")?;
     let words = (gap / 4) as usize;
@@ -116,7 +116,7 @@ fn padding(from: u32, to: u32) -> Result<Option<Member>, String> {
     Ok((words > 0).then_some(Member { declared, default }))
 }
 
-/// Copies a member to its bytes.
+/// Generates the copy of a member to its bytes.
 fn copy(row: &ParamRow) -> TokenStream {
     let (name, start) = (identifier(&row.name), row.offset as usize);
     let end = start + row.size as usize;
@@ -133,7 +133,7 @@ fn identifier(name: &str) -> Ident {
     new(name, Span::call_site())
 }
 
-/// Its type, and its default.
+/// Returns the type and the default of a member.
 fn value(row: &ParamRow) -> (TokenStream, TokenStream) {
     if row.kind == "bool" {
         let default = u32::from(row.default.first().is_some_and(|value| *value != 0.0));

@@ -1,4 +1,4 @@
-//! What a build script makes of a scene, compiled by rustc as part of a program; and how it fails.
+//! The generated module compiles as part of a program, and errors name their position.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
@@ -13,12 +13,12 @@ fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/embed")
 }
 
-/// Compiles a program that includes `NAME.rs` of a folder, runs it, and gives what it prints.
+/// Compiles a program that includes `NAME.rs` of a folder, runs it, and returns its output.
 fn run(program: &Path, folder: &Path) -> String {
     run_with(program, folder, &[]).unwrap()
 }
 
-/// The same, with more arguments for the compiler.
+/// Does the same as [`run`], with more arguments for the compiler.
 fn run_with(program: &Path, folder: &Path, arguments: &[String]) -> Result<String, String> {
     let to = folder.join("program");
     let rustc = std::env::var_os("RUSTC").unwrap_or("rustc".into());
@@ -37,7 +37,7 @@ fn run_with(program: &Path, folder: &Path, arguments: &[String]) -> Result<Strin
     Ok(String::from_utf8(output.stdout).unwrap())
 }
 
-/// Arguments with which rustc finds bytemuck: as Cargo built it for this test, one of those beside it.
+/// Returns the arguments with which rustc finds each build of bytemuck beside this test.
 fn with_bytemuck() -> Vec<[String; 4]> {
     let beside = std::env::current_exe().unwrap().parent().unwrap().to_owned();
     let built = std::fs::read_dir(&beside).unwrap().map(|entry| entry.unwrap().path());
@@ -58,13 +58,13 @@ fn with_bytemuck() -> Vec<[String; 4]> {
 }
 
 #[test]
-fn the_example_holds_its_scene() {
+fn the_example_includes_its_scene() {
     let folder = tempfile::tempdir().unwrap();
     let mut read = Vec::new();
     let path = examples().join("bowl.sdf");
-    let made = Build::new().generate(&path, &mut read).unwrap();
-    assert_eq!((read, made.warnings), (vec![path], Vec::<String>::new()));
-    std::fs::write(folder.path().join("bowl.rs"), made.text).unwrap();
+    let generated = Build::new().generate(&path, &mut read).unwrap();
+    assert_eq!((read, generated.warnings), (vec![path], Vec::<String>::new()));
+    std::fs::write(folder.path().join("bowl.rs"), generated.text).unwrap();
     let printed = run(&examples().join("build/src/main.rs"), folder.path());
 
     let scene = Scene::from_source("bowl.sdf", BOWL).unwrap();
@@ -77,19 +77,19 @@ fn the_example_holds_its_scene() {
     assert!(printed.contains(&text));
 }
 
-/// Every kind of param, between members that want other alignments, under names that Rust reserves.
+/// A scene with every kind of param, mixed alignments, and names that Rust reserves.
 const EVERY_KIND: &str = "param box = 0.5 in 0..2\nparam lid = true\nparam wood = #ff0000\nparam n: int = 3 in 1..9\n\
                           param gen = 10deg in 0deg..45deg\nparam style = \"a\" in [\"b\", \"a\"]\n\
                           let s = if style == \"a\" { sphere(box) } else { cylinder(r: box) }\n\
                           (if lid { s } else { s | torus() }).rotate(y: gen).color(wood)\n\
                           sphere(0.1 * n).translate(y: time)";
 
-/// Writes the module of that scene and a program that includes it, and gives the program.
+/// Writes the module of that scene and a program that includes it. Returns the path of the program.
 fn every_kind(build: &Build, folder: &Path, main: &str) -> PathBuf {
     let path = folder.join("all.sdf");
     std::fs::write(&path, EVERY_KIND).unwrap();
-    let made = build.generate(&path, &mut Vec::new()).map_err(|(_, why)| why).unwrap();
-    std::fs::write(folder.join("all.rs"), made.text).unwrap();
+    let generated = build.generate(&path, &mut Vec::new()).map_err(|(_, why)| why).unwrap();
+    std::fs::write(folder.join("all.rs"), generated.text).unwrap();
     let program = folder.join("main.rs");
     let module = "mod all { include!(concat!(env!(\"OUT_DIR\"), \"/all.rs\")); }";
     std::fs::write(&program, format!("{module}\nfn main() {{ {main} }}")).unwrap();
@@ -97,7 +97,7 @@ fn every_kind(build: &Build, folder: &Path, main: &str) -> PathBuf {
 }
 
 #[test]
-fn a_structure_is_laid_out_as_the_buffer() {
+fn params_have_the_layout_of_the_buffer() {
     let folder = tempfile::tempdir().unwrap();
     let main = "println!(\"{:?}\", all::Params { time: 0.25, ..Default::default() }.to_bytes());";
     let program = every_kind(&Build::new(), folder.path(), main);
@@ -112,9 +112,9 @@ fn a_structure_is_laid_out_as_the_buffer() {
     assert_eq!(printed.trim_end(), format!("{bytes:?}"));
 }
 
-/// `Pod` is derived only for structures whose every byte is a member's.
+/// `Pod` can be derived only for structures without padding.
 #[test]
-fn a_structure_is_plain_bytes_where_that_is_asked_for() {
+fn params_derive_pod_with_the_option() {
     let folder = tempfile::tempdir().unwrap();
     let main = "let params = all::Params { time: 0.25, lid: 0, ..Default::default() };\n\
                 assert_eq!(bytemuck::bytes_of(&params), params.to_bytes());\n\
@@ -122,13 +122,13 @@ fn a_structure_is_plain_bytes_where_that_is_asked_for() {
                 assert_eq!(zero.to_bytes(), [0; size_of::<all::Params>()]);\n\
                 println!(\"same\");";
     let program = every_kind(&Build::new().bytemuck(true), folder.path(), main);
-    // Other versions and features may lie there too.
+    // There may be builds with other versions and features.
     let tried = with_bytemuck().into_iter().map(|found| run_with(&program, folder.path(), &found));
     let tried: Vec<_> = tried.collect();
     let ran = tried.iter().flatten().next();
     assert_eq!(ran.map(|text| text.trim_end()), Some("same"), "{tried:#?}");
 
-    // What was not asked for is not there.
+    // Without the option, `Pod` is not derived.
     let program = every_kind(&Build::new(), folder.path(), main);
     let mut tried =
         with_bytemuck().into_iter().map(|found| run_with(&program, folder.path(), &found));
@@ -142,14 +142,14 @@ fn errors_point_into_the_file_of_the_scene() {
     std::fs::write(&path, "import part from \"part.sdf\"\n\nlet a = spere(1)\na | part").unwrap();
     let mut read = Vec::new();
     let (lines, error) = Build::new().generate(&path, &mut read).unwrap_err();
-    let place = path.display();
-    let expected = format!("{place}:3:9: E0201: unknown name `spere`");
+    let path_text = path.display();
+    let expected = format!("{path_text}:3:9: E0201: unknown name `spere`");
     assert!(lines.iter().any(|line| line.starts_with(&expected)), "{lines:#?}");
     assert!(format!("{error:?}").contains("did you mean `sphere`?"), "{error:?}");
-    // What it would import is waited for.
+    // The script runs again when the missing import appears.
     assert_eq!(read, [path.clone(), folder.path().join("part.sdf")]);
 
-    // Of an imported file, too, the path is that from where Cargo is.
+    // The path of an imported file, too, is relative to the working folder of Cargo.
     std::fs::write(&path, "import part from \"part.sdf\"\npart()").unwrap();
     std::fs::write(folder.path().join("part.sdf"), "solid part() = lenght(p) - 1").unwrap();
     let (lines, _) = Build::new().generate(&path, &mut Vec::new()).unwrap_err();

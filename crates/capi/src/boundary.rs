@@ -1,13 +1,13 @@
-//! What crosses from C and back: pointers, texts, errors, and no panic.
+//! Conversions at the C boundary: pointers, strings, errors. No panic crosses it.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::Status;
+use crate::status::Status;
 
-/// Why a call fails.
+/// The reason why a call failed.
 pub(crate) struct Failure {
     status: Status,
     message: String,
@@ -31,7 +31,7 @@ impl Failure {
     }
 
     fn null() -> Self {
-        Self { status: Status::Null, message: "a pointer is null that may not be".to_owned() }
+        Self { status: Status::Null, message: "a required pointer is null".to_owned() }
     }
 }
 
@@ -39,16 +39,16 @@ thread_local! {
     static LAST: RefCell<CString> = RefCell::default();
 }
 
-/// Runs a call, and keeps why it failed.
+/// Runs a call and stores the reason if it failed.
 pub(crate) fn guarded(call: impl FnOnce() -> Result<(), Failure>) -> Status {
-    // What a call leaves half done in a scene are values of params, each of which is whole.
-    let done = catch_unwind(AssertUnwindSafe(call));
-    let done = done.unwrap_or_else(|_| Err(Failure::internal("sdfc panicked, which is its fault")));
-    let (status, message) = match done {
+    // A call that panics may leave some params of a scene set and others not; each is valid.
+    let result = catch_unwind(AssertUnwindSafe(call));
+    let result = result.unwrap_or_else(|_| Err(Failure::internal("sdfc panicked; this is a bug")));
+    let (status, message) = match result {
         Ok(()) => (Status::Ok, String::new()),
         Err(Failure { status, message }) => (status, message.replace('\0', "\u{fffd}")),
     };
-    // A thread that is ending has no place for it any more.
+    // The storage of a thread that is ending may be gone.
     let _ = LAST.try_with(|last| last.replace(CString::new(message).unwrap_or_default()));
     status
 }
@@ -57,74 +57,84 @@ pub(crate) fn last_error() -> *const c_char {
     LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
+/// Converts a C string.
+///
 /// # Safety
 ///
-/// Null, or ends in a null byte and lives as long as is said.
+/// The pointer is null, or the string ends in a null byte and lives as long as the result.
 pub(crate) unsafe fn text<'a>(text: *const c_char) -> Result<&'a str, Failure> {
     if text.is_null() {
         return Err(Failure::null());
     }
-    // SAFETY: as this function's.
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
     let text = unsafe { CStr::from_ptr(text) };
     text.to_str().map_err(|_| Failure::not_utf8("text"))
 }
 
+/// Converts a pointer to a reference, or fails if it is null.
+///
 /// # Safety
 ///
-/// Null, or what it is said to point to, which nobody changes meanwhile.
+/// The pointer is null, or valid for reads, and nobody changes its target while the reference
+/// lives.
 pub(crate) unsafe fn handle<'a, T>(pointer: *const T) -> Result<&'a T, Failure> {
-    // SAFETY: as this function's.
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
     unsafe { pointer.as_ref() }.ok_or_else(Failure::null)
 }
 
+/// Converts a pointer to a mutable reference, or fails if it is null.
+///
 /// # Safety
 ///
-/// Null, or what it is said to point to, which nobody else has meanwhile.
+/// The pointer is null, or valid for writes, and nobody else uses its target while the reference
+/// lives.
 pub(crate) unsafe fn handle_mut<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
-    // SAFETY: as this function's.
+    // SAFETY: guaranteed by the caller, see the safety section of this function.
     unsafe { pointer.as_mut() }.ok_or_else(Failure::null)
 }
 
-/// As many elements; null will do for none.
+/// Converts a pointer and a count to a slice. The pointer may be null if the count is 0.
 ///
 /// # Safety
 ///
-/// Null, or has so many, which nobody changes meanwhile.
+/// The pointer is null, or valid for reads of `count` elements, and nobody changes them while the
+/// slice lives.
 pub(crate) unsafe fn slice<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Failure> {
     fits::<T>(count)?;
     match (first.is_null(), count) {
         (_, 0) => Ok(&[]),
         (true, _) => Err(Failure::null()),
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         (false, _) => Ok(unsafe { std::slice::from_raw_parts(first, count) }),
     }
 }
 
-/// As [`slice`], to be written.
+/// Converts a pointer and a count to a mutable slice. The pointer may be null if the count is 0.
 ///
 /// # Safety
 ///
-/// Null, or has so many, which nobody else has meanwhile.
+/// The pointer is null, or valid for writes of `count` elements, and nobody else uses them while
+/// the slice lives.
 pub(crate) unsafe fn slice_mut<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Failure> {
     fits::<T>(count)?;
     match (first.is_null(), count) {
         (_, 0) => Ok(&mut []),
         (true, _) => Err(Failure::null()),
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         (false, _) => Ok(unsafe { std::slice::from_raw_parts_mut(first, count) }),
     }
 }
 
-/// Nothing in memory is larger.
+/// Fails if `count` elements are larger than anything in memory can be.
 fn fits<T>(count: usize) -> Result<(), Failure> {
     let bytes = count.checked_mul(size_of::<T>());
     let fits = bytes.is_some_and(|bytes| isize::try_from(bytes).is_ok());
     if fits { Ok(()) } else { Err(Failure::argument(format!("{count} elements: too many"))) }
 }
 
-/// Copies bytes to where there may be too little room.
-pub(crate) fn fill(room: &mut [u8], bytes: &[u8]) -> Result<(), Failure> {
-    let short = || Failure::argument(format!("{} bytes do not fit", bytes.len()));
-    room.get_mut(..bytes.len()).ok_or_else(short)?.copy_from_slice(bytes);
+/// Copies bytes to the start of a buffer, or fails if the buffer is too small.
+pub(crate) fn fill(buffer: &mut [u8], bytes: &[u8]) -> Result<(), Failure> {
+    let short = || Failure::argument(format!("the buffer is too small for {} bytes", bytes.len()));
+    buffer.get_mut(..bytes.len()).ok_or_else(short)?.copy_from_slice(bytes);
     Ok(())
 }

@@ -1,12 +1,17 @@
-//! The compiler and the fields of its scenes for C: see `sdfc.h` beside this crate, which is made from it.
+//! The C interface of the compiler and of the fields of its scenes. The header `sdfc.h` in this
+//! crate is generated from it.
 //!
-//! Nothing here opens files: a scene that imports others has them from a function of the program that calls, or is refused. Every function takes null and text that is not
-//! UTF-8 without harm, and says so: a pointer that it gives is then null, a status is not [`Status::Ok`], and
-//! [`sdfc_error`] says why. The compiler does not panic, which lints and tests with arbitrary input hold; should it all the
-//! same, that ends at this boundary as [`Status::Internal`], for nothing may unwind into C.
+//! The library opens no files: a callback of the calling program reads the files that a scene
+//! imports, otherwise imports are errors. Every function detects null pointers and text that is not
+//! UTF-8. On any error, a returned pointer is null, a returned status is not [`Status::Ok`], and
+//! [`sdfc_error`] returns the reason.
+//!
+//! A panic is caught at this boundary and returned as [`Status::Internal`], because nothing may
+//! unwind into C. No input is known to cause one; lints and tests with arbitrary input check this.
 
 mod boundary;
 mod files;
+mod status;
 
 use std::ffi::{CString, c_char, c_void};
 
@@ -14,30 +19,14 @@ use sdfc::codegen::Reflection;
 use sdfc::{Emit, FrameValues, ShaderOptions, Target, uniform_bytes};
 
 use boundary::{Failure, fill, guarded, handle, handle_mut, slice, slice_mut, text};
-use files::Host;
+use files::CallbackResolver;
 pub use files::{File, Read, sdfc_file_give};
-
-/// How a call ended.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// As asked.
-    Ok = 0,
-    /// A pointer is null that may not be.
-    Null = 1,
-    /// A text is not UTF-8.
-    NotUtf8 = 2,
-    /// There is no such target, part, param or value, or no room.
-    Argument = 3,
-    /// The scene has errors, draws nothing, or cannot be written so.
-    Scene = 4,
-    /// A fault of sdfc.
-    Internal = 5,
-}
+pub use status::Status;
 
 /// A compiled scene, and values of its params.
 ///
-/// Any number of threads may call functions that take it as `const`, while none calls another.
+/// Functions that take the scene as `const` may run in any number of threads at once, but not while
+/// another function changes the scene.
 #[derive(Debug)]
 pub struct Scene {
     scene: sdfc::Scene,
@@ -47,33 +36,37 @@ pub struct Scene {
 /// A scene written as a shader.
 #[derive(Debug)]
 pub struct Shader {
-    /// With a null behind it.
+    /// The code with a null byte behind it.
     code: Vec<u8>,
     reflection: Reflection,
     described: CString,
 }
 
-/// The version of sdfc, such as `0.1.0`. Not to be freed.
+/// Returns the version of sdfc, such as `0.1.0`. Do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdfc_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
     VERSION.as_ptr().cast()
 }
 
-/// Why the last call of this thread failed, as text for people; empty if it did not. Valid until the thread's next call.
+/// Returns the message of the last error of this thread, or an empty string if the last call
+/// succeeded. It is valid until the thread's next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn sdfc_error() -> *const c_char {
     boundary::last_error()
 }
 
-/// Compiles a scene: `length` bytes of source, UTF-8; `name` is what messages call it. Where `diagnostics` is not null, a
-/// JSON array of all findings is stored there, as `sdfc check --json` writes it, to be freed with `sdfc_string_free`.
+/// Compiles a scene from `length` bytes of UTF-8 source. Messages use `name` as its file name.
 ///
-/// Null where the source has errors, or imports a file; else to be freed with `sdfc_scene_free`.
+/// If `diagnostics` is not null, a JSON array of all diagnostics is stored there, as `sdfc check
+/// --json` writes it. Free it with `sdfc_string_free`.
+///
+/// Returns null if the source has errors or imports a file. Free the scene with `sdfc_scene_free`.
 ///
 /// # Safety
 ///
-/// `name` ends in a null byte; `source` has that many bytes; `diagnostics` may be written.
+/// `name` ends in a null byte. `source` is valid for `length` bytes. `diagnostics` is null or valid
+/// for a write.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_compile(
     name: *const c_char,
@@ -82,16 +75,18 @@ pub unsafe extern "C" fn sdfc_compile(
     diagnostics: *mut *mut c_char,
 ) -> *mut Scene {
     let (read, context) = (None, std::ptr::null_mut());
-    // SAFETY: as this function's; nothing is called.
+    // SAFETY: guaranteed by the caller; without a callback nothing is called.
     unsafe { sdfc_compile_with_files(name, source, length, read, context, diagnostics) }
 }
 
-/// As `sdfc_compile`, for a scene that imports files: `read` gives them. It is called while this runs, by this thread, with
-/// `context`. Null for it is none.
+/// Compiles a scene like `sdfc_compile`, but `read` provides the files that it imports. `read` is
+/// called with `context`, in this thread, before this function returns. If `read` is null, imports
+/// are errors.
 ///
 /// # Safety
 ///
-/// As `sdfc_compile`; `read` may be called with `context`, and neither throws nor jumps out of it.
+/// The conditions of `sdfc_compile` hold. `read` may be called with `context`, and returns
+/// normally: no exceptions and no jumps out of it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_compile_with_files(
     name: *const c_char,
@@ -103,16 +98,16 @@ pub unsafe extern "C" fn sdfc_compile_with_files(
 ) -> *mut Scene {
     let mut made = std::ptr::null_mut();
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (name, source) = unsafe { (text(name)?, slice(source.cast::<u8>(), length)?) };
         let source = std::str::from_utf8(source).map_err(|_| Failure::not_utf8("source"))?;
-        // SAFETY: as this function's.
-        let host = unsafe { Host::new(read, context) };
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
+        let files = unsafe { CallbackResolver::new(read, context) };
         let compiled = sdfc::compile_with_imports(name, source, &host);
         if !diagnostics.is_null() {
             let rows =
                 c_string(serde_json::to_string(&compiled.rows()).map_err(Failure::internal)?)?;
-            // SAFETY: it is not null and may be written.
+            // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
             unsafe { *diagnostics = rows.into_raw() };
         }
         let scene = compiled.into_scene().map_err(Failure::scene)?;
@@ -123,37 +118,38 @@ pub unsafe extern "C" fn sdfc_compile_with_files(
     made
 }
 
-/// Frees what `sdfc_compile` gave; null is nothing.
+/// Frees a scene. Does nothing for null.
 ///
 /// # Safety
 ///
-/// It came from there and is not used again.
+/// The scene was returned by `sdfc_compile` or `sdfc_compile_with_files` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_scene_free(scene: *mut Scene) {
     if !scene.is_null() {
-        // SAFETY: it was a box, and nobody has it any more.
+        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
         drop(unsafe { Box::from_raw(scene) });
     }
 }
 
-/// Frees a text that was given to be freed; null is nothing.
+/// Frees a string that the caller must free. Does nothing for null.
 ///
 /// # Safety
 ///
-/// It came from a function that says so and is not used again.
+/// The string came from a function whose documentation says so, and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_string_free(string: *mut c_char) {
     if !string.is_null() {
-        // SAFETY: it was a `CString`, and nobody has it any more.
+        // SAFETY: the pointer came from a `CString`, and the caller does not use it again.
         drop(unsafe { CString::from_raw(string) });
     }
 }
 
-/// Sets a param by its name. The value is written as in a scene: `0.5`, `90deg`, `true`, `#d94f30`; a choice by its name.
+/// Sets the param with a name. The value is written as in a scene: `0.5`, `90deg`, `true`,
+/// `#d94f30`; a choice by its name.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; both texts end in a null byte.
+/// `scene` is null or a valid scene. Both strings end in a null byte.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_set(
     scene: *mut Scene,
@@ -161,17 +157,17 @@ pub unsafe extern "C" fn sdfc_set(
     value: *const c_char,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, param, value) = unsafe { (handle_mut(scene)?, text(param)?, text(value)?) };
         scene.scene.set_param(&mut scene.frame, param, value).map_err(Failure::argument)
     })
 }
 
-/// Sets a param that is a number, a whole number or an angle in radians.
+/// Sets a param that is a number, an integer or an angle in radians.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; the name ends in a null byte.
+/// `scene` is null or a valid scene. The name ends in a null byte.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_set_number(
     scene: *mut Scene,
@@ -179,33 +175,34 @@ pub unsafe extern "C" fn sdfc_set_number(
     value: f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, param) = unsafe { (handle_mut(scene)?, text(param)?) };
         scene.scene.set(&mut scene.frame, param, value).map_err(Failure::argument)
     })
 }
 
-/// Sets what `time`, in seconds, and `frame`, a whole number, are in the scene.
+/// Sets the values of `time`, in seconds, and `frame`, an integer, in the scene.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`.
+/// `scene` is null or a valid scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_set_time(scene: *mut Scene, time: f64, frame: f64) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let scene = unsafe { handle_mut(scene)? };
         (scene.frame.time, scene.frame.frame) = (time, frame);
         Ok(())
     })
 }
 
-/// Signed distances at `count` points, each x, y, z one after the other. Never more than the true distance where the
-/// scene is certified.
+/// Computes the signed distances at `count` points, each given as x, y, z. If the scene is
+/// certified, they never exceed the true distances.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; `points` has 3 numbers for each point, `distances` room for one.
+/// `scene` is null or a valid scene. `points` has 3 numbers for each point, `distances` has room
+/// for 1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_distance(
     scene: *const Scene,
@@ -214,7 +211,7 @@ pub unsafe extern "C" fn sdfc_distance(
     distances: *mut f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, points, to) =
             unsafe { (handle(scene)?, slice(points.cast(), count)?, slice_mut(distances, count)?) };
         let mut field = scene.scene.field(&scene.frame).map_err(Failure::scene)?;
@@ -223,11 +220,13 @@ pub unsafe extern "C" fn sdfc_distance(
     })
 }
 
-/// The derivative of the distance at `count` points, and the distance: x, y, z, distance for each.
+/// Computes the gradient of the distance and the distance at `count` points: x, y, z, distance for
+/// each.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; `points` has 3 numbers for each point, `gradients` room for 4.
+/// `scene` is null or a valid scene. `points` has 3 numbers for each point, `gradients` has room
+/// for 4.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_gradient(
     scene: *const Scene,
@@ -236,7 +235,7 @@ pub unsafe extern "C" fn sdfc_gradient(
     gradients: *mut f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, points, to) = unsafe {
             (handle(scene)?, slice(points.cast(), count)?, slice_mut(gradients.cast(), count)?)
         };
@@ -250,11 +249,12 @@ pub unsafe extern "C" fn sdfc_gradient(
     })
 }
 
-/// Lowest and highest corner of a box that holds the surface, three numbers each; infinite where there is no end.
+/// Computes the lowest and the highest corner of a box that contains the surface, three numbers
+/// each. A number is infinite if the surface has no bound on that side.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; both have room for 3 numbers.
+/// `scene` is null or a valid scene. `lowest` and `highest` have room for 3 numbers each.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_bounds(
     scene: *const Scene,
@@ -262,7 +262,7 @@ pub unsafe extern "C" fn sdfc_bounds(
     highest: *mut f64,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, lowest, highest) =
             unsafe { (handle(scene)?, slice_mut(lowest, 3)?, slice_mut(highest, 3)?) };
         let bounds = scene.scene.bounds_at(&scene.frame);
@@ -273,15 +273,17 @@ pub unsafe extern "C" fn sdfc_bounds(
     })
 }
 
-/// Writes the scene as a shader. `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`; `part` one of
-/// `field`, `march`, `render`; names begin with `prefix`, and the first buffer is at `group` and `binding`. Null for a text
-/// is `wgsl`, `field` and `sdf_`.
+/// Writes the scene as a shader.
 ///
-/// Null where that cannot be; else to be freed with `sdfc_shader_free`.
+/// `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`. `part` is one
+/// of `field`, `march`, `render`. Names in the shader begin with `prefix`, and the first buffer has
+/// the index `binding` in `group`. The defaults for null are `wgsl`, `field` and `sdf_`.
+///
+/// Returns null if the shader cannot be written. Free the shader with `sdfc_shader_free`.
 ///
 /// # Safety
 ///
-/// The scene is one of `sdfc_compile`; texts end in a null byte.
+/// `scene` is null or a valid scene. The strings are null or end in a null byte.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_write(
     scene: *const Scene,
@@ -293,10 +295,11 @@ pub unsafe extern "C" fn sdfc_shader_write(
 ) -> *mut Shader {
     let mut made = std::ptr::null_mut();
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (scene, [target, part, prefix]) = unsafe {
-            let or =
-                |given: *const c_char, other| if given.is_null() { Ok(other) } else { text(given) };
+            let or = |given: *const c_char, default| {
+                if given.is_null() { Ok(default) } else { text(given) }
+            };
             (handle(scene)?, [or(target, "wgsl")?, or(part, "field")?, or(prefix, "sdf_")?])
         };
         let (target, emit) = (target_of(target)?, emit_of(part)?);
@@ -320,11 +323,13 @@ pub unsafe extern "C" fn sdfc_shader_write(
     made
 }
 
-/// The shader's text or words, `length` bytes if that is not null; behind them there is a null byte. Null for null.
+/// Returns the source of the shader, or its words in SPIR-V, with a null byte behind. If `length`
+/// is not null, the number of bytes without that null byte is stored there. Returns null for null.
 ///
 /// # Safety
 ///
-/// The shader is one of `sdfc_shader_write`, and is not freed while the code is used; `length` may be written.
+/// `shader` is null or a valid shader, and is not freed while the code is used. `length` is null or
+/// valid for a write.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_code(
     shader: *const Shader,
@@ -332,10 +337,10 @@ pub unsafe extern "C" fn sdfc_shader_code(
 ) -> *const c_char {
     let mut code = std::ptr::null();
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let shader = unsafe { handle(shader)? };
         if !length.is_null() {
-            // SAFETY: it is not null and may be written.
+            // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
             unsafe { *length = shader.code.len() - 1 };
         }
         code = shader.code.as_ptr().cast();
@@ -344,29 +349,32 @@ pub unsafe extern "C" fn sdfc_shader_code(
     code
 }
 
-/// What the shader offers and reads, and what is certified of its field, as JSON: that of `sdfc compile --reflect`. Null
-/// for null.
+/// Returns the reflection of the shader as JSON, as `sdfc compile --reflect` writes it: its
+/// functions, its inputs, and the certificate of its field. Returns null for null.
 ///
 /// # Safety
 ///
-/// The shader is one of `sdfc_shader_write`, and is not freed while the text is used.
+/// `shader` is null or a valid shader, and is not freed while the string is used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_reflection(shader: *const Shader) -> *const c_char {
     let mut described = std::ptr::null();
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         described = unsafe { handle(shader)? }.described.as_ptr();
         Ok(())
     });
     described
 }
 
-/// The bytes of the shader's uniform buffer for the values that the scene has. Stores how many they are, 0 where the shader has
-/// no such buffer, in `length`, and the bytes themselves where `bytes` is not null and `capacity` is as much.
+/// Computes the bytes of the shader's uniform buffer for the current values of the scene's params.
+///
+/// Stores the number of bytes in `length`: 0 if the shader has no uniform buffer. If `bytes` is not
+/// null, writes the bytes there; `capacity` must be large enough.
 ///
 /// # Safety
 ///
-/// The shader was written of this scene; `bytes` has room for `capacity`; `length` may be written.
+/// `shader` was written from `scene`; both are null or valid. `bytes` is null or has room for
+/// `capacity` bytes. `length` is null or valid for a write.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_uniform(
     shader: *const Shader,
@@ -376,7 +384,7 @@ pub unsafe extern "C" fn sdfc_shader_uniform(
     length: *mut usize,
 ) -> Status {
     guarded(|| {
-        // SAFETY: as this function's.
+        // SAFETY: guaranteed by the caller, see the safety section of this function.
         let (shader, scene, length) =
             unsafe { (handle(shader)?, handle(scene)?, handle_mut(length)?) };
         let found = uniform_bytes(&shader.reflection, &scene.frame);
@@ -384,38 +392,38 @@ pub unsafe extern "C" fn sdfc_shader_uniform(
         if bytes.is_null() {
             return Ok(());
         }
-        // SAFETY: it is not null and has that room.
+        // SAFETY: the pointer is not null, and the caller guarantees the room.
         fill(unsafe { slice_mut(bytes, capacity)? }, &found)
     })
 }
 
-/// Frees what `sdfc_shader_write` gave; null is nothing.
+/// Frees a shader. Does nothing for null.
 ///
 /// # Safety
 ///
-/// It came from there and is not used again.
+/// The shader was returned by `sdfc_shader_write` and is not used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sdfc_shader_free(shader: *mut Shader) {
     if !shader.is_null() {
-        // SAFETY: it was a box, and nobody has it any more.
+        // SAFETY: the pointer came from a `Box`, and the caller does not use it again.
         drop(unsafe { Box::from_raw(shader) });
     }
 }
 
 fn target_of(name: &str) -> Result<Target, Failure> {
     let found = Target::ALL.into_iter().find(|target| target.name() == name);
-    found.ok_or_else(|| Failure::argument(format!("there is no target `{name}`")))
+    found.ok_or_else(|| Failure::argument(format!("unknown target `{name}`")))
 }
 
 fn emit_of(name: &str) -> Result<Emit, Failure> {
     let found =
         [Emit::Field, Emit::March, Emit::Render].into_iter().find(|emit| emit.name() == name);
     found.ok_or_else(|| {
-        Failure::argument(format!("there is no part `{name}`: field, march, render"))
+        Failure::argument(format!("unknown part `{name}`; the parts are field, march, render"))
     })
 }
 
-/// JSON has no null byte, which it would escape.
+/// Converts JSON to a C string. JSON escapes null bytes, so it has none.
 fn c_string(text: String) -> Result<CString, Failure> {
     CString::new(text).map_err(Failure::internal)
 }

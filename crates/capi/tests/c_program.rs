@@ -1,4 +1,5 @@
-//! `examples/embed/c`: compiled by the C compiler of the machine, its answers compared with the library's own.
+//! `examples/embed/c`, compiled with the C compiler of the machine, computes the same values as the
+//! library.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::io::Write;
@@ -9,12 +10,12 @@ use sdfc::Scene;
 
 const SOURCE: &str = include_str!("../../../examples/embed/bowl.sdf");
 
-/// The folder of the shared library, which is built beside this test.
+/// Returns the folder of the shared library, which is built beside this test.
 fn libraries() -> PathBuf {
     std::env::current_exe().unwrap().parent().unwrap().to_owned()
 }
 
-/// `field.c`, compiled to a program in the folder.
+/// Compiles `field.c` to a program in the folder.
 fn compiled(folder: &Path) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let program = folder.join("field");
@@ -32,7 +33,7 @@ fn compiled(folder: &Path) -> PathBuf {
     program
 }
 
-/// What the program says of a scene and of points.
+/// Runs the program with a scene and points, and returns its output.
 fn run(program: &Path, scene: &Path, points: &[[f64; 3]]) -> Output {
     let mut child = Command::new(program)
         .args([scene.as_os_str(), "0.1".as_ref()])
@@ -44,13 +45,13 @@ fn run(program: &Path, scene: &Path, points: &[[f64; 3]]) -> Output {
         .spawn()
         .unwrap();
     let lines: String = points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
-    // A program that ends early reads none.
+    // A program that ends early does not read them.
     let _ = child.stdin.take().unwrap().write_all(lines.as_bytes());
     child.wait_with_output().unwrap()
 }
 
 #[test]
-fn a_c_program_calls_the_field() {
+fn the_c_example_computes_the_distances_of_the_library() {
     let folder = tempfile::tempdir().unwrap();
     let program = compiled(folder.path());
     let points = [[0.0, 0.0, 0.0], [0.4, -0.3, 0.7], [1.5, 0.2, -0.1], [-0.3, -1.4, 0.2]];
@@ -76,12 +77,12 @@ fn a_c_program_calls_the_field() {
     }
     assert_eq!(rows.lines().count(), points.len());
 
-    // A scene of two files, the second of which is there only at last.
+    // A scene of two files; the second does not exist at first.
     let path = folder.path().join("two.sdf");
     std::fs::write(&path, "import ball from \"parts/ball.sdf\"\nball()").unwrap();
     let output = run(&program, &path, &points);
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(!output.status.success() && said.contains("the program gives no such file"), "{said}");
+    assert!(!output.status.success() && said.contains("the program has no such file"), "{said}");
     std::fs::create_dir(folder.path().join("parts")).unwrap();
     let ball = "solid ball() = length(p) - 0.25";
     std::fs::write(folder.path().join("parts/ball.sdf"), ball).unwrap();

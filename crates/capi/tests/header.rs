@@ -1,4 +1,4 @@
-//! `sdfc.h` is what the functions are.
+//! `sdfc.h` is up to date.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::Path;

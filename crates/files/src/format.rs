@@ -1,37 +1,37 @@
-//! File formats of pictures.
+//! The file formats of pictures.
 
 use std::path::Path;
 
 use sdfc::render::{Animation, Image, RenderError};
 
-/// How a picture is written.
+/// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// 8 bits of sRGB a channel.
+    /// PNG: 8 bits of sRGB per channel.
     Png,
-    /// 32 bits of linear light a channel.
+    /// OpenEXR: 32 bits of linear light per channel.
     Exr,
-    /// 256 colours; frames that move.
+    /// GIF: 256 colours, and animations.
     Gif,
 }
 
 impl Format {
-    /// By the ending of a path; without one, and on stdout, a PNG.
+    /// Returns the format for the extension of a path: PNG if there is none, as for stdout.
     ///
     /// # Errors
     ///
-    /// The ending is that of another format; which there are.
+    /// The extension belongs to no format. The message names the formats.
     pub fn of(path: &Path) -> Result<Self, String> {
-        let Some(ending) = path.extension() else { return Ok(Self::Png) };
+        let Some(extension) = path.extension() else { return Ok(Self::Png) };
         let formats = [("png", Self::Png), ("exr", Self::Exr), ("gif", Self::Gif)];
-        let found = formats.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known));
-        found.map(|(_, format)| *format).ok_or_else(|| {
+        let format = formats.iter().find(|(known, _)| extension.eq_ignore_ascii_case(known));
+        format.map(|(_, format)| *format).ok_or_else(|| {
             let path = path.display();
             format!("{path}: pictures are written as .png, .exr or .gif")
         })
     }
 
-    /// A picture as a file.
+    /// Encodes a picture.
     ///
     /// # Errors
     ///
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn endings_decide() {
+    fn the_extension_determines_the_format() {
         let of = |path: &str| Format::of(Path::new(path)).ok();
         assert_eq!([of("-"), of("a"), of("a.PNG")], [Some(Format::Png); 3]);
         assert_eq!((of("a.gif"), of("a.exr")), (Some(Format::Gif), Some(Format::Exr)));

@@ -1,5 +1,5 @@
-//! Scenes from files and from stdin, the files that they import, and results on disk: what the programs of sdfc share and
-//! its library does not do.
+//! File access of the programs: reads scenes from files and stdin, resolves their imports, and
+//! writes results. The library `sdfc` itself opens no files.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -22,18 +22,19 @@ pub use write::{check_writable, write};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// No scene is larger; the compiler's own limit is smaller and says so with a diagnostic.
+/// The largest file that is read, in bytes. The compiler has a smaller limit for scenes and reports
+/// it with a diagnostic.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// A scene's text and the name that diagnostics give it.
+/// The source of a scene, and its name in diagnostics.
 pub struct Input {
-    /// The path as it was written, or `<stdin>`.
+    /// The path as given, or `<stdin>`.
     pub name: String,
-    /// The text.
+    /// The source.
     pub text: String,
 }
 
-/// Why a file gives no text, in one line.
+/// The reason why a file could not be read, in one line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError(String);
 
@@ -49,7 +50,7 @@ impl std::error::Error for ReadError {}
 ///
 /// # Errors
 ///
-/// The file is missing, unreadable, no UTF-8 or larger than 64 MiB.
+/// The file is missing, unreadable, not UTF-8 or larger than 64 MiB.
 pub fn read(path: &Path) -> Result<Input, ReadError> {
     let is_stdin = path.as_os_str() == "-";
     let name = if is_stdin { "<stdin>".to_owned() } else { path.display().to_string() };
@@ -66,49 +67,49 @@ pub fn read(path: &Path) -> Result<Input, ReadError> {
         Ok(text) => Ok(Input { name, text }),
         Err(e) => {
             let at = e.utf8_error().valid_up_to();
-            Err(ReadError(format!("{name} is not UTF-8 text: the byte at offset {at} is wrong")))
+            Err(ReadError(format!("{name} is not UTF-8 text: invalid byte at offset {at}")))
         }
     }
 }
 
-/// The files that a scene may import: those below the folder where it lies, for stdin the current one.
+/// The files that a scene may import: those below its folder. For stdin that is the current folder.
 #[derive(Clone, Debug)]
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Of the scene at `path`.
+    /// Creates the resolver for the scene at `path`.
     pub fn of(path: &Path) -> Self {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         Self(parent.unwrap_or(Path::new(".")).to_owned())
     }
 
-    /// Where the folder is.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    fn place(&self, path: &str) -> std::io::Result<PathBuf> {
-        let (folder, place) = (self.0.canonicalize()?, self.0.join(path).canonicalize()?);
-        // A link could lead out of the folder although the path does not.
-        if place.starts_with(&folder) { Ok(place) } else { Err(ErrorKind::PermissionDenied.into()) }
+    fn resolve(&self, path: &str) -> std::io::Result<PathBuf> {
+        let (folder, file) = (self.0.canonicalize()?, self.0.join(path).canonicalize()?);
+        // A symbolic link could lead out of the folder although the path does not.
+        if file.starts_with(&folder) { Ok(file) } else { Err(ErrorKind::PermissionDenied.into()) }
     }
 }
 
 impl sdfc::Resolver for Folder {
     fn read(&self, path: &str) -> Result<String, String> {
-        let place = self.place(path).map_err(|e| e.to_string())?;
-        match read(&place) {
+        let file = self.resolve(path).map_err(|e| e.to_string())?;
+        match read(&file) {
             Ok(input) => Ok(input.text),
-            Err(failure) => Err(failure.to_string()),
+            Err(error) => Err(error.to_string()),
         }
     }
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
-        let place = self.place(path).map_err(|e| e.to_string())?;
-        let file = std::fs::File::open(place).map_err(|e| e.to_string())?;
+        let file = self.resolve(path).map_err(|e| e.to_string())?;
+        let file = std::fs::File::open(file).map_err(|e| e.to_string())?;
         let bytes = read_all(file).map_err(|e| e.to_string())?;
         if bytes.len() as u64 > MAX_BYTES {
-            return Err(format!("it is larger than {} MiB", MAX_BYTES >> 20));
+            return Err(format!("the file is larger than {} MiB", MAX_BYTES >> 20));
         }
         Ok(bytes)
     }
@@ -139,11 +140,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_says_where() {
+    fn an_invalid_byte_is_reported_with_its_offset() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a.sdf");
         std::fs::write(&path, b"box\xff").unwrap();
-        let Err(error) = read(&path) else { panic!("it is no UTF-8") };
+        let Err(error) = read(&path) else { panic!("the file is not UTF-8") };
         assert!(error.to_string().contains("offset 3"), "{error}");
     }
 }

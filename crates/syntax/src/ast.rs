@@ -1,13 +1,13 @@
-//! The tree that the parser builds: what was written, nothing inferred.
+//! The syntax tree: what was written, nothing inferred.
 
 use sdfc_diagnostics::Span;
 
-/// A name and where it stands.
+/// A name and its position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The name as written.
     pub text: String,
-    /// Where.
+    /// The position in the source.
     pub span: Span,
 }
 
@@ -25,7 +25,7 @@ pub struct File {
     pub items: Vec<Item>,
 }
 
-/// What stands at top level.
+/// An item at the top level.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// `import a, b as c from "path"`
@@ -79,7 +79,7 @@ pub struct Let {
     pub span: Span,
 }
 
-/// Which word a declaration starts with.
+/// The word that a declaration starts with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DeclKind {
     /// `fn`
@@ -103,9 +103,9 @@ pub struct Decl {
     pub name: Name,
     /// Parameters, result type, clauses.
     pub signature: Signature,
-    /// What stands after `=`.
+    /// The expression behind `=`.
     pub body: Expr,
-    /// The whole item, documentation not included.
+    /// The whole item without its documentation.
     pub span: Span,
 }
 
@@ -129,17 +129,17 @@ pub struct Parm {
     pub name: Name,
     /// Its type, if written.
     pub ty: Option<TypeExpr>,
-    /// Whether `...` follows the type.
+    /// True if `...` follows the type.
     pub variadic: bool,
     /// Its default.
     pub default: Option<Expr>,
-    /// The values that make sense.
+    /// The range of allowed values.
     pub range: Option<Expr>,
-    /// All of it.
+    /// The whole construct.
     pub span: Span,
 }
 
-/// Which side of the surface a promise is about.
+/// The side of the surface that a clause applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// Where the field is positive.
@@ -151,13 +151,13 @@ pub enum Side {
 /// One clause of a signature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clause {
-    /// What it says.
+    /// The kind of the clause, with its arguments.
     pub kind: ClauseKind,
-    /// All of it.
+    /// The whole construct.
     pub span: Span,
 }
 
-/// What a clause says.
+/// The kinds of clauses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClauseKind {
     /// `exact [side] [if condition]`
@@ -181,13 +181,13 @@ pub enum ClauseKind {
 /// A type as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TypeExpr {
-    /// What it is.
+    /// The kind.
     pub kind: TypeExprKind,
-    /// Where.
+    /// The position in the source.
     pub span: Span,
 }
 
-/// The forms of a type.
+/// The kinds of type expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TypeExprKind {
     /// `number`, `solid`, `vec3`: any one word, known or not.
@@ -198,12 +198,15 @@ pub enum TypeExprKind {
     Fn(Vec<TypeExpr>, Box<TypeExpr>),
 }
 
-/// An expression. At most [`MAX_HEIGHT`](crate::MAX_HEIGHT) nodes high where the parser made it;
-/// cloning, comparing and printing extend the stack, dropping needs about 200 bytes a node.
+/// An expression.
+///
+/// The parser makes expressions of at most [`MAX_HEIGHT`](crate::MAX_HEIGHT) nodes in height.
+/// Cloning, comparing and printing extend the stack; dropping needs about 200 bytes of stack per
+/// node.
 pub struct Expr {
-    /// What it is.
+    /// The kind.
     pub kind: ExprKind,
-    /// Where.
+    /// The position in the source.
     pub span: Span,
 }
 
@@ -226,12 +229,12 @@ impl std::fmt::Debug for Expr {
     }
 }
 
-/// Runs one step of a recursion over expressions, on a new piece of stack where little is left.
+/// Runs one step of a recursion over expressions, on a new stack segment if little stack is left.
 pub(crate) fn deeper<T>(step: impl FnOnce() -> T) -> T {
     stacker::maybe_grow(64 << 10, 1 << 20, step)
 }
 
-/// The unit joined to a number.
+/// The unit of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unit {
     /// Degrees.
@@ -242,19 +245,19 @@ pub enum Unit {
     Rad,
 }
 
-/// The forms of an expression.
+/// The kinds of expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
-    /// A number as written, before its unit is applied. `whole`: neither point, exponent nor unit.
+    /// A number as written, before its unit is applied.
     Number {
-        /// The digits' value.
+        /// The value of the digits.
         value: f64,
-        /// The unit joined on.
+        /// The unit, if written.
         unit: Option<Unit>,
-        /// Written without point, exponent and unit.
+        /// True if written without point, exponent and unit.
         whole: bool,
     },
-    /// Red, green, blue, alpha as written, sRGB, 0 to 255.
+    /// Red, green, blue and alpha as written: sRGB, 0 to 255.
     Color([u8; 4]),
     /// A string, unescaped.
     Text(String),
@@ -280,9 +283,9 @@ pub enum ExprKind {
     Index(Box<Expr>, Box<Expr>),
     /// `-a`, `!a`
     Unary(UnaryOp, Box<Expr>),
-    /// `a op b`; the span is the operator's.
+    /// `a op b`; the span is that of the operator.
     Binary(BinaryOp, Span, Box<Expr>, Box<Expr>),
-    /// Where parsing failed; an error was reported, later phases stay silent about it.
+    /// An expression that failed to parse. Its error was reported, so later phases ignore it.
     Error,
 }
 
@@ -302,11 +305,11 @@ pub struct Comprehension {
     pub name: Name,
     /// The sequence.
     pub over: Expr,
-    /// Which values to keep.
+    /// The condition for the values to keep.
     pub condition: Option<Expr>,
-    /// What each gives.
+    /// The element for each value.
     pub body: Element,
-    /// All of it.
+    /// The whole construct.
     pub span: Span,
 }
 

@@ -1,46 +1,47 @@
-//! From text to tokens; comments are kept aside.
+//! Splits source text into tokens. Comments are kept separately.
 
 use logos::Logos;
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Span};
 
 use crate::token::{Token, TokenKind};
 
-/// A comment: where it stands, slashes included, line break not.
+/// The position of a comment, including its slashes, without the line break.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Comment {
     /// Offset of its first slash.
     pub start: u32,
-    /// Offset after its last character that is not white.
+    /// Offset after its last character that is not white space.
     pub end: u32,
-    /// How many tokens stand before it.
+    /// The number of tokens before it.
     pub tokens_before: usize,
 }
 
 impl Comment {
-    /// Its text, slashes included.
+    /// Returns the text of the comment, including its slashes.
     pub fn text(self, text: &str) -> &str {
         &text[self.start as usize..self.end as usize]
     }
 
-    /// The documentation in it; nothing in `//` and in rulers of four slashes and more.
+    /// Returns the text of a documentation comment, or `None` for `//` and for four and more
+    /// slashes.
     pub fn doc(self, text: &str) -> Option<&str> {
         let line = self.text(text).strip_prefix("///")?;
         (!line.starts_with('/')).then(|| line.strip_prefix(' ').unwrap_or(line))
     }
 }
 
-/// What a file consists of.
+/// The tokens and comments of a file.
 #[derive(Debug)]
 pub(crate) struct Lexed {
     /// The tokens; the last one is `Eof`.
     pub tokens: Vec<Token>,
     /// The comments in order.
     pub comments: Vec<Comment>,
-    /// Characters that start no token.
+    /// Errors about characters that start no token.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// Splits a text into tokens, from the byte `from` on. Its length must fit `u32`.
+/// Splits `text` into tokens, starting at byte `from`. The length of `text` must fit `u32`.
 pub(crate) fn lex(text: &str, file: FileId, from: usize) -> Lexed {
     let mut lexed = Lexed { tokens: Vec::new(), comments: Vec::new(), diagnostics: Vec::new() };
     let mark = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
@@ -90,7 +91,7 @@ pub(crate) fn lex(text: &str, file: FileId, from: usize) -> Lexed {
 }
 
 impl Lexed {
-    /// The token, unless it continues a run of unknown characters, which is one token.
+    /// Returns the token, or `None` if it extends a run of unknown characters, which is one token.
     fn joined(&mut self, token: Token) -> Option<Token> {
         match self.tokens.last_mut() {
             Some(last)
@@ -105,7 +106,8 @@ impl Lexed {
         }
     }
 
-    /// Reports a word with letters outside ASCII; it counts as a name, joined to one before it.
+    /// Reports a word with letters outside ASCII. It counts as a name, together with a name right
+    /// before it.
     fn foreign_word(&mut self, text: &str, mut token: Token, file: FileId) -> Token {
         if let Some(last) = self.tokens.last()
             && last.kind == TokenKind::Name
@@ -123,8 +125,8 @@ impl Lexed {
         Token { kind: TokenKind::Name, ..token }
     }
 
-    /// Reports a character that starts no token. Gives the kind that was likely meant or
-    /// `Unknown`; nothing for one that the parser need not see.
+    /// Reports a character that starts no token. Returns the kind that was probably meant,
+    /// `Unknown`, or `None` if the parser can ignore the character.
     fn unknown(&mut self, text: &str, token: Token, file: FileId) -> Option<TokenKind> {
         let span = token.span(file);
         let c = text[token.start as usize..].chars().next()?;
@@ -146,7 +148,7 @@ impl Lexed {
         meant
     }
 
-    /// Whether the character right before was unknown too; the report then covers both.
+    /// Returns true if the previous character was unknown too; then its diagnostic covers both.
     fn extends_last(&mut self, span: Span) -> bool {
         let joins = self
             .tokens
@@ -159,13 +161,13 @@ impl Lexed {
     }
 }
 
-/// Whether a word of another language, or the rest of one, may contain it.
+/// Returns true if the character may be part of a word in another language.
 fn is_letter(c: char) -> bool {
     let meant = matches!(meaning(c).0, Some(kind) if kind != TokenKind::Unknown);
     c == '_' || (c.is_alphanumeric() && !meant)
 }
 
-/// What a character that starts no token was likely meant to be, and what to write instead.
+/// Returns the token that a character was probably meant to be, and what to write instead.
 fn meaning(c: char) -> (Option<TokenKind>, &'static str) {
     match c {
         '\u{2010}'..='\u{2015}' | '\u{2212}' => (Some(TokenKind::Minus), "write `-`"),

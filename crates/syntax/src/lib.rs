@@ -2,34 +2,35 @@
 //!
 //! # What
 //!
-//! [`parse`] turns the text of a file into an [`ast::File`] and everything that is wrong with
-//! how it is written; [`format()`] rewrites a file in the one layout. The crate knows the grammar
-//! and nothing else: no name, no type, no shape.
+//! [`parse`] turns the text of a file into an [`ast::File`] and its syntax errors. [`format()`]
+//! formats a file. The crate knows only the grammar: no names, no types, no shapes.
 //!
 //! # How
 //!
-//! Text, tokens, tree. Expressions are parsed by precedence in loops. After an error the parser
-//! goes on at the next comma or closing bracket, or at the next line that begins an item; what
-//! could not be read is [`ast::ExprKind::Error`] in the tree, so that later phases can stay
-//! silent about it. One place has at most one error.
+//! The lexer splits the text into tokens; the parser builds the tree. Expressions are parsed by
+//! precedence in loops. After an error the parser continues at the next comma or closing bracket,
+//! or at the next line that begins an item. Text that could not be parsed is
+//! [`ast::ExprKind::Error`] in the tree, so that later phases can ignore it. One position has at
+//! most one error.
 //!
 //! ```
 //! use sdfc_diagnostics::{Sources, render};
 //!
 //! let mut sources = Sources::new();
 //! let file = sources.add("scene.sdf", "let ball = sphere(1) box(2)\nball\n");
-//! let (tree, found) = sdfc_syntax::parse(&sources, file);
+//! let (tree, diagnostics) = sdfc_syntax::parse(&sources, file);
 //! assert_eq!(tree.items.len(), 2);
-//! assert!(render(&sources, &found, false).contains("join solids with `|`"));
+//! assert!(render(&sources, &diagnostics, false).contains("join solids with `|`"));
 //! ```
 //!
 //! # Limits
 //!
-//! A file has at most [`MAX_BYTES`]; brackets, blocks and types nest at most [`MAX_NESTING`]
-//! deep; no expression is more than [`MAX_HEIGHT`] nodes high, however it is written (a chain
-//! `a | b | c` adds one for each operator). So recursion over a tree is bounded, and a stack of
-//! 2 MiB holds one that takes up to 512 bytes a node. Cloning, comparing and printing a tree
-//! extend the stack where that is not enough. After [`MAX_ERRORS`] errors the rest are counted.
+//! A file has at most [`MAX_BYTES`]. Brackets, blocks and types nest at most [`MAX_NESTING`] deep.
+//! No expression is more than [`MAX_HEIGHT`] nodes high, however it is written (a chain
+//! `a | b | c` adds one node for each operator). So recursion over a tree is bounded: a stack of
+//! 2 MiB is enough for a recursion that takes up to 512 bytes per node. Cloning, comparing and
+//! printing a tree extend the stack where that is not enough. After [`MAX_ERRORS`] errors the
+//! rest are only counted.
 
 pub mod ast;
 mod format;
@@ -44,11 +45,11 @@ pub use parser::{parse, parse_part};
 /// The largest file in bytes: 4 MiB.
 pub const MAX_BYTES: usize = 4 << 20;
 
-/// How deep brackets, blocks, conditions and types may be nested.
+/// The maximum nesting of brackets, blocks, conditions and types.
 pub const MAX_NESTING: u32 = 256;
 
-/// How many nodes high an expression may be.
+/// The maximum height of an expression, in nodes.
 pub const MAX_HEIGHT: u32 = 4096;
 
-/// How many errors of one file are reported one by one.
+/// The number of errors of one file that are reported one by one.
 pub const MAX_ERRORS: usize = 100;

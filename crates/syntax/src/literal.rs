@@ -1,14 +1,14 @@
-//! The values of numbers, colours and strings.
+//! The values of number, colour and string literals.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
 use crate::ast::{ExprKind, Unit};
 use crate::token::is_quote;
 
-/// A value, and what is wrong with how it was written. The value is a stand-in if anything is.
+/// The value of a literal and an error in it, if there is one. Then the value is a placeholder.
 pub(crate) type Checked<T> = (T, Option<Diagnostic>);
 
-/// A number with the unit joined on: `12`, `0.5e-3`, `90deg`.
+/// Reads a number with an optional unit: `12`, `0.5e-3`, `90deg`.
 pub(crate) fn number(text: &str, span: Span) -> Checked<ExprKind> {
     let digits_end = digits_end(text);
     let (digits, suffix) = text.split_at(digits_end);
@@ -43,7 +43,7 @@ fn is_upper_exponent(suffix: &str) -> bool {
     suffix.strip_prefix('E').is_some_and(|rest| rest.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// Where the digits, point and exponent of a number end and its unit begins.
+/// Returns the offset where the unit of a number begins, behind digits, point and exponent.
 fn digits_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits =
@@ -63,17 +63,17 @@ fn digits_end(text: &str) -> usize {
     end
 }
 
-/// A number without a digit on one side of its point.
+/// Returns the error for a number without a digit on one side of its point.
 pub(crate) fn bare_point(written: &str, span: Span) -> Diagnostic {
-    let mended = match written.strip_suffix('.') {
+    let fixed = match written.strip_suffix('.') {
         Some(digits) => format!("{digits}.0"),
         None => format!("0{written}"),
     };
     Diagnostic::error(Code::BAD_NUMBER, span, "a number needs a digit on both sides of the point")
-        .help(format!("write {mended}"))
+        .help(format!("write {fixed}"))
 }
 
-/// A colour: `#rgb`, `#rgba`, `#rrggbb`, `#rrggbbaa`.
+/// Reads a colour: `#rgb`, `#rgba`, `#rrggbb`, `#rrggbbaa`.
 pub(crate) fn color(text: &str, span: Span) -> Checked<[u8; 4]> {
     let digits: Vec<u8> =
         text.chars().skip(1).filter_map(|c| c.to_digit(16)).map(|digit| digit as u8).collect();
@@ -100,7 +100,7 @@ pub(crate) fn color(text: &str, span: Span) -> Checked<[u8; 4]> {
     }
 }
 
-/// A string without its quotes and escapes.
+/// Reads a string and returns it without quotes and escapes.
 pub(crate) fn text(written: &str, span: Span) -> Checked<String> {
     if !written.starts_with('"') {
         let inner = written.trim_matches(is_quote);
@@ -136,7 +136,8 @@ pub(crate) fn text(written: &str, span: Span) -> Checked<String> {
     (value, problem.or(Some(unclosed)))
 }
 
-/// The character that stands after a backslash, and how many bytes that takes.
+/// Returns the character that an escape stands for, and the length of the escape behind the
+/// backslash in bytes.
 fn escape(rest: &str) -> (Option<char>, usize) {
     let Some(c) = rest.chars().next() else {
         return (None, 0);
@@ -157,9 +158,10 @@ fn escape(rest: &str) -> (Option<char>, usize) {
 }
 
 fn bad_escape(written: &str, at: usize, length: usize, span: Span) -> Diagnostic {
-    let place = Span::new(span.file, span.start + at as u32 - 1, span.start + (at + length) as u32);
+    let escape =
+        Span::new(span.file, span.start + at as u32 - 1, span.start + (at + length) as u32);
     let shown = &written[at - 1..at + length];
-    Diagnostic::error(Code::BAD_STRING, place, format!("`{shown}` is not an escape"))
+    Diagnostic::error(Code::BAD_STRING, escape, format!("`{shown}` is not an escape"))
         .help("the escapes are `\\\"`, `\\\\`, `\\n` and `\\u{20ac}`; a path is written with `/`")
 }
 

@@ -1,9 +1,9 @@
-//! The kinds of token, after section 2 of the language reference.
+//! The kinds of tokens, as in section 2 of the language reference.
 
 use logos::Logos;
 use sdfc_diagnostics::{FileId, Span};
 
-/// What a token is. The text is looked up by its span.
+/// The kind of a token. Its text is looked up by its span.
 #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq)]
 #[logos(skip r"[ \t\r\n\x0C]+")]
 pub(crate) enum TokenKind {
@@ -12,10 +12,10 @@ pub(crate) enum TokenKind {
     Comment,
     #[regex(r"[A-Za-z_][A-Za-z0-9_]*")]
     Name,
-    /// Digits with whatever is joined on behind; `literal::number` checks the unit.
+    /// Digits with any letters behind them; `literal::number` checks the unit.
     #[regex(r"[0-9]+(\.[0-9]+)?(e[+-]?[0-9]+)?([A-Za-z_][A-Za-z0-9_]*)?")]
     Number,
-    /// `.5`: recognised so that it can be refused by name.
+    /// `.5`, which is invalid; recognised for a better error.
     #[regex(r"\.[0-9]+(e[+-]?[0-9]+)?([A-Za-z_][A-Za-z0-9_]*)?")]
     PointNumber,
     #[regex(r"#[A-Za-z0-9_]*")]
@@ -120,7 +120,7 @@ pub(crate) enum TokenKind {
     Eof,
 }
 
-/// Extends a string over its line: to an unescaped closing quote, or to the line's end.
+/// Extends a string to its unescaped closing quote, or to the end of the line.
 fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
     let plain = lexer.slice() == "\"";
     let mut escaped = false;
@@ -141,17 +141,17 @@ fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
     lexer.bump(rest.strip_suffix('\r').unwrap_or(rest).len());
 }
 
-/// Whether a string in another language, or pasted from a text, might begin or end with it.
+/// Returns true if strings in other languages or in pasted text begin or end with the character.
 pub(crate) fn is_quote(c: char) -> bool {
     matches!(c, '"' | '\'' | '\u{2018}'..='\u{201f}')
 }
 
-/// One token.
+/// A token.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Token {
-    /// What it is.
+    /// The kind.
     pub kind: TokenKind,
-    /// Whether it is the first token of its line.
+    /// True if it is the first token of its line.
     pub first: bool,
     /// Offset of its first byte.
     pub start: u32,
@@ -160,14 +160,14 @@ pub(crate) struct Token {
 }
 
 impl Token {
-    /// Where it stands in `file`.
+    /// Returns the position in `file`.
     pub fn span(self, file: FileId) -> Span {
         Span::new(file, self.start, self.end)
     }
 }
 
 impl TokenKind {
-    /// Whether it is one of the 13 reserved words.
+    /// Returns true if it is one of the 13 reserved words.
     pub fn is_reserved(self) -> bool {
         use TokenKind::{
             Else, False, Fn, For, If, Import, In, Let, Param, Region, Shape, Solid, True,
@@ -189,13 +189,13 @@ impl TokenKind {
         )
     }
 
-    /// Whether it is a word that declarations start with.
+    /// Returns true if declarations start with it.
     pub fn declares(self) -> bool {
         use TokenKind::{Fn, Import, Let, Param, Region, Shape, Solid};
         matches!(self, Let | Param | Fn | Solid | Region | Shape | Import)
     }
 
-    /// Whether an expression may start with it, `-` and `!` left out.
+    /// Returns true if an expression may start with it, apart from `-` and `!`.
     pub fn starts_primary(self) -> bool {
         use TokenKind::{
             Color, False, Fn, If, Name, Number, OpenBrace, OpenBracket, OpenParen, PointNumber,
@@ -217,7 +217,7 @@ impl TokenKind {
         )
     }
 
-    /// Whether an expression has to follow it.
+    /// Returns true if an expression must follow it.
     pub fn wants_operand(self) -> bool {
         use TokenKind::{
             CloseBrace, CloseBracket, CloseParen, Color, False, Name, Number, OpenBrace,
@@ -243,7 +243,7 @@ impl TokenKind {
         )
     }
 
-    /// The closer that belongs to an opener.
+    /// Returns the closing bracket that belongs to an opening one.
     pub fn closer(self) -> Option<TokenKind> {
         if self == TokenKind::OpenParen {
             Some(TokenKind::CloseParen)
@@ -256,7 +256,7 @@ impl TokenKind {
         }
     }
 
-    /// Whether it closes a bracket.
+    /// Returns true if it is a closing bracket.
     pub fn is_closer(self) -> bool {
         matches!(self, TokenKind::CloseParen | TokenKind::CloseBracket | TokenKind::CloseBrace)
     }

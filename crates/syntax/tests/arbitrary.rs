@@ -1,4 +1,5 @@
-//! Any text at all: the parser never panics, and what it reports and builds lies in the text.
+//! For arbitrary text the parser never panics, and all spans of its diagnostics and trees are
+//! valid.
 
 use proptest::prelude::*;
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span, render};
@@ -7,7 +8,7 @@ use sdfc_syntax::{MAX_ERRORS, parse};
 
 const FILE: FileId = FileId(0);
 
-/// Parses and checks what holds for every text.
+/// Parses a text and checks the properties that hold for every text.
 fn check(text: &str) -> (File, Vec<Diagnostic>) {
     let mut sources = Sources::new();
     let file = sources.add("scene.sdf", text);
@@ -23,7 +24,7 @@ fn check(text: &str) -> (File, Vec<Diagnostic>) {
     starts.dedup();
     assert_eq!(starts.len(), found.len(), "two errors at one place in {text:?}");
     assert!(starts.is_sorted());
-    // Rendering falls back to a bare line where a span does not fit; that must not happen.
+    // Rendering falls back to a bare line for an invalid span, which must not happen.
     let rendered = render(&sources, &found, false);
     assert_eq!(rendered.matches("┌─ scene.sdf").count(), found.len());
     for span in spans_printed(&format!("{tree:?}")) {
@@ -38,7 +39,7 @@ fn fits(text: &str, span: Span) -> bool {
     span.file == FILE && text.get(span.start as usize..span.end as usize).is_some()
 }
 
-/// Every span of a tree, wherever it is kept, by way of its printed form.
+/// Returns every span of a tree, read from its debug output.
 fn spans_printed(tree: &str) -> Vec<Span> {
     let number = |text: &str| -> Option<u32> {
         text.chars().take_while(char::is_ascii_digit).collect::<String>().parse().ok()
@@ -51,7 +52,7 @@ fn spans_printed(tree: &str) -> Vec<Span> {
     tree.split("Span { file: ").skip(1).filter_map(span).collect()
 }
 
-/// Words and signs of the language, and some that are not.
+/// Words and symbols of the language, and some that are not.
 fn token() -> impl Strategy<Value = &'static str> {
     let words = [
         "let",
@@ -127,7 +128,11 @@ fn token() -> impl Strategy<Value = &'static str> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn arbitrary_texts(text in any::<String>()) {
@@ -156,7 +161,7 @@ proptest! {
 }
 
 #[test]
-fn an_error_in_one_item_leaves_the_next_whole() {
+fn an_error_in_one_item_does_not_affect_the_next() {
     for wrong in [
         "let a = ",
         "f(",

@@ -1,6 +1,6 @@
-//! What people see: every rendered error beside its source, one file for each theme.
+//! Snapshots of the rendered errors beside their sources, one file for each theme.
 //!
-//! The cases stand in `tests/errors/THEME.txt`, separated by lines of four dashes.
+//! The cases are in `tests/errors/THEME.txt`, separated by lines of four dashes.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 

@@ -1,4 +1,4 @@
-//! The formatter: what it writes, and that it changes nothing but the layout.
+//! Snapshots of the formatter, and checks that it changes only the layout.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "these are tests")]
 
@@ -15,7 +15,7 @@ fn formatted(text: &str) -> Option<String> {
     format(&sources, file).ok()
 }
 
-/// The tree printed without its spans; nothing if the text does not parse.
+/// Returns the printed tree without spans, or `None` if the text does not parse.
 fn tree(text: &str) -> Option<String> {
     let mut sources = Sources::new();
     let file = sources.add("scene.sdf", text);
@@ -29,7 +29,7 @@ fn tree(text: &str) -> Option<String> {
     Some(parts.fold(first, |all, part| all + part.split_once('}').map_or("", |(_, rest)| rest)))
 }
 
-/// The comments in order.
+/// Returns the comments in order.
 fn comments(text: &str) -> Vec<String> {
     let of_line = |line: &str| line.split_once("//").map(|(_, rest)| rest.trim().to_owned());
     let one_by_one =
@@ -37,7 +37,7 @@ fn comments(text: &str) -> Vec<String> {
     text.lines().filter_map(of_line).flat_map(one_by_one).collect()
 }
 
-/// Checks all that must hold for a text that parses; whether it does.
+/// Checks the properties that hold for every text that parses. Returns true if it parses.
 fn check(text: &str) -> bool {
     let Some(before) = tree(text) else {
         assert_eq!(formatted(text), None);
@@ -69,7 +69,7 @@ fn inputs() -> Vec<(String, String)> {
 }
 
 #[test]
-fn inputs_keep_their_meaning_and_settle() {
+fn formatting_keeps_the_tree_and_is_idempotent() {
     for (name, text) in inputs() {
         assert!(check(&text), "{name}");
         let long = |text: &str| text.lines().any(|line| line.chars().count() > 100);
@@ -101,7 +101,7 @@ fn rules() {
 }
 
 #[test]
-fn a_file_with_errors_is_not_touched() {
+fn a_file_with_errors_is_not_formatted() {
     let mut sources = Sources::new();
     let file = sources.add("scene.sdf", "let a = 1\nlet b =\n");
     let found = format(&sources, file).unwrap_err();
@@ -133,7 +133,7 @@ fn an_input_cut_at_any_line_keeps_its_meaning() {
     }
 }
 
-/// Lines of the inputs, put together anew.
+/// Random combinations of lines of the inputs.
 fn recombined() -> impl Strategy<Value = String> {
     let inputs: Vec<String> = inputs().into_iter().map(|(_, text)| text).collect();
     let lines: Vec<String> =
@@ -147,7 +147,7 @@ fn recombined() -> impl Strategy<Value = String> {
     prop::collection::vec(part, 1..6).prop_map(|parts| parts.concat())
 }
 
-/// An expression written with little care.
+/// A random expression with irregular layout.
 fn expression() -> impl Strategy<Value = String> {
     let leaf = prop::sample::select(
         [
@@ -189,7 +189,11 @@ fn expression() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 200,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn recombined_inputs(text in recombined()) {

@@ -1,4 +1,5 @@
-//! Every scene and library draft under `tests/inputs` parses, and cutting it short never panics.
+//! Every file under `tests/inputs` parses, also with other line ends, and truncating it never
+//! panics.
 
 #![allow(clippy::unwrap_used, reason = "these are tests")]
 
@@ -48,7 +49,7 @@ fn line_ends_and_byte_order_marks_change_nothing() {
 }
 
 #[test]
-fn a_file_cut_anywhere_parses_or_says_why_not() {
+fn a_truncated_file_parses_or_has_errors() {
     for (name, text) in inputs() {
         for (cut, _) in text.char_indices() {
             let mut sources = Sources::new();

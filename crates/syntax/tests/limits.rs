@@ -1,4 +1,4 @@
-//! Limits: what is refused is refused at its place, and nothing overflows the stack.
+//! Exceeded limits are reported at the right position, and nothing overflows the stack.
 
 #![allow(clippy::panic, reason = "these are tests")]
 
@@ -12,7 +12,7 @@ fn parsed(text: &str) -> (File, Vec<Diagnostic>) {
     parse(&sources, file)
 }
 
-/// Everything that recurses over a tree, on a stack as small as a test thread's may be.
+/// Runs everything that recurses over a tree, on a small stack.
 fn use_on_a_small_stack(text: String) -> Vec<Diagnostic> {
     let work = move || {
         let (tree, found) = parsed(&text);
@@ -32,7 +32,7 @@ fn codes(found: &[Diagnostic]) -> Vec<(Code, u32)> {
     found.iter().map(|found| (found.code, found.span.start)).collect()
 }
 
-/// Ways to nest: what opens a level, what stands innermost, what closes a level.
+/// Ways to nest: the text that opens a level, the innermost text, the text that closes a level.
 const NESTINGS: &[(&str, &str, &str)] = &[
     ("(", "1", ")"),
     ("[", "1", "]"),
@@ -48,7 +48,7 @@ const NESTINGS: &[(&str, &str, &str)] = &[
 ];
 
 #[test]
-fn nesting_is_refused_at_the_level_past_the_limit() {
+fn the_first_level_past_the_limit_is_reported() {
     for (open, inner, close) in NESTINGS {
         let nested = |levels: usize| {
             format!("let x = {}{inner}{}", open.repeat(levels), close.repeat(levels))
@@ -64,7 +64,7 @@ fn nesting_is_refused_at_the_level_past_the_limit() {
 }
 
 #[test]
-fn types_and_comprehensions_nest_no_deeper() {
+fn the_limit_applies_to_types_and_comprehensions() {
     for (open, inner, close) in [("[", "number", "]"), ("fn(", "number", ") -> number")] {
         let text = |levels: usize| {
             format!("fn f(a: {}{inner}{}) = 1", open.repeat(levels), close.repeat(levels))
@@ -78,7 +78,7 @@ fn types_and_comprehensions_nest_no_deeper() {
 }
 
 #[test]
-fn chains_are_refused_at_the_link_past_the_limit() {
+fn the_first_link_of_a_chain_past_the_limit_is_reported() {
     let chains: &[(&str, &str, &str)] = &[
         ("a", " | a", ""),
         ("a", "\n  - a", ""),
@@ -105,7 +105,7 @@ fn chains_are_refused_at_the_link_past_the_limit() {
 }
 
 #[test]
-fn chains_inside_chains_do_not_add_up_past_the_limit() {
+fn nested_chains_count_together() {
     let mut text = "a".to_owned();
     for _ in 0..20 {
         text = format!("({text}{})", " + a".repeat(1000));
@@ -116,7 +116,7 @@ fn chains_inside_chains_do_not_add_up_past_the_limit() {
 }
 
 #[test]
-fn long_lists_are_no_deep_trees() {
+fn long_lists_are_allowed() {
     let text = format!("union({})", "sphere(1), ".repeat(20_000));
     assert_eq!(codes(&use_on_a_small_stack(text)), []);
     let text = "ball\n".repeat(20_000);
@@ -124,7 +124,7 @@ fn long_lists_are_no_deep_trees() {
 }
 
 #[test]
-fn a_file_past_the_limit_is_not_read() {
+fn a_file_past_the_limit_is_not_parsed() {
     let text = " ".repeat(MAX_BYTES);
     assert_eq!(parsed(&text).1, []);
     let (tree, found) = parsed(&(text + "1"));

@@ -1,4 +1,4 @@
-//! What the grammar means: precedence, lines, brackets, documentation.
+//! The trees of source texts: precedence, lines, brackets, documentation.
 
 #![allow(clippy::panic, reason = "these are tests")]
 
@@ -16,7 +16,7 @@ fn tree(text: &str) -> File {
     tree
 }
 
-/// The items that are expressions, fully bracketed, one a line.
+/// Returns the items that are expressions, fully bracketed, one per line.
 fn shown(text: &str) -> String {
     let show_item = |item: &Item| match item {
         Item::Expr(expr) => show(text, expr),
@@ -96,7 +96,7 @@ fn decl(text: &str) -> Decl {
 }
 
 #[test]
-fn operators_bind_as_the_table_says() {
+fn operators_have_the_documented_precedence() {
     let cases = [
         ("a | b - c & d", "(((a | b) - c) & d)"),
         ("a + b * c - d", "((a + (b * c)) - d)"),
@@ -140,7 +140,7 @@ fn lines_end_items_unless_an_operator_or_a_point_begins_the_next() {
 }
 
 #[test]
-fn arguments_elements_and_branches() {
+fn arguments_elements_and_branches_are_parsed() {
     let cases = [
         ("f(a, b: 1, c: [2],)", "f(a, b: 1, c: [2])"),
         (
@@ -162,7 +162,7 @@ fn arguments_elements_and_branches() {
 }
 
 #[test]
-fn numbers_keep_their_unit_and_whether_they_are_whole() {
+fn numbers_keep_their_unit_and_form() {
     let number = |text: &str| match tree(text).items.pop() {
         Some(Item::Expr(Expr { kind: ExprKind::Number { value, unit, whole }, .. })) => {
             (value, unit, whole)
@@ -175,7 +175,7 @@ fn numbers_keep_their_unit_and_whether_they_are_whole() {
 }
 
 #[test]
-fn a_signature_has_its_parts() {
+fn all_parts_of_a_signature_are_parsed() {
     let decl = decl(
         "solid s(parts: shape..., f: fn(vec3, [number]) -> length, r: length = 1 in 0..inf)\n  \
          exact outside if r > 0\n  bound\n  lipschitz 2\n  bounds -r..r\n  \
@@ -203,13 +203,13 @@ fn types_may_begin_lines() {
 }
 
 #[test]
-fn words_of_clauses_are_names_elsewhere() {
+fn clause_words_are_names_elsewhere() {
     let text = "let exact = bounds(material).lo\nlet from = as + require";
     assert_eq!(shown(text), "exact = bounds(material).lo\nfrom = (as + require)");
 }
 
 #[test]
-fn documentation_is_what_stands_right_above() {
+fn documentation_is_the_comment_right_above() {
     let lines = |text: &str| decl(text).docs.lines;
     assert_eq!(lines("/// a\n///  b\n// c\n///\nfn f() = 1"), ["a", " b", ""]);
     assert_eq!(lines("/// title\n\n/// a\nfn f() = 1"), ["a"]);
@@ -221,7 +221,7 @@ fn documentation_is_what_stands_right_above() {
 }
 
 #[test]
-fn spans_cover_what_was_written() {
+fn spans_cover_the_source() {
     let text = "let a = -(b + c).f(1) | d\n";
     let items = tree(text).items;
     let [Item::Let(binding)] = &items[..] else { panic!() };

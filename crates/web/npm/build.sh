@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds sdfc.wasm beside this script: with rustup's target for WebAssembly, or where that cannot be had with Debian's
-# packages rustc-web, cargo-web and rust-web-src, which build the standard library too.
+# Builds sdfc.wasm beside this script, with rustup's target for WebAssembly. If that is not available,
+# it uses Debian's packages rustc-web, cargo-web and rust-web-src, which build the standard library
+# too.
 set -euo pipefail
 package=$(cd "$(dirname "$0")" && pwd)
 cd "$package/../../.."

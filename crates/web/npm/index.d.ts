@@ -1,28 +1,28 @@
 export interface Options {
-  /** What messages call the scene. */
+  /** The name of the scene in messages. */
   name?: string;
   target?: "wgsl" | "glsl" | "glsl-es" | "hlsl" | "msl" | "spirv" | "shadertoy";
   emit?: "field" | "march" | "render";
   stage?: "compute" | "fragment";
-  /** The ray method; the scene's, or `auto`, without. */
+  /** The ray method. Default: that of the scene, or `auto`. */
   march?: string;
-  /** Start of every name, `sdf_` without. */
+  /** The prefix of every name. Default: `sdf_`. */
   prefix?: string;
   group?: number;
   binding?: number;
-  /** Numbers of the scene become params. */
-  slots?: boolean;
-  /** Texts that the scene may import, by path. It can read no others. */
+  /** Literals of the scene become params. */
+  live_literals?: boolean;
+  /** The sources that the scene may import, by path. */
   files?: Record<string, string>;
 }
 
 export interface Diagnostic {
-  /** Explained in docs/errors.md; null where the call is wrong, not the scene. */
+  /** Explained in docs/errors.md; null if the call is wrong, not the scene. */
   code: string | null;
   severity: "error" | "warning";
   message: string;
   file: string;
-  /** Lines and columns count from 1; 0 without a place. */
+  /** Lines and columns count from 1; 0 if there is no position. */
   line: number;
   column: number;
   end_line: number;
@@ -31,20 +31,20 @@ export interface Diagnostic {
 }
 
 export interface Compiled {
-  /** The shader; null with errors, and for SPIR-V. */
+  /** The source of the shader; null with errors, and for SPIR-V. */
   text: string | null;
-  /** The words of SPIR-V; null for all else. */
+  /** The words of SPIR-V; null for other targets. */
   words: number[] | null;
-  /** As `sdfc compile --reflect` writes it: docs/targets.md. Null with errors. */
+  /** As `sdfc compile --reflect` writes it (docs/targets.md); null with errors. */
   reflection: Record<string, any> | null;
-  /** Errors and warnings, in order of place. */
+  /** Errors and warnings, in the order of their positions. */
   diagnostics: Diagnostic[];
 }
 
 export interface Compiler {
-  /** Never throws, whatever it is given. */
+  /** Never throws, for any input. */
   compile(source: string, options?: Options): Compiled;
 }
 
-/** Reads the compiler, from beside this module unless told otherwise: an address, or the bytes. */
+/** Loads the compiler from a URL or from bytes. Default: `sdfc.wasm` beside this module. */
 export function load(wasm?: string | URL | BufferSource): Promise<Compiler>;

@@ -1,6 +1,7 @@
-// The compiler of sdfc in a page or in node: `const compiler = await load()`, then `compiler.compile(source, options)`.
+// The compiler of sdfc for web pages and Node.js: `const compiler = await load()`, then
+// `compiler.compile(source, options)`.
 
-/// Reads the compiler, from beside this file unless told otherwise: an address, or the bytes.
+/// Loads the compiler from a URL or from bytes. Default: `sdfc.wasm` beside this file.
 export async function load(wasm = new URL("sdfc.wasm", import.meta.url)) {
   return new Compiler(await WebAssembly.compile(await bytesOf(wasm)));
 }
@@ -27,30 +28,30 @@ class Compiler {
     this.#exports = new WebAssembly.Instance(this.#module).exports;
   }
 
-  /// Shader, reflection and diagnostics of a scene; see index.d.ts.
+  /// Returns shader, reflection and diagnostics of a scene; see index.d.ts.
   compile(source, options = {}) {
     try {
-      return this.#ask(source, JSON.stringify(options));
+      return this.#call(source, JSON.stringify(options));
     } catch (error) {
-      // Browsers give WebAssembly a stack of their own measure, which deep nesting can exhaust. What is left of the
-      // instance is not used again.
+      // Browsers limit the stack of WebAssembly, and deep nesting can exhaust it. The instance is then
+      // in an unknown state and is not used again.
       this.#begin();
-      const place = { file: "", line: 0, column: 0, end_line: 0, end_column: 0 };
-      const message = `the compiler ended early: ${error.message}`;
+      const position = { file: "", line: 0, column: 0, end_line: 0, end_column: 0 };
+      const message = `the compiler failed: ${error.message}`;
       const help = "nest less deeply";
-      const found = { code: null, severity: "error", message, ...place, help };
-      return { text: null, words: null, reflection: null, diagnostics: [found] };
+      const diagnostic = { code: null, severity: "error", message, ...position, help };
+      return { text: null, words: null, reflection: null, diagnostics: [diagnostic] };
     }
   }
 
-  #ask(source, options) {
+  #call(source, options) {
     const { memory, reserve, compile, answer_length } = this.#exports;
     const [scene, rest] = [source, options].map((text) => new TextEncoder().encode(text));
-    // Memory may move whenever the compiler runs: it is looked up anew after each call.
-    const place = reserve(scene.length + rest.length);
-    const room = new Uint8Array(memory.buffer, place, scene.length + rest.length);
-    room.set(scene);
-    room.set(rest, scene.length);
+    // Memory may move whenever the compiler runs, so `memory.buffer` is read again after each call.
+    const address = reserve(scene.length + rest.length);
+    const input = new Uint8Array(memory.buffer, address, scene.length + rest.length);
+    input.set(scene);
+    input.set(rest, scene.length);
     const answer = compile(scene.length);
     const bytes = new Uint8Array(memory.buffer, answer, answer_length());
     return JSON.parse(new TextDecoder().decode(bytes));

@@ -1,23 +1,25 @@
-//! The compiler in a web page: a scene's text in; shader, reflection and diagnostics out, all as JSON.
+//! The compiler for web pages: it takes the source of a scene and returns shader, reflection and
+//! diagnostics as JSON.
 //!
 //! # What
 //!
-//! [`compile`] is a function of two texts. Built for `wasm32-unknown-unknown` the crate is the `sdfc.wasm` of the npm
-//! package beside it (`npm/`), whose `index.js` calls that function and parses what it gives.
+//! [`compile`] takes and returns strings. Built for `wasm32-unknown-unknown`, the crate is the
+//! `sdfc.wasm` of the npm package in `npm/`, whose `index.js` calls that function and parses the
+//! result.
 //!
 //! # How
 //!
 //! ```
-//! let found = sdfc_web::compile("sphere(1)", r#"{ "target": "glsl-es" }"#);
-//! assert!(found.contains("float sdf_distance(vec3 p)"));
+//! let compiled = sdfc_web::compile("sphere(1)", r#"{ "target": "glsl-es" }"#);
+//! assert!(compiled.contains("float sdf_distance(vec3 p)"));
 //!
-//! let wrong = sdfc_web::compile("spere(1)", "{}");
-//! assert!(wrong.contains(r#""text":null"#) && wrong.contains("did you mean `sphere`?"));
+//! let failed = sdfc_web::compile("spere(1)", "{}");
+//! assert!(failed.contains(r#""text":null"#) && failed.contains("did you mean `sphere`?"));
 //! ```
 //!
 //! # Limits
 //!
-//! Nothing is drawn here, and nothing measured. A scene can import the files that its options bring, and no others.
+//! The crate renders and measures nothing. A scene can import only the files in the options.
 
 mod options;
 #[cfg(target_family = "wasm")]
@@ -28,33 +30,33 @@ use serde::Serialize;
 
 use options::{Files, Options};
 
-/// What compiling gave. The keys are a promise to pages: some may be added, none renamed.
+/// The result of compiling. Pages depend on the keys: new ones may be added, none renamed.
 #[derive(Debug, Default, Serialize)]
 struct Answer {
-    /// The shader; null with errors, and for SPIR-V.
+    /// The source of the shader; null with errors, and for SPIR-V.
     text: Option<String>,
-    /// The words of SPIR-V; null for all else.
+    /// The words of SPIR-V; null for other targets.
     words: Option<Vec<u32>>,
-    /// As `sdfc compile --reflect` writes it; null with errors.
+    /// The reflection as `sdfc compile --reflect` writes it; null with errors.
     reflection: Option<ShaderReflection>,
-    /// Findings in order of place.
-    diagnostics: Vec<Finding>,
+    /// The diagnostics in the order of their positions.
+    diagnostics: Vec<Row>,
 }
 
 /// A diagnostic.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
-enum Finding {
-    /// Of the scene.
+enum Row {
+    /// About the scene.
     Scene(DiagnosticRow),
-    /// Of the call.
-    Call(Refusal),
+    /// About the call.
+    Call(CallError),
 }
 
-/// The keys of a [`DiagnosticRow`]; what has no place has line 0.
+/// An error without a position in the scene. It has the keys of a [`DiagnosticRow`], and line 0.
 #[derive(Debug, Default, Serialize)]
-struct Refusal {
-    /// Null.
+struct CallError {
+    /// Always null.
     code: Option<&'static str>,
     severity: &'static str,
     message: String,
@@ -66,32 +68,34 @@ struct Refusal {
     help: &'static str,
 }
 
-/// Compiles a scene. The options are a JSON object, all of whose keys may be left out: `name`, `target`, `emit`,
-/// `stage`, `march`, `prefix`, `group`, `binding`, `slots`, as the options of `sdfc compile`, and `files`, an object of
-/// texts that the scene may import, by path.
+/// Compiles a scene.
 ///
-/// Gives a JSON object with `text` or `words`, `reflection`, and `diagnostics`, whatever it is given.
+/// `options` is a JSON object. All its keys are optional: `name`, `target`, `emit`, `stage`,
+/// `march`, `prefix`, `group`, `binding` and `live_literals`, as the options of `sdfc compile`, and
+/// `files`, an object with the sources that the scene may import, by path.
+///
+/// Returns a JSON object with `text` or `words`, `reflection`, and `diagnostics`, for any input.
 pub fn compile(source: &str, options: &str) -> String {
     let answer = match serde_json::from_str(options) {
         Ok(options) => answer(source, options),
-        Err(error) => refused(format!("the options are not understood: {error}")),
+        Err(error) => failed(format!("invalid options: {error}")),
     };
-    // Plain data: numbers, texts, lists.
+    // Plain data, numbers, strings and lists, can always be written.
     serde_json::to_string(&answer).unwrap_or_default()
 }
 
 fn answer(source: &str, options: Options) -> Answer {
-    let front = sdfc::lang::Options { live_literals: options.slots, ..Default::default() };
+    let front = sdfc::lang::Options { live_literals: options.live_literals, ..Default::default() };
     let shader = options.shader();
     let compiled = sdfc::compile_with(&options.name, source, &Files(options.files), front);
-    let diagnostics = compiled.rows().into_iter().map(Finding::Scene).collect();
+    let diagnostics = compiled.rows().into_iter().map(Row::Scene).collect();
     let Some(scene) = compiled.scene else { return Answer { diagnostics, ..Answer::default() } };
     let written = match scene.write_shader(&shader) {
         Ok(written) => written,
         Err(error) => {
-            let mut found = refused(error.to_string());
-            found.diagnostics.splice(..0, diagnostics);
-            return found;
+            let mut answer = failed(error.to_string());
+            answer.diagnostics.splice(..0, diagnostics);
+            return answer;
         }
     };
     let reflection = Some(scene.reflect(&shader, &written));
@@ -102,10 +106,10 @@ fn answer(source: &str, options: Options) -> Answer {
     Answer { text, words, reflection, diagnostics }
 }
 
-/// An error without a place in the scene.
-fn refused(message: String) -> Answer {
-    let found = Refusal { severity: "error", message, ..Refusal::default() };
-    Answer { diagnostics: vec![Finding::Call(found)], ..Answer::default() }
+/// Returns an answer with one error that has no position in the scene.
+fn failed(message: String) -> Answer {
+    let error = CallError { severity: "error", message, ..CallError::default() };
+    Answer { diagnostics: vec![Row::Call(error)], ..Answer::default() }
 }
 
 #[cfg(test)]
@@ -117,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_asked_for_comes_out() {
+    fn options_determine_the_shader() {
         let options = json!({
             "name": "a.sdf", "target": "wgsl", "emit": "render", "stage": "fragment", "march": "sphere",
             "prefix": "ball_", "group": 1, "binding": 2,
@@ -133,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_data() {
+    fn errors_are_returned_as_data() {
         let found = compile("sphere(1) +", &json!({}));
         let row = &found["diagnostics"][0];
         assert_eq!((&row["severity"], &row["line"]), (&"error".into(), &1.into()));
@@ -146,11 +150,11 @@ mod tests {
             assert!(found["text"].is_null(), "{options}");
             assert_eq!(found["diagnostics"][0]["severity"], "error", "{options}");
         }
-        assert!(super::compile("", "\u{0}{").contains("not understood"));
+        assert!(super::compile("", "\u{0}{").contains("invalid options"));
     }
 
     #[test]
-    fn only_files_that_are_brought_are_imported() {
+    fn only_files_in_the_options_are_imported() {
         let scene = "import ball from \"parts.sdf\"\nball()";
         let brought = json!({ "files": { "parts.sdf": "solid ball() = length(p) - 1" } });
         assert!(compile(scene, &brought)["text"].is_string());

@@ -1,15 +1,15 @@
-//! What a page asks for.
+//! The options of a page.
 
 use std::collections::BTreeMap;
 
 use sdfc::{Emit, Resolver, ShaderOptions, Stage, Target};
 use serde::{Deserialize, Deserializer, de::Error};
 
-/// All of it, with the defaults of `sdfc compile`.
+/// The options, with the defaults of `sdfc compile`.
 #[derive(Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Options {
-    /// What messages call the scene.
+    /// The name of the scene in messages.
     pub name: String,
     #[serde(deserialize_with = "target")]
     target: Target,
@@ -19,16 +19,16 @@ pub(crate) struct Options {
     prefix: Option<String>,
     group: Option<u32>,
     binding: Option<u32>,
-    pub slots: bool,
-    /// Texts that the scene may import, by path.
+    pub live_literals: bool,
+    /// The sources that the scene may import, by path.
     pub files: BTreeMap<String, String>,
 }
 
 impl Default for Options {
     fn default() -> Self {
         let (emit, stage, march, prefix, group, binding, files) = Default::default();
-        let (name, target, slots) = ("scene.sdf".to_owned(), Target::Wgsl, false);
-        Self { name, target, emit, stage, march, prefix, group, binding, slots, files }
+        let (name, target, live_literals) = ("scene.sdf".to_owned(), Target::Wgsl, false);
+        Self { name, target, emit, stage, march, prefix, group, binding, live_literals, files }
     }
 }
 
@@ -80,15 +80,16 @@ fn target<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Target, D::Error> 
     let name = String::deserialize(deserializer)?;
     let names = Target::ALL.map(Target::name);
     let found = Target::ALL.into_iter().find(|target| target.name() == name);
-    found
-        .ok_or_else(|| D::Error::custom(format!("target `{name}` is none of {}", names.join(", "))))
+    found.ok_or_else(|| {
+        D::Error::custom(format!("unknown target `{name}`; the targets are {}", names.join(", ")))
+    })
 }
 
-/// Files that the page has brought.
+/// The files in the options of a page.
 pub(crate) struct Files(pub BTreeMap<String, String>);
 
 impl Resolver for Files {
     fn read(&self, path: &str) -> Result<String, String> {
-        self.0.get(path).cloned().ok_or_else(|| "the page has brought no such file".to_owned())
+        self.0.get(path).cloned().ok_or_else(|| "the options have no such file".to_owned())
     }
 }

@@ -1,4 +1,4 @@
-//! Items, signatures and types as documents.
+//! Converts items, signatures and types to documents.
 
 use super::doc::{Below, Doc, Equation, concat, equation, group, indent, line, text};
 use super::expr::{bracketed, expr, let_, stays_beside};
@@ -46,7 +46,7 @@ fn param<'a>(source: &mut Source<'a>, tree: &Param) -> Doc<'a> {
     concat(docs)
 }
 
-/// Clauses of shapes stand on lines of their own, so that what a shape promises is a column.
+/// Converts a declaration. Each clause of a shape has its own line, so that clauses form a column.
 fn decl<'a>(source: &mut Source<'a>, tree: &Decl) -> Doc<'a> {
     let head = vec![source.take_spaced(), source.take()];
     let open = tree.kind != DeclKind::Fn && !tree.signature.clauses.is_empty();

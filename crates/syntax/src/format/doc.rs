@@ -1,4 +1,4 @@
-//! A document whose lines are not decided yet.
+//! A document whose line breaks are not decided yet.
 
 use std::borrow::Cow;
 
@@ -6,24 +6,24 @@ use std::borrow::Cow;
 #[derive(Debug)]
 pub(super) struct Doc<'a> {
     pub kind: Kind<'a>,
-    /// Contains a line break that cannot be left out, or a comment.
+    /// True if the document has a mandatory line break or a comment.
     pub hard: bool,
 }
 
-/// The forms of a document. *Flat* is all on one line; otherwise each form says where it breaks.
+/// The kinds of documents. *Flat* means all on one line; otherwise each kind says where it breaks.
 #[derive(Debug)]
 pub(super) enum Kind<'a> {
     /// Text without line breaks.
     Text(Cow<'a, str>),
-    /// A line break, or this text where flat.
+    /// A line break, or this text if flat.
     Line(&'static str),
-    /// A line break always, a blank line if so.
+    /// A mandatory line break, with a blank line if `blank`.
     Hard { blank: bool },
-    /// A comment and the end of its line. One that did not stand behind a token begins a line.
+    /// A comment and the end of its line. A comment with `own_line` also begins a line.
     Comment { text: &'a str, own_line: bool, blank_after: bool },
-    /// One after the other.
+    /// Documents one after the other.
     Concat(Vec<Doc<'a>>),
-    /// The same, one step further in.
+    /// Documents one after the other, indented by one step.
     Indent(Vec<Doc<'a>>),
     /// Flat if it fits.
     Group(Vec<Doc<'a>>),
@@ -31,12 +31,12 @@ pub(super) enum Kind<'a> {
     Brackets(Box<Brackets<'a>>),
     /// Method calls.
     Chain(Box<Chain<'a>>),
-    /// Something, `=` and what it is.
+    /// A head, `=` and a body.
     Equation(Box<Equation<'a>>),
 }
 
-/// `(a, b)`: flat; or one element a line with a comma behind each; or only `hug` over several
-/// lines, everything else beside its first and last line.
+/// `(a, b)`: flat; or one element per line, each with a comma; or only `hug` over several lines,
+/// everything else beside its first and last line.
 #[derive(Debug)]
 pub(super) struct Brackets<'a> {
     pub open: Doc<'a>,
@@ -46,7 +46,7 @@ pub(super) struct Brackets<'a> {
     /// Comments behind the last element.
     pub comments: Doc<'a>,
     pub close: Doc<'a>,
-    /// Which element may go over several lines alone.
+    /// The index of the element that may take several lines alone.
     pub hug: Option<usize>,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Brackets<'a> {
 pub(super) struct Chain<'a> {
     pub head: Doc<'a>,
     pub links: Vec<Doc<'a>>,
-    /// Whether there are enough calls to break before links.
+    /// True if there are enough calls to break before links.
     pub breaks: bool,
 }
 
@@ -66,21 +66,21 @@ pub(super) struct Chain<'a> {
 pub(super) struct Equation<'a> {
     pub head: Doc<'a>,
     pub clauses: Vec<Doc<'a>>,
-    /// Clauses stand on lines of their own even where they would fit.
+    /// True if each clause gets its own line even if all fit on one.
     pub open: bool,
     pub equals: Doc<'a>,
     pub body: Doc<'a>,
     pub below: Below,
 }
 
-/// When a body that does not fit beside its `=` stands on the line below.
+/// Says when a body that does not fit beside its `=` goes to the line below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Below {
-    /// Never: it begins with a bracket that stays beside the `=`.
+    /// Never, because it begins with a bracket that stays beside the `=`.
     Never,
-    /// Where it fits there on one line.
+    /// If it fits there on one line.
     IfItFits,
-    /// Always: it goes over several lines that begin alike.
+    /// Always, because it takes several lines that begin alike.
     Always,
 }
 

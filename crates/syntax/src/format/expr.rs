@@ -1,4 +1,4 @@
-//! Expressions as documents.
+//! Converts expressions to documents.
 
 use super::decl::lambda;
 use super::doc::{
@@ -42,7 +42,7 @@ fn bare_expr<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     }
 }
 
-/// `-` and `!`, in a loop.
+/// Converts the prefixes `-` and `!` in a loop.
 fn prefixes<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     let (mut docs, mut operand) = (Vec::new(), tree);
     while let ExprKind::Unary(UnaryOp::Neg | UnaryOp::Not, inner) = &operand.kind {
@@ -53,7 +53,7 @@ fn prefixes<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     concat(docs)
 }
 
-/// How tightly an operator binds, as far as layout tells operators apart.
+/// Returns the precedence of an operator. Operators with the same layout share a level.
 fn level(op: BinaryOp) -> u8 {
     match op {
         BinaryOp::Or => 0,
@@ -67,7 +67,7 @@ fn level(op: BinaryOp) -> u8 {
     }
 }
 
-/// Operands of one level, with a place to break before each operator.
+/// Converts operands of one level. A line may break before each operator.
 fn operators<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     let (mut rights, mut first, mut chained) = (Vec::new(), tree, None);
     while let ExprKind::Binary(op, _, left, right) = &first.kind
@@ -87,11 +87,11 @@ fn operators<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
         note = source.trailing_comments();
     }
     docs.push(indent(rest));
-    // A comment behind all of it is no reason to break it.
+    // A comment behind the whole expression does not break it.
     concat(vec![group(docs), note])
 }
 
-/// Whether it is short enough that `..` stands tight beside it.
+/// Returns true if the expression is short enough for `..` without spaces.
 fn is_atom(tree: &Expr) -> bool {
     let argument = |arg: &Arg| match &arg.value {
         Element::Expr(value) => arg.name.is_none() && is_atom(value),
@@ -116,14 +116,14 @@ fn is_atom(tree: &Expr) -> bool {
     })
 }
 
-/// One postfix, without what it stands behind.
+/// A postfix without its base.
 enum Postfix<'t> {
     Field,
     Index(&'t Expr),
     Call(&'t [Arg]),
 }
 
-/// The outermost postfix of an expression, and what it stands behind.
+/// Returns the outermost postfix of an expression and its base.
 fn postfix(tree: &Expr) -> Option<(Postfix<'_>, &Expr)> {
     if let ExprKind::Field(base, _) = &tree.kind {
         Some((Postfix::Field, base))
@@ -136,7 +136,8 @@ fn postfix(tree: &Expr) -> Option<(Postfix<'_>, &Expr)> {
     }
 }
 
-/// Calls, fields and indices: a head, and links that each begin with a point and hold a call.
+/// Converts calls, fields and indices: a head, and links that each begin with a point and have a
+/// call.
 fn postfixes<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     let (mut steps, mut head) = (Vec::new(), tree);
     while let Some((step, base)) = postfix(head) {
@@ -178,7 +179,7 @@ fn postfixes<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     chain(Chain { head, links, breaks })
 }
 
-/// Elements between brackets, a comma behind each but perhaps the last.
+/// Converts bracketed elements, with an optional comma behind the last.
 pub(super) fn bracketed<'a, T>(
     source: &mut Source<'a>,
     elements: &[T],
@@ -198,8 +199,8 @@ pub(super) fn bracketed<'a, T>(
     brackets(Brackets { open, elements: docs, notes, comments, close, hug })
 }
 
-/// The element that may go over several lines while the rest stay beside it: the only one that
-/// is a function with a block or list, or a list that is alone.
+/// Returns the element that may take several lines while the others stay beside it: the only one
+/// that is a function with a block or list, or a list that is the only element.
 fn hugged<'t>(elements: impl Iterator<Item = &'t Element> + Clone) -> Option<usize> {
     let alone = elements.clone().count() == 1;
     let huggable = |element: &Element| match element {
@@ -214,7 +215,7 @@ fn is_list(tree: &Expr) -> bool {
     matches!(tree.kind, ExprKind::List(_))
 }
 
-/// Whether the first line of an expression over several lines ends with an opening bracket.
+/// Returns true if the first line of an expression over several lines ends with an opening bracket.
 pub(super) fn stays_beside(tree: &Expr) -> bool {
     let mut tree = tree;
     while let ExprKind::Lambda(_, body) = &tree.kind {
@@ -247,7 +248,7 @@ fn element<'a>(source: &mut Source<'a>, tree: &Element) -> Doc<'a> {
     group(docs)
 }
 
-/// `if c { a } else if d { b } else { e }`: one line, or every brace opens lines.
+/// Converts `if c { a } else if d { b } else { e }`: one line, or a line break after every brace.
 fn condition<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     let mut docs = Vec::new();
     let mut tree = tree;
@@ -261,7 +262,7 @@ fn condition<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     group(docs)
 }
 
-/// A block as part of a group: its lines open with the group.
+/// Converts a block as a part of a group, so that both break together.
 fn braces<'a>(source: &mut Source<'a>, tree: &Expr) -> Vec<Doc<'a>> {
     if let ExprKind::Block(lets, result) = &tree.kind {
         block_parts(source, lets, result)
@@ -274,7 +275,7 @@ fn block<'a>(source: &mut Source<'a>, lets: &[Let], result: &Expr) -> Doc<'a> {
     group(block_parts(source, lets, result))
 }
 
-/// `{ let a = 1; a }`: lines stay open where there is a `let` and they were.
+/// Converts `{ let a = 1; a }`. A block with a `let` that had several lines keeps them.
 fn block_parts<'a>(source: &mut Source<'a>, lets: &[Let], result: &Expr) -> Vec<Doc<'a>> {
     let opened = !lets.is_empty() && source.opens_lines();
     let edge = || if opened { hard(false) } else { line(" ") };
@@ -283,7 +284,7 @@ fn block_parts<'a>(source: &mut Source<'a>, lets: &[Let], result: &Expr) -> Vec<
     for binding in lets {
         inner.push(let_(source, binding));
         source.skip(TokenKind::Semicolon);
-        // Without it the next line would go on with a subtraction.
+        // Without the `;` the next line would continue with a subtraction.
         let needed = source.kind() == TokenKind::Minus;
         inner.extend(needed.then(|| text(";")));
         inner.push(source.trailing_comments());

@@ -1,22 +1,22 @@
-//! The one layout.
+//! The formatter. Every file has one layout, without options.
 //!
-//! Lines have at most 100 characters where breaking can help, indentation is two spaces.
+//! Lines have at most 100 characters unless they cannot be broken. Indentation is two spaces.
 //!
-//! - A call or list that does not fit puts one argument on each line, with a comma behind each;
-//!   a function with a block among its arguments, or a list that is the only one, keeps its
-//!   brackets beside those of the call.
-//! - A chain of method calls that does not fit breaks before each `.` that begins a call, a chain
-//!   of operators before each operator of its level; both are indented once.
-//! - The clauses of a shape stand one on a line, then `=` on its own, indented once. Those of a
-//!   `fn` do where its head does not fit.
-//! - A body that does not fit beside its `=` stands below it if it fits there.
-//! - `if` is on one line if it fits, else every brace opens lines. A block with a `let` stays on
-//!   one line if it was written so and fits.
-//! - At most one blank line is kept, and one is made around declarations of several lines.
-//! - Comments keep their place: above what they stand above, behind what they stand behind. One
-//!   inside an expression that stays on its line moves to the end of that line.
-//! - Numbers and strings stay as written, colours become lower case. Semicolons stay in blocks
-//!   on one line, and before a line that starts with `-`.
+//! - A call or list that does not fit has one argument per line, each with a comma. A function with
+//!   a block among its arguments, or a list that is the only argument, keeps its brackets beside
+//!   those of the call.
+//! - A chain of method calls that does not fit breaks before each `.` that begins a call. A chain
+//!   of operators breaks before each operator of its level. Both are indented once.
+//! - Each clause of a shape has its own line, then `=` has one; all are indented once. The clauses
+//!   of a `fn` are on lines of their own if its head does not fit.
+//! - A body that does not fit beside its `=` goes below if it fits there.
+//! - An `if` is on one line if it fits, else a line ends after every brace. A block with a `let`
+//!   stays on one line if it was written so and fits.
+//! - At most one blank line is kept. Declarations of several lines get blank lines around them.
+//! - A comment stays above or behind the code that it was above or behind. A comment inside of an
+//!   expression that stays on one line moves to the end of that line.
+//! - Numbers and strings stay as written; colours become lower case. Semicolons stay in blocks on
+//!   one line, and before a line that starts with `-`.
 
 mod decl;
 mod doc;
@@ -32,12 +32,12 @@ use crate::ast::Item;
 use crate::lexer::lex;
 use crate::token::TokenKind;
 
-/// The text of a file in the one layout. Formatting that again changes nothing, and it parses to
-/// the same tree but for spans.
+/// Formats a file. Formatting the result again changes nothing, and it parses to the same tree
+/// except for spans.
 ///
 /// # Errors
 ///
-/// A file that does not parse is not formatted: gives what is wrong with it.
+/// Returns the diagnostics of a file that does not parse.
 ///
 /// ```
 /// let mut sources = sdfc_diagnostics::Sources::new();
@@ -81,11 +81,11 @@ pub fn format(sources: &Sources, file: FileId) -> Result<String, Vec<Diagnostic>
     Ok(out)
 }
 
-/// An item with what stands behind it on its line.
+/// Converts an item with the comments behind it on its line.
 fn with_end<'a>(source: &mut Source<'a>, item: &Item) -> Doc<'a> {
     let printed = decl::item(source, item);
     source.skip(TokenKind::Semicolon);
-    // Without it the next line would go on with a subtraction.
+    // Without the `;` the next line would continue with a subtraction.
     let end = if source.kind() == TokenKind::Minus { doc::text(";") } else { NOTHING };
     concat(vec![printed, end, source.trailing_comments()])
 }

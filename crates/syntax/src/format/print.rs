@@ -1,8 +1,8 @@
-//! From a document to lines.
+//! Prints a document as lines.
 //!
-//! The printer keeps what is still to be printed on a stack of its own, so that its depth does
-//! not depend on the document. Whether something fits is decided by measuring up to the first
-//! place where the line may end, which is never more than a line's width away.
+//! The printer keeps its pending tasks on a stack of its own, so that its recursion depth does not
+//! depend on the document. To decide if something fits, it measures up to the first position where
+//! the line may end, which is at most one line width away.
 
 use super::doc::{Below, Brackets, Chain, Doc, Equation, Kind};
 
@@ -11,14 +11,14 @@ const WIDTH: usize = 100;
 /// One step of indentation.
 const STEP: usize = 2;
 
-/// Whether lines may break.
+/// The layout mode of a document.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mode {
     Flat,
     Broken,
 }
 
-/// Something still to be printed or measured.
+/// A pending task: something to print or to measure.
 #[derive(Clone, Copy)]
 enum Task<'d, 'a> {
     Doc(usize, Mode, &'d Doc<'a>),
@@ -33,22 +33,22 @@ enum Task<'d, 'a> {
 
 struct Printer<'d, 'a> {
     out: String,
-    /// Characters on the line so far, pending indentation included.
+    /// The number of characters on the line so far, including pending indentation.
     column: usize,
-    /// Indentation that is written before the next text.
+    /// The indentation that is written before the next text.
     pending: usize,
-    /// Lines so far.
+    /// The number of lines so far.
     line: usize,
-    /// Whether nothing but indentation is on the line.
+    /// True if nothing but indentation is on the line.
     fresh: bool,
-    /// Whether the line before was ended by its comment, so that it needs no other end.
+    /// True if a comment has ended the previous line, so that no other line break is needed.
     after_comment: bool,
-    /// Whether a blank line follows that comment, if anything does on this level.
+    /// True if a blank line follows that comment, provided that something follows on this level.
     blank: bool,
     stack: Vec<Task<'d, 'a>>,
 }
 
-/// Prints a document from the first column; ends without a line break.
+/// Prints a document from the first column, without a line break at the end.
 pub(super) fn print(doc: &Doc<'_>) -> String {
     let mut printer = Printer {
         out: String::new(),
@@ -112,7 +112,7 @@ impl<'d, 'a> Printer<'d, 'a> {
         self.stack.extend(docs.iter().rev().map(|doc| Task::Doc(indent, mode, doc)));
     }
 
-    /// Puts tasks in front of what is still to be printed.
+    /// Adds tasks in front of the pending ones.
     fn push_tasks(&mut self, tasks: Vec<Task<'d, 'a>>) {
         self.stack.extend(tasks.into_iter().rev());
     }
@@ -179,7 +179,7 @@ impl<'d, 'a> Printer<'d, 'a> {
         self.push_tasks(tasks);
     }
 
-    /// Whether all but one element stay on the lines on which that one begins and ends.
+    /// Returns true if all elements but one fit on the first and the last line of that one.
     fn can_hug(&self, indent: usize, parts: &'d Brackets<'a>, hugged: usize) -> bool {
         let others = parts.elements.iter().enumerate().filter(|&(at, _)| at != hugged);
         let ends = [&parts.open, &parts.comments, &parts.close];
@@ -224,8 +224,8 @@ impl<'d, 'a> Printer<'d, 'a> {
         }
     }
 
-    /// The links of a chain that does not fit: each on a line of its own, but beside the closing
-    /// bracket of a head that took several lines if they fit there.
+    /// Prints the links of a chain that does not fit: beside the closing bracket of a head with
+    /// several lines if they fit there, else each on a line of its own.
     fn links(&mut self, indent: usize, chain: &'d Chain<'a>, line: usize) {
         let flat: Vec<_> =
             chain.links.iter().map(|link| Task::Doc(indent, Mode::Flat, link)).collect();
@@ -262,7 +262,7 @@ impl<'d, 'a> Printer<'d, 'a> {
         self.push_tasks(tasks);
     }
 
-    /// Beside the `=` if it fits there, then below, then over several lines.
+    /// Prints a body beside the `=` if it fits there, else below, else over several lines.
     fn body(&mut self, indent: usize, parts: &'d Equation<'a>) {
         let inner = indent + STEP;
         let fits_at = |column: usize| {
@@ -294,15 +294,15 @@ impl<'d, 'a> Printer<'d, 'a> {
             && (parts.head.hard || !fits(WIDTH.saturating_sub(self.column), head, &[]))
     }
 
-    /// Whether a document fits flat on the line, with what follows it there.
+    /// Returns true if a document fits flat on the line together with the text that follows it.
     fn fits_flat(&self, doc: &'d Doc<'a>) -> bool {
         let room = WIDTH.saturating_sub(self.column);
         !doc.hard && fits(room, vec![Task::Doc(0, Mode::Flat, doc)], &self.stack)
     }
 }
 
-/// Whether `tasks`, and of `rest` (its last first) what follows on the same line, take at most
-/// `room` characters up to the first place where the line may end.
+/// Returns true if `tasks` and the tasks of `rest` on the same line take at most `room` characters
+/// up to the first position where the line may end. `rest` is a stack: its last task comes first.
 fn fits<'d, 'a>(room: usize, tasks: Vec<Task<'d, 'a>>, rest: &[Task<'d, 'a>]) -> bool {
     let mut todo = tasks;
     todo.reverse();
@@ -363,7 +363,7 @@ fn fits<'d, 'a>(room: usize, tasks: Vec<Task<'d, 'a>>, rest: &[Task<'d, 'a>]) ->
     true
 }
 
-/// The parts of a compound document on one line.
+/// Appends the parts of a compound document in flat layout.
 fn flat_parts<'d, 'a>(indent: usize, kind: &'d Kind<'a>, parts: &mut Vec<Task<'d, 'a>>) {
     let flat = |doc| Task::Doc(indent, Mode::Flat, doc);
     match kind {

@@ -1,7 +1,7 @@
 //! The tokens and comments of a file, in order, as documents.
 //!
-//! The tree says what belongs together; every token and comment itself is taken from the text,
-//! so that none is lost and numbers stay as they were written.
+//! The tree gives the structure. The tokens and comments themselves come from the text, so that
+//! none is lost and numbers stay as they were written.
 
 use super::doc::{Doc, NOTHING, comment, concat, text};
 use crate::lexer::{Comment, Lexed};
@@ -27,7 +27,7 @@ impl<'a> Source<'a> {
         self.tokens.get(self.at).map_or(TokenKind::Eof, |token| token.kind)
     }
 
-    /// The next token with the comments before it. Colours come in lower case.
+    /// Takes the next token with the comments before it. Colours become lower case.
     pub fn take(&mut self) -> Doc<'a> {
         let comments = self.comments();
         let Some(token) = self.tokens.get(self.at) else {
@@ -40,34 +40,35 @@ impl<'a> Source<'a> {
         if comments.hard { concat(vec![comments, token]) } else { token }
     }
 
-    /// The next `count` tokens, without space between them.
+    /// Takes the next `count` tokens, without space between them.
     pub fn take_joined(&mut self, count: usize) -> Doc<'a> {
         concat((0..count).map(|_| self.take()).collect())
     }
 
-    /// The next token and a space.
+    /// Takes the next token and adds a space.
     pub fn take_spaced(&mut self) -> Doc<'a> {
         concat(vec![self.take(), text(" ")])
     }
 
-    /// Passes over a token if it comes next, keeping the comments before it for the one after.
+    /// Skips a token of this kind if it comes next. The comments before it go to the token after
+    /// it.
     pub fn skip(&mut self, kind: TokenKind) -> bool {
         let found = self.kind() == kind;
         self.at += usize::from(found);
         found
     }
 
-    /// All comments before the next token.
+    /// Takes all comments before the next token.
     pub fn comments(&mut self) -> Doc<'a> {
         self.comments_while(|_, _| true)
     }
 
-    /// The comments that stand on the line of the token before them.
+    /// Takes the comments on the same line as the token before them.
     pub fn trailing_comments(&mut self) -> Doc<'a> {
         self.comments_while(|source, comment| !source.on_own_line(comment))
     }
 
-    /// Whether no token stands before a comment on its line.
+    /// Returns true if no token precedes a comment on its line.
     fn on_own_line(&self, comment: &Comment) -> bool {
         let before = comment.tokens_before.checked_sub(1).and_then(|at| self.tokens.get(at));
         before.is_none_or(|token| {
@@ -88,7 +89,7 @@ impl<'a> Source<'a> {
         if docs.is_empty() { NOTHING } else { concat(docs) }
     }
 
-    /// Whether a blank line stands between the last token taken and what comes next.
+    /// Returns true if there is a blank line between the last taken token and the next.
     pub fn blank_before(&self) -> bool {
         let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
         let comment = self.next_comment.checked_sub(1).and_then(|at| self.comments.get(at));
@@ -97,7 +98,7 @@ impl<'a> Source<'a> {
         end.is_some_and(|end| self.blank_before_next(end))
     }
 
-    /// Whether a blank line stands between `end` and the next token or comment.
+    /// Returns true if there is a blank line between `end` and the next token or comment.
     fn blank_before_next(&self, end: u32) -> bool {
         let token = self.tokens.get(self.at).map(|token| token.start);
         let comment = self.comments.get(self.next_comment).map(|comment| comment.start);
@@ -109,7 +110,7 @@ impl<'a> Source<'a> {
         between.matches('\n').count() > 1
     }
 
-    /// Whether a line ends between the next token, which opens a bracket, and its closer.
+    /// Returns true if a line ends between the next token, an opening bracket, and its closing one.
     pub fn opens_lines(&self) -> bool {
         let mut open = 0_usize;
         for token in self.tokens.iter().skip(self.at) {

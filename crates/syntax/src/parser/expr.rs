@@ -1,4 +1,4 @@
-//! Operators: precedence, prefixes, postfixes.
+//! Parses operators: infix by precedence, prefix and postfix.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
@@ -7,7 +7,7 @@ use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Name, UnaryOp};
 use crate::literal;
 use crate::token::TokenKind;
 
-/// The levels of infix operators, loose to tight.
+/// The precedence levels of infix operators, lowest first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Or,
@@ -20,7 +20,7 @@ enum Level {
 }
 
 impl Level {
-    /// The level of operands on the right: all operators associate to the left.
+    /// Returns the level of the right operand. All operators associate to the left.
     fn tighter(self) -> Level {
         match self {
             Level::Or => Level::And,
@@ -32,7 +32,7 @@ impl Level {
         }
     }
 
-    /// Why operators of this level do not follow each other.
+    /// Returns why operators of this level cannot be chained, or `None` if they can.
     fn does_not_chain(self) -> Option<&'static str> {
         match self {
             Level::Compare => Some("comparisons do not chain"),
@@ -63,34 +63,36 @@ const INFIX: &[(TokenKind, BinaryOp, Level)] = &[
 ];
 
 impl Parser<'_> {
-    /// An expression.
+    /// Parses an expression.
     pub(super) fn expr(&mut self) -> Parsed<Expr> {
         self.binary(Level::Or)
     }
 
-    /// The infix operator that comes next, with its level.
+    /// Returns the infix operator that comes next, with its level.
     fn infix(&self) -> Option<(BinaryOp, Level)> {
         let kind = self.kind();
         INFIX.iter().find(|row| row.0 == kind).map(|&(_, op, level)| (op, level))
     }
 
-    /// Operands joined by operators of this level and tighter ones.
+    /// Parses operands joined by operators of this level or a higher one.
     fn binary(&mut self, loosest: Level) -> Parsed<Expr> {
         self.measured(|parser| {
             let mut left = parser.prefix()?;
             let mut unchained = None;
             while let Some((op, level)) = parser.infix().filter(|&(_, level)| level >= loosest) {
-                let place = parser.span();
+                let op_span = parser.span();
                 parser.bump();
                 let right = parser.binary(level.tighter())?;
-                parser.link(place)?;
+                parser.link(op_span)?;
                 let span = left.span.to(right.span);
                 let kind = match level.does_not_chain() {
                     Some(why) if unchained == Some(level) => {
-                        parser.report_chain(why, place, &left, &right);
+                        parser.report_chain(why, op_span, &left, &right);
                         ExprKind::Error
                     }
-                    Some(_) | None => ExprKind::Binary(op, place, Box::new(left), Box::new(right)),
+                    Some(_) | None => {
+                        ExprKind::Binary(op, op_span, Box::new(left), Box::new(right))
+                    }
                 };
                 left = Expr { kind, span };
                 unchained = Some(level);
@@ -100,21 +102,22 @@ impl Parser<'_> {
     }
 
     /// Reports the second of two operators that do not chain.
-    fn report_chain(&mut self, why: &str, place: Span, left: &Expr, right: &Expr) {
-        let mut found = Diagnostic::error(Code::DOES_NOT_CHAIN, place, why);
+    fn report_chain(&mut self, why: &str, op_span: Span, left: &Expr, right: &Expr) {
+        let mut diagnostic = Diagnostic::error(Code::DOES_NOT_CHAIN, op_span, why);
         if let ExprKind::Binary(op, _, _, middle) = &left.kind
             && *op != BinaryOp::Range
         {
             let [left, middle, operator, right] =
-                [left.span, middle.span, place, right.span].map(|span| self.slice(span));
+                [left.span, middle.span, op_span, right.span].map(|span| self.slice(span));
             if left.len() + middle.len() + right.len() < 60 {
-                found = found.help(format!("write {left} && {middle} {operator} {right}"));
+                diagnostic =
+                    diagnostic.help(format!("write {left} && {middle} {operator} {right}"));
             }
         }
-        self.report(found);
+        self.report(diagnostic);
     }
 
-    /// `-` and `!` before an operand.
+    /// Parses an operand with its prefixes `-` and `!`.
     fn prefix(&mut self) -> Parsed<Expr> {
         let mut operators = Vec::new();
         loop {
@@ -127,21 +130,21 @@ impl Parser<'_> {
             self.bump();
         }
         let mut operand = self.postfix()?;
-        for (op, place) in operators.into_iter().rev() {
-            self.link(place)?;
-            let span = place.to(operand.span);
+        for (op, op_span) in operators.into_iter().rev() {
+            self.link(op_span)?;
+            let span = op_span.to(operand.span);
             operand = Expr { kind: ExprKind::Unary(op, Box::new(operand)), span };
         }
         Ok(operand)
     }
 
-    /// An operand with its calls, fields and indices.
+    /// Parses an operand with its calls, fields and indices.
     fn postfix(&mut self) -> Parsed<Expr> {
         let start = self.span();
         let mut base = self.primary()?;
         loop {
             let next = self.next();
-            let place = self.span();
+            let op_span = self.span();
             let kind = match next.kind {
                 TokenKind::Dot => {
                     let name = self.field(&base)?;
@@ -158,12 +161,12 @@ impl Parser<'_> {
                 TokenKind::PointNumber if !next.first => return self.glued_number(&base),
                 _ => return Ok(base),
             };
-            self.link(place)?;
+            self.link(op_span)?;
             base = Expr { kind, span: self.since(start) };
         }
     }
 
-    /// `.name`
+    /// Parses `.name`.
     fn field(&mut self, base: &Expr) -> Parsed<Name> {
         let point = self.span();
         self.bump();
@@ -176,19 +179,20 @@ impl Parser<'_> {
         self.name("a name after `.`")
     }
 
-    /// `a.5`: neither a field nor a number of its own.
+    /// Reports `a.5`, which is neither a field nor a number.
     fn glued_number(&mut self, base: &Expr) -> Parsed<Expr> {
         let number = matches!(base.kind, ExprKind::Number { .. });
         let written = self.slice(self.span());
         if number || base.span.end != self.next().start {
             return self.fail(literal::bare_point(written, self.span()));
         }
-        let found = Diagnostic::error(Code::EXPECTED, self.span(), "expected a name after `.`")
-            .help(format!("parts of a list or vector are written [{}]", &written[1..]));
-        self.fail(found)
+        let diagnostic =
+            Diagnostic::error(Code::EXPECTED, self.span(), "expected a name after `.`")
+                .help(format!("parts of a list or vector are written [{}]", &written[1..]));
+        self.fail(diagnostic)
     }
 
-    /// `[index]`
+    /// Parses `[index]`.
     fn index(&mut self) -> Parsed<Expr> {
         let opener = self.open();
         let depth = self.open.len();
@@ -198,7 +202,7 @@ impl Parser<'_> {
         index
     }
 
-    /// `(arguments)`
+    /// Parses `(arguments)`.
     fn arguments(&mut self) -> Parsed<Vec<Arg>> {
         self.bracketed("argument", Self::argument, |span| {
             let value = Element::Expr(Expr { kind: ExprKind::Error, span });
@@ -226,7 +230,7 @@ impl Parser<'_> {
         Ok(Arg { name: Some(name), value })
     }
 
-    /// `f(x = 1)`
+    /// Reports an argument written with `=`, as in `f(x = 1)`.
     fn refuse_equals(&mut self, arg: &Arg) -> Parsed<()> {
         let Element::Expr(Expr { kind: ExprKind::Name(name), .. }) = &arg.value else {
             return Ok(());
@@ -234,10 +238,10 @@ impl Parser<'_> {
         if self.kind() != TokenKind::Eq {
             return Ok(());
         }
-        let found =
+        let diagnostic =
             Diagnostic::error(Code::EXPECTED, self.span(), "expected `,` or `)`, found `=`")
                 .help(format!("a named argument is written with a colon: {name}: ..."))
                 .help("equality is written `==`");
-        self.fail(found)
+        self.fail(diagnostic)
     }
 }

@@ -1,4 +1,4 @@
-//! Brackets: what stands between them, and what happens when one is missing.
+//! Parses bracketed lists, and recovers from missing brackets.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
@@ -21,8 +21,8 @@ impl Parser<'_> {
         Opener { token, span }
     }
 
-    /// Takes the closing bracket, or reports that it is missing. `what` says what could stand
-    /// here instead, for the message.
+    /// Takes the closing bracket, or reports that it is missing. `what` is the alternative to the
+    /// bracket that the message names.
     pub(super) fn close(&mut self, opener: Opener, what: &str) -> Parsed<()> {
         let closed = self.close_or_report(opener, what);
         self.open.pop();
@@ -48,9 +48,9 @@ impl Parser<'_> {
             return Ok(());
         }
         let shown = name_of(closer);
-        let mut found = self.expectation(&format!("{what} or `{shown}`"));
-        found.help.extend(self.operator_hint().map(str::to_owned));
-        self.report(found);
+        let mut diagnostic = self.expectation(&format!("{what} or `{shown}`"));
+        diagnostic.help.extend(self.operator_hint().map(str::to_owned));
+        self.report(diagnostic);
         let start = self.span();
         self.skip_to(start, &[])?;
         if !self.eat(closer) {
@@ -59,7 +59,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Reports an opener without its closer; those that end at one place are one report.
+    /// Reports an unclosed bracket. Brackets that should close at the same position share one
+    /// diagnostic.
     pub(super) fn unclosed(&mut self, opener: Opener) {
         let Some(closer) = opener.token.kind.closer() else {
             return;
@@ -71,18 +72,19 @@ impl Parser<'_> {
         let shown = self.slice(opener.span);
         let missing = name_of(closer);
         let behind = self.previous().map_or(opener.span, |token| token.span(self.file));
-        let mut found = Diagnostic::error(
+        let mut diagnostic = Diagnostic::error(
             Code::UNCLOSED,
             opener.span,
             format!("this `{shown}` is never closed"),
         );
         if behind != opener.span {
-            found = found.note_at(behind.after(), format!("a `{missing}` is missing up to here"));
+            diagnostic =
+                diagnostic.note_at(behind.after(), format!("a `{missing}` is missing up to here"));
         }
-        self.report(found.help(format!("write `{missing}` there, or before")));
+        self.report(diagnostic.help(format!("write `{missing}` there, or before")));
     }
 
-    /// A closer of another kind: either it closes a bracket further out, or it is a slip.
+    /// Handles a closing bracket of another kind. It closes an outer bracket, or is a mistake.
     fn wrong_closer(&mut self, opener: Opener) {
         let found = self.kind();
         let outer = &self.open[..self.open.len().saturating_sub(1)];
@@ -100,8 +102,8 @@ impl Parser<'_> {
         self.bump();
     }
 
-    /// What stands between brackets, separated by commas; a comma may follow the last. An element
-    /// that cannot be read is what `failed` makes of the place.
+    /// Parses bracketed elements separated by commas, with an optional comma behind the last.
+    /// `failed` returns the stand-in for an element that cannot be parsed.
     pub(super) fn bracketed<T>(
         &mut self,
         one: &str,
@@ -142,12 +144,12 @@ impl Parser<'_> {
         Ok(elements)
     }
 
-    /// Whether the file or a new declaration cuts a list short.
+    /// Returns true if the file ends or a new declaration begins inside of a list.
     fn ends_early(&self) -> bool {
         self.kind() == TokenKind::Eof || self.at_new_declaration()
     }
 
-    /// Behind an element without a comma: whether another element follows.
+    /// Returns true if another element follows, behind an element without a comma.
     fn at_next_element(&self) -> bool {
         let element = self.kind().starts_primary() || self.kind() == TokenKind::For;
         element && !self.at_new_item() && self.operator_hint().is_none()
@@ -161,7 +163,7 @@ impl Parser<'_> {
         self.report(diagnostic);
     }
 
-    /// Whether a late closer makes up for one that was reported missing.
+    /// Returns true if a late closing bracket matches one that was reported as missing.
     pub(super) fn was_missing(&mut self, closer: TokenKind) -> bool {
         let missing = &mut self.missing[slot(closer)];
         let late = *missing > 0;
@@ -170,7 +172,7 @@ impl Parser<'_> {
     }
 }
 
-/// Where a closing bracket is counted.
+/// Returns the index of a closing bracket in [`Parser::missing`].
 fn slot(closer: TokenKind) -> usize {
     if closer == TokenKind::CloseParen {
         0
@@ -181,7 +183,7 @@ fn slot(closer: TokenKind) -> usize {
     }
 }
 
-/// How a closing bracket is written.
+/// Returns the text of a closing bracket.
 fn name_of(closer: TokenKind) -> &'static str {
     if closer == TokenKind::CloseParen {
         ")"

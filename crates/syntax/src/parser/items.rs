@@ -1,4 +1,4 @@
-//! What stands at top level.
+//! An item at the top level.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
@@ -10,7 +10,7 @@ use crate::literal;
 use crate::token::TokenKind;
 
 impl Parser<'_> {
-    /// The whole file.
+    /// Parses the whole file.
     pub(super) fn file(&mut self) -> File {
         let mut items = Vec::new();
         while self.kind() != TokenKind::Eof {
@@ -30,7 +30,7 @@ impl Parser<'_> {
         File { items }
     }
 
-    /// One item and its end. Nothing for one that was left out after an error.
+    /// Parses an item and its end. Returns `None` for an item that was skipped after an error.
     fn item(&mut self) -> Parsed<Option<Item>> {
         let item = match self.kind() {
             TokenKind::Let => self.binding()?.map(Item::Let),
@@ -48,7 +48,7 @@ impl Parser<'_> {
         Ok(Some(Item::Expr(self.expr()?)))
     }
 
-    /// An item that starts with a reserved word other than `let`.
+    /// Parses an item that starts with a reserved word other than `let`.
     pub(super) fn declaration(&mut self) -> Parsed<Option<Item>> {
         match self.kind() {
             TokenKind::Import => self.import().map(Item::Import).map(Some),
@@ -73,7 +73,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes the end of an item, or reports what stands behind it on the same line and skips that.
+    /// Takes the end of an item, or reports and skips the rest of its line.
     fn end_of_item(&mut self) {
         if self.eat(TokenKind::Semicolon) || self.next().first {
             return;
@@ -85,21 +85,22 @@ impl Parser<'_> {
         self.skip_item(self.at);
     }
 
-    /// A closer that nothing opened.
+    /// Reports a closing bracket without an opening one.
     fn stray_closer(&mut self) -> Option<Item> {
         let closer = self.kind();
         if !self.was_missing(closer) {
             let message = format!("this `{}` closes nothing", self.slice(self.span()));
-            let found = Diagnostic::error(Code::EXPECTED, self.span(), message)
+            let diagnostic = Diagnostic::error(Code::EXPECTED, self.span(), message)
                 .help("remove it, or open the bracket that it should close");
-            self.report(found);
+            self.report(diagnostic);
         }
         self.bump();
         self.end_after_stray();
         None
     }
 
-    /// What follows a stray closer on its line belonged inside.
+    /// Skips the rest of the line behind a stray closing bracket, which belonged inside the
+    /// brackets.
     fn end_after_stray(&mut self) {
         while !self.next().first && !self.kind().is_closer() {
             self.bump();
@@ -178,8 +179,8 @@ impl Parser<'_> {
         Ok(Param { docs, name, ty, default, range, span: self.since(start) })
     }
 
-    /// `fn`, `solid`, `region`, `shape` with a name, a signature and a body. What cannot be read
-    /// behind the name is left out, so that the name is still known.
+    /// Parses `fn`, `solid`, `region` or `shape` with a name, a signature and a body. An error
+    /// behind the name leaves the name known.
     fn decl(&mut self, kind: DeclKind) -> Parsed<Option<Item>> {
         let docs = self.docs();
         let start = self.span();
@@ -213,7 +214,7 @@ impl Parser<'_> {
         }
     }
 
-    /// After an error between name and body: the body, if it begins a line with `=`.
+    /// Parses the body after an error in the signature, if the body begins a line with `=`.
     fn late_body(&mut self, start: Span) -> Parsed<Expr> {
         let skipped = self.skip_to(start, &[TokenKind::Semicolon])?;
         if !self.at_new_body() {
@@ -223,7 +224,7 @@ impl Parser<'_> {
         self.expr_or_skip(&[TokenKind::Semicolon])
     }
 
-    /// The `///` lines right above the next token, plain comments among them left out.
+    /// Returns the `///` lines right above the next token, without plain comments among them.
     fn docs(&self) -> Docs {
         let mut below = self.next().start;
         let before = self.comments.partition_point(|comment| comment.tokens_before <= self.at);
@@ -244,7 +245,7 @@ impl Parser<'_> {
         Docs { lines }
     }
 
-    /// A name that is used or defined here. A reserved word in its place is reported and taken.
+    /// Parses a name. A reserved word in its place is reported and taken.
     pub(super) fn name(&mut self, what: &str) -> Parsed<Name> {
         let span = self.span();
         let next = self.next();
@@ -261,17 +262,17 @@ impl Parser<'_> {
         Ok(Name { text, span })
     }
 
-    /// A name that is declared here: in a shape, not `p`.
+    /// Parses the name of a declaration, which must not be `p` in a shape.
     pub(super) fn declared_name(&mut self, what: &str) -> Parsed<Name> {
         let name = self.name(what)?;
         if self.in_shape && name.text == "p" {
-            let found = Diagnostic::error(
+            let diagnostic = Diagnostic::error(
                 Code::RESERVED,
                 name.span,
                 "`p` is the point here and cannot be declared",
             )
             .help("choose another name: `q` is usual for a moved point");
-            self.report(found);
+            self.report(diagnostic);
         }
         Ok(name)
     }

@@ -1,4 +1,4 @@
-//! The parser's state: a cursor over the tokens, what is open, what was reported.
+//! The state of the parser: a cursor over the tokens, the open brackets, the diagnostics.
 
 #![expect(
     clippy::wildcard_enum_match_arm,
@@ -21,30 +21,30 @@ use crate::lexer::{Comment, lex};
 use crate::token::{Token, TokenKind};
 use crate::{MAX_BYTES, MAX_HEIGHT, MAX_NESTING};
 
-/// Below this much free stack a nested construct gets a new segment.
+/// The free stack in bytes below which a nested construct gets a new stack segment.
 const RED_ZONE: usize = 128 << 10;
-/// The size of such a segment.
+/// The size of a stack segment in bytes.
 const SEGMENT: usize = 1 << 20;
 
-/// A construct could not be read, and that was reported.
+/// Signals that a construct could not be parsed and that this was reported.
 #[derive(Debug)]
 struct Failed;
 
 type Parsed<T> = Result<T, Failed>;
 
-/// Parses one file: the tree, and all that is wrong with it in the order of the text.
+/// Parses a file. Returns the tree, and the diagnostics in the order of the text.
 ///
-/// The tree is whole where there is no error. Where there are some, what was read is there:
-/// a value that could not be read is [`crate::ast::ExprKind::Error`], an item without a name is
-/// absent. An unknown `file` parses as an empty one.
+/// Without errors the tree is complete. With errors it has everything that could be parsed: a value
+/// that could not is [`crate::ast::ExprKind::Error`], and an item without a name is absent. An
+/// unknown `file` parses as an empty one.
 pub fn parse(sources: &Sources, file: FileId) -> (File, Vec<Diagnostic>) {
     parse_part(sources, file, 0..sources.text(file).len())
 }
 
-/// Parses some of a file, a range of its bytes, as [`parse`] does all of it. Spans are places in the file.
+/// Parses a byte range of a file as [`parse`] parses all of it. Spans refer to the file.
 ///
-/// A part has to begin where an item or its documentation does, and to end where one ends. One that does not
-/// lie in the file parses as an empty one.
+/// The range must begin where an item or its documentation begins, and end where an item ends. A
+/// range outside of the file parses as an empty file.
 pub fn parse_part(sources: &Sources, file: FileId, part: Range<usize>) -> (File, Vec<Diagnostic>) {
     let text = sources.text(file);
     if text.len() > MAX_BYTES {
@@ -53,11 +53,11 @@ pub fn parse_part(sources: &Sources, file: FileId, part: Range<usize>) -> (File,
     let text = text.get(..part.end).unwrap_or("");
     let lexed = lex(text, file, part.start);
     let mut parser = Parser::new(text, file, &lexed.tokens, &lexed.comments);
-    for found in lexed.diagnostics {
-        parser.report(found);
+    for diagnostic in lexed.diagnostics {
+        parser.report(diagnostic);
     }
     let tree = parser.file();
-    (tree, parser.findings())
+    (tree, parser.diagnostics())
 }
 
 fn too_large(file: FileId, length: usize) -> Diagnostic {
@@ -73,19 +73,19 @@ struct Parser<'a> {
     comments: &'a [Comment],
     /// Index of the next token; never past `Eof`.
     at: usize,
-    /// How many constructs are open around the next token.
+    /// The number of constructs that are open around the next token.
     depth: u32,
-    /// The height of the highest expression read since it was last set to 0.
+    /// The height of the highest expression parsed since this was last set to 0.
     height: u32,
-    /// Inside a `solid`, `region` or `shape`, where `p` is the point.
+    /// True inside a `solid`, `region` or `shape`, where `p` is the point.
     in_shape: bool,
     /// The brackets that are open, outermost first.
     open: Vec<TokenKind>,
-    /// Index of the token where a closer was found missing last.
+    /// Index of the token where a closing bracket was last found missing.
     missing_at: Option<usize>,
-    /// How many `)`, `]` and `}` are missing, so that a late one is not reported as well.
+    /// The numbers of missing `)`, `]` and `}`, so that a late one is not reported as well.
     missing: [u32; 3],
-    /// A limit was passed: the rest of the item is skipped in silence.
+    /// True after a limit was exceeded: the rest of the item is skipped without a diagnostic.
     abandoned: bool,
     reports: report::Reports,
 }
@@ -109,7 +109,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The token `ahead` of the next one; `Eof` past the end.
+    /// Returns the token `ahead` positions behind the next one, or `Eof` past the end.
     fn peek(&self, ahead: usize) -> Token {
         let eof = Token { kind: TokenKind::Eof, first: true, start: 0, end: 0 };
         let last = self.tokens.last().copied().unwrap_or(eof);
@@ -133,7 +133,7 @@ impl<'a> Parser<'a> {
         self.tokens.get(self.at.checked_sub(1)?).copied()
     }
 
-    /// From the start of `start` to the end of the token before the next one.
+    /// Returns the span from the start of `start` to the end of the previous token.
     fn since(&self, start: Span) -> Span {
         match self.previous() {
             Some(token) if token.start >= start.start => start.to(token.span(self.file)),
@@ -141,7 +141,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The text of a span of this file.
+    /// Returns the text of a span of this file.
     fn slice(&self, span: Span) -> &'a str {
         self.text.get(span.start as usize..span.end as usize).unwrap_or("")
     }
@@ -164,25 +164,26 @@ impl<'a> Parser<'a> {
         found
     }
 
-    /// Whether the next token is this name; for words that are reserved only in their place.
+    /// Returns true if the next token is this name. For words that are reserved in some positions
+    /// only.
     fn at_word(&self, word: &str) -> bool {
         self.kind() == TokenKind::Name && self.slice(self.span()) == word
     }
 
-    /// Whether an item, a `let` or a block's value may end here.
+    /// Returns true if an item, a `let` or a block's value may end here.
     fn at_end(&self) -> bool {
         let next = self.next();
         next.first || matches!(next.kind, TokenKind::Semicolon | TokenKind::CloseBrace)
     }
 
-    /// Whether the next token begins a line in the first column.
+    /// Returns true if the next token begins a line in the first column.
     fn in_first_column(&self) -> bool {
         let start = self.next().start as usize;
         let before = &self.text[..start];
         self.next().first && (before.is_empty() || before.ends_with(['\n', '\u{feff}']))
     }
 
-    /// Whether the next token begins a declaration on a new line.
+    /// Returns true if the next token begins a declaration on a new line.
     fn at_new_declaration(&self) -> bool {
         use TokenKind::{CloseBracket, CloseParen, Comma, Ellipsis, Fn, OpenParen};
         let (next, after) = (self.next(), self.peek(1).kind);
@@ -191,18 +192,18 @@ impl<'a> Parser<'a> {
         next.first && next.kind.declares() && !lambda && !ty
     }
 
-    /// Whether the next token begins an item by the look of the line.
+    /// Returns true if the next token seems to begin an item, judged by its line.
     fn at_new_item(&self) -> bool {
         self.at_new_declaration() || (self.in_first_column() && self.kind().starts_primary())
     }
 
-    /// Whether the next token begins a line with the `=` before a body.
+    /// Returns true if the next token begins a line with the `=` before a body.
     fn at_new_body(&self) -> bool {
         self.next().first && self.kind() == TokenKind::Eq
     }
 
     /// Parses a construct that may contain itself, one level deeper. Its height is one more than
-    /// that of the highest expression in it.
+    /// the height of the highest expression in it.
     fn nested<T>(&mut self, start: Span, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.depth == MAX_NESTING {
             return self.too_deep(start);
@@ -217,7 +218,7 @@ impl<'a> Parser<'a> {
         parsed
     }
 
-    /// Parses with `height` counted from 0; afterwards it is the larger of before and after.
+    /// Parses with `height` counted from 0. Afterwards `height` is the maximum of both values.
     fn measured<T>(&mut self, parse: impl FnOnce(&mut Self) -> T) -> T {
         let outer = std::mem::take(&mut self.height);
         let parsed = parse(self);
@@ -225,7 +226,7 @@ impl<'a> Parser<'a> {
         parsed
     }
 
-    /// Counts one more node on top of the expressions read so far.
+    /// Counts one more node on top of the expressions parsed so far.
     fn link(&mut self, at: Span) -> Parsed<()> {
         self.height += 1;
         if self.height <= MAX_HEIGHT {

@@ -1,4 +1,4 @@
-//! What stands alone: literals, names, brackets, blocks, conditions, lambdas.
+//! Parses primary expressions: literals, names, brackets, blocks, conditions, lambdas.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 
@@ -8,7 +8,7 @@ use crate::literal;
 use crate::token::TokenKind;
 
 impl Parser<'_> {
-    /// An operand without its postfixes.
+    /// Parses an operand without its postfixes.
     pub(super) fn primary(&mut self) -> Parsed<Expr> {
         let begin = self.span();
         if self.kind() == TokenKind::Unknown {
@@ -21,8 +21,8 @@ impl Parser<'_> {
         let kind = match self.kind() {
             TokenKind::Number => self.literal(literal::number, |kind| kind),
             TokenKind::PointNumber => {
-                let found = literal::bare_point(self.slice(start), start);
-                self.report(found);
+                let diagnostic = literal::bare_point(self.slice(start), start);
+                self.report(diagnostic);
                 self.bump();
                 ExprKind::Error
             }
@@ -68,7 +68,7 @@ impl Parser<'_> {
             Some(token) if token.kind.wants_operand() => self.slice(token.span(self.file)),
             Some(_) | None => "",
         };
-        let place = if before.is_empty() { String::new() } else { format!(" after `{before}`") };
+        let context = if before.is_empty() { String::new() } else { format!(" after `{before}`") };
         let help: &[&str] = match self.kind() {
             TokenKind::For => &[
                 "`for` stands in a list or among arguments: [for i in 0..3: i]",
@@ -93,10 +93,10 @@ impl Parser<'_> {
             }
             _ => &[],
         };
-        self.expected_with(&format!("an expression{place}"), help)
+        self.expected_with(&format!("an expression{context}"), help)
     }
 
-    /// `(e)`
+    /// Parses `(e)`.
     fn parenthesized(&mut self) -> Parsed<ExprKind> {
         let opener = self.open();
         let depth = self.open.len();
@@ -114,7 +114,7 @@ impl Parser<'_> {
         Ok(ExprKind::List(elements))
     }
 
-    /// One value, or `for name in over [if condition]: element`.
+    /// Parses one value, or `for name in over [if condition]: element`.
     pub(super) fn element(&mut self) -> Parsed<Element> {
         if self.kind() != TokenKind::For {
             return Ok(Element::Expr(self.expr()?));
@@ -196,8 +196,9 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the block's closer comes next, or a declaration at top level: in the first column
-    /// one that cannot stand in a block, or a `let` after lines that were `indented`.
+    /// Returns true if the block's closing bracket comes next, or a declaration at the top level:
+    /// one in the first column that cannot be in a block, or a `let` there after lines that were
+    /// `indented`.
     fn block_ends(&self, indented: bool) -> bool {
         let at_top = self.at_new_declaration() && self.in_first_column();
         self.kind().is_closer()
@@ -205,17 +206,19 @@ impl Parser<'_> {
             || (at_top && (indented || self.kind() != TokenKind::Let))
     }
 
-    /// Reports a declaration in a block and reads it, to go on behind it.
+    /// Reports a declaration in a block and parses it, to continue behind it.
     fn misplaced_declaration(&mut self) -> Parsed<()> {
         let word = self.slice(self.span());
-        let found = Diagnostic::error(
+        let diagnostic = Diagnostic::error(
             Code::EXPECTED,
             self.span(),
             format!("a `{word}` is declared at top level, not in a block"),
         );
         self.report(match self.kind() {
-            TokenKind::Fn => found.help("in a block, write: let name = fn(...) = ..."),
-            _ => found.help("move it out of the block; what it needs it can take as parameters"),
+            TokenKind::Fn => diagnostic.help("in a block, write: let name = fn(...) = ..."),
+            _ => {
+                diagnostic.help("move it out of the block; what it needs it can take as parameters")
+            }
         });
         let (start, in_shape) = (self.span(), self.in_shape);
         let read = self.declaration();
@@ -238,25 +241,26 @@ impl Parser<'_> {
     }
 
     fn report_second_value(&mut self, first: Span) {
-        let found =
+        let diagnostic =
             Diagnostic::error(Code::EXPECTED, first, "a block has one value, in its last line")
                 .label("not the last line")
                 .help("name this with `let`, or join it to the next line with an operator");
-        self.report(found);
+        self.report(diagnostic);
     }
 
     fn report_no_value(&mut self) {
-        let found = Diagnostic::error(
+        let diagnostic = Diagnostic::error(
             Code::EXPECTED,
             self.span(),
             "expected the block's value before `}`",
         )
         .help("a block ends with an expression: { let a = 1; a + 1 }")
         .help("a line that starts with an operator, `-` included, continues the line before it");
-        self.report(found);
+        self.report(diagnostic);
     }
 
-    /// `let name = value`; a value that cannot be read is `Error`. Nothing where the name is missing.
+    /// Parses `let name = value`. A value that cannot be parsed is `Error`. Returns `None` if the
+    /// name is missing.
     pub(super) fn binding(&mut self) -> Parsed<Option<Let>> {
         let stops = &[TokenKind::Semicolon];
         let start = self.span();
@@ -275,7 +279,7 @@ impl Parser<'_> {
         Ok(Some(Let { name, value, span: self.since(start) }))
     }
 
-    /// `=` after a `let` and a name, with advice on what is likely to stand in its place.
+    /// Takes the `=` after a `let` and a name, or suggests how to fix what is there instead.
     fn equals(&mut self, name: &str) -> Parsed<()> {
         let what = &format!("`=` and a value for `{name}`");
         match self.kind() {
@@ -303,11 +307,11 @@ impl Parser<'_> {
         let start = self.span();
         let mut branches = Vec::new();
         let mut last = loop {
-            let place = self.span();
+            let if_span = self.span();
             self.bump();
             let condition = self.expr()?;
             let then = self.branch()?;
-            branches.push((place, condition, then));
+            branches.push((if_span, condition, then));
             if !self.eat(TokenKind::Else) {
                 return self.expected_with(
                     "`else`",
@@ -319,10 +323,10 @@ impl Parser<'_> {
             }
         };
         let end = self.since(start);
-        for (place, condition, then) in branches.into_iter().rev() {
-            self.link(place)?;
+        for (if_span, condition, then) in branches.into_iter().rev() {
+            self.link(if_span)?;
             let kind = ExprKind::If(Box::new(condition), Box::new(then), Box::new(last));
-            last = Expr { kind, span: place.to(end) };
+            last = Expr { kind, span: if_span.to(end) };
         }
         Ok(last)
     }
@@ -356,10 +360,10 @@ impl Parser<'_> {
         })
     }
 
-    /// Reports a name behind a `fn` that stands in an expression.
+    /// Reports a name behind a `fn` inside of an expression.
     fn report_named_lambda(&mut self) {
         let name = self.slice(self.span());
-        let found = if self.peek(1).kind == TokenKind::OpenParen {
+        let diagnostic = if self.peek(1).kind == TokenKind::OpenParen {
             let message = "a `fn` in an expression has no name";
             Diagnostic::error(Code::EXPECTED, self.span(), message)
                 .help(format!("write: let {name} = fn(...) = ..."))
@@ -368,6 +372,6 @@ impl Parser<'_> {
             Diagnostic::error(Code::EXPECTED, self.span(), message)
                 .help(format!("write: fn({name}) = ..."))
         };
-        self.report(found);
+        self.report(diagnostic);
     }
 }

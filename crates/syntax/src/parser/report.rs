@@ -1,4 +1,4 @@
-//! What is reported, and how the parser finds its way after an error.
+//! Diagnostics, and the recovery after an error.
 
 use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 
@@ -8,39 +8,40 @@ use crate::ast::{Expr, ExprKind};
 use crate::literal;
 use crate::token::{Token, TokenKind};
 
-/// The findings so far.
+/// The diagnostics so far.
 #[derive(Default)]
 pub(super) struct Reports {
-    found: Vec<Diagnostic>,
-    /// How many came after the last one that is kept.
+    diagnostics: Vec<Diagnostic>,
+    /// The number of diagnostics after the last one that is kept.
     dropped: usize,
 }
 
 impl Parser<'_> {
-    /// Reports, unless something was reported at the same place.
+    /// Adds a diagnostic, unless there is one at the same position.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         let start = diagnostic.span.start;
         let reports = &mut self.reports;
-        if reports.found.iter().rev().any(|earlier| earlier.span.start == start) {
+        if reports.diagnostics.iter().rev().any(|earlier| earlier.span.start == start) {
             return;
         }
-        if reports.found.len() < MAX_ERRORS {
-            reports.found.push(diagnostic);
+        if reports.diagnostics.len() < MAX_ERRORS {
+            reports.diagnostics.push(diagnostic);
         } else {
             reports.dropped += 1;
         }
     }
 
-    /// All findings, in the order of the text.
-    pub(super) fn findings(self) -> Vec<Diagnostic> {
-        let Reports { mut found, dropped } = self.reports;
-        found.sort_by_key(|diagnostic| diagnostic.span.start);
+    /// Returns all diagnostics in the order of the text.
+    pub(super) fn diagnostics(self) -> Vec<Diagnostic> {
+        let Reports { mut diagnostics, dropped } = self.reports;
+        diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
         if dropped > 0
-            && let Some(last) = found.pop()
+            && let Some(last) = diagnostics.pop()
         {
-            found.push(last.note(format!("{dropped} more errors in this file are not shown")));
+            diagnostics
+                .push(last.note(format!("{dropped} more errors in this file are not shown")));
         }
-        found
+        diagnostics
     }
 
     /// Reports and fails.
@@ -49,7 +50,7 @@ impl Parser<'_> {
         Err(Failed)
     }
 
-    /// Reports that a limit was passed and skips the rest of the item.
+    /// Reports that a limit was exceeded, and skips the rest of the item.
     pub(super) fn abandon<T>(&mut self, diagnostic: Diagnostic) -> Parsed<T> {
         self.report(diagnostic);
         self.abandoned = true;
@@ -59,41 +60,41 @@ impl Parser<'_> {
         Err(Failed)
     }
 
-    /// Adds a place to the latest report, unless it shows many already.
+    /// Adds a note to the latest diagnostic, unless it has many already.
     pub(super) fn amend(&mut self, span: Span, note: &str) {
         if self.reports.dropped == 0
-            && let Some(last) = self.reports.found.last_mut()
+            && let Some(last) = self.reports.diagnostics.last_mut()
             && last.notes.len() < 4
         {
             last.notes.push(Note { span: Some(span), message: note.to_owned() });
         }
     }
 
-    /// Fails because something else was expected: `what` completes "expected ...".
+    /// Reports that something else was expected and fails. `what` completes "expected ...".
     pub(super) fn expected<T>(&mut self, what: &str) -> Parsed<T> {
         self.expected_with(what, &[])
     }
 
-    /// The same with ways to mend it.
+    /// Does the same as [`Self::expected`], with suggestions.
     pub(super) fn expected_with<T>(&mut self, what: &str, help: &[&str]) -> Parsed<T> {
         let diagnostic = self.expectation(what);
-        let diagnostic = help.iter().fold(diagnostic, |found, help| found.help(*help));
+        let diagnostic = help.iter().fold(diagnostic, |diagnostic, help| diagnostic.help(*help));
         self.fail(diagnostic)
     }
 
-    /// How many findings there are, those past the limit included.
+    /// Returns the number of diagnostics, including those past the limit.
     pub(super) fn reported(&self) -> usize {
-        self.reports.found.len() + self.reports.dropped
+        self.reports.diagnostics.len() + self.reports.dropped
     }
 
-    /// Reports something behind a complete expression.
+    /// Reports an unexpected token behind a complete expression.
     pub(super) fn report_no_end(&mut self) {
         if self.kind() == TokenKind::PointNumber {
-            let found = literal::bare_point(self.slice(self.span()), self.span());
-            return self.report(found);
+            let diagnostic = literal::bare_point(self.slice(self.span()), self.span());
+            return self.report(diagnostic);
         }
         let message = "expected an operator or the end of the line";
-        let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
+        let diagnostic = Diagnostic::error(Code::EXPECTED, self.span(), message);
         let help = match (self.kind(), self.operator_hint()) {
             (TokenKind::Comma, _) => {
                 vec!["commas separate arguments and elements of lists".to_owned()]
@@ -107,10 +108,11 @@ impl Parser<'_> {
                 self.brackets_hint().into_iter().chain(kind.starts_primary().then(join)).collect()
             }
         };
-        self.report(help.into_iter().fold(found, Diagnostic::help));
+        self.report(help.into_iter().fold(diagnostic, Diagnostic::help));
     }
 
-    /// How a call is written, for a name with something behind it: `sphere 1`, `union() { ... }`.
+    /// Suggests how to write a call, for a name with an unexpected token behind it: `sphere 1`,
+    /// `union() { ... }`.
     fn brackets_hint(&self) -> Option<String> {
         let previous = self.previous()?;
         let text = self.slice(previous.span(self.file));
@@ -132,7 +134,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What to write for something that other languages have as an operator.
+    /// Suggests the equivalent of an operator from other languages.
     pub(super) fn operator_hint(&self) -> Option<&'static str> {
         match (self.kind(), self.slice(self.span())) {
             (TokenKind::Name, "and") => Some("write `&&`"),
@@ -147,14 +149,15 @@ impl Parser<'_> {
         }
     }
 
-    /// "expected ...": at the next token, or behind the one before where that one ends its line.
+    /// Returns the diagnostic "expected ...", at the next token or, if the line ended too early,
+    /// behind the previous one.
     pub(super) fn expectation(&mut self, what: &str) -> Diagnostic {
         let next = self.next();
         if next.kind == TokenKind::Unknown {
-            // The lexer has reported the character at this very place.
+            // The lexer has already reported the character at this position.
             return Diagnostic::error(Code::EXPECTED, self.span(), format!("expected {what}"));
         }
-        let found = self.found();
+        let found = self.description_of_next();
         let span = match self.previous() {
             Some(previous) if self.at_line_end() => previous.span(self.file).after(),
             Some(_) | None => self.span(),
@@ -162,14 +165,15 @@ impl Parser<'_> {
         Diagnostic::error(Code::EXPECTED, span, format!("expected {what}, found {found}"))
     }
 
-    /// Whether the line ended too early: the next token begins something new on another one.
+    /// Returns true if the line ended too early: the next token begins something new on another
+    /// line.
     fn at_line_end(&self) -> bool {
         let Token { kind, first, .. } = self.next();
         first && (kind == TokenKind::Eof || kind.starts_primary() || kind.declares())
     }
 
-    /// The next token in words.
-    pub(super) fn found(&self) -> String {
+    /// Describes the next token for a message.
+    pub(super) fn description_of_next(&self) -> String {
         let next = self.next();
         let text = self.slice(self.span());
         if next.kind == TokenKind::Eof {
@@ -187,12 +191,12 @@ impl Parser<'_> {
         }
     }
 
-    /// An expression, or `Error` for one that could not be read. The rest of a wrong one is
-    /// skipped up to one of `stops` or the closer of the innermost bracket.
+    /// Parses an expression. For an invalid one it returns `Error` and skips to one of `stops` or
+    /// to the closing bracket of the innermost list.
     ///
     /// # Errors
     ///
-    /// Fails only where the item is abandoned.
+    /// Fails only if the item is abandoned.
     pub(super) fn expr_or_skip(&mut self, stops: &[TokenKind]) -> Parsed<Expr> {
         let start = self.span();
         match self.expr() {
@@ -201,8 +205,9 @@ impl Parser<'_> {
         }
     }
 
-    /// Skips to one of `stops`, to the closer of the innermost bracket, to the next item, to
-    /// a line with the `=` of a body or, in a block, to the next line. What was skipped is `Error`.
+    /// Skips to one of `stops`, to the closing bracket of the innermost list, to the next item, to
+    /// a line with the `=` of a body or, in a block, to the next line. Returns the skipped span as
+    /// `Error`.
     pub(super) fn skip_to(&mut self, start: Span, stops: &[TokenKind]) -> Parsed<Expr> {
         if self.abandoned {
             return Err(Failed);

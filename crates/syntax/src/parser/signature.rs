@@ -1,4 +1,4 @@
-//! Parameters, types, clauses.
+//! Parses parameters, types and clauses.
 
 use sdfc_diagnostics::{Code, Diagnostic};
 
@@ -44,21 +44,23 @@ impl Parser<'_> {
         Ok(Signature { parms, result, clauses, span: self.since(start) })
     }
 
-    /// The `=` before a body.
+    /// Takes the `=` before a body, or reports that it is missing.
     pub(super) fn body_follows(&mut self) -> Parsed<()> {
         if self.eat(TokenKind::Eq) {
             return Ok(());
         }
         if self.kind() == TokenKind::OpenBrace {
-            let found = self.expectation("`=` before the body").help("write fn f(x) = { ... }");
-            self.report(found);
+            let diagnostic =
+                self.expectation("`=` before the body").help("write fn f(x) = { ... }");
+            self.report(diagnostic);
             return Ok(());
         }
         if self.kind() == TokenKind::Colon {
             return self
                 .expected_with("`=`", &["a result type is written with an arrow: -> number"]);
         }
-        let help = "the clauses are exact, bound, lipschitz, bounds, material, intersect, copies and require";
+        let help = "the clauses are exact, bound, lipschitz, bounds, material, intersect, copies and \
+                    require";
         if self.kind() == TokenKind::Name && !self.at_new_item() {
             let word = self.slice(self.span());
             let message = format!("expected `=` or a clause, found `{word}`");
@@ -78,8 +80,8 @@ impl Parser<'_> {
         let variadic = ty.is_some() && self.eat(TokenKind::Ellipsis);
         if self.kind() == TokenKind::Ellipsis {
             let message = "a parameter that takes any number of values needs a type";
-            let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
-            return self.fail(found.help(format!("write {}: shape...", name.text)));
+            let diagnostic = Diagnostic::error(Code::EXPECTED, self.span(), message);
+            return self.fail(diagnostic.help(format!("write {}: shape...", name.text)));
         }
         let default = if self.eat(TokenKind::Eq) {
             Some(self.expr_or_skip(&[TokenKind::Comma, TokenKind::In])?)
@@ -94,12 +96,12 @@ impl Parser<'_> {
         Ok(Parm { name, ty, variadic, default, range, span: self.since(start) })
     }
 
-    /// The word that a clause starts with, if one comes next.
+    /// Returns the first word of the clause that comes next, if there is one.
     fn clause_word(&mut self) -> Option<&'static str> {
         if self.at_word(FORMER_INTERSECT) {
             let message = format!("the clause `{FORMER_INTERSECT}` is called `intersect` now");
-            let found = Diagnostic::error(Code::EXPECTED, self.span(), message);
-            self.report(found.help("write `intersect` and keep the rest of the clause"));
+            let diagnostic = Diagnostic::error(Code::EXPECTED, self.span(), message);
+            self.report(diagnostic.help("write `intersect` and keep the rest of the clause"));
             return Some("intersect");
         }
         CLAUSES.into_iter().find(|word| self.at_word(word))
@@ -108,13 +110,13 @@ impl Parser<'_> {
     fn clause(&mut self, word: &str, of: DeclKind) -> Parsed<Clause> {
         let start = self.span();
         if of == DeclKind::Fn && !matches!(word, "lipschitz" | "require") {
-            let found = Diagnostic::error(
+            let diagnostic = Diagnostic::error(
                 Code::EXPECTED,
                 start,
                 format!("`{word}` is a clause of shapes, and this is a `fn`"),
             )
             .help("a `fn` may state `lipschitz` and `require`");
-            self.report(found);
+            self.report(diagnostic);
         }
         self.bump();
         let kind = match word {
@@ -171,7 +173,7 @@ impl Parser<'_> {
         Ok(ClauseKind::Require(condition, self.string("a message in quotes")?))
     }
 
-    /// A type, or nothing for one that cannot be read, which is skipped up to one of `stops`.
+    /// Parses a type. Returns `None` for an invalid one and skips it up to one of `stops`.
     pub(super) fn type_or_skip(&mut self, stops: &[TokenKind]) -> Parsed<Option<TypeExpr>> {
         let start = self.span();
         match self.type_expr() {
@@ -180,7 +182,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A type.
+    /// Parses a type.
     pub(super) fn type_expr(&mut self) -> Parsed<TypeExpr> {
         let start = self.span();
         let kind = match self.kind() {

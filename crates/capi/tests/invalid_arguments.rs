@@ -1,4 +1,4 @@
-//! Null, text that is not UTF-8, and what there is none of.
+//! Null pointers, text that is not UTF-8, and unknown names are errors.
 #![allow(
     missing_docs,
     clippy::unwrap_used,
@@ -22,7 +22,7 @@ fn error() -> String {
 }
 
 #[test]
-fn null_is_refused_everywhere() {
+fn null_pointers_are_errors_everywhere() {
     unsafe {
         assert!(sdfc_compile(null(), null(), 0, null_mut()).is_null());
         assert!(error().contains("null"));
@@ -55,7 +55,7 @@ fn null_is_refused_everywhere() {
 }
 
 #[test]
-fn what_is_not_utf8_or_not_there_is_refused() {
+fn invalid_utf8_and_unknown_names_are_errors() {
     assert!(compile(b"\xff\xfe").is_null());
     assert!(error().contains("UTF-8"));
     unsafe {
@@ -85,7 +85,7 @@ fn what_is_not_utf8_or_not_there_is_refused() {
 }
 
 #[test]
-fn errors_come_as_json_and_files_are_not_read() {
+fn diagnostics_are_json_and_imports_are_errors() {
     let mut found = null_mut();
     let source = "import a from \"/etc/passwd\"\nspere(1)";
     let scene = unsafe {
@@ -100,7 +100,7 @@ fn errors_come_as_json_and_files_are_not_read() {
     unsafe { sdfc_string_free(found) };
 }
 
-/// Gives what is under the last part of the path in the map that is the context, and notes what it is asked for.
+/// A context for the callback: the files by the last part of their path, and the requested paths.
 #[derive(Default)]
 struct Files {
     asked: Vec<String>,
@@ -113,7 +113,7 @@ unsafe extern "C" fn read(context: *mut c_void, path: *const c_char, file: *mut 
     let Some((_, bytes)) = files.held.iter().find(|(name, _)| path.to_str() == Ok(name)) else {
         return 1;
     };
-    // In two parts.
+    // The contents may come in several parts.
     let (one, other) = bytes.split_at(bytes.len() / 2);
     for part in [one, other] {
         unsafe {
@@ -125,7 +125,7 @@ unsafe extern "C" fn read(context: *mut c_void, path: *const c_char, file: *mut 
     0
 }
 
-/// The distance at the origin, or what is wrong.
+/// Returns the distance at the origin, or the diagnostics.
 fn distance_with(source: &str, files: &mut Files) -> Result<f64, String> {
     let (text, length) = (source.as_ptr().cast(), source.len());
     let context = std::ptr::from_mut(files).cast();
@@ -143,7 +143,7 @@ fn distance_with(source: &str, files: &mut Files) -> Result<f64, String> {
 }
 
 #[test]
-fn a_scene_imports_what_the_program_gives_and_nothing_else() {
+fn a_scene_imports_only_what_the_callback_provides() {
     let held: Vec<(_, &[u8])> =
         vec![("parts/ball.sdf", b"solid ball() = length(p) - 0.25"), ("bad.sdf", b"\xff\xfe")];
     let mut files = Files { held, ..Files::default() };
@@ -151,17 +151,14 @@ fn a_scene_imports_what_the_program_gives_and_nothing_else() {
     assert_eq!(given, Ok(-0.25));
     let refused = |source: &str, files: &mut Files| distance_with(source, files).unwrap_err();
     let error = refused("import ball from \"none.sdf\"\nball()", &mut files);
-    assert!(
-        error.contains("the program gives no such file") && error.contains("a.sdf:1"),
-        "{error}"
-    );
+    assert!(error.contains("the program has no such file") && error.contains("a.sdf:1"), "{error}");
     assert!(refused("import a from \"bad.sdf\"\na()", &mut files).contains("not UTF-8"));
     for path in ["/etc/passwd", "../ball.sdf", "parts/../../ball.sdf", "C:\\\\ball.sdf"] {
         refused(&format!("import ball from \"{path}\"\nball()"), &mut files);
     }
     assert_eq!(files.asked, ["parts/ball.sdf", "none.sdf", "bad.sdf"]);
 
-    // Without a function there are no files.
+    // Without a callback there are no files.
     let source = c"import ball from \"parts/ball.sdf\"\nball()";
     let (text, length) = (source.as_ptr(), source.to_bytes().len());
     let name = CString::new("a.sdf").unwrap();
@@ -175,7 +172,7 @@ fn a_scene_imports_what_the_program_gives_and_nothing_else() {
 }
 
 #[test]
-fn a_shader_says_what_its_buffer_holds() {
+fn uniform_bytes_match_the_reflection() {
     let scene = compile(b"param r = 1 in 0..2\nsphere(r)");
     unsafe {
         assert_eq!(sdfc_set_number(scene, c"r".as_ptr(), 0.5), Status::Ok);
