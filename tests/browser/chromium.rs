@@ -1,4 +1,4 @@
-//! A Chromium without a window, driven by the DevTools protocol.
+//! A Chromium without a window, controlled by the DevTools protocol.
 
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::net::TcpStream;
@@ -11,14 +11,14 @@ use tempfile::TempDir;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
-/// The environment variable that makes tests fail, not be ignored, where there is no Chromium.
+/// The environment variable that makes tests fail instead of being ignored if there is no Chromium.
 const REQUIRE: &str = "SDFC_REQUIRE_CHROMIUM";
-/// The environment variable that names the program, where it is none of [`PROGRAMS`].
+/// The environment variable that names the program if it is not one of [`PROGRAMS`].
 const PROGRAM: &str = "SDFC_CHROMIUM";
 const PROGRAMS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// What gives WebGPU and WebGL 2 on the processor. With fewer of these, or with `--disable-gpu`, adapters are
-/// there and compute, but every canvas stays blank.
+/// The arguments that enable WebGPU and WebGL 2 on the CPU. With fewer of them, or with
+/// `--disable-gpu`, adapters exist and compute, but every canvas stays blank.
 const SOFTWARE_GPU: [&str; 5] = [
     "--enable-unsafe-webgpu",
     "--use-webgpu-adapter=swiftshader",
@@ -29,7 +29,8 @@ const SOFTWARE_GPU: [&str; 5] = [
 
 const QUIET: [&str; 10] = [
     "--headless",
-    // Tests often run as root, where there is no sandbox; only pages of this repository are opened.
+    // Tests often run as root, where the sandbox is not available. Only pages of this repository
+    // are opened.
     "--no-sandbox",
     "--disable-dev-shm-usage",
     "--no-first-run",
@@ -37,15 +38,15 @@ const QUIET: [&str; 10] = [
     "--disable-component-update",
     "--disable-sync",
     "--disable-quic",
-    // Machine code for a long shader takes the software adapter longer than the watchdog allows.
+    // Compiling a long shader takes the software adapter longer than the watchdog allows.
     "--disable-gpu-watchdog",
     "--remote-debugging-port=0",
 ];
 
-/// What Chromium writes on stderr before the address to be driven at.
+/// The text on stderr before the address of the DevTools socket.
 const LISTENING: &str = "DevTools listening on ";
-/// An answer that takes longer will not come. Shaders are compiled for the processor, one after the other.
-const PATIENCE: Duration = Duration::from_secs(240);
+/// The longest wait for an answer. Shaders are compiled for the CPU, one after the other.
+const TIMEOUT: Duration = Duration::from_secs(240);
 
 fn program() -> Option<String> {
     let named = std::env::var(PROGRAM).ok();
@@ -57,12 +58,12 @@ fn program() -> Option<String> {
     })
 }
 
-/// Whether tests fail where what they need is missing.
+/// Returns true if tests fail when something that they need is missing.
 pub fn is_required() -> bool {
     std::env::var_os(REQUIRE).is_some_and(|value| value == "1")
 }
 
-/// Whether tests that need a Chromium are to be ignored: there is none, and none is required.
+/// Returns true if tests that need Chromium are ignored: it is not installed and not required.
 pub fn is_missing() -> bool {
     !is_required() && program().is_none()
 }
@@ -71,11 +72,11 @@ pub fn is_missing() -> bool {
 pub struct Chromium {
     process: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
-    /// Of the page.
+    /// The session of the page.
     session: Option<String>,
     calls: u64,
-    /// Errors of the page since it was opened.
-    complaints: Vec<String>,
+    /// The errors of the page since it was opened.
+    errors: Vec<String>,
     _profile: TempDir,
 }
 
@@ -87,17 +88,17 @@ impl Chromium {
         command.args(QUIET).args(SOFTWARE_GPU);
         command.arg(format!("--user-data-dir={}", profile.path().display())).arg("about:blank");
         let mut process = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
-        let mut said = BufReader::new(process.stderr.take().ok_or("no stderr")?).lines();
-        let address = said.find_map(|line| Some(line.ok()?.strip_prefix(LISTENING)?.to_owned()));
-        // It must not wait for someone to read what it says.
-        std::thread::spawn(move || said.for_each(drop));
-        let address = address.ok_or("Chromium ended before it could be driven")?;
+        let mut output = BufReader::new(process.stderr.take().ok_or("no stderr")?).lines();
+        let address = output.find_map(|line| Some(line.ok()?.strip_prefix(LISTENING)?.to_owned()));
+        // Its output must be read, or it would block.
+        std::thread::spawn(move || output.for_each(drop));
+        let address = address.ok_or("Chromium ended before it could be controlled")?;
         let (socket, _) = tungstenite::connect(address)?;
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(PATIENCE))?;
+            stream.set_read_timeout(Some(TIMEOUT))?;
         }
-        let (session, complaints, calls) = (None, Vec::new(), 0);
-        let mut found = Self { process, socket, session, calls, complaints, _profile: profile };
+        let (session, errors, calls) = (None, Vec::new(), 0);
+        let mut found = Self { process, socket, session, calls, errors, _profile: profile };
         let target = found.call("Target.createTarget", json!({ "url": "about:blank" }))?;
         let attached = json!({ "targetId": target["targetId"], "flatten": true });
         let attached = found.call("Target.attachToTarget", attached)?;
@@ -118,7 +119,7 @@ impl Chromium {
         loop {
             let mut answer = self.receive()?;
             if answer["id"] != self.calls {
-                self.complaints.extend(complaint(&answer));
+                self.errors.extend(page_error(&answer));
             } else if answer["error"].is_object() {
                 return Err(format!("{method}: {}", answer["error"]).into());
             } else {
@@ -131,19 +132,19 @@ impl Chromium {
         loop {
             match self.socket.read() {
                 Ok(message) => return Ok(serde_json::from_str(message.to_text()?)?),
-                // A process that was stopped and goes on.
+                // A process that was stopped and continues.
                 Err(tungstenite::Error::Io(e)) if e.kind() == ErrorKind::Interrupted => {}
-                Err(e) => return Err(format!("{e}; {:?}", self.complaints).into()),
+                Err(e) => return Err(format!("{e}; {:?}", self.errors).into()),
             }
         }
     }
 
-    /// Opens a page; what was in the one before is gone. `size` is that of the window.
+    /// Opens a page instead of the previous one, in a window of the given size.
     pub fn open(&mut self, url: &str, [width, height]: [u32; 2]) -> Result<(), Failed> {
         let metrics =
             json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
         self.call("Emulation.setDeviceMetricsOverride", metrics)?;
-        self.complaints.clear();
+        self.errors.clear();
         let opened = self.call("Page.navigate", json!({ "url": url }))?;
         match opened["errorText"].as_str() {
             Some(why) => Err(format!("{url}: {why}").into()),
@@ -151,7 +152,7 @@ impl Chromium {
         }
     }
 
-    /// The value of a JavaScript expression, or what the promise that it is comes to.
+    /// Evaluates a JavaScript expression and waits for its value if it is a promise.
     pub fn evaluate(&mut self, expression: &str) -> Result<Value, Failed> {
         let params =
             json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
@@ -162,26 +163,26 @@ impl Chromium {
         Ok(found["result"]["value"].take())
     }
 
-    /// What a JavaScript function gives for an argument.
+    /// Calls a JavaScript function with an argument.
     pub fn apply(&mut self, function: &str, argument: &Value) -> Result<Value, Failed> {
         self.evaluate(&format!("({function})({argument})"))
     }
 
-    /// A PNG of the part of the page that an element takes.
+    /// Returns a PNG of an element of the page.
     pub fn screenshot(&mut self, selector: &str) -> Result<Vec<u8>, Failed> {
-        let place = self.apply(PLACE, &selector.into())?;
-        let params = json!({ "format": "png", "clip": place });
+        let rectangle = self.apply(RECTANGLE, &selector.into())?;
+        let params = json!({ "format": "png", "clip": rectangle });
         let found = self.call("Page.captureScreenshot", params)?;
         let text = found["data"].as_str().ok_or("no picture")?;
         Ok(data_encoding::BASE64.decode(text.as_bytes())?)
     }
 
-    /// Errors of the page since it was opened.
-    pub fn complaints(&self) -> &[String] {
-        &self.complaints
+    /// The errors of the page since it was opened.
+    pub fn errors(&self) -> &[String] {
+        &self.errors
     }
 
-    /// A drag of the mouse with its button down.
+    /// Drags the mouse with its left button down.
     pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), Failed> {
         let steps = [("mousePressed", from), ("mouseMoved", to), ("mouseReleased", to)];
         for (kind, [x, y]) in steps {
@@ -192,8 +193,9 @@ impl Chromium {
     }
 }
 
-/// Two frames later, so that what was drawn is on the screen.
-const PLACE: &str = "async selector => {
+/// Waits two frames, until the last drawing is on the screen, and returns the rectangle of an
+/// element.
+const RECTANGLE: &str = "async selector => {
     const frame = () => new Promise(requestAnimationFrame);
     await frame();
     await frame();
@@ -201,13 +203,13 @@ const PLACE: &str = "async selector => {
     return { x, y, width, height, scale: 1 };
 }";
 
-/// What an event says of an error in the page.
-fn complaint(event: &Value) -> Option<String> {
+/// Returns the error of the page that an event reports, if it reports one.
+fn page_error(event: &Value) -> Option<String> {
     let params = &event["params"];
     match event["method"].as_str()? {
         "Runtime.exceptionThrown" => Some(params["exceptionDetails"].to_string()),
         "Runtime.consoleAPICalled" if params["type"] == "error" => Some(params["args"].to_string()),
-        // Browsers ask for an icon that no page here has.
+        // Browsers request an icon that no page here has.
         "Log.entryAdded" if params["entry"]["level"] == "error" => {
             Some(params["entry"].to_string()).filter(|entry| !entry.contains("favicon.ico"))
         }
@@ -218,7 +220,7 @@ fn complaint(event: &Value) -> Option<String> {
 impl Drop for Chromium {
     fn drop(&mut self) {
         self.session = None;
-        // What cannot be closed is killed.
+        // If it cannot be closed it is killed.
         if self.call("Browser.close", json!({})).is_err() {
             let _ = self.process.kill();
         }

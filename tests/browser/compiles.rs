@@ -1,34 +1,35 @@
-//! The browser's compilers as validators: Tint behind WebGPU, the translator of ANGLE behind WebGL 2.
+//! The browser's shader compilers accept every shader: Tint behind WebGPU, ANGLE's translator
+//! behind WebGL 2.
 
 use libtest_mimic::Failed;
 use sdfc::{Code, Emit, ShaderOptions, Stage, Target};
 use sdfc_tests::compiled_examples;
 use serde_json::{Value, json};
 
-use crate::Place;
+use crate::Session;
 
 const COMPILERS: &str = include_str!("compiles.js");
 const SHADERTOY: &str = include_str!("../targets/shadertoy.glsl");
 
-/// Every part of every example is compiled.
-pub fn every_example(place: &mut Place, target: Target) -> Result<(), Failed> {
+/// Compiles every part of every example.
+pub fn every_example(session: &mut Session, target: Target) -> Result<(), Failed> {
     let mut shaders = Vec::new();
     for (name, scene) in compiled_examples()? {
         for (emit, stage) in PARTS {
             let options = ShaderOptions { target, emit, stage, ..ShaderOptions::default() };
-            // What a target has no words for is counted by `tests/targets`.
+            // `tests/targets` lists the parts that a target does not support.
             let Ok(written) = scene.write_shader(&options) else { continue };
             let Code::Text(text) = written.code else { continue };
             let head = if target == Target::Shadertoy { SHADERTOY } else { "" };
-            let place = format!("{name}, {emit:?}, {stage:?}");
-            shaders.push(json!({ "place": place, "text": format!("{head}{text}") }));
+            let label = format!("{name}, {emit:?}, {stage:?}");
+            shaders.push(json!({ "label": label, "text": format!("{head}{text}") }));
         }
     }
     let compiler = if target == Target::Wgsl { "wgsl" } else { "glsl_es" };
-    place.server.lay("blank.html", Vec::new());
-    place.chromium.open(&place.server.url("blank.html"), [100, 100])?;
+    session.server.put("blank.html", Vec::new());
+    session.chromium.open(&session.server.url("blank.html"), [100, 100])?;
     let function = format!("shaders => {{ {COMPILERS}\n return {compiler}(shaders); }}");
-    let wrong = place.chromium.apply(&function, &Value::Array(shaders))?;
+    let wrong = session.chromium.apply(&function, &Value::Array(shaders))?;
     let wrong = wrong.as_array().ok_or("no answer")?;
     if wrong.is_empty() { Ok(()) } else { Err(format!("{wrong:#?}").into()) }
 }

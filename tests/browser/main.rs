@@ -1,6 +1,7 @@
-//! Shaders and pages in a real browser: Chromium, without a window, WebGPU and WebGL 2 on the processor.
+//! Shaders and pages work in a real browser: Chromium without a window, with WebGPU and WebGL 2 on
+//! the CPU.
 //!
-//! Where there is no Chromium the trials are reported as ignored; with `SDFC_REQUIRE_CHROMIUM=1` they fail.
+//! Without Chromium the tests are reported as ignored; with `SDFC_REQUIRE_CHROMIUM=1` they fail.
 
 mod chromium;
 mod compiler;
@@ -17,16 +18,16 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::Target;
 use server::Server;
 
-/// One browser for all trials, and what it is served.
-struct Place {
+/// The browser of all tests, and the server of its pages.
+struct Session {
     chromium: Chromium,
     server: Server,
 }
 
-/// Trials take turns: the browser has one page.
-static PLACE: Mutex<Option<Place>> = Mutex::new(None);
+/// The tests run one after the other, because the browser has one page.
+static SESSION: Mutex<Option<Session>> = Mutex::new(None);
 
-type Check = Box<dyn Fn(&mut Place) -> Result<(), Failed> + Send>;
+type Check = Box<dyn Fn(&mut Session) -> Result<(), Failed> + Send>;
 
 fn main() {
     let missing = chromium::is_missing();
@@ -35,49 +36,49 @@ fn main() {
         let is_missing = missing
             || (name.starts_with("three") && three::is_missing())
             || (name.starts_with("the_package") && compiler::is_missing());
-        trials.push(Trial::test(name, move || in_place(&check)).with_ignored_flag(is_missing));
+        trials.push(Trial::test(name, move || in_session(&check)).with_ignored_flag(is_missing));
     };
     for target in [Target::Wgsl, Target::GlslEs, Target::Shadertoy] {
         let name = format!("every_example_compiles_as_{}", target.name());
-        add(name, Box::new(move |place| compiles::every_example(place, target)));
+        add(name, Box::new(move |session| compiles::every_example(session, target)));
     }
     for embedding in &pages::EMBEDDINGS {
-        let name = format!("{}_shows_what_render_draws", embedding.name);
-        add(name, Box::new(|place| pages::show_every_scene(place, embedding)));
+        let name = format!("{}_shows_the_picture_of_render", embedding.name);
+        add(name, Box::new(|session| pages::show_every_scene(session, embedding)));
     }
     for embedding in &pages::EMBEDDINGS[..2] {
-        let name = format!("{}_follows_knobs_and_mouse", embedding.name);
-        add(name, Box::new(|place| pages::follow_knobs_and_mouse(place, embedding)));
+        let name = format!("{}_follows_sliders_and_mouse", embedding.name);
+        add(name, Box::new(|session| pages::follow_sliders_and_mouse(session, embedding)));
         let name = format!("{}_follows_the_clock", embedding.name);
-        add(name, Box::new(|place| pages::follow_the_clock(place, embedding)));
+        add(name, Box::new(|session| pages::follow_the_clock(session, embedding)));
     }
     let clock = "shadertoy_follows_clock_and_mouse".to_owned();
     add(clock, Box::new(pages::shadertoy_follows_clock_and_mouse));
-    add("three_shows_what_render_meets".to_owned(), Box::new(three::shows_every_scene));
+    add("three_shows_every_scene".to_owned(), Box::new(three::shows_every_scene));
     add("three_hides_meshes_and_fields".to_owned(), Box::new(three::hides_meshes_and_fields));
     add("three_takes_a_scene_without_params".to_owned(), Box::new(three::takes_a_bare_scene));
     add("three_follows_the_clock".to_owned(), Box::new(three::follows_the_clock));
-    let package = "the_package_gives_the_same_in_a_browser".to_owned();
-    add(package, Box::new(compiler::gives_the_same_in_a_browser));
-    add("the_package_draws_what_is_typed".to_owned(), Box::new(compiler::draws_what_is_typed));
+    let package = "the_package_compiles_the_same_in_a_browser".to_owned();
+    add(package, Box::new(compiler::compiles_the_same_in_a_browser));
+    add("the_package_draws_the_typed_scene".to_owned(), Box::new(compiler::draws_the_typed_scene));
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
-    // A static is not dropped, and the browser would stay.
-    drop(PLACE.lock().unwrap_or_else(PoisonError::into_inner).take());
+    // A static is not dropped, so the browser would keep running.
+    drop(SESSION.lock().unwrap_or_else(PoisonError::into_inner).take());
     conclusion.exit();
 }
 
-fn in_place(check: &Check) -> Result<(), Failed> {
-    let mut place = PLACE.lock().unwrap_or_else(PoisonError::into_inner);
-    if place.is_none() {
+fn in_session(check: &Check) -> Result<(), Failed> {
+    let mut session = SESSION.lock().unwrap_or_else(PoisonError::into_inner);
+    if session.is_none() {
         let server = Server::start(&sdfc_tests::examples_folder().join("embed"))?;
-        server.lay("shadertoy/index.html", include_bytes!("shadertoy.html").to_vec());
-        server.lay("shadertoy/head.glsl", include_bytes!("../targets/shadertoy.glsl").to_vec());
-        *place = Some(Place { chromium: Chromium::start()?, server });
+        server.put("shadertoy/index.html", include_bytes!("shadertoy.html").to_vec());
+        server.put("shadertoy/head.glsl", include_bytes!("../targets/shadertoy.glsl").to_vec());
+        *session = Some(Session { chromium: Chromium::start()?, server });
     }
-    let found = check(place.as_mut().ok_or("no browser")?);
-    if found.is_err() {
-        // It may be busy, or gone.
-        *place = None;
+    let result = check(session.as_mut().ok_or("no browser")?);
+    if result.is_err() {
+        // The browser may be busy or may have crashed.
+        *session = None;
     }
-    found
+    result
 }

@@ -1,4 +1,5 @@
-//! The pages of `examples/embed`, and what shadertoy.com does: screenshots against the picture of `sdfc render`.
+//! The pages of `examples/embed`, and one that works like shadertoy.com, show the picture of `sdfc
+//! render`.
 
 use libtest_mimic::Failed;
 use sdfc::render::Pose;
@@ -8,27 +9,28 @@ use sdfc::{
 };
 use sdfc_tests::compiled_example;
 
-use crate::{Place, table};
+use crate::{Session, table};
 
-/// Largest difference of a colour channel that does not count, in steps of 1/255.
+/// The largest difference of a colour channel that does not count, in steps of 1/255.
 const COLOR: u8 = 1;
-/// At most so many pixels in a thousand may differ by more: drivers round differently, and at an edge that shows.
+/// The most pixels in a thousand that may differ by more, because drivers round differently at
+/// edges.
 pub const EDGES: f64 = 5.0;
-/// A scene that moves shows it sooner.
-const MOST_PICTURES: usize = 100;
-/// Room for knobs below the picture.
+/// The number of screenshots within which a moving scene must change.
+const MAX_SCREENSHOTS: usize = 100;
+/// The size of the window, with space for sliders below the picture.
 const WINDOW: [u32; 2] = [VIEW_SIZE[0], VIEW_SIZE[1] + 240];
 
-/// A page, and what is compiled for it.
+/// A page, and the shader that is compiled for it.
 pub struct Embedding {
-    /// Its folder.
+    /// The folder of the page.
     pub name: &'static str,
     target: Target,
     emit: Emit,
     file: &'static str,
 }
 
-/// Pages that draw what `sdfc render` draws.
+/// The pages that draw the picture of `sdfc render`.
 pub const EMBEDDINGS: [Embedding; 3] = [
     Embedding { name: "webgpu", target: Target::Wgsl, emit: Emit::Render, file: "scene.wgsl" },
     Embedding { name: "webgl2", target: Target::GlslEs, emit: Emit::Render, file: "scene.glsl" },
@@ -40,11 +42,11 @@ pub const EMBEDDINGS: [Embedding; 3] = [
     },
 ];
 
-/// Marches in a scene of its own.
+/// The page with three.js, which marches a field in a scene of its own.
 pub const THREE: Embedding =
     Embedding { name: "three", target: Target::GlslEs, emit: Emit::March, file: "scene.glsl" };
 
-/// Scenes with knobs, loops, mirrors, soft shadows, lamps.
+/// Scenes with params, loops, mirrors, soft shadows and lights.
 pub const SCENES: [&str; 6] = [
     "params.sdf",
     "gyroid_lattice.sdf",
@@ -54,39 +56,39 @@ pub const SCENES: [&str; 6] = [
     "settings/spot_light.sdf",
 ];
 
-/// Red, green, blue; rows from the top.
+/// Pixels with red, green and blue; rows from the top.
 pub type Pixels = Vec<[u8; 3]>;
 
 impl Embedding {
-    /// Puts what is compiled for the page beside it.
-    fn lay(&self, place: &Place, scene: &Scene) -> Result<(), Failed> {
+    /// Serves the compiled shader beside the page.
+    fn put(&self, session: &Session, scene: &Scene) -> Result<(), Failed> {
         let Self { name, target, emit, file } = *self;
         let options =
             ShaderOptions { target, emit, stage: Stage::Fragment, ..ShaderOptions::default() };
         let written = scene.write_shader(&options)?;
         let reflection = scene.reflect(&options, &written);
         let Code::Text(text) = written.code else { return Err("no text".into()) };
-        place.server.lay(&format!("{name}/{file}"), text.into_bytes());
+        session.server.put(&format!("{name}/{file}"), text.into_bytes());
         let json = serde_json::to_vec(&reflection)?;
-        place.server.lay(&format!("{name}/scene.json"), json);
+        session.server.put(&format!("{name}/scene.json"), json);
         Ok(())
     }
 
     /// Opens the page and waits until it has drawn.
-    pub fn open(&self, place: &mut Place, scene: &Scene, query: &str) -> Result<(), Failed> {
-        self.lay(place, scene)?;
-        let url = place.server.url(&format!("{}/index.html{query}", self.name));
-        place.chromium.open(&url, WINDOW)?;
-        let state = place.chromium.evaluate(STATE)?;
-        let complaints = place.chromium.complaints();
-        if state != "drawn" || !complaints.is_empty() {
-            return Err(format!("{}: {state}, {complaints:?}", self.name).into());
+    pub fn open(&self, session: &mut Session, scene: &Scene, query: &str) -> Result<(), Failed> {
+        self.put(session, scene)?;
+        let url = session.server.url(&format!("{}/index.html{query}", self.name));
+        session.chromium.open(&url, WINDOW)?;
+        let state = session.chromium.evaluate(STATE)?;
+        let errors = session.chromium.errors();
+        if state != "drawn" || !errors.is_empty() {
+            return Err(format!("{}: {state}, {errors:?}", self.name).into());
         }
         Ok(())
     }
 }
 
-/// What the page says of itself, once it does.
+/// Waits for the state that the page reports.
 pub const STATE: &str = "new Promise(done => {
     const look = () => {
         const state = document.body?.dataset.state;
@@ -96,22 +98,25 @@ pub const STATE: &str = "new Promise(done => {
     look();
 })";
 
-/// Each scene at its defaults; the differences are a row of the documentation's table.
-pub fn show_every_scene(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
+/// Shows each scene at its defaults. The differences are a row of a table in the documentation.
+pub fn show_every_scene(session: &mut Session, embedding: &Embedding) -> Result<(), Failed> {
     let mut found = Vec::new();
     for name in SCENES {
         let scene = compiled_example(name)?;
-        embedding.open(place, &scene, "")?;
-        found.push(check(&shown(place)?, &drawn(&scene, None, None)?, name)?);
+        embedding.open(session, &scene, "")?;
+        found.push(check(&shown(session)?, &drawn(&scene, None, None)?, name)?);
     }
     table::check(embedding.name, &found)
 }
 
-/// A knob is turned and the mouse is dragged over the picture.
-pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
+/// Moves sliders and drags the mouse over the picture.
+pub fn follow_sliders_and_mouse(
+    session: &mut Session,
+    embedding: &Embedding,
+) -> Result<(), Failed> {
     let scene = compiled_example("params.sdf")?;
-    embedding.open(place, &scene, "")?;
-    place.chromium.evaluate(
+    embedding.open(session, &scene, "")?;
+    session.chromium.evaluate(
         "for (const [name, value] of [['wall', 0.25], ['opening', 1.5], ['glaze', '#c04a6a']]) {
             const input = document.querySelector(`[name=${name}]`);
             input.value = value;
@@ -123,76 +128,77 @@ pub fn follow_knobs_and_mouse(place: &mut Place, embedding: &Embedding) -> Resul
         scene.set_param(&mut frame, name, value)?;
     }
     let expected = drawn(&scene, Some(frame.clone()), None)?;
-    check(&shown(place)?, &expected, "the knobs")?;
+    check(&shown(session)?, &expected, "the sliders")?;
 
-    place.chromium.drag([200.0, 100.0], [250.0, 100.0])?;
-    // A hundred pixels turn the camera by one radian about the origin.
-    let pose = turned(pose(&scene)?, [0.0; 3], -0.5);
-    check(&shown(place)?, &drawn(&scene, Some(frame), Some(pose))?, "the mouse")?;
+    session.chromium.drag([200.0, 100.0], [250.0, 100.0])?;
+    // A hundred pixels rotate the camera by one radian about the origin.
+    let pose = rotated(pose(&scene)?, [0.0; 3], -0.5);
+    check(&shown(session)?, &drawn(&scene, Some(frame), Some(pose))?, "the mouse")?;
     Ok(())
 }
 
-/// A scene with `time` is at the time that the page is told, and moves where it is told none.
-pub fn follow_the_clock(place: &mut Place, embedding: &Embedding) -> Result<(), Failed> {
+/// A scene with `time` is shown at the time in the URL, and moves without one.
+pub fn follow_the_clock(session: &mut Session, embedding: &Embedding) -> Result<(), Failed> {
     let scene = compiled_example("time.sdf")?;
-    embedding.open(place, &scene, "?time=0.75")?;
+    embedding.open(session, &scene, "?time=0.75")?;
     let frame = FrameValues { time: 0.75, ..FrameValues::defaults(scene.params()) };
-    check(&shown(place)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
-    embedding.open(place, &scene, "")?;
-    moves(place)
+    check(&shown(session)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
+    embedding.open(session, &scene, "")?;
+    moves(session)
 }
 
-/// Whether the canvas shows something else within some pictures of the screen.
-pub fn moves(place: &mut Place) -> Result<(), Failed> {
-    let first = shown(place)?;
-    for _ in 0..MOST_PICTURES {
-        if shown(place)? != first {
+/// Fails unless the canvas changes within some screenshots.
+pub fn moves(session: &mut Session) -> Result<(), Failed> {
+    let first = shown(session)?;
+    for _ in 0..MAX_SCREENSHOTS {
+        if shown(session)? != first {
             return Ok(());
         }
     }
-    Err("the picture stands still".into())
+    Err("the picture does not move".into())
 }
 
-/// The clock moves the scene, and the mouse turns the camera: by a turn over the width of the picture.
-pub fn shadertoy_follows_clock_and_mouse(place: &mut Place) -> Result<(), Failed> {
+/// The clock moves the scene, and the mouse rotates the camera: once around over the width of the
+/// picture.
+pub fn shadertoy_follows_clock_and_mouse(session: &mut Session) -> Result<(), Failed> {
     let [_, _, shadertoy] = &EMBEDDINGS;
     let scene = compiled_example("time.sdf")?;
-    shadertoy.open(place, &scene, "?time=0.75")?;
+    shadertoy.open(session, &scene, "?time=0.75")?;
     let frame = FrameValues { time: 0.75, ..FrameValues::defaults(scene.params()) };
-    check(&shown(place)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
+    check(&shown(session)?, &drawn(&scene, Some(frame), None)?, "the clock")?;
 
     let scene = compiled_example("params.sdf")?;
-    // From the middle of the picture a quarter of its width to the right.
-    shadertoy.open(place, &scene, "?x=480&y=180")?;
+    // A quarter of the width to the right of the middle of the picture.
+    shadertoy.open(session, &scene, "?x=480&y=180")?;
     let pose = pose(&scene)?;
-    let pose = turned(pose, pose.target.to_array(), -std::f64::consts::FRAC_PI_2);
-    check(&shown(place)?, &drawn(&scene, None, Some(pose))?, "the mouse")?;
+    let pose = rotated(pose, pose.target.to_array(), -std::f64::consts::FRAC_PI_2);
+    check(&shown(session)?, &drawn(&scene, None, Some(pose))?, "the mouse")?;
     Ok(())
 }
 
-/// The scene's own camera.
+/// Returns the scene's own camera.
 pub fn pose(scene: &Scene) -> Result<Pose, Failed> {
     let frame = FrameValues::defaults(scene.params());
     let [width, height] = VIEW_SIZE.map(f64::from);
     Ok(Pose::new(scene.program(), &frame, scene.bounds_at(&frame), width / height)?)
 }
 
-/// A camera turned about the vertical axis through a place. `up` stays upright.
-fn turned(pose: Pose, middle: [f64; 3], angle: f64) -> Pose {
+/// Rotates a camera about the vertical axis through `center`. `up` stays upright.
+fn rotated(pose: Pose, center: [f64; 3], angle: f64) -> Pose {
     let (sine, cosine) = angle.sin_cos();
-    let turn = |mut place: [f64; 3]| {
-        let [x, z] = [0, 2].map(|axis| place[axis] - middle[axis]);
-        place[0] = middle[0] + cosine * x + sine * z;
-        place[2] = middle[2] + cosine * z - sine * x;
-        place
+    let rotate = |mut point: [f64; 3]| {
+        let [x, z] = [0, 2].map(|axis| point[axis] - center[axis]);
+        point[0] = center[0] + cosine * x + sine * z;
+        point[2] = center[2] + cosine * z - sine * x;
+        point
     };
-    let [eye, target] = [pose.eye, pose.target].map(|place| turn(place.to_array()).into());
+    let [eye, target] = [pose.eye, pose.target].map(|point| rotate(point.to_array()).into());
     Pose { eye, target, ..pose }
 }
 
-/// What the canvas shows.
-pub fn shown(place: &mut Place) -> Result<Pixels, Failed> {
-    let png = place.chromium.screenshot("canvas")?;
+/// Returns the pixels of the canvas.
+pub fn shown(session: &mut Session) -> Result<Pixels, Failed> {
+    let png = session.chromium.screenshot("canvas")?;
     let image = image::load_from_memory(&png)?.into_rgb8();
     if [image.width(), image.height()] != VIEW_SIZE {
         return Err(format!("a screenshot of {} by {}", image.width(), image.height()).into());
@@ -200,7 +206,7 @@ pub fn shown(place: &mut Place) -> Result<Pixels, Failed> {
     Ok(image.pixels().map(|pixel| pixel.0).collect())
 }
 
-/// What `sdfc render` draws.
+/// Returns the picture of `sdfc render`.
 pub fn drawn(
     scene: &Scene,
     frame: Option<FrameValues>,
@@ -212,7 +218,7 @@ pub fn drawn(
     Ok(image.to_srgb8().as_chunks().0.to_vec())
 }
 
-/// Pixels in a thousand that differ by more than [`COLOR`].
+/// Returns how many pixels in a thousand differ by more than [`COLOR`]. Fails above [`EDGES`].
 pub fn check(shown: &Pixels, expected: &Pixels, what: &str) -> Result<f64, Failed> {
     if shown.len() != expected.len() {
         return Err("pictures of two sizes".into());
@@ -220,16 +226,16 @@ pub fn check(shown: &Pixels, expected: &Pixels, what: &str) -> Result<f64, Faile
     let is_far =
         |(a, b): &(&[u8; 3], &[u8; 3])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > COLOR);
     let count = shown.iter().zip(expected).filter(is_far).count();
-    let share = 1000.0 * count as f64 / shown.len() as f64;
-    if share > EDGES {
+    let per_thousand = 1000.0 * count as f64 / shown.len() as f64;
+    if per_thousand > EDGES {
         let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("shown.png");
         let [width, height] = VIEW_SIZE;
         image::save_buffer(&path, shown.as_flattened(), width, height, image::ColorType::Rgb8)?;
         return Err(format!(
-            "{what}: {share:.1} pixels in a thousand differ by more than {COLOR}; see {}",
+            "{what}: {per_thousand:.1} pixels in a thousand differ by more than {COLOR}; see {}",
             path.display()
         )
         .into());
     }
-    Ok(share)
+    Ok(per_thousand)
 }

@@ -1,4 +1,4 @@
-//! Files over HTTP, for a browser on this machine.
+//! Serves files over HTTP to a browser on this machine.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
@@ -6,7 +6,7 @@ use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A server of the files in a folder and of others that lie over them.
+/// A server of the files in a folder and of additional files.
 pub struct Server {
     address: SocketAddr,
     files: Arc<Files>,
@@ -14,46 +14,46 @@ pub struct Server {
 
 struct Files {
     folder: PathBuf,
-    /// By path, without the slash at its start.
-    laid_over: Mutex<BTreeMap<String, Vec<u8>>>,
+    /// The additional files by path, without a slash at the start. They take precedence.
+    added: Mutex<BTreeMap<String, Vec<u8>>>,
 }
 
 impl Server {
-    /// Serves until the process ends.
+    /// Starts a server that runs until the process ends.
     pub fn start(folder: &Path) -> std::io::Result<Self> {
         let listener = TcpListener::bind("127.0.0.1:0")?;
         let address = listener.local_addr()?;
-        let laid_over = Mutex::default();
-        let files = Arc::new(Files { folder: folder.to_owned(), laid_over });
+        let added = Mutex::default();
+        let files = Arc::new(Files { folder: folder.to_owned(), added });
         let served = Arc::clone(&files);
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 let files = Arc::clone(&served);
-                // Browsers open connections ahead, on which nothing is asked.
+                // Browsers open connections in advance and may send no request.
                 std::thread::spawn(move || files.answer(&stream));
             }
         });
         Ok(Self { address, files })
     }
 
-    /// Address of a file. Pages of `localhost` may use WebGPU without encryption.
+    /// Returns the address of a file. Pages of `localhost` may use WebGPU without encryption.
     pub fn url(&self, path: &str) -> String {
         format!("http://localhost:{}/{path}", self.address.port())
     }
 
-    /// Lays a file over the folder's.
-    pub fn lay(&self, path: &str, bytes: Vec<u8>) {
-        self.files.laid_over().insert(path.to_owned(), bytes);
+    /// Adds a file, which takes precedence over the folder's.
+    pub fn put(&self, path: &str, bytes: Vec<u8>) {
+        self.files.added().insert(path.to_owned(), bytes);
     }
 }
 
 impl Files {
-    fn laid_over(&self) -> std::sync::MutexGuard<'_, BTreeMap<String, Vec<u8>>> {
-        self.laid_over.lock().unwrap_or_else(PoisonError::into_inner)
+    fn added(&self) -> std::sync::MutexGuard<'_, BTreeMap<String, Vec<u8>>> {
+        self.added.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn find(&self, path: &str) -> Option<Vec<u8>> {
-        let laid = self.laid_over().get(path).cloned();
+        let laid = self.added().get(path).cloned();
         laid.or_else(|| std::fs::read(self.folder.join(path)).ok())
     }
 

@@ -1,5 +1,5 @@
-//! `docs/errors.md` lists all codes. `docs/errors/CODE.md` explains each code and shows a scene that
-//! has it, the messages about that scene, and the scene fixed.
+//! `docs/errors.md` lists all codes. `docs/errors/CODE.md` explains each code and shows a scene
+//! that has it, the messages about that scene, and the scene fixed.
 //!
 //! Explanations come from the table of codes, scenes from `examples/CODE.txt`: the wrong scene, a
 //! line of four dashes, the fixed scene. After a change,

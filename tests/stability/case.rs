@@ -1,16 +1,17 @@
-//! A case: a scene, the frames at which it is looked at, and what `auto` has to hold there.
+//! A case: a scene, its frames, and the error bounds of `auto`.
 //!
-//! The leading comment of a case's file says what fails and why, and ends in lines that are read here:
+//! The comment at the start of a case's file explains what fails and why. It ends with lines that
+//! are parsed here:
 //!
 //! ```text
 //! // Frames: k = 0.5; k = 0.
-//! // Exempt: why the bounds that hold for every other case do not hold here.
+//! // Exempt: why the bounds of the other cases do not hold here.
 //! // Auto: missed 1 %, depth 0.05 px.
 //! ```
 //!
-//! What `Auto` does not name is 0. A line `Outdone: segment, interval` names the methods that take
-//! fewer evaluations than `auto` and err less. Without `Frames` the case is one frame, params at
-//! their defaults.
+//! Bounds that `Auto` does not name are 0. A line `Outdone: segment, interval` names the methods
+//! that take fewer evaluations than `auto` and are more accurate. Without `Frames` the case has one
+//! frame, with params at their defaults.
 
 use std::path::{Path, PathBuf};
 
@@ -18,48 +19,48 @@ use libtest_mimic::Failed;
 use sdfc::{FrameValues, Scene};
 use sdfc_tests::repository;
 
-/// Most error in depth that a case may allow unless it is exempt, in widths of a pixel.
-const MOST_DEPTH: f64 = 0.05;
+/// The largest bound on the depth error of a case that is not exempt, in pixel widths.
+const MAX_DEPTH: f64 = 0.05;
 
-/// One file.
+/// A case.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Name of the file without its ending.
+    /// The name of the file without its extension.
     pub name: String,
-    /// Path from the top of the repository.
+    /// The path below the repository.
     pub path: String,
-    /// Text of the scene.
+    /// The source of the scene.
     pub text: String,
-    /// The comment's first line.
+    /// The first sentence of the comment.
     pub title: String,
-    /// Why it is held to other bounds than the rest.
+    /// The reason why it has other bounds than the rest.
     pub exempt: Option<String>,
-    /// What `auto` has to hold.
+    /// The error bounds of `auto`.
     pub auto: Bounds,
-    /// Methods that take fewer evaluations than `auto` and err less.
+    /// The methods that take fewer evaluations than `auto` and are more accurate.
     pub outdone: Vec<String>,
-    /// Values of params, by frame.
+    /// The values of params in each frame.
     frames: Vec<Vec<(String, String)>>,
 }
 
-/// Shares of the pixels, in percent, and an error in depth.
+/// Percentages of pixels, and an error in depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
-    /// Led through a surface.
+    /// Rays that passed through a surface.
     pub missed: f64,
-    /// Ended where there is none.
+    /// Rays that ended where there is no surface.
     pub false_hits: f64,
-    /// Out of steps.
+    /// Rays that ran out of steps.
     pub capped: f64,
-    /// Not a number.
+    /// Pixels that are not a number.
     pub nan: f64,
-    /// Not known to the oracle.
+    /// Pixels that the oracle cannot decide.
     pub undecided: f64,
-    /// In widths of a pixel, 99 of 100 pixels.
+    /// The 99th percentile of the depth error, in pixel widths.
     pub depth: f64,
 }
 
-/// The cases, by name.
+/// Returns all cases, sorted by name.
 pub fn cases() -> Result<Vec<Case>, Failed> {
     let top = repository();
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -92,7 +93,7 @@ impl Case {
         };
         let exempt = keyed("Exempt:");
         let auto = Bounds::parse(&keyed("Auto:").ok_or("no line `Auto:`")?)?;
-        let general = Bounds { depth: auto.depth.min(MOST_DEPTH), ..Bounds::default() };
+        let general = Bounds { depth: auto.depth.min(MAX_DEPTH), ..Bounds::default() };
         if exempt.is_none() && auto != general {
             return Err("weaker bounds than all cases hold, and no line `Exempt:`".to_owned());
         }
@@ -112,7 +113,7 @@ impl Case {
         })
     }
 
-    /// The frames at which the scene is looked at.
+    /// Returns the values of params in each frame.
     pub fn frames(&self, scene: &Scene) -> Result<Vec<FrameValues>, Failed> {
         let frame = |values: &Vec<(String, String)>| {
             let mut frame = FrameValues::defaults(scene.params());
@@ -125,7 +126,7 @@ impl Case {
     }
 }
 
-/// `k = 0.5, n = 2; k = 0`
+/// Parses frames such as `k = 0.5, n = 2; k = 0`.
 fn frames(text: &str) -> Result<Vec<Vec<(String, String)>>, String> {
     let pair = |text: &str| {
         let (param, value) = text.split_once('=').ok_or(format!("`{text}` sets no param"))?;
@@ -135,13 +136,13 @@ fn frames(text: &str) -> Result<Vec<Vec<(String, String)>>, String> {
 }
 
 impl Bounds {
-    /// `missed 1 %, depth 0.05 px`
+    /// Parses bounds such as `missed 1 %, depth 0.05 px`.
     fn parse(text: &str) -> Result<Self, String> {
         let mut bounds = Self::default();
         for part in text.split(',') {
             let mut words = part.split_whitespace();
             let (name, value) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
-            let (place, unit) = match name {
+            let (bound, unit) = match name {
                 "missed" => (&mut bounds.missed, "%"),
                 "false" => (&mut bounds.false_hits, "%"),
                 "capped" => (&mut bounds.capped, "%"),
@@ -150,7 +151,7 @@ impl Bounds {
                 "depth" => (&mut bounds.depth, "px"),
                 _ => return Err(format!("`{name}` is no bound")),
             };
-            *place = value.parse().map_err(|_| format!("`{value}` is no number"))?;
+            *bound = value.parse().map_err(|_| format!("`{value}` is no number"))?;
             if words.next() != Some(unit) {
                 return Err(format!("`{name}` is in {unit}"));
             }

@@ -1,12 +1,14 @@
-//! Scenes on which ray methods fail, each with the bounds that `auto` holds on it.
+//! `auto` stays within its error bounds on scenes on which other ray methods fail.
 //!
-//! One test for each scene in this folder and under `examples/faults`. It draws the scene with every ray method of the
-//! table, at 160x120, and compares the pictures with the oracle: `auto` has to hold the bounds that the scene's comment
-//! states, and `docs/stability.md` has to tell what the other methods do.
+//! There is one test for each scene in this folder and under `examples/faults`. It draws the scene
+//! with every ray method at 160x120 and compares the pictures with the oracle. `auto` must stay
+//! within the bounds in the scene's comment, and `docs/stability.md` must list the errors of all
+//! methods.
 //!
-//! The page's figures are those of one driver, which it names. Elsewhere only `auto` is held to its bounds: other
-//! devices round otherwise. `STABILITY_UPDATE=1` writes the page anew (with a filter, the rows of those scenes);
-//! `STABILITY_SIZE=1280x960` looks at larger pictures, and leaves the page alone.
+//! The values on the page come from one driver, which it names. With other drivers only the bounds
+//! of `auto` are checked, because they round differently. `STABILITY_UPDATE=1` rewrites the page
+//! (with a filter, the rows of the selected scenes). `STABILITY_SIZE=1280x960` tests larger
+//! pictures and ignores the page.
 
 mod case;
 mod page;
@@ -16,19 +18,19 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use case::{Bounds, Case, cases};
 use libtest_mimic::{Arguments, Failed, Trial};
-use page::{Figures, Page};
+use page::{Errors, Page};
 use sdfc::accuracy_data::{Truth, compare};
 use sdfc::render::{Gpu, View, testing};
 use sdfc::{FrameValues, Scene};
 
-/// Width and height in pixels of the pictures that the page is about.
+/// The width and height in pixels of the pictures for the page.
 const SIZE: [u32; 2] = [160, 120];
 
-/// Error of a normal in degrees that 99 of 100 pixels on smooth surfaces keep, in every case.
+/// The largest 99th percentile of the error of normals on smooth surfaces, in degrees.
 const NORMAL: f64 = 0.001;
 
-/// Figures by case.
-type Measured = Arc<Mutex<BTreeMap<String, Vec<Figures>>>>;
+/// The results by case.
+type Measured = Arc<Mutex<BTreeMap<String, Vec<Errors>>>>;
 
 fn main() {
     let without_gpu = testing::without_gpu();
@@ -45,7 +47,8 @@ fn main() {
     let mut trials: Vec<Trial> = Vec::new();
     for case in &cases {
         let (case, measured) = (case.clone(), Arc::clone(&measured));
-        let trial = Trial::test(case.name.clone(), move || holds(&case, size, update, &measured));
+        let trial =
+            Trial::test(case.name.clone(), move || check_case(&case, size, update, &measured));
         trials.push(trial.with_ignored_flag(without_gpu));
     }
     let conclusion = libtest_mimic::run(&arguments, trials);
@@ -65,10 +68,15 @@ fn size() -> Result<[u32; 2], Failed> {
     sides.ok_or_else(|| format!("STABILITY_SIZE: `{text}` is no size like 1280x960").into())
 }
 
-fn holds(case: &Case, size: [u32; 2], update: bool, measured: &Measured) -> Result<(), Failed> {
+fn check_case(
+    case: &Case,
+    size: [u32; 2],
+    update: bool,
+    measured: &Measured,
+) -> Result<(), Failed> {
     let compiled = sdfc::compile(&case.path, &case.text);
-    let findings = compiled.diagnostics_text(false);
-    let scene = compiled.scene.ok_or_else(|| Failed::from(findings))?;
+    let messages = compiled.diagnostics_text(false);
+    let scene = compiled.scene.ok_or_else(|| Failed::from(messages))?;
     if case.exempt.is_none() && !scene.is_certified() {
         return Err("the scene is uncertified, and its comment has no line `Exempt:`".into());
     }
@@ -77,52 +85,52 @@ fn holds(case: &Case, size: [u32; 2], update: bool, measured: &Measured) -> Resu
     let mut row = Vec::new();
     for method in sdfc::march::METHODS {
         let sampler = scene.sampler(&gpu, &method)?;
-        let judge = |(view, frame, truth): &(View, FrameValues, Truth)| {
+        let measure = |(view, frame, truth): &(View, FrameValues, Truth)| {
             Ok(compare(&oracle, frame, truth, &sampler.samples(view, frame)?))
         };
-        let metrics = views.iter().map(judge).collect::<Result<Vec<_>, Failed>>()?;
-        row.push(Figures::of(&views, &metrics));
+        let metrics = views.iter().map(measure).collect::<Result<Vec<_>, Failed>>()?;
+        row.push(Errors::of(&views, &metrics));
     }
-    let verdict = row.first().map_or_else(
+    let result = row.first().map_or_else(
         || Err("no method".into()),
-        |auto| held(auto, &case.auto).and_then(|()| not_outdone(case, auto, &row)),
+        |auto| within_bounds(auto, &case.auto).and_then(|()| not_outdone(case, auto, &row)),
     );
     if update {
         measured.lock().unwrap_or_else(PoisonError::into_inner).insert(case.name.clone(), row);
-        return verdict;
+        return result;
     }
-    verdict?;
-    if size == SIZE { Page::read()?.tells(case, &row, gpu.info()) } else { Ok(()) }
+    result?;
+    if size == SIZE { Page::read()?.check(case, &row, gpu.info()) } else { Ok(()) }
 }
 
-/// Each frame's view, and what the oracle says of it.
+/// Returns the view of each frame, and the result of the oracle for it.
 fn views(
     case: &Case,
     scene: &Scene,
     size: [u32; 2],
 ) -> Result<Vec<(View, FrameValues, Truth)>, Failed> {
-    let look = |frame: FrameValues| {
+    let measure = |frame: FrameValues| {
         let view = scene.view(&frame, size)?;
         let truth = scene.truth(&view, &frame, &|_| ())?;
         Ok((view, frame, truth))
     };
-    case.frames(scene)?.into_iter().map(look).collect()
+    case.frames(scene)?.into_iter().map(measure).collect()
 }
 
-/// No method takes fewer evaluations than `auto` and errs less.
-fn not_outdone(case: &Case, auto: &Figures, row: &[Figures]) -> Result<(), Failed> {
+/// Fails unless the methods that outperform `auto` are those that the case names.
+fn not_outdone(case: &Case, auto: &Errors, row: &[Errors]) -> Result<(), Failed> {
     let methods = sdfc::march::METHODS.iter().zip(row);
     let better: Vec<&str> = methods
-        .filter(|(_, figures)| figures.outdoes(auto))
+        .filter(|(_, errors)| errors.outperforms(auto))
         .map(|(method, _)| method.name)
         .collect();
     if better == case.outdone {
         return Ok(());
     }
-    Err(format!("{better:?} are cheaper and nearer, not {:?}", case.outdone).into())
+    Err(format!("{better:?} outperform `auto`, but the case names {:?}", case.outdone).into())
 }
 
-fn held(auto: &Figures, bounds: &Bounds) -> Result<(), Failed> {
+fn within_bounds(auto: &Errors, bounds: &Bounds) -> Result<(), Failed> {
     let pairs = [
         ("missed", auto.missed, bounds.missed),
         ("false", auto.false_hits, bounds.false_hits),
@@ -130,8 +138,8 @@ fn held(auto: &Figures, bounds: &Bounds) -> Result<(), Failed> {
         ("NaN", auto.nan, bounds.nan),
         ("undecided", auto.undecided, bounds.undecided),
     ];
-    let shares = pairs.iter().filter(|(_, found, most)| found > most);
-    let mut wrong: Vec<String> = shares
+    let exceeded = pairs.iter().filter(|(_, found, most)| found > most);
+    let mut wrong: Vec<String> = exceeded
         .map(|(what, found, most)| format!("{found:.4} % {what}, {most} % allowed"))
         .collect();
     if auto.depth > bounds.depth {

@@ -1,4 +1,4 @@
-//! `docs/stability.md`: what each ray method does on each case.
+//! The page `docs/stability.md`: the errors of each ray method in each case.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -38,9 +38,9 @@ For several frames, the percentages cover all frames, and D is that of the worst
 
 ";
 
-/// What a method does on a case: shares of the pixels in percent, and an error in depth.
+/// The errors of a method in a case: percentages of pixels, and errors in depth and normals.
 #[derive(Clone, Debug, Default)]
-pub struct Figures {
+pub struct Errors {
     pub missed: f64,
     pub false_hits: f64,
     pub capped: f64,
@@ -48,12 +48,12 @@ pub struct Figures {
     pub undecided: f64,
     pub depth: f64,
     pub normal: f64,
-    /// Per pixel.
+    /// The evaluations per pixel, summed over all frames.
     pub evaluations: f64,
 }
 
-impl Figures {
-    /// Over all frames.
+impl Errors {
+    /// Combines the metrics of all frames.
     pub fn of(views: &[(View, FrameValues, Truth)], metrics: &[Metrics]) -> Self {
         let pixels: usize = views.iter().map(|(.., truth)| truth.verdicts.len()).sum();
         let percent = |count: u64| 100.0 * count as f64 / pixels.max(1) as f64;
@@ -71,23 +71,24 @@ impl Figures {
         }
     }
 
-    /// Whether it takes fewer evaluations and errs less: at no more pixels and no farther, and less in one of these.
-    pub fn outdoes(&self, other: &Self) -> bool {
-        let errors = |figures: &Self| {
-            let Self { missed, false_hits, capped, nan, depth, .. } = *figures;
+    /// Returns true if it takes fewer evaluations and is more accurate: no more wrong pixels, no
+    /// larger depth error, and better in one of them.
+    pub fn outperforms(&self, other: &Self) -> bool {
+        let summary = |errors: &Self| {
+            let Self { missed, false_hits, capped, nan, depth, .. } = *errors;
             [missed + false_hits + capped + nan, depth.max(LEAST_ERROR)]
         };
-        let (mine, others) = (errors(self), errors(other));
+        let (mine, others) = (summary(self), summary(other));
         let no_worse = mine.iter().zip(&others).all(|(a, b)| a <= b);
         self.evaluations < other.evaluations && no_worse && mine != others
     }
 
     fn cell(&self) -> String {
-        let shares =
+        let percentages =
             [("M", self.missed), ("F", self.false_hits), ("C", self.capped), ("N", self.nan)];
-        let seen = shares.iter().filter(|(_, share)| *share > 0.0);
+        let nonzero = percentages.iter().filter(|(_, value)| *value > 0.0);
         let mut parts: Vec<String> =
-            seen.map(|(letter, share)| format!("{letter} {}", rounded(*share))).collect();
+            nonzero.map(|(letter, value)| format!("{letter} {}", rounded(*value))).collect();
         if self.depth > 0.05 {
             parts.push(format!("D {}", rounded(self.depth)));
         }
@@ -95,7 +96,7 @@ impl Figures {
     }
 }
 
-/// To two digits.
+/// Formats a number with two significant digits.
 fn rounded(value: f64) -> String {
     if !value.is_finite() || value == 0.0 {
         return value.to_string();
@@ -105,11 +106,11 @@ fn rounded(value: f64) -> String {
     }
     let digits = 1 - value.abs().log10().floor() as i32;
     let scale = 10f64.powi(digits);
-    let places = usize::try_from(digits).unwrap_or(0);
-    format!("{:.places$}", (value * scale).round() / scale)
+    let decimals = usize::try_from(digits).unwrap_or(0);
+    format!("{:.decimals$}", (value * scale).round() / scale)
 }
 
-/// The page as it stands.
+/// The current page.
 #[derive(Debug)]
 pub struct Page {
     text: String,
@@ -124,8 +125,8 @@ impl Page {
         Ok(Self { text: std::fs::read_to_string(Self::path())? })
     }
 
-    /// Whether the page has this row; of another driver, whether it has the case at all.
-    pub fn tells(&self, case: &Case, row: &[Figures], adapter: &AdapterInfo) -> Result<(), Failed> {
+    /// Fails if the page lacks this row. With another driver, fails if it lacks the case.
+    pub fn check(&self, case: &Case, row: &[Errors], adapter: &AdapterInfo) -> Result<(), Failed> {
         let stale = |why: String| Err(format!("docs/stability.md is not up to date: {why}").into());
         let line = line(case, row);
         if self.text.contains(&driver(adapter)) && !self.text.contains(&line) {
@@ -136,14 +137,14 @@ impl Page {
         }
         match &case.exempt {
             Some(why) if !self.text.contains(&exempt(case, why)) => {
-                stale(format!("it does not tell why {} is exempt", case.name))
+                stale(format!("it does not explain why {} is exempt", case.name))
             }
             Some(_) | None => Ok(()),
         }
     }
 
-    /// Writes the page, with the rows that it has of cases that were not measured.
-    pub fn write(cases: &[Case], measured: &BTreeMap<String, Vec<Figures>>) -> Result<(), Failed> {
+    /// Writes the page. Cases that were not measured keep their rows.
+    pub fn write(cases: &[Case], measured: &BTreeMap<String, Vec<Errors>>) -> Result<(), Failed> {
         let before = std::fs::read_to_string(Self::path()).unwrap_or_default();
         let mut text = HEAD.to_owned();
         let _ = writeln!(text, "{}\n", driver(Gpu::new()?.info()));
@@ -157,7 +158,9 @@ impl Page {
                 let _ = writeln!(text, "{row}");
             }
         }
-        text += "\n## Scenes with bounds of their own\n\nNo bound holds for an uncertified field, or for details finer than 32-bit numbers.\n\n";
+        text += "\n## Scenes with bounds of their own\n\n\
+                 No bound holds for an uncertified field, or for details finer than 32-bit \
+                 numbers.\n\n";
         for case in cases {
             if let Some(why) = &case.exempt {
                 let _ = writeln!(text, "{}", exempt(case, why));
@@ -175,8 +178,8 @@ fn start(case: &Case) -> String {
     format!("| [{}](../{}) | {} |", case.name, case.path, case.title)
 }
 
-fn line(case: &Case, row: &[Figures]) -> String {
-    let cells: Vec<String> = row.iter().map(Figures::cell).collect();
+fn line(case: &Case, row: &[Errors]) -> String {
+    let cells: Vec<String> = row.iter().map(Errors::cell).collect();
     format!("{} {} |", start(case), cells.join(" | "))
 }
 

@@ -1,4 +1,4 @@
-//! The forms of a picture's shader, drawn on an adapter and compared.
+//! All forms of a picture's shader draw the same picture on the GPU.
 
 use std::borrow::Cow;
 
@@ -9,30 +9,30 @@ use sdfc::render::{linear_to_srgb8, uniform_values};
 use sdfc::{FrameValues, Scene, Stage, no_progress};
 use wgpu::BufferUsages as Usage;
 
-/// Width and height, those of `shadertoy.wgsl`. A row of pixels is a multiple of 256 bytes, as copies want it.
+/// Width and height, as in `shadertoy.wgsl`. Copies need rows of a multiple of 256 bytes.
 const SIZE: [u32; 2] = [48, 40];
 const PIXEL_BYTES: u32 = 16;
 const TILE: Tile = Tile { origin: [0, 0], size: SIZE };
-/// Largest difference of a colour channel, in steps of 1/255.
+/// The largest difference of a colour channel, in steps of 1/255.
 const COLOR: u8 = 1;
-/// The camera of a text is worked out in 32 bits: so many pixels in a thousand may see past another edge.
+/// The most pixels in a thousand that may differ, because GLSL computes the camera in 32 bits.
 const EDGES: usize = 5;
 
 const TOY: &str = include_str!("shadertoy.wgsl");
 
-/// What draws, opened once for many scenes.
+/// The devices that draw, opened once for many scenes.
 pub struct Devices {
-    /// For compute forms.
+    /// The device for compute forms.
     own: Gpu,
-    /// For fragment forms.
+    /// The device for fragment forms.
     device: wgpu::Device,
     queue: wgpu::Queue,
 }
 
-/// Red, green and blue as pictures have them.
+/// Red, green and blue of each pixel.
 type Pixels = Vec<[u8; 3]>;
 
-/// The compute form for embedding against the picture that `sdfc render` draws.
+/// Compares the compute form for embedding with the picture of `sdfc render`.
 pub fn compute(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let (frame, view) = at_defaults(scene)?;
     let options = RenderOptions::default();
@@ -56,7 +56,7 @@ pub fn compute(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The fragment form against the compute form.
+/// Compares the fragment form with the compute form.
 pub fn fragment(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let (_, view) = at_defaults(scene)?;
     let shader = embedded(scene, Stage::Compute, false)?;
@@ -84,7 +84,7 @@ pub fn fragment(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The functions behind the text for shadertoy.com against the picture that `sdfc render` draws.
+/// Compares the shader for shadertoy.com with the picture of `sdfc render`.
 pub fn shadertoy(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let (frame, view) = at_defaults(scene)?;
     let slots = uniform_values(scene.program(), &frame);
@@ -97,7 +97,7 @@ pub fn shadertoy(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let text = format!("{}\n{TOY}", toy.wgsl()?);
     let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
     let found = devices.draw(source, ["triangle", "toy"], &[])?;
-    // It has left linear light already.
+    // The colours are already in sRGB.
     let found = found.into_iter().map(|[r, g, b, _]| [r, g, b].map(|c| (c * 255.0).round() as u8));
     let count = differing(&found.collect(), &expected);
     if count * 1000 > EDGES * expected.len() {
@@ -119,8 +119,8 @@ fn embedded(scene: &Scene, stage: Stage, rows_up: bool) -> Result<Shader, Failed
     Ok(picture_module(scene.program(), &options)?)
 }
 
-/// The uniform structure of params at their defaults, as a host makes it after the reflection; `time` and
-/// `frame` are 0.
+/// Returns the uniform buffer with all params at their defaults, laid out by the reflection. `time`
+/// and `frame` are 0.
 fn params(scene: &Scene, reflection: &Reflection) -> Vec<[f32; 4]> {
     let size = reflection.uniform.as_ref().map_or(0, |uniform| uniform.size);
     let mut words = vec![[0.0; 4]; size.div_ceil(16) as usize];
@@ -161,8 +161,8 @@ impl Devices {
         Ok(Self { own: Gpu::new()?, device, queue })
     }
 
-    /// Draws a triangle over a target of `SIZE`; gives its pixels, the topmost row first. Buffers that are not
-    /// empty are bound as uniforms of group 0, one after the other.
+    /// Draws a triangle over a texture of `SIZE` and returns its pixels, top row first. Buffers
+    /// that are not empty are bound as uniforms of group 0, in order.
     fn draw(
         &self,
         source: wgpu::ShaderSource<'_>,

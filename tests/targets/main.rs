@@ -1,8 +1,8 @@
-//! Every example in every target: written, validated by each tool that is here, and listed in
-//! `docs/targets.md`.
+//! Every example can be written in every target, is accepted by every installed validator, and is
+//! listed in `docs/targets.md`.
 //!
-//! A trial whose tool is not installed is reported as ignored. After a change to what can be written,
-//! or a new example, `TARGETS_UPDATE=1 cargo test -p sdfc-tests --test targets` writes the table anew.
+//! Tests of tools that are not installed are reported as ignored. After a change to the targets, or
+//! a new example, `TARGETS_UPDATE=1 cargo test -p sdfc-tests --test targets` rewrites the table.
 
 mod draw;
 mod paste;
@@ -14,14 +14,14 @@ use sdfc::render::testing;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
 use sdfc_tests::compiled_examples;
 
-/// A part that is written: what it is called here, and how it is asked for.
+/// A part of a shader, with the options that select it.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
-    /// In messages and in the table.
+    /// The name in messages and in the table.
     pub name: &'static str,
     /// The part.
     pub emit: Emit,
-    /// Its stage, where it has one.
+    /// The stage of the part, if it has one.
     pub stage: Stage,
 }
 
@@ -58,11 +58,11 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-/// Draws a scene in two ways and compares them.
+/// Draws a scene in two ways and compares the pictures.
 type Compared = fn(&draw::Devices, &Scene) -> Result<(), Failed>;
 
-/// Whether a target's language has words for a part.
-pub fn is_held(target: Target, part: Part) -> bool {
+/// Returns true if a target supports a part.
+pub fn is_supported(target: Target, part: Part) -> bool {
     let has_stage = part.emit != Emit::Render || target.has_stage(part.stage);
     has_stage && (target != Target::Shadertoy || part.emit == Emit::Render)
 }
@@ -77,7 +77,7 @@ fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
     let devices = draw::Devices::open()?;
     for (name, scene) in compiled_examples()? {
         compared(&devices, &scene)
-            .map_err(|found| format!("{name}: {}", found.message().unwrap_or("")))?;
+            .map_err(|error| format!("{name}: {}", error.message().unwrap_or("")))?;
     }
     Ok(())
 }
@@ -85,9 +85,9 @@ fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
 fn every_example_is_written(target: Target) -> Result<(), Failed> {
     for (name, scene) in compiled_examples()? {
         for part in PARTS {
-            let found = write(&scene, target, part);
-            if found.is_ok() != is_held(target, part) {
-                return Err(format!("{name}, {}: {:?}", part.name, found.map(drop)).into());
+            let written = write(&scene, target, part);
+            if written.is_ok() != is_supported(target, part) {
+                return Err(format!("{name}, {}: {:?}", part.name, written.map(drop)).into());
             }
         }
     }
@@ -96,23 +96,23 @@ fn every_example_is_written(target: Target) -> Result<(), Failed> {
 
 fn every_example_is_accepted(tool: &tools::Tool) -> Result<(), Failed> {
     for (name, scene) in compiled_examples()? {
-        for part in PARTS.into_iter().filter(|part| is_held(tool.target, *part)) {
+        for part in PARTS.into_iter().filter(|part| is_supported(tool.target, *part)) {
             let code = write(&scene, tool.target, part).map_err(|e| e.to_string())?;
-            let place = format!("{name}, {}", part.name);
-            tool.check(part, &code).map_err(|found| format!("{place}: {found}"))?;
+            let label = format!("{name}, {}", part.name);
+            tool.check(part, &code).map_err(|error| format!("{label}: {error}"))?;
         }
     }
     Ok(())
 }
 
 fn the_same_source_gives_the_same_bytes() -> Result<(), Failed> {
-    let again = compiled_examples()?;
-    for ((name, scene), (_, twin)) in compiled_examples()?.iter().zip(&again) {
+    let twins = compiled_examples()?;
+    for ((name, scene), (_, twin)) in compiled_examples()?.iter().zip(&twins) {
         for target in Target::ALL {
-            for part in PARTS.into_iter().filter(|part| is_held(target, *part)) {
+            for part in PARTS.into_iter().filter(|part| is_supported(target, *part)) {
                 let [one, other] = [scene, twin].map(|s| write(s, target, part));
                 if one.map_err(|e| e.to_string())? != other.map_err(|e| e.to_string())? {
-                    return Err(format!("{name} as {}: two texts", target.name()).into());
+                    return Err(format!("{name} as {}: the sources differ", target.name()).into());
                 }
             }
         }

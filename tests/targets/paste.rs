@@ -1,4 +1,4 @@
-//! Two scenes in one file of a host.
+//! The shaders of two scenes can be pasted into one file.
 
 use std::collections::BTreeSet;
 
@@ -9,36 +9,38 @@ use sdfc_tests::compiled_examples;
 use crate::Part;
 use crate::tools::Tool;
 
-const TEXTS: [Target; 5] = [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
+const TEXT_TARGETS: [Target; 5] =
+    [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];
 
-/// Lists that are short enough to be constants of a text, of numbers and of points; no example has such.
+/// Lists of numbers and points that are short enough to be constants of the shader. No example has
+/// such.
 const SHORT_LISTS: &str = "let heights = [for i in 0..9: 0.05 * i * i]
 let places = [for i in 0..5: [i, 0.1 * i * i, 0]]
 solid steps() = 0.5 * (p.y - heights[floor(clamp(p.x, 0, 8))])
 solid dots() = length(p - places[floor(clamp(p.x, 0, 4))]) - 0.2
 (steps() & box(4)) | dots()";
 
-/// Every example beside itself, with another prefix and binding: no name is declared by both, and where a
-/// validator is here, it takes the two as one file.
+/// Writes every example twice with different prefixes and bindings. No name is declared by both,
+/// and installed validators accept them in one file.
 pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
     let lists = Scene::from_source("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
     for (name, scene) in compiled_examples()?.into_iter().chain([("short lists".to_owned(), lists)])
     {
-        for target in TEXTS {
+        for target in TEXT_TARGETS {
             for emit in [Emit::Field, Emit::March] {
-                let place = format!("{name} as {}, {emit:?}", target.name());
+                let label = format!("{name} as {}, {emit:?}", target.name());
                 let [one, other] = [("one_", 0), ("other_", 1)]
                     .map(|(prefix, binding)| text(&scene, target, emit, prefix, binding));
                 let (one, other) = (one?, other?);
                 let both =
                     declared(&one).intersection(&declared(&other)).cloned().collect::<Vec<_>>();
                 if !both.is_empty() {
-                    return Err(format!("{place}: both declare {}", both.join(", ")).into());
+                    return Err(format!("{label}: both declare {}", both.join(", ")).into());
                 }
                 let Some(tool) = Tool::of(target) else { continue };
                 let part = Part { name: "both", emit, stage: Stage::Fragment };
                 let pasted = Code::Text(format!("{one}{}", pasteable(&other, target)));
-                tool.check(part, &pasted).map_err(|found| format!("{place}: {found}"))?;
+                tool.check(part, &pasted).map_err(|error| format!("{label}: {error}"))?;
             }
         }
     }
@@ -60,7 +62,8 @@ fn text(
     }
 }
 
-/// The text without what a file has once: in GLSL, as `docs/targets.md` says, the version and the empty stage.
+/// Returns the source without the lines that a file has once: in GLSL the version and the empty
+/// stage, as `docs/targets.md` explains.
 fn pasteable(text: &str, target: Target) -> &str {
     match target {
         Target::Glsl | Target::GlslEs => {
@@ -71,7 +74,7 @@ fn pasteable(text: &str, target: Target) -> &str {
     }
 }
 
-/// What stands before `(`, `{` or `=` in lines that begin a declaration, but for the stage.
+/// Returns the names before `(`, `{` or `=` in lines that begin a declaration, except the stage.
 fn declared(text: &str) -> BTreeSet<String> {
     let heads = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_alphabetic()));
     let names = heads.filter_map(|line| {

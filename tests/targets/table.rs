@@ -12,8 +12,8 @@ use crate::{PARTS, write};
 const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
 const END: &str = "<!-- End of the table. -->\n";
 
-/// What compiles a target's texts, beside the writer's own validator.
-fn judges(target: Target) -> String {
+/// Returns the programs that validate a target, besides the writer's own validator.
+fn validators(target: Target) -> String {
     let tools = TOOLS.iter().filter(|tool| tool.target == target);
     let mut names: Vec<_> = tools.map(|tool| tool.program).collect();
     match target {
@@ -23,12 +23,13 @@ fn judges(target: Target) -> String {
     if names.is_empty() { "nothing else".to_owned() } else { names.join(", ") }
 }
 
-/// Who judges, and one row for each example: the parts that can be written.
+/// Returns the table: the validators, and one row for each example with the parts that can be
+/// written.
 fn table() -> Result<String, Failed> {
     let names = Target::ALL.map(Target::name);
     let mut text =
         format!("| example | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
-    writeln!(text, "| *judged by* | {} |", Target::ALL.map(judges).join(" | "))?;
+    writeln!(text, "| *validated by* | {} |", Target::ALL.map(validators).join(" | "))?;
     for (name, scene) in compiled_examples()? {
         write!(text, "| {name} |")?;
         for target in Target::ALL {
@@ -48,8 +49,7 @@ pub fn is_current() -> Result<(), Failed> {
         let (found, tail) = rest.split_once(END)?;
         Some((head, found, tail))
     });
-    let (head, found, tail) =
-        parts.ok_or("docs/targets.md has lost the comments around its table")?;
+    let (head, found, tail) = parts.ok_or("docs/targets.md has no comments around its table")?;
     let table = table()?;
     if found == table {
         return Ok(());
@@ -58,5 +58,5 @@ pub fn is_current() -> Result<(), Failed> {
         std::fs::write(&path, format!("{head}{BEGIN}{table}{END}{tail}"))?;
         return Ok(());
     }
-    Err("docs/targets.md is out of date; write its table anew with TARGETS_UPDATE=1".into())
+    Err("docs/targets.md is out of date; rewrite its table with TARGETS_UPDATE=1".into())
 }

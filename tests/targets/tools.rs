@@ -1,4 +1,4 @@
-//! Validators that others wrote.
+//! External validators.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -9,13 +9,13 @@ use crate::Part;
 
 const SHADERTOY: &str = include_str!("shadertoy.glsl");
 
-/// A validator and the target that it judges.
+/// A validator and its target.
 pub struct Tool {
     pub program: &'static str,
     pub target: Target,
-    /// An argument on which it says its version.
+    /// The argument that prints its version; empty for a library.
     version: &'static str,
-    /// Arguments for a part, before the file.
+    /// The arguments for a part, before the file.
     arguments: fn(Part) -> &'static [&'static str],
 }
 
@@ -46,14 +46,14 @@ pub const TOOLS: &[Tool] = &[
         program: "glslangValidator",
         target: Target::Shadertoy,
         version: "--version",
-        // Linked, so that all that is called is there.
+        // Linked, so that missing functions are found.
         arguments: |_| &["-l", "-S", "frag"],
     },
     Tool {
         program: "glslangValidator",
         target: Target::Hlsl,
         version: "--version",
-        // Its reader of HLSL, up to the tree: a field has no entry point to be linked from.
+        // Parsed only: a field has no entry point for linking.
         arguments: |part| match (part.emit, part.stage) {
             (Emit::Render, Stage::Compute) => {
                 &["-D", "-V", "-o", "/dev/null", "-S", "comp", "-e", "sdf_main"]
@@ -68,7 +68,7 @@ pub const TOOLS: &[Tool] = &[
         program: "spirv-val",
         target: Target::Spirv,
         version: "--version",
-        // A field alone is for linking, which Vulkan does not know.
+        // A field is a module for linking, which Vulkan does not allow.
         arguments: |part| match part.emit {
             Emit::Field | Emit::March => &["--target-env", "spv1.3"],
             Emit::Render => &["--target-env", "vulkan1.1"],
@@ -77,7 +77,7 @@ pub const TOOLS: &[Tool] = &[
 ];
 
 impl Tool {
-    /// naga is a library.
+    /// Returns true for naga, which is a library.
     fn is_library(&self) -> bool {
         self.version.is_empty()
     }
@@ -88,12 +88,12 @@ impl Tool {
         self.is_library() || command.status().is_ok()
     }
 
-    /// The tool for a target's texts, where one is installed.
+    /// Returns the installed tool for a target, if there is one.
     pub fn of(target: Target) -> Option<&'static Self> {
         TOOLS.iter().find(|tool| tool.target == target && tool.is_installed())
     }
 
-    /// What it has against the code, as an error.
+    /// Validates the code. The error is the output of the tool.
     pub fn check(&self, part: Part, code: &Code) -> Result<(), String> {
         if self.is_library() {
             return check_with_naga(code);
@@ -109,12 +109,12 @@ impl Tool {
         if output.status.success() {
             return Ok(());
         }
-        let said = [output.stdout, output.stderr].concat();
-        Err(String::from_utf8_lossy(&said).into_owned())
+        let message = [output.stdout, output.stderr].concat();
+        Err(String::from_utf8_lossy(&message).into_owned())
     }
 }
 
-/// Reads the text again.
+/// Parses and validates WGSL.
 fn check_with_naga(code: &Code) -> Result<(), String> {
     let Code::Text(text) = code else { return Err("no text".to_owned()) };
     let module = naga::front::wgsl::parse_str(text).map_err(|e| e.emit_to_string(text))?;

@@ -1,8 +1,8 @@
 //! Finds cycles between the modules of a crate.
 //!
 //! A module depends on the modules that its `use` declarations and its paths with `crate` or
-//! `super` name. A path to a re-exported item counts as a path to the module that defines the item, so an
-//! import through the crate's root hides no cycle. Test modules do not count.
+//! `super` name. A path to a re-exported item counts as a path to the module that defines the item,
+//! so an import through the crate's root hides no cycle. Test modules do not count.
 
 use std::collections::{BTreeMap, BTreeSet};
 
