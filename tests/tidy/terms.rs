@@ -38,12 +38,15 @@ const fn phrase(term: &'static str, instead: &'static str) -> Term {
     Term { term, kind: Kind::Phrase, folder: "", instead }
 }
 
+const fn march(term: &'static str, instead: &'static str) -> Term {
+    Term { term, kind: Kind::Word, folder: "crates/march/", instead }
+}
+
 const fn viewer(term: &'static str, instead: &'static str) -> Term {
     Term { term, kind: Kind::Word, folder: "crates/viewer/", instead }
 }
 
 const TERMS: &[Term] = &[
-    word("knob", "slider (viewer), method parameter (ray methods), param (scenes)"),
     word("lamp", "light"),
     word("mend", "fix, suggestion"),
     word("mended", "fixed"),
@@ -71,11 +74,13 @@ const TERMS: &[Term] = &[
     name("ways_to_mend", "suggestions"),
     phrase("closed form", "analytic"),
     phrase("the processor", "the CPU"),
+    march("knob", "method parameter"),
     viewer("attendant", "worker thread"),
     viewer("clerk", "export worker"),
     viewer("court", "accuracy worker"),
     viewer("errand", "job"),
     viewer("judge", "accuracy worker"),
+    viewer("knob", "slider"),
     viewer("letter", "message"),
     viewer("mailbox", "latest-value channel"),
     viewer("shop", "compile worker"),

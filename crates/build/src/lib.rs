@@ -18,16 +18,16 @@
 //!
 //! - `SHADER`: the source (`&[u32]` for SPIR-V).
 //! - `REFLECTION`: JSON as `sdfc compile --reflect` writes it.
-//! - `Params`: a structure with a member for each param, `time` and `frame` that the shader reads. It
-//!   has the layout of the uniform buffer, and the scene's defaults are its `Default`. All padding is
-//!   made of members, so that [`Build::bytemuck`] can derive `Pod` for it; without that, `to_bytes`
-//!   copies the members.
+//! - `Params`: a structure with a member for each param, `time` and `frame` that the shader reads.
+//!   It has the layout of the uniform buffer, and the scene's defaults are its `Default`. All
+//!   padding is made of members, so that [`Build::bytemuck`] can derive `Pod` for it; without that,
+//!   `to_bytes` copies the members.
 //! - `GROUP` and `BINDING` of that uniform buffer.
 //! - `LISTS`: the contents of the storage buffer for long lists.
 //!
 //! The program that includes the module needs no part of sdfc at run time. The build script runs
-//! again only when the scene or a file that it imports has changed. A procedural macro would compile
-//! the scene again after every edit of the program, in editors at every keystroke.
+//! again only when the scene or a file that it imports has changed. A procedural macro would
+//! compile the scene again after every edit of the program, in editors at every keystroke.
 
 mod module;
 

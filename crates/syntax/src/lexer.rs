@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_numbers_and_points_are_told_apart() {
+    fn ranges_numbers_and_points_are_distinguished() {
         use TokenKind::{Dot, DotDot, Ellipsis, Eof, Name, Number, PointNumber};
         assert_eq!(kinds("0..8"), [Number, DotDot, Number, Eof]);
         assert_eq!(kinds("0.5..1.5e-3deg"), [Number, DotDot, Number, Eof]);

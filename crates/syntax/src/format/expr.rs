@@ -1,11 +1,10 @@
 //! Converts expressions to documents.
 
-use super::decl::lambda;
-use super::doc::{
-    Brackets, Chain, Doc, NOTHING, brackets, chain, concat, group, hard, indent, line, text,
-};
+use super::brackets::{bracketed, stays_beside};
+use super::doc::{Chain, Doc, NOTHING, chain, concat, group, hard, indent, line, text};
+use super::signature::function;
 use super::source::Source;
-use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Let, UnaryOp, deeper};
+use crate::ast::{Arg, BinaryOp, Element, Expr, ExprKind, Let, Signature, UnaryOp, deeper};
 use crate::token::TokenKind;
 
 pub(super) fn expr<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
@@ -179,26 +178,6 @@ fn postfixes<'a>(source: &mut Source<'a>, tree: &Expr) -> Doc<'a> {
     chain(Chain { head, links, breaks })
 }
 
-/// Converts bracketed elements, with an optional comma behind the last.
-pub(super) fn bracketed<'a, T>(
-    source: &mut Source<'a>,
-    elements: &[T],
-    one: impl Fn(&mut Source<'a>, &T) -> Doc<'a>,
-    hug: Option<usize>,
-) -> Doc<'a> {
-    let open = concat(vec![source.take(), source.trailing_comments()]);
-    let (mut docs, mut notes) = (Vec::new(), Vec::new());
-    for element in elements {
-        docs.push(one(source, element));
-        let before = source.trailing_comments();
-        source.skip(TokenKind::Comma);
-        notes.push(concat(vec![before, source.trailing_comments()]));
-    }
-    let comments = source.comments();
-    let close = source.take();
-    brackets(Brackets { open, elements: docs, notes, comments, close, hug })
-}
-
 /// Returns the element that may take several lines while the others stay beside it: the only one
 /// that is a function with a block or list, or a list that is the only element.
 fn hugged<'t>(elements: impl Iterator<Item = &'t Element> + Clone) -> Option<usize> {
@@ -215,13 +194,10 @@ fn is_list(tree: &Expr) -> bool {
     matches!(tree.kind, ExprKind::List(_))
 }
 
-/// Returns true if the first line of an expression over several lines ends with an opening bracket.
-pub(super) fn stays_beside(tree: &Expr) -> bool {
-    let mut tree = tree;
-    while let ExprKind::Lambda(_, body) = &tree.kind {
-        tree = body;
-    }
-    matches!(tree.kind, ExprKind::Block(..) | ExprKind::List(_))
+/// Converts `fn(parameters) clauses = body`.
+fn lambda<'a>(source: &mut Source<'a>, signature: &Signature, body: &Expr) -> Doc<'a> {
+    let head = vec![source.take()];
+    function(source, head, (signature, body), false, expr)
 }
 
 fn argument<'a>(source: &mut Source<'a>, arg: &Arg) -> Doc<'a> {

@@ -18,10 +18,12 @@
 //! - Numbers and strings stay as written; colours become lower case. Semicolons stay in blocks on
 //!   one line, and before a line that starts with `-`.
 
+mod brackets;
 mod decl;
 mod doc;
 mod expr;
 mod print;
+mod signature;
 mod source;
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
