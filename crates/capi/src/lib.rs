@@ -103,7 +103,7 @@ pub unsafe extern "C" fn sdfc_compile_with_files(
         let source = std::str::from_utf8(source).map_err(|_| Failure::not_utf8("source"))?;
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let files = unsafe { CallbackResolver::new(read, context) };
-        let compiled = sdfc::compile_with_imports(name, source, &host);
+        let compiled = sdfc::compile_with_imports(name, source, &files);
         if !diagnostics.is_null() {
             let rows =
                 c_string(serde_json::to_string(&compiled.rows()).map_err(Failure::internal)?)?;
