@@ -41,13 +41,14 @@ pub fn draws_the_typed_scene(session: &mut Session) -> Result<(), Failed> {
         }
         let said = session.chromium.evaluate("document.querySelector('pre').textContent")?;
         let text = session.chromium.evaluate("document.querySelector('textarea').value")?;
-        let scene = sdfc::compile("typed.sdf", text.as_str().ok_or("no text")?).scene;
+        let text = text.as_str().ok_or("no text")?;
+        let scene = sdfc::Compiler::new().compile("typed.sdf", text);
         match scene {
-            Some(scene) => {
+            Ok(scene) => {
                 check(&shown(session)?, &drawn(&scene, None, None)?, "what is typed")?;
             }
-            None if said == "" => return Err("an error is not shown".into()),
-            None => {}
+            Err(_) if said == "" => return Err("an error is not shown".into()),
+            Err(_) => {}
         }
     }
     Ok(())

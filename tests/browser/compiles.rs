@@ -16,7 +16,7 @@ pub fn every_example(session: &mut Session, target: Target) -> Result<(), Failed
     let mut shaders = Vec::new();
     for (name, scene) in compiled_examples()? {
         for (emit, stage) in PARTS {
-            let options = ShaderOptions { target, emit, stage, ..ShaderOptions::default() };
+            let options = ShaderOptions::new().target(target).emit(emit).stage(stage);
             // `tests/targets` lists the parts that a target does not support.
             let Ok(written) = scene.write_shader(&options) else { continue };
             let Code::Text(text) = written.code else { continue };

@@ -2,11 +2,11 @@
 //! render`.
 
 use libtest_mimic::Failed;
-use sdfc::render::Pose;
 use sdfc::{
     Code, Emit, FrameValues, PictureOptions, Scene, ShaderOptions, Stage, Target, VIEW_SIZE,
     no_progress,
 };
+use sdfc_render::Pose;
 use sdfc_tests::compiled_example;
 
 use crate::{Session, table};
@@ -63,8 +63,7 @@ impl Embedding {
     /// Serves the compiled shader beside the page.
     fn put(&self, session: &Session, scene: &Scene) -> Result<(), Failed> {
         let Self { name, target, emit, file } = *self;
-        let options =
-            ShaderOptions { target, emit, stage: Stage::Fragment, ..ShaderOptions::default() };
+        let options = ShaderOptions::new().target(target).emit(emit).stage(Stage::Fragment);
         let written = scene.write_shader(&options)?;
         let reflection = scene.reflect(&options, &written);
         let Code::Text(text) = written.code else { return Err("no text".into()) };
@@ -212,8 +211,7 @@ pub fn drawn(
     frame: Option<FrameValues>,
     pose: Option<Pose>,
 ) -> Result<Pixels, Failed> {
-    let options =
-        PictureOptions { size: VIEW_SIZE, samples: Some(1), frame, pose, ..Default::default() };
+    let options = PictureOptions::new().size(VIEW_SIZE).samples(Some(1)).frame(frame).pose(pose);
     let image = scene.render(&options, &mut no_progress)?.image;
     Ok(image.to_srgb8().as_chunks().0.to_vec())
 }

@@ -1,9 +1,9 @@
 //! The page with three.js shows every scene, with a shading of its own.
 
 use libtest_mimic::Failed;
-use sdfc::graph::eval::{FieldSample, Tape, sample_field};
-use sdfc::render::{HIT, View, linear_to_srgb8};
-use sdfc::{FrameValues, PictureOptions, Scene, VIEW_SIZE, no_progress};
+use sdfc::{Compiler, FrameValues, PictureOptions, Scene, VIEW_SIZE, no_progress};
+use sdfc_graph::eval::{FieldSample, Tape, sample_field};
+use sdfc_render::{HIT, View, linear_to_srgb8};
 use sdfc_tests::{compiled_example, examples_folder};
 use serde_json::json;
 
@@ -70,7 +70,7 @@ pub fn hides_meshes_and_fields(session: &mut Session) -> Result<(), Failed> {
 pub fn takes_a_bare_scene(session: &mut Session) -> Result<(), Failed> {
     let mut seen = Vec::new();
     for text in ["sphere(1)", "box(3)"] {
-        let scene = Scene::from_source("bare.sdf", text).map_err(|e| e.to_string())?;
+        let scene = Compiler::new().compile("bare.sdf", text).map_err(|e| e.to_string())?;
         THREE.open(session, &scene, "")?;
         seen.push(shown(session)?);
     }
@@ -95,7 +95,7 @@ pub fn follows_the_clock(session: &mut Session) -> Result<(), Failed> {
 
 /// Computes the shading of `main.js` at the hits of `sdfc render`.
 fn expected(scene: &Scene) -> Result<Pixels, Failed> {
-    let options = PictureOptions { size: VIEW_SIZE, samples: Some(1), ..Default::default() };
+    let options = PictureOptions::new().size(VIEW_SIZE).samples(Some(1));
     let picture = scene.render(&options, &mut no_progress)?.image;
     let frame = FrameValues::defaults(scene.params());
     let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), VIEW_SIZE)?;

@@ -20,7 +20,7 @@ mod pictures;
 
 use std::path::PathBuf;
 
-use sdfc::{check, lang::NoFiles};
+use sdfc::Compiler;
 use sdfc_tests::{is_same_picture, repository};
 
 /// The largest difference of two values that count as equal.
@@ -100,15 +100,15 @@ fn every_block_compiles_or_has_the_code_that_it_names() {
     for (page, text) in checked_pages() {
         for (line, expected, block) in blocks(&text) {
             count += 1;
-            let compiled = check(&page, &block, &NoFiles);
-            let codes: Vec<&str> = compiled.diagnostics.iter().map(|it| it.code.0).collect();
+            let found = Compiler::new().verify(true).check(&page, &block);
+            let codes: Vec<&str> = found.iter().map(|it| it.code.0).collect();
             // A block may have declarations only, which draw nothing.
             let fits = match &*expected {
                 "" => codes.iter().all(|code| *code == "W0604"),
                 code => !codes.is_empty() && codes.iter().all(|it| *it == code),
             };
             if !fits {
-                wrong.push(format!("{page}:{line}\n{}", compiled.diagnostics_text(false)));
+                wrong.push(format!("{page}:{line}\n{found}"));
             }
         }
     }
@@ -129,12 +129,15 @@ fn every_expression_gives_what_is_said() {
                 _ => format!("distance({expression}, {value})"),
             };
             let scene = format!("let apart = {apart}\nsolid it() = length(p) + apart\nit()");
-            let compiled = check(&page, &scene, &NoFiles);
-            let apart = compiled.scene.as_ref().map(|it| it.distance([0.0; 3]).unwrap());
-            if apart.is_none_or(|apart| apart > ROUNDING) {
-                let said = compiled.diagnostics_text(false);
-                wrong
-                    .push(format!("{page}:{line}: {expression} is not {value}: {apart:?}\n{said}"));
+            let apart = match Compiler::new().verify(true).compile(&page, &scene) {
+                Ok(scene) => scene.distance([0.0; 3]).unwrap(),
+                Err(errors) => {
+                    wrong.push(format!("{page}:{line}: {expression}\n{errors}"));
+                    continue;
+                }
+            };
+            if apart > ROUNDING {
+                wrong.push(format!("{page}:{line}: {expression} is not {value}: {apart:?}"));
             }
         }
     }

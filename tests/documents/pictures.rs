@@ -1,7 +1,7 @@
 //! The pictures of the tutorial: each shows the scene of the block before it.
 //! `DOCUMENTS_UPDATE=1` rewrites them.
 
-use sdfc::{Backend, PictureOptions, compile, no_progress};
+use sdfc::{Backend, Compiler, PictureOptions, no_progress};
 
 /// Width and height in pixels.
 const SIZE: [u32; 2] = [320, 240];
@@ -25,13 +25,8 @@ pub fn shown(page: &str) -> Vec<(String, String)> {
 
 /// Draws a block and returns the PNG file.
 pub fn drawn(block: &str) -> Vec<u8> {
-    let options = PictureOptions {
-        size: SIZE,
-        backend: Backend::Cpu,
-        samples: Some(SAMPLES),
-        ..Default::default()
-    };
-    let scene = compile("tutorial.sdf", block).scene.expect("it compiles");
+    let options = PictureOptions::new().size(SIZE).backend(Backend::Cpu).samples(Some(SAMPLES));
+    let scene = Compiler::new().compile("tutorial.sdf", block).expect("it compiles");
     let picture = scene.render(&options, &mut no_progress).expect("it is drawn");
     picture.image.to_png().expect("a picture in memory")
 }

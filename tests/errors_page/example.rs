@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use sdfc::{Compiled, check, lang::NoFiles};
-use sdfc_diagnostics::{ALL_CODES, CodeInfo, Note};
+use sdfc::{Compiler, Diagnostics};
+use sdfc_diagnostics::{ALL_CODES, CodeInfo, Diagnostic, Note, render};
 use sdfc_tests::repository;
 
 /// The name of the scenes in messages.
@@ -41,18 +41,17 @@ impl Example {
         let (wrong, fixed) = text
             .split_once("\n----\n")
             .unwrap_or_else(|| panic!("{}: no line of four dashes", path.display()));
-        let compiled = |text| check(SCENE, &expanded(text), &NoFiles);
-        let mut result = compiled(wrong);
-        remove_library_notes(&mut result);
-        let messages = result.diagnostics_text(false);
+        let check = |text| Compiler::new().verify(true).check(SCENE, &expanded(text));
+        let result = check(wrong);
+        let messages = render(result.sources(), &without_library_notes(&result), false);
         let lines: Vec<String> = messages.trim_end().lines().map(shortened).collect();
         Self {
             code,
             wrong: wrong.to_owned(),
             fixed: fixed.trim_end().to_owned(),
             messages: lines.join("\n"),
-            codes: result.diagnostics.iter().map(|diagnostic| diagnostic.code.0).collect(),
-            messages_of_fixed: compiled(fixed).diagnostics_text(false),
+            codes: result.iter().map(|diagnostic| diagnostic.code.0).collect(),
+            messages_of_fixed: check(fixed).render(false),
         }
     }
 
@@ -66,12 +65,14 @@ impl Example {
 }
 
 /// Removes the notes about lines of the library, since line numbers there change often.
-fn remove_library_notes(compiled: &mut Compiled) {
-    let sources = &compiled.sources;
+fn without_library_notes(diagnostics: &Diagnostics) -> Vec<Diagnostic> {
+    let sources = diagnostics.sources();
     let in_library = |note: &Note| note.span.is_some_and(|at| sources.name(at.file) != SCENE);
-    for diagnostic in &mut compiled.diagnostics {
+    let mut list: Vec<Diagnostic> = diagnostics.iter().cloned().collect();
+    for diagnostic in &mut list {
         diagnostic.notes.retain(|note| !in_library(note));
     }
+    list
 }
 
 fn shortened(line: &str) -> String {

@@ -3,23 +3,23 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use sdfc::{Backend, PictureOptions, no_progress};
+use sdfc::{Backend, Compiler, PictureOptions, no_progress};
 
 use sdfc_tests::example_sources;
 
 #[test]
 fn examples_are_formatted() {
     for (name, text) in example_sources().unwrap() {
-        let formatted = sdfc::format(&name, &text, false);
+        let formatted = sdfc::format(&name, &text).map_err(|errors| errors.to_string());
         assert!(formatted.as_deref() == Ok(&text), "{name}: run `sdfc fmt`");
     }
 }
 
 #[test]
 fn the_library_is_formatted() {
-    for (name, text) in sdfc::lang::library::FILES {
+    for (name, text) in sdfc_lang::library::FILES {
         let text = text.replace("\r\n", "\n");
-        let formatted = sdfc::format(name, &text, false);
+        let formatted = sdfc::format(name, &text).map_err(|errors| errors.to_string());
         assert!(formatted.as_deref() == Ok(&*text), "{name}: run `sdfc fmt crates/lang/std/*.sdf`");
     }
 }
@@ -33,12 +33,11 @@ fn examples_begin_with_a_comment() {
 
 #[test]
 fn examples_draw_something_and_explain_their_diagnostics() {
-    let options = PictureOptions { size: [32, 20], backend: Backend::Cpu, ..Default::default() };
+    let options = PictureOptions::new().size([32, 20]).backend(Backend::Cpu);
     for (name, text) in example_sources().unwrap() {
-        let compiled = sdfc::compile(&name, &text);
-        let explained = compiled.diagnostics.iter().all(|it| text.contains(it.code.0));
-        assert!(explained, "{}", compiled.diagnostics_text(false));
-        let scene = compiled.scene.unwrap();
+        let scene = Compiler::new().compile(&name, &text).unwrap();
+        let warnings = scene.diagnostics();
+        assert!(warnings.iter().all(|it| text.contains(it.code.0)), "{warnings}");
         let pixels = scene.render(&options, &mut no_progress).unwrap().stats.pixels;
         assert!(pixels.hit > 32 && pixels.nan == 0, "{name}: {pixels:?}");
     }

@@ -106,10 +106,8 @@ fn has_stated_count(name: &str) -> Result<(), Failed> {
 /// Returns the field that the compiler emits for a scene, optimised.
 fn emitted(name: &str) -> Result<spirv::Words, Failed> {
     let path = SCENES.iter().find(|row| row.0 == name).map_or("", |row| row.1);
-    let compiled = sdfc::compile(path, &std::fs::read_to_string(repository().join(path))?);
-    let scene = compiled.scene.ok_or_else(|| {
-        sdfc::diagnostics::render(&compiled.sources, &compiled.diagnostics, false)
-    })?;
+    let text = std::fs::read_to_string(repository().join(path))?;
+    let scene = sdfc::Compiler::new().compile(path, &text)?;
     let options =
         sdfc::FieldOptions { gradient: false, material: false, ..sdfc::FieldOptions::default() };
     let wgsl = scene.field_shader(&options)?.wgsl()? + ENTRY;

@@ -17,9 +17,9 @@ use std::collections::BTreeSet;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::FrameValues;
-use sdfc::accuracy_data::{Metrics, compare};
-use sdfc::march::method;
-use sdfc::render::{Gpu, testing};
+use sdfc_march::method;
+use sdfc_measure::{Metrics, OracleOptions, Sampler, compare, oracle, truth};
+use sdfc_render::{Gpu, testing};
 
 use crate::table::{Expected, Mutant};
 
@@ -78,9 +78,7 @@ fn are_used(mutants: &[Mutant]) -> Result<(), Failed> {
 /// Draws the mutant's scene and compares it with the surface that the oracle finds.
 fn is_drawn_right(mutant: &Mutant) -> Result<(), Failed> {
     let text = std::fs::read_to_string(format!("{ROOT}/tests/{}.sdf", mutant.scene))?;
-    let compiled = sdfc::compile("mutant.sdf", &text);
-    let diagnostics = compiled.diagnostics_text(false);
-    let scene = compiled.scene.ok_or_else(|| Failed::from(diagnostics))?;
+    let scene = sdfc::Compiler::new().compile("mutant.sdf", &text)?;
     if mutant.expected == Expected::Right && !scene.is_certified() {
         // The analysis promises nothing, so no picture can break a promise.
         return Ok(());
@@ -88,9 +86,9 @@ fn is_drawn_right(mutant: &Mutant) -> Result<(), Failed> {
     let method = method(&mutant.method).ok_or("no such method")?;
     let frame = FrameValues::defaults(scene.params());
     let view = scene.view(&frame, SIZE)?;
-    let truth = scene.truth(&view, &frame, &|_| ())?;
-    let samples = scene.sampler(&Gpu::new()?, method)?.samples(&view, &frame)?;
-    let metrics = compare(&scene.oracle()?, &frame, &truth, &samples);
+    let truth = truth(&scene, &view, &frame, OracleOptions::default())?;
+    let samples = Sampler::new(&scene, &Gpu::new()?, method)?.samples(&view, &frame)?;
+    let metrics = compare(&oracle(&scene)?, &frame, &truth, &samples);
     if is_as_expected(&metrics, mutant.expected) {
         return Ok(());
     }

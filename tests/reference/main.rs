@@ -17,7 +17,7 @@ mod pictures;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use sdfc::lang::reference;
+use sdfc_lang::reference;
 use sdfc_tests::{is_same_picture, repository};
 
 /// The files of the folder: path below it and content.

@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use sdfc::lang::library::Entry;
+use sdfc_lang::library::Entry;
 use sdfc_tests::wrapped;
 
 use super::{Files, pictures};

@@ -1,9 +1,9 @@
 //! The pictures: a rendered example of each solid, and the field of each region in the plane.
 
-use sdfc::graph::eval::{FrameValues, Tape};
-use sdfc::graph::{Dim, Expander, ShapeId, bounds};
-use sdfc::lang::library::Entry;
-use sdfc::{Backend, PictureOptions, Scene, compile, no_progress};
+use sdfc::{Backend, Compiler, PictureOptions, Scene, no_progress};
+use sdfc_graph::eval::{FrameValues, Tape};
+use sdfc_graph::{Dim, Expander, ShapeId, bounds};
+use sdfc_lang::library::Entry;
 
 use super::Files;
 
@@ -55,18 +55,12 @@ fn png(entry: &Entry) -> Vec<u8> {
 }
 
 fn scene(entry: &Entry, more: &str) -> Scene {
-    let compiled = compile(&entry.name, &format!("{}{more}", entry.example));
-    let messages = compiled.diagnostics_text(false);
-    compiled.scene.unwrap_or_else(|| panic!("{messages}"))
+    let compiled = Compiler::new().compile(&entry.name, &format!("{}{more}", entry.example));
+    compiled.unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn solid(entry: &Entry) -> Vec<u8> {
-    let options = PictureOptions {
-        size: SIZE,
-        backend: Backend::Cpu,
-        samples: Some(SAMPLES),
-        ..Default::default()
-    };
+    let options = PictureOptions::new().size(SIZE).backend(Backend::Cpu).samples(Some(SAMPLES));
     let picture = scene(entry, LIGHT).render(&options, &mut no_progress);
     picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
 }
@@ -82,7 +76,7 @@ fn region(entry: &Entry) -> Vec<u8> {
     let shape = graph.shape_ids().find(of_entry).unwrap_or_else(|| panic!("{}", entry.name));
     let frame = FrameValues::defaults(scene.params());
     let corners = bounds(&mut graph, shape, scene.params());
-    let corners = sdfc::graph::eval::evaluate_frame(&graph, &corners, &frame);
+    let corners = sdfc_graph::eval::evaluate_frame(&graph, &corners, &frame);
     let point = graph.point(0, Dim::Three);
     let point = graph.swizzle(point, &[0, 1]);
     let distance = Expander::new().field(&mut graph, shape, point).expect("it expands");

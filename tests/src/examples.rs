@@ -28,8 +28,9 @@ pub fn compiled_examples() -> Result<Vec<(String, Scene)>, Failed> {
 pub fn compiled_example(name: &str) -> Result<Scene, Failed> {
     let path = examples_folder().join(name);
     let text = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
-    let scene = sdfc::compile_with_imports(name, &text, &SameFolder(&path)).scene;
-    Ok(scene.ok_or(format!("{name} does not compile"))?)
+    let folder = SameFolder(&path);
+    let scene = sdfc::Compiler::new().resolver(&folder).compile(name, &text);
+    Ok(scene?)
 }
 
 /// Resolves imports in the folder of the scene at this path.

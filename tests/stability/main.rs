@@ -19,9 +19,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use case::{Bounds, Case, cases};
 use libtest_mimic::{Arguments, Failed, Trial};
 use page::{Errors, Page};
-use sdfc::accuracy_data::{Truth, compare};
-use sdfc::render::{Gpu, View, testing};
 use sdfc::{FrameValues, Scene};
+use sdfc_measure::{OracleOptions, Sampler, Truth, compare, oracle, truth};
+use sdfc_render::{Gpu, View, testing};
 
 /// The width and height in pixels of the pictures for the page.
 const SIZE: [u32; 2] = [160, 120];
@@ -74,17 +74,15 @@ fn check_case(
     update: bool,
     measured: &Measured,
 ) -> Result<(), Failed> {
-    let compiled = sdfc::compile(&case.path, &case.text);
-    let messages = compiled.diagnostics_text(false);
-    let scene = compiled.scene.ok_or_else(|| Failed::from(messages))?;
+    let scene = sdfc::Compiler::new().compile(&case.path, &case.text)?;
     if case.exempt.is_none() && !scene.is_certified() {
         return Err("the scene is uncertified, and its comment has no line `Exempt:`".into());
     }
     let views = views(case, &scene, size)?;
-    let (gpu, oracle) = (Gpu::new()?, scene.oracle()?);
+    let (gpu, oracle) = (Gpu::new()?, oracle(&scene)?);
     let mut row = Vec::new();
-    for method in sdfc::march::METHODS {
-        let sampler = scene.sampler(&gpu, &method)?;
+    for method in sdfc_march::METHODS {
+        let sampler = Sampler::new(&scene, &gpu, &method)?;
         let measure = |(view, frame, truth): &(View, FrameValues, Truth)| {
             Ok(compare(&oracle, frame, truth, &sampler.samples(view, frame)?))
         };
@@ -111,7 +109,7 @@ fn views(
 ) -> Result<Vec<(View, FrameValues, Truth)>, Failed> {
     let measure = |frame: FrameValues| {
         let view = scene.view(&frame, size)?;
-        let truth = scene.truth(&view, &frame, &|_| ())?;
+        let truth = truth(scene, &view, &frame, OracleOptions::default())?;
         Ok((view, frame, truth))
     };
     case.frames(scene)?.into_iter().map(measure).collect()
@@ -119,7 +117,7 @@ fn views(
 
 /// Fails unless the methods that outperform `auto` are those that the case names.
 fn not_outdone(case: &Case, auto: &Errors, row: &[Errors]) -> Result<(), Failed> {
-    let methods = sdfc::march::METHODS.iter().zip(row);
+    let methods = sdfc_march::METHODS.iter().zip(row);
     let better: Vec<&str> = methods
         .filter(|(_, errors)| errors.outperforms(auto))
         .map(|(method, _)| method.name)

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use libtest_mimic::Failed;
 use sdfc::FrameValues;
-use sdfc::accuracy_data::chart::LEAST_ERROR;
-use sdfc::accuracy_data::{Metrics, Truth};
-use sdfc::render::{AdapterInfo, Gpu, View};
+use sdfc_measure::chart::LEAST_ERROR;
+use sdfc_measure::{Metrics, Truth};
+use sdfc_render::{AdapterInfo, Gpu, View};
 use sdfc_tests::repository;
 
 use crate::case::Case;
@@ -148,7 +148,7 @@ impl Page {
         let before = std::fs::read_to_string(Self::path()).unwrap_or_default();
         let mut text = HEAD.to_owned();
         let _ = writeln!(text, "{}\n", driver(Gpu::new()?.info()));
-        let names: Vec<&str> = sdfc::march::METHODS.iter().map(|method| method.name).collect();
+        let names: Vec<&str> = sdfc_march::METHODS.iter().map(|method| method.name).collect();
         let _ = writeln!(text, "| scene | | `{}` |", names.join("` | `"));
         let _ = writeln!(text, "|---|---|{}", "---|".repeat(names.len()));
         for case in cases {

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 
 use libtest_mimic::Failed;
-use sdfc::codegen::{Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
-use sdfc::render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
-use sdfc::render::{linear_to_srgb8, uniform_values};
 use sdfc::{FrameValues, Scene, Stage, no_progress};
+use sdfc_codegen::{Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
+use sdfc_render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
+use sdfc_render::{linear_to_srgb8, uniform_values};
 use wgpu::BufferUsages as Usage;
 
 /// Width and height, as in `shadertoy.wgsl`. Copies need rows of a multiple of 256 bytes.
@@ -125,12 +125,12 @@ fn params(scene: &Scene, reflection: &Reflection) -> Vec<[f32; 4]> {
     let size = reflection.uniform.as_ref().map_or(0, |uniform| uniform.size);
     let mut words = vec![[0.0; 4]; size.div_ceil(16) as usize];
     for member in &reflection.members {
-        let sdfc::graph::FrameInput::Param(index) = member.input else { continue };
+        let sdfc_graph::FrameInput::Param(index) = member.input else { continue };
         let default = scene.params()[index as usize].default;
         for (lane, value) in (0..member.size / 4).zip(default) {
             let word = (member.offset / 4 + lane) as usize;
             let truth = f32::from_bits(u32::from(value != 0.0));
-            let is_bool = member.ty == sdfc::graph::Type::Bool;
+            let is_bool = member.ty == sdfc_graph::Type::Bool;
             words[word / 4][word % 4] = if is_bool { truth } else { value as f32 };
         }
     }

@@ -10,8 +10,8 @@ mod table;
 mod tools;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::render::testing;
 use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+use sdfc_render::testing;
 use sdfc_tests::compiled_examples;
 
 /// A part of a shader, with the options that select it.
@@ -69,7 +69,7 @@ pub fn is_supported(target: Target, part: Part) -> bool {
 
 fn write(scene: &Scene, target: Target, part: Part) -> Result<Code, sdfc::Error> {
     let Part { emit, stage, .. } = part;
-    let options = ShaderOptions { target, emit, stage, ..ShaderOptions::default() };
+    let options = ShaderOptions::new().target(target).emit(emit).stage(stage);
     Ok(scene.write_shader(&options)?.code)
 }
 

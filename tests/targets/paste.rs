@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use libtest_mimic::Failed;
-use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+use sdfc::{Code, Compiler, Emit, Scene, ShaderOptions, Stage, Target};
 use sdfc_tests::compiled_examples;
 
 use crate::Part;
@@ -23,7 +23,7 @@ solid dots() = length(p - places[floor(clamp(p.x, 0, 4))]) - 0.2
 /// Writes every example twice with different prefixes and bindings. No name is declared by both,
 /// and installed validators accept them in one file.
 pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
-    let lists = Scene::from_source("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
+    let lists = Compiler::new().compile("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
     for (name, scene) in compiled_examples()?.into_iter().chain([("short lists".to_owned(), lists)])
     {
         for target in TEXT_TARGETS {
@@ -55,7 +55,7 @@ fn text(
     binding: u32,
 ) -> Result<String, Failed> {
     let prefix = prefix.to_owned();
-    let options = ShaderOptions { target, emit, prefix, binding, ..ShaderOptions::default() };
+    let options = ShaderOptions::new().target(target).emit(emit).prefix(prefix).binding(binding);
     match scene.write_shader(&options)?.code {
         Code::Text(text) => Ok(text),
         Code::Words(_) => Err("no text".into()),

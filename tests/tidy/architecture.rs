@@ -20,27 +20,28 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 16] = [
     ("march", &[]),
     ("codegen", &["graph", "march"]),
     ("render", &["codegen", "graph", "march"]),
-    ("accuracy", &["graph"]),
-    (
-        "sdfc",
-        &[
-            "accuracy",
-            "analyze",
-            "codegen",
-            "diagnostics",
-            "graph",
-            "lang",
-            "march",
-            "render",
-            "syntax",
-        ],
-    ),
+    ("sdfc", &["analyze", "codegen", "diagnostics", "graph", "lang", "march", "render", "syntax"]),
     ("files", &["sdfc"]),
-    ("cli", &["files", "sdfc"]),
+    ("measure", &["analyze", "codegen", "graph", "march", "render", "sdfc"]),
+    ("cli", &["diagnostics", "files", "lang", "march", "measure", "render", "sdfc"]),
     ("capi", &["sdfc"]),
     ("build", &["files", "sdfc"]),
     ("web", &["sdfc"]),
-    ("viewer", &["files", "sdfc"]),
+    (
+        "viewer",
+        &[
+            "analyze",
+            "codegen",
+            "diagnostics",
+            "files",
+            "graph",
+            "lang",
+            "march",
+            "measure",
+            "render",
+            "sdfc",
+        ],
+    ),
 ];
 
 /// Dependencies that are reserved for these crates.
@@ -54,12 +55,11 @@ const RESERVED: [(&str, &[&str]); 10] = [
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
     ("tempfile", &["files"]),
-    ("plotters", &["accuracy"]),
+    ("plotters", &["measure"]),
 ];
 
 /// Crates that must not contain names of the library in `std/*.sdf`.
-const WITHOUT_SHAPES: [&str; 7] =
-    ["syntax", "graph", "analyze", "march", "codegen", "render", "accuracy"];
+const WITHOUT_SHAPES: [&str; 6] = ["syntax", "graph", "analyze", "march", "codegen", "render"];
 
 /// Library names that are also ray methods, and the crates that may name ray methods.
 const ALSO_METHODS: ([&str; 2], [&str; 3]) =

@@ -34,7 +34,7 @@ mod module;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use sdfc::{Compiled, Resolver, ShaderOptions};
+use sdfc::{Compiler, Diagnostics, Resolver, ShaderOptions};
 use sdfc_files::Folder;
 
 /// The options for compiling scenes.
@@ -137,29 +137,30 @@ impl Build {
         let one = |why: String| (vec![why.clone()], Error(why));
         let input = sdfc_files::read(path).map_err(|why| one(why.to_string()))?;
         let files = RecordingFolder { folder: Folder::of(path), requested: RefCell::default() };
-        let compiled = sdfc::compile_with_imports(&input.name, &input.text, &files);
+        let compiled = Compiler::new().resolver(&files).compile(&input.name, &input.text);
         let folder = path.parent().unwrap_or(Path::new(""));
         let requested = files.requested.into_inner();
         read.extend(requested.iter().map(|path| folder.join(path)));
-        let lines = lines(&compiled, |file| match requested.contains(file) {
+        let path = |file: &String| match requested.contains(file) {
             true => folder.join(file).display().to_string(),
             false => file.clone(),
-        });
-        let scene = match compiled.into_scene() {
-            Ok(scene) => scene,
-            Err(errors) => return Err((lines, Error(format!("\n{errors}")))),
         };
+        let scene = match compiled {
+            Ok(scene) => scene,
+            Err(errors) => return Err((lines(&errors, path), Error(format!("\n{errors}")))),
+        };
+        let warnings = lines(scene.diagnostics(), path);
         let failed = |why: String| one(format!("{}: {why}", input.name));
         let written = scene.write_shader(&self.options).map_err(|why| failed(why.to_string()))?;
         let reflection = scene.reflect(&self.options, &written);
         let text = module::text(&written.code, &reflection, self.bytemuck).map_err(failed)?;
-        Ok(Generated { text, warnings: lines })
+        Ok(Generated { text, warnings })
     }
 }
 
 /// Formats each diagnostic as one line. `path` returns the path of a file with a given name.
-fn lines(compiled: &Compiled, path: impl Fn(&String) -> String) -> Vec<String> {
-    let rows = compiled.rows().into_iter();
+fn lines(diagnostics: &Diagnostics, path: impl Fn(&String) -> String) -> Vec<String> {
+    let rows = diagnostics.rows().into_iter();
     let line = rows.map(|row| {
         let help = row.help.replace('\n', "; ");
         let help = if help.is_empty() { help } else { format!(" ({help})") };

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sdfc::{Scene, ShaderOptions, uniform_bytes};
+use sdfc::{Compiler, ShaderOptions, uniform_bytes};
 use sdfc_build::Build;
 
 const BOWL: &str = include_str!("../../../examples/embed/bowl.sdf");
@@ -67,7 +67,7 @@ fn the_example_includes_its_scene() {
     std::fs::write(folder.path().join("bowl.rs"), generated.text).unwrap();
     let printed = run(&examples().join("build/src/main.rs"), folder.path());
 
-    let scene = Scene::from_source("bowl.sdf", BOWL).unwrap();
+    let scene = Compiler::new().compile("bowl.sdf", BOWL).unwrap();
     let written = scene.write_shader(&ShaderOptions::default()).unwrap();
     let mut frame = scene.defaults();
     scene.set(&mut frame, "wall", 0.12).unwrap();
@@ -103,7 +103,7 @@ fn params_have_the_layout_of_the_buffer() {
     let program = every_kind(&Build::new(), folder.path(), main);
     let printed = run(&program, folder.path());
 
-    let scene = Scene::from_source("all.sdf", EVERY_KIND).unwrap();
+    let scene = Compiler::new().compile("all.sdf", EVERY_KIND).unwrap();
     let written = scene.write_shader(&ShaderOptions::default()).unwrap();
     let mut frame = scene.defaults();
     frame.time = 0.25;

@@ -2,8 +2,7 @@
 
 use std::ffi::{CString, c_char, c_int, c_void};
 
-use sdfc::Resolver;
-use sdfc::lang::NoFiles;
+use sdfc::{NoFiles, Resolver};
 
 use crate::boundary::{guarded, handle_mut, slice};
 use crate::status::Status;

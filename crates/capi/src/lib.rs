@@ -15,8 +15,7 @@ mod status;
 
 use std::ffi::{CString, c_char, c_void};
 
-use sdfc::codegen::Reflection;
-use sdfc::{Emit, FrameValues, ShaderOptions, Target, uniform_bytes};
+use sdfc::{Compiler, Emit, FrameValues, Reflection, ShaderOptions, Target, uniform_bytes};
 
 use boundary::{Failure, fill, guarded, handle, handle_mut, slice, slice_mut, text};
 use files::CallbackResolver;
@@ -103,14 +102,17 @@ pub unsafe extern "C" fn sdfc_compile_with_files(
         let source = std::str::from_utf8(source).map_err(|_| Failure::not_utf8("source"))?;
         // SAFETY: guaranteed by the caller, see the safety section of this function.
         let files = unsafe { CallbackResolver::new(read, context) };
-        let compiled = sdfc::compile_with_imports(name, source, &files);
+        let compiled = Compiler::new().resolver(&files).compile(name, source);
         if !diagnostics.is_null() {
-            let rows =
-                c_string(serde_json::to_string(&compiled.rows()).map_err(Failure::internal)?)?;
+            let rows = match &compiled {
+                Ok(scene) => scene.diagnostics().rows(),
+                Err(errors) => errors.rows(),
+            };
+            let rows = c_string(serde_json::to_string(&rows).map_err(Failure::internal)?)?;
             // SAFETY: the pointer is not null, and the caller guarantees that it may be written.
             unsafe { *diagnostics = rows.into_raw() };
         }
-        let scene = compiled.into_scene().map_err(Failure::scene)?;
+        let scene = compiled.map_err(Failure::scene)?;
         let frame = scene.defaults();
         made = Box::into_raw(Box::new(Scene { scene, frame }));
         Ok(())
@@ -309,8 +311,13 @@ pub unsafe extern "C" fn sdfc_shader_write(
             sdfc::Stage::Fragment
         };
         let prefix = prefix.to_owned();
-        let options =
-            ShaderOptions { target, emit, stage, prefix, group, binding, ..Default::default() };
+        let options = ShaderOptions::new()
+            .target(target)
+            .emit(emit)
+            .stage(stage)
+            .prefix(prefix)
+            .group(group)
+            .binding(binding);
         let written = scene.scene.write_shader(&options).map_err(Failure::scene)?;
         let described = scene.scene.reflect(&options, &written);
         let described = c_string(serde_json::to_string(&described).map_err(Failure::internal)?)?;

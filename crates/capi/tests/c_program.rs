@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use sdfc::Scene;
+use sdfc::Compiler;
 
 const SOURCE: &str = include_str!("../../../examples/embed/bowl.sdf");
 
@@ -61,7 +61,7 @@ fn the_c_example_computes_the_distances_of_the_library() {
     let text = String::from_utf8(output.stdout).unwrap();
     let (rests, rows) = text.split_once('\n').unwrap();
 
-    let scene = Scene::from_source("bowl.sdf", SOURCE).unwrap();
+    let scene = Compiler::new().compile("bowl.sdf", SOURCE).unwrap();
     let mut frame = scene.defaults();
     scene.set(&mut frame, "wall", 0.1).unwrap();
     let mut field = scene.field(&frame).unwrap();

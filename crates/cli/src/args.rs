@@ -1,12 +1,12 @@
-//! The arguments, as clap reads them.
+//! The command line arguments, parsed with clap.
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Parser, Subcommand, ValueEnum};
-use sdfc::lang::settings::RAY_METHODS;
-use sdfc::march::METHODS;
-use sdfc::render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+use sdfc_lang::settings::RAY_METHODS;
+use sdfc_march::Method;
+use sdfc_render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
 use crate::sequence::{self, Frames};
 
@@ -14,31 +14,31 @@ use crate::sequence::{self, Frames};
 #[derive(Debug, Parser)]
 #[command(name = "sdfc", version, propagate_version = true, max_term_width = 100)]
 #[command(
-    after_help = "Exit status: 0 done, 1 the scene is wrong, 2 the call is wrong, 3 the machine cannot, \
-                  130 stopped by ctrl-C."
+    after_help = "Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the \
+                  machine cannot do it (no GPU, I/O error); 130, stopped by Ctrl-C."
 )]
 pub struct Args {
-    /// Options that every command takes.
+    /// Options of all commands.
     #[command(flatten)]
     pub global: Global,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The greatest bind group or binding that can be asked for.
+/// The greatest bind group or binding.
 const MAX_BINDING: i64 = 65_535;
 
-/// Options that every command takes.
+/// Options of all commands.
 #[derive(clap::Args, Debug)]
 pub struct Global {
-    /// Colour in messages
+    /// When to use colour in messages
     #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
     pub color: ColorChoice,
-    /// Say nothing but errors
+    /// Print only errors
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more about what is done
+    /// Print more about what is done
     #[arg(short, long, global = true)]
     pub verbose: bool,
 }
@@ -58,26 +58,26 @@ pub enum ColorChoice {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Show all that is wrong with scenes, and nothing else
+    /// Print all errors and warnings of scenes
     Check(Check),
-    /// Write scenes in the one layout
+    /// Format scenes in the standard layout
     #[command(name = "fmt")]
     Format(Format),
     /// Write the shader of a scene
     Compile(Compile),
-    /// Draw a scene
+    /// Draw a picture of a scene
     Render(Render),
-    /// Show a scene in a window that follows its text
+    /// Show a scene in a window that updates when its file changes
     View(View),
-    /// Say what was modelled and why
+    /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
     Explain(Explain),
-    /// Time the specialised shader against shaders that interpret the scene
+    /// Compare the speed of the specialised shader with shaders that interpret the scene
     Bench(Bench),
-    /// Say what a scene can name: shapes, operators, functions, settings, types
+    /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
-    /// Compare every ray method with where rays really meet the scene
+    /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
-    /// Find the cheapest ray method and setting that keep an error
+    /// Find the cheapest ray method and setting within an error limit
     Tune(Tune),
 }
 
@@ -87,7 +87,7 @@ pub struct Check {
     /// Scenes; `-` is stdin
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Write the diagnostics to stdout as JSON
+    /// Print the diagnostics to stdout as JSON
     #[arg(long)]
     pub json: bool,
 }
@@ -95,10 +95,10 @@ pub struct Check {
 /// Arguments of `fmt`.
 #[derive(clap::Args, Debug)]
 pub struct Format {
-    /// Scenes, formatted in place; `-` is stdin, formatted to stdout
+    /// Scenes, formatted in place; `-` formats stdin to stdout
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Change nothing; fail if anything would change
+    /// Change nothing, and fail if a file is not formatted
     #[arg(long)]
     pub check: bool,
 }
@@ -108,56 +108,56 @@ pub struct Format {
 pub struct Compile {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Where the shader goes; `-`, the default, is stdout
+    /// Output file of the shader; `-` is stdout
     #[arg(short, long, value_name = "OUT", default_value = "-")]
     pub output: PathBuf,
-    /// The language to write
+    /// Shader language
     #[arg(long, value_enum, default_value_t)]
     pub target: Target,
-    /// Which part to write [default: field; render for shadertoy]
+    /// Which part of the shader to write [default: field; render for shadertoy]
     #[arg(long, value_enum)]
     pub emit: Option<Emit>,
-    /// The stage of `--emit render` [default: compute; fragment for glsl-es]
+    /// Shader stage of `--emit render` [default: compute; fragment for glsl-es]
     #[arg(long, value_enum)]
     pub stage: Option<Stage>,
-    /// The ray method of `--emit march` and `render`; the scene's `march(...)` or auto if not given
+    /// Ray method of `--emit march` and `render` [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
     pub march: Option<String>,
-    /// Start of every name [default: sdf_]
+    /// Prefix of all names [default: sdf_]
     #[arg(long, value_name = "NAME")]
     pub prefix: Option<String>,
     /// Bind group of the buffers [default: 0]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
     pub group: Option<u32>,
-    /// Binding of the first of them; the others have the next ones [default: 0]
+    /// Binding of the first buffer; the others follow [default: 0]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=MAX_BINDING))]
     pub binding: Option<u32>,
-    /// Where names, layouts and what is known of the field go, as JSON; `-` is stdout
+    /// Output file for names, layouts and properties of the field, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub reflect: Option<PathBuf>,
-    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
-    /// recompile
+    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
+    /// recompiling
     #[arg(long)]
-    pub slots: bool,
+    pub live_literals: bool,
 }
 
-/// Languages that shaders are written in.
+/// Shader languages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// WebGPU's
+    /// WGSL, for WebGPU
     #[default]
     Wgsl,
     /// GLSL 4.50
     Glsl,
-    /// GLSL ES 3.00, that of WebGL 2
+    /// GLSL ES 3.00, for WebGL 2
     GlslEs,
-    /// DirectX, shader model 5.1
+    /// HLSL for DirectX, shader model 5.1
     Hlsl,
-    /// Metal 2.1
+    /// Metal Shading Language 2.1
     Msl,
     /// SPIR-V 1.3 for Vulkan
     Spirv,
-    /// A whole shader to be pasted on shadertoy.com
+    /// A complete shader to paste on shadertoy.com
     Shadertoy,
 }
 
@@ -175,15 +175,15 @@ impl From<Target> for sdfc::Target {
     }
 }
 
-/// Parts of the shader, and what it is made from.
+/// Parts of a shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Emit {
-    /// The functions for distance, gradient and material
+    /// Functions for distance, gradient and material
     #[default]
     Field,
-    /// The same, and where a ray meets the surface
+    /// The same, and a ray method
     March,
-    /// The whole shader that draws pictures
+    /// A complete shader that draws pictures
     Render,
 }
 
@@ -197,12 +197,12 @@ impl From<Emit> for sdfc::Emit {
     }
 }
 
-/// Stages of the shader that draws pictures.
+/// Stages of a shader that draws pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Stage {
-    /// Pixels into a buffer
+    /// A compute stage that writes pixels into a buffer
     Compute,
-    /// The colour of a pixel, and a vertex stage for a triangle over the target
+    /// A fragment stage, with a vertex stage for a triangle over the target
     Fragment,
 }
 
@@ -220,54 +220,55 @@ impl From<Stage> for sdfc::Stage {
 pub struct Render {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Where the picture goes: a PNG, or an EXR or GIF by its ending; `-` is stdout, as a PNG [default: the
-    /// scene's name with .png, here]
+    /// Output file; its extension .png, .exr or .gif gives the format, and `-` writes a PNG to
+    /// stdout [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
     pub size: [u32; 2],
-    /// The ray method; the scene's `march(...)` or auto if not given
+    /// Ray method [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
     pub march: Option<String>,
-    /// What draws
+    /// Device that draws
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
-    /// How the field of many parts is written
-    #[arg(long, value_enum, default_value_t)]
-    pub writing: Writing,
-    /// Give a param a value, written as in a scene: 0.5, 90deg, true, #d94f30, or a choice's name
+    /// When to turn similar parts of the scene into loops
+    #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
+    pub loops: Loops,
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<Assignment>,
-    /// Make params of the numbers in the scene, called at_LINE_COLUMN, so that they move without a
-    /// recompile
+    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
+    /// recompiling
     #[arg(long)]
-    pub slots: bool,
-    /// The time, in seconds
+    pub live_literals: bool,
+    /// Time in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite, conflicts_with = "frames")]
     pub time: f64,
-    /// Draw the frames from A to before B, as OUT.0007.png and so on, or as one GIF; the time of frame n
-    /// is n / fps
+    /// Draw frames A to B - 1 as OUT.0007.png and so on, or as one GIF; the time of frame n is
+    /// n / fps
     #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
     pub frames: Option<Frames>,
-    /// Frames a second
+    /// Frames per second
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = sequence::rate)]
     pub fps: f64,
-    /// Rays from the eye for each pixel, averaged; the scene's `antialias(...)` or 1 if not given
+    /// Rays per pixel, averaged [default: `antialias(...)` of the scene, or 1]
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
-    /// Where depths go, as an EXR: channel Z, the distance along each pixel's ray in scene units, infinite
-    /// where nothing is met
+    /// Output file for depths, as EXR: channel Z is the distance along each ray in scene units,
+    /// infinite if the ray hits nothing
     #[arg(long, value_name = "OUT.exr")]
     pub depth: Option<PathBuf>,
-    /// Where figures about the picture go, as JSON; `-` is stdout. The frame is drawn five times
+    /// Output file for times and counts, as JSON; `-` is stdout. Draws the frame five times
     #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
     pub stats: Option<PathBuf>,
 }
 
-/// A param and the text of its value.
+/// A param and its value as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
     /// The param.
@@ -276,36 +277,36 @@ pub struct Assignment {
     pub value: String,
 }
 
-/// What draws.
+/// The device that draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// The graphics adapter if there is one, else the processor
+    /// The GPU if there is one, otherwise the CPU
     #[default]
     Auto,
-    /// The graphics adapter
+    /// The GPU
     Gpu,
-    /// The processor
+    /// The CPU
     Cpu,
 }
 
-/// How the field of many parts is written.
+/// When similar parts of a scene become loops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Writing {
-    /// As costs less
+pub enum Loops {
+    /// Where that costs less
     #[default]
     Auto,
-    /// All that there is, one operation after the other
-    Inline,
-    /// Parts that are equal up to constants as loops over lists
-    Rolled,
+    /// Never: write out every operation
+    Never,
+    /// Wherever parts are equal up to constants
+    Always,
 }
 
-impl From<Writing> for sdfc::LoopStrategy {
-    fn from(writing: Writing) -> Self {
-        match writing {
-            Writing::Auto => Self::Auto,
-            Writing::Inline => Self::Unrolled,
-            Writing::Rolled => Self::Looped,
+impl From<Loops> for sdfc::LoopStrategy {
+    fn from(loops: Loops) -> Self {
+        match loops {
+            Loops::Auto => Self::Auto,
+            Loops::Never => Self::Unrolled,
+            Loops::Always => Self::Looped,
         }
     }
 }
@@ -322,7 +323,7 @@ pub struct View {
 pub struct Explain {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Write it to stdout as JSON
+    /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,
 }
@@ -333,25 +334,26 @@ pub struct Bench {
     /// The scene; `-` is stdin
     #[arg(required_unless_present_any = ["suite", "large", "faults"])]
     pub file: Option<PathBuf>,
-    /// Also measure the suite: scenes of the course, a chain of 30 leaves, and generated ones of 3 to 300
+    /// Also measure the suite: scenes of the course, a chain of 30 primitives, and generated scenes
+    /// of 3 to 300
     #[arg(long)]
     pub suite: bool,
-    /// Also measure generated scenes of 300 to 20,000 leaves, without the interpreters
+    /// Also measure generated scenes of 100 to 20,000 primitives, without the interpreters
     #[arg(long)]
     pub large: bool,
-    /// Of these only scenes in whose names this occurs
-    #[arg(long, value_name = "PART")]
+    /// Measure only scenes of the suites whose names contain this
+    #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
-    /// Count wrong pixels instead: scenes at which a classroom practical's march fails
+    /// Count wrong pixels instead, on scenes where a naive ray marcher fails
     #[arg(long, conflicts_with_all = ["file", "suite", "large"])]
     pub faults: bool,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = size)]
     pub size: [u32; 2],
-    /// Where the figures go, as JSON; `-` is stdout
+    /// Output file for the measurements, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
-    /// Where a plot of what a pixel of the scattered scenes costs goes, over their leaves
+    /// Output file for a plot of cost per pixel over the size of the scattered scenes
     #[arg(long, value_name = "OUT.svg", requires = "large")]
     pub plot: Option<PathBuf>,
 }
@@ -359,9 +361,9 @@ pub struct Bench {
 /// Arguments of `doc`.
 #[derive(clap::Args, Debug)]
 pub struct Doc {
-    /// A name, a topic, a code such as E0104, or a word that descriptions mention; everything if not given
+    /// A name, a topic, a code such as E0104, or a word of a description [default: everything]
     pub name: Option<String>,
-    /// Write it to stdout as JSON
+    /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,
 }
@@ -372,40 +374,40 @@ pub struct Chart {
     /// Scenes; `-` is stdin
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Where the chart goes, as a picture; `-` is stdout, as SVG. A folder takes both pictures and the figures of each scene,
-    /// and a page that lists them
+    /// Output file of the chart; `-` writes SVG to stdout. In a folder, writes SVG, PNG and JSON of
+    /// each scene, and a page that lists them
     #[arg(short, long, value_name = "OUT.svg|OUT.png|FOLDER")]
     pub output: Option<PathBuf>,
-    /// Where a table goes, as Markdown: a line for each scene, with what `auto` does there; `-` is stdout
+    /// Output file for a Markdown table with one line per scene; `-` is stdout
     #[arg(long, value_name = "OUT.md", conflicts_with_all = ["output", "json"])]
     pub table: Option<PathBuf>,
-    /// A dark ground for PNG; an SVG has that of the reader's page
+    /// Use a dark background for PNG; an SVG follows the reader's theme
     #[arg(long)]
     pub dark: bool,
-    /// Where the figures go, as JSON; `-` is stdout
+    /// Output file for the measurements, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = size)]
     pub size: [u32; 2],
-    /// Ray methods, separated by commas; all unless given
+    /// Ray methods, separated by commas [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = methods())]
     pub march: Vec<String>,
-    /// What the picture tells of its making, such as a date and a commit
+    /// Note in the picture, such as a date and a commit
     #[arg(long, value_name = "TEXT")]
     pub note: Option<String>,
-    /// Where truths are kept.
+    /// The cache of the oracle.
     #[command(flatten)]
     pub cache: Cache,
 }
 
-/// Where what the oracle says is kept between runs.
+/// Where the oracle's results are stored between runs.
 #[derive(clap::Args, Debug)]
 pub struct Cache {
-    /// Keep what the oracle finds in this folder; in the user's one for caches unless given
+    /// Folder for the oracle's results [default: the user's cache folder]
     #[arg(long, value_name = "FOLDER")]
     pub cache: Option<PathBuf>,
-    /// Ask the oracle anew and keep nothing
+    /// Compute the oracle's results again and store nothing
     #[arg(long, conflicts_with = "cache")]
     pub no_cache: bool,
 }
@@ -415,58 +417,70 @@ pub struct Cache {
 pub struct Tune {
     /// The scene; `-` is stdin
     pub file: PathBuf,
-    /// Error in depth that 99 of 100 pixels may have, in widths of a pixel
+    /// Greatest error in depth (99th percentile), in widths of a pixel
     #[arg(long, value_name = "PX", value_parser = positive)]
     pub max_error: f64,
-    /// Where all figures go, as JSON, as those of `chart`; `-` is stdout
+    /// Output file for all measurements, as JSON like that of `chart`; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "320x180", value_parser = size)]
     pub size: [u32; 2],
-    /// Ray methods to choose from, separated by commas; all unless given
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = PossibleValuesParser::new(RAY_METHODS))]
+    /// Ray methods to choose from, separated by commas [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = scene_methods())]
     pub march: Vec<String>,
-    /// Where truths are kept.
+    /// The cache of the oracle.
     #[command(flatten)]
     pub cache: Cache,
 }
 
+/// Parses the name of any ray method. The help lists those for users.
 fn methods() -> PossibleValuesParser {
-    PossibleValuesParser::new(METHODS.iter().map(|method| method.name))
+    PossibleValuesParser::new(Method::all().map(described))
 }
 
-/// `NAME=VALUE`
+/// Parses the name of a ray method that scenes can name.
+fn scene_methods() -> PossibleValuesParser {
+    let methods = Method::all().filter(|method| RAY_METHODS.contains(&method.name()));
+    PossibleValuesParser::new(methods.map(described))
+}
+
+fn described(method: Method) -> PossibleValue {
+    let is_for_users = Method::for_users().any(|other| other == method);
+    PossibleValue::new(method.name()).help(method.summary()).hide(!is_for_users)
+}
+
+/// Parses `NAME=VALUE`.
 fn assignment(text: &str) -> Result<Assignment, String> {
     let (name, value) =
-        text.split_once('=').ok_or("write NAME=VALUE, such as wall=0.1 or tilt=90deg")?;
+        text.split_once('=').ok_or("expected NAME=VALUE, such as wall=0.1 or tilt=90deg")?;
     Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
 }
 
-/// A number that is not infinite.
+/// Parses a finite number.
 fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| "write a number of seconds, such as 1.5".to_owned())
+    number.ok_or_else(|| "expected a number of seconds, such as 1.5".to_owned())
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
-    number.ok_or_else(|| "write a part of a pixel's width, such as 0.05".to_owned())
+    number.ok_or_else(|| "expected a number of pixel widths above 0, such as 0.05".to_owned())
 }
 
-/// `640x400` as `[640, 400]`.
+/// Parses `640x400` as `[640, 400]`.
 fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').map(|(w, h)| (w.parse::<u32>(), h.parse::<u32>()));
     let Some((Ok(width), Ok(height))) = sides else {
-        return Err("write width and height with an `x` between, such as 640x400".to_owned());
+        return Err("expected WIDTHxHEIGHT, such as 640x400".to_owned());
     };
     if width == 0 || height == 0 {
-        return Err("a picture has at least one pixel on each side".to_owned());
+        return Err("width and height must be at least 1".to_owned());
     }
     if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(format!(
-            "a picture has at most {MAX_SIDE} pixels on a side and {MAX_PIXELS} in all"
+            "a picture has at most {MAX_SIDE} pixels per side and {MAX_PIXELS} in total"
         ));
     }
     Ok([width, height])
@@ -478,12 +492,12 @@ mod tests {
     use clap::CommandFactory;
 
     #[test]
-    fn the_arguments_contradict_nowhere() {
+    fn arguments_are_consistent() {
         Args::command().debug_assert();
     }
 
     #[test]
-    fn sizes() {
+    fn sizes_are_parsed_or_refused() {
         assert_eq!(size("640x400"), Ok([640, 400]));
         assert_eq!(size("1x1"), Ok([1, 1]));
         for wrong in ["", "640", "640x", "0x4", "4x0", "-1x4", "4x4x4", "99999x1", "32768x32768"] {

@@ -1,32 +1,32 @@
-//! What the oracle found, kept in a folder.
+//! The cache folder for the oracle's results.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use sdfc::accuracy_data::TruthStore;
+use sdfc_measure::TruthStore;
 
 use crate::args::Cache;
 use crate::output::Output;
 
-/// All truths of a folder take at most so many bytes; those go that were not asked for the longest.
-const MOST_BYTES: u64 = 256 << 20;
-const ENDING: &str = "truth";
+/// A folder holds at most this many bytes; the least recently used files are removed.
+const MAX_BYTES: u64 = 256 << 20;
+const EXTENSION: &str = "truth";
 
-/// A folder of truths. That it cannot be read or written is no reason to fail.
+/// A folder of cached results. A folder that cannot be read or written is ignored.
 pub struct TruthFolder {
     folder: PathBuf,
 }
 
 impl TruthFolder {
-    /// The one that is asked for, or the user's.
-    pub fn of(cache: &Cache) -> Option<Self> {
-        let folder = cache.cache.clone().or_else(|| users(|name| std::env::var_os(name)));
+    /// Returns the folder of the options, or the user's cache folder. `None` with `--no-cache`.
+    pub fn new(cache: &Cache) -> Option<Self> {
+        let folder = cache.cache.clone().or_else(|| user_folder(|name| std::env::var_os(name)));
         folder.filter(|_| !cache.no_cache).map(|folder| Self { folder })
     }
 
     fn path(&self, key: &str) -> PathBuf {
-        self.folder.join(key).with_extension(ENDING)
+        self.folder.join(key).with_extension(EXTENSION)
     }
 }
 
@@ -41,14 +41,15 @@ impl TruthStore for TruthFolder {
     }
 
     fn put(&self, key: &str, bytes: &[u8]) {
+        // A full disk or a missing permission costs time, not the result.
         let _ = std::fs::create_dir_all(&self.folder);
         let _ = Output::File(self.path(key)).write(bytes);
-        thin_out(&self.folder, MOST_BYTES);
+        trim(&self.folder, MAX_BYTES);
     }
 }
 
-/// The folder for caches by the customs of the system.
-fn users(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+/// Returns the cache folder by the conventions of the operating system.
+fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     let folder = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = || folder("HOME");
     let caches = if cfg!(windows) {
@@ -61,21 +62,21 @@ fn users(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     caches.map(|caches| caches.join("sdfc").join("truths"))
 }
 
-/// Removes the oldest truths of a folder until the rest takes so many bytes.
-fn thin_out(folder: &Path, most: u64) {
+/// Removes the least recently used files of a folder until the rest takes at most `max` bytes.
+fn trim(folder: &Path, max: u64) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let truths = entries.filter(|entry| entry.path().extension().is_some_and(|e| e == ENDING));
-    let mut truths: Vec<(SystemTime, u64, PathBuf)> = truths
+    let files = entries.filter(|entry| entry.path().extension().is_some_and(|e| e == EXTENSION));
+    let mut files: Vec<(SystemTime, u64, PathBuf)> = files
         .filter_map(|entry| {
-            let about = entry.metadata().ok()?;
-            Some((about.modified().ok()?, about.len(), entry.path()))
+            let metadata = entry.metadata().ok()?;
+            Some((metadata.modified().ok()?, metadata.len(), entry.path()))
         })
         .collect();
-    truths.sort_unstable_by(|a, b| b.cmp(a));
-    let mut taken = 0;
-    for (_, bytes, path) in truths {
-        taken += bytes;
-        if taken > most {
+    files.sort_unstable_by(|a, b| b.cmp(a));
+    let mut total = 0;
+    for (_, bytes, path) in files {
+        total += bytes;
+        if total > max {
             let _ = std::fs::remove_file(path);
         }
     }
@@ -89,9 +90,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_keeps_what_was_asked_for_last() {
-        let place = tempfile::tempdir().unwrap();
-        let folder = TruthFolder { folder: place.path().join("not/there/yet") };
+    fn the_least_recently_used_files_are_removed_first() {
+        let temporary = tempfile::tempdir().unwrap();
+        let folder = TruthFolder { folder: temporary.path().join("not/there/yet") };
         for (age, key) in ["a", "b", "c"].into_iter().enumerate() {
             folder.put(key, &[0; 100]);
             let file = std::fs::File::options().append(true).open(folder.path(key)).unwrap();
@@ -99,17 +100,17 @@ mod tests {
         }
         std::fs::write(folder.folder.join("note.txt"), [0; 500]).unwrap();
         assert_eq!(folder.get("a"), Some(vec![0; 100]));
-        thin_out(&folder.folder, 200);
+        trim(&folder.folder, 200);
         let has = ["a", "b", "c"].map(|key| folder.path(key).exists());
         assert_eq!(has, [true, false, true]);
-        assert!(folder.folder.join("note.txt").exists(), "what is no truth stays");
+        assert!(folder.folder.join("note.txt").exists(), "other files are not removed");
     }
 
     #[test]
     #[cfg(all(unix, not(target_os = "macos")))]
-    fn the_users_folder_is_where_the_system_says() {
+    fn the_user_folder_follows_the_conventions_of_the_system() {
         let at = |pairs: &'static [(&str, &str)]| {
-            users(|name| {
+            user_folder(|name| {
                 pairs.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into())
             })
         };

@@ -1,4 +1,4 @@
-//! What is said on stderr: errors, warnings, notes and progress.
+//! Output to stderr: errors, warnings, notes and progress bars.
 
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::time::Duration;
@@ -8,9 +8,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::args::{ColorChoice, Global};
 use crate::failure::Failure;
 
-/// How much to say, and whether in colour.
+/// Verbosity and colour of messages.
 pub struct Console {
-    /// Whether diagnostics and errors are coloured.
+    /// True if diagnostics and errors are coloured.
     pub color: bool,
     choice: ColorChoice,
     quiet: bool,
@@ -18,18 +18,18 @@ pub struct Console {
 }
 
 impl Console {
-    /// As the global options ask. `auto` is colour on a terminal unless `NO_COLOR` is set.
+    /// Applies the global options. `auto` is colour on a terminal unless `NO_COLOR` is set.
     pub fn new(global: &Global) -> Self {
         let color = colored(global.color, &stderr());
         Self { color, choice: global.color, quiet: global.quiet, verbose: global.verbose }
     }
 
-    /// Whether what goes to stdout for people is coloured.
+    /// True if text on stdout is coloured.
     pub fn output_color(&self) -> bool {
         colored(self.choice, &stdout())
     }
 
-    /// Why the command ends. Diagnostics of a scene have been shown already and need no further line.
+    /// Prints why the command failed. Diagnostics of a scene have already been printed.
     pub fn failure(&self, failure: &Failure) {
         match failure {
             Failure::Scene => {}
@@ -39,37 +39,37 @@ impl Console {
         }
     }
 
-    /// An error that has no place in a scene.
+    /// Prints an error that has no location in a scene.
     pub fn error(&self, message: &str) {
         let word = if self.color { "\x1b[1;31merror\x1b[0m" } else { "error" };
         self.text(&format!("{word}: {message}\n"));
     }
 
-    /// One line that says what was done; not with `-q`.
+    /// Prints one line about the result, except with `-q`.
     pub fn note(&self, line: &str) {
         if !self.quiet {
             self.text(&format!("{line}\n"));
         }
     }
 
-    /// One line for those who want to know more; only with `-v`.
+    /// Prints one line of details, with `-v` only.
     pub fn detail(&self, line: impl FnOnce() -> String) {
         if self.verbose {
             self.text(&format!("{}\n", line()));
         }
     }
 
-    /// Whether warnings are shown.
+    /// True if warnings are printed.
     pub fn shows_warnings(&self) -> bool {
         !self.quiet
     }
 
-    /// Text as it stands. That stderr is closed is no reason to fail.
+    /// Prints text unchanged. A closed stderr is ignored.
     pub fn text(&self, text: &str) {
         let _ = stderr().write_all(text.as_bytes());
     }
 
-    /// A progress bar: on a terminal, and not with `-q`; work shorter than half a second shows none.
+    /// A progress bar for work that takes more than half a second, on a terminal and without `-q`.
     pub fn progress(&self, what: &str) -> Progress {
         let shown = !self.quiet && stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
@@ -91,21 +91,21 @@ fn colored(choice: ColorChoice, stream: &impl IsTerminal) -> bool {
     }
 }
 
-/// A bar that appears when the work turns out to be long.
+/// A progress bar that appears after [`Self::DELAY`].
 pub struct Progress {
     bar: ProgressBar,
     shown: bool,
 }
 
 impl Progress {
-    const PATIENCE: Duration = Duration::from_millis(500);
+    const DELAY: Duration = Duration::from_millis(500);
 
-    /// `done` of `all` parts are done.
-    pub fn set(&self, done: u64, all: u64) {
-        if self.shown && self.bar.is_hidden() && self.bar.elapsed() > Self::PATIENCE {
+    /// Shows that `done` of `total` units of work are done.
+    pub fn set(&self, done: u64, total: u64) {
+        if self.shown && self.bar.is_hidden() && self.bar.elapsed() > Self::DELAY {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        self.bar.set_length(all);
+        self.bar.set_length(total);
         self.bar.set_position(done);
     }
 }

@@ -1,23 +1,23 @@
-//! Why a command ended without doing all that it was asked to.
+//! Reasons why a command fails, and their exit codes.
 
 use std::process::ExitCode;
 
-/// Ordered by exit status, so that the worst of several is the greatest.
+/// Why a command failed. Ordered by exit code, so that the worst of several is the greatest.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Failure {
-    /// The scene is wrong; its diagnostics have been shown.
+    /// Error in the scene; its diagnostics have been printed.
     Scene,
-    /// The call is wrong: a missing or unreadable input, an option that does not fit.
+    /// Invalid command line: an unreadable input, or an option that does not apply.
     Call(String),
-    /// The machine cannot: no adapter, device lost, output not writable, disk full.
+    /// The machine cannot do it: no GPU, a lost device, an output that cannot be written.
     Machine(String),
-    /// Ctrl-C was pressed; what is done so far.
+    /// Ctrl-C was pressed; the text says what was done before.
     Interrupted(String),
 }
 
 impl Failure {
-    /// The exit status for it.
-    pub fn status(&self) -> ExitCode {
+    /// The exit code.
+    pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Scene => ExitCode::from(1),
             Self::Call(_) => ExitCode::from(2),

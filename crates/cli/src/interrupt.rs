@@ -1,4 +1,4 @@
-//! Ctrl-C: the first ends the work at the next tile, the second at once.
+//! Ctrl-C: the first one stops the work after the current tile, the second one at once.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -7,20 +7,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use signal_hook::consts::SIGINT;
 use signal_hook::flag;
 
-/// Whether ctrl-C has been pressed.
+/// Tells if Ctrl-C has been pressed.
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Watches from now on. Where the system refuses, ctrl-C ends the process as it always does.
+    /// Handles Ctrl-C from now on. If the system refuses, Ctrl-C ends the process as usual.
     pub fn watch() -> Self {
         let pressed = Arc::new(AtomicBool::new(false));
-        // In this order: the second one finds the flag set.
+        // The order matters: the handlers run in it, and the first must find the flag unset once.
         let _ = flag::register_conditional_shutdown(SIGINT, 130, Arc::clone(&pressed));
         let _ = flag::register(SIGINT, Arc::clone(&pressed));
         Self(pressed)
     }
 
-    /// Whether to go on.
+    /// `Break` after Ctrl-C.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.0.load(Ordering::Relaxed) {
             ControlFlow::Break(())

@@ -1,8 +1,9 @@
-//! The command line of sdfc: arguments, files and exit statuses around the `sdfc` library.
+//! The command line of sdfc: arguments, files and exit codes around the `sdfc` library.
 //!
-//! Exit statuses: 0, done; 1, the scene is wrong; 2, the call is wrong; 3, the machine cannot; 130,
-//! stopped by ctrl-C.
-//! Beside the viewer this is the only crate that prints or ends the process.
+//! Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the machine cannot do
+//! it (no GPU, I/O error); 130, stopped by Ctrl-C.
+//!
+//! Only this crate, the viewer and `sdfc-build` print, and only the first two end the process.
 
 mod args;
 mod cache;
@@ -27,7 +28,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             console.failure(&failure);
-            failure.status()
+            failure.exit_code()
         }
     }
 }

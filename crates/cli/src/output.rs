@@ -1,4 +1,4 @@
-//! Results to files and to stdout.
+//! Writes results to files and to stdout.
 
 use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
@@ -7,26 +7,26 @@ use sdfc_files::{check_writable, write};
 
 use crate::failure::Failure;
 
-/// Where a result goes.
+/// The destination of a result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// Written beside its place under another name, then renamed.
+    /// A file. It is written under a temporary name and then renamed.
     File(PathBuf),
-    /// As a stream.
+    /// Standard output.
     Stdout,
 }
 
 impl Output {
-    /// `-` is stdout.
+    /// Makes a destination from a path; `-` is stdout.
     pub fn new(path: &Path) -> Self {
         if path.as_os_str() == "-" { Self::Stdout } else { Self::File(path.to_owned()) }
     }
 
-    /// Fails now where writing would fail after long work.
+    /// Checks early that the destination can be written, before long work.
     ///
     /// # Errors
     ///
-    /// The folder is missing or does not take new files.
+    /// The folder does not exist or is not writable.
     pub fn check(&self) -> Result<(), Failure> {
         match self {
             Self::Stdout => Ok(()),
@@ -34,11 +34,11 @@ impl Output {
         }
     }
 
-    /// Writes all of `bytes`.
+    /// Writes `bytes`.
     ///
     /// # Errors
     ///
-    /// The output is not writable or the disk is full. That a reader of stdout has gone away is none.
+    /// The destination is not writable or the disk is full. A closed pipe is not an error.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => to_stdout(bytes),
@@ -51,7 +51,7 @@ fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     Failure::Machine(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Writes to stdout; a closed pipe is a reader that has seen enough.
+/// Writes to stdout. A closed pipe is not an error: the reader has seen enough.
 pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -62,22 +62,26 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Fails if an output would overwrite the scene or another output.
+/// Checks that no output overwrites the scene or another output.
 ///
 /// # Errors
 ///
-/// Two of the paths are one file: the call is wrong.
+/// Two of the paths are the same file.
 pub fn distinct(scene: &Path, outputs: &[&Path]) -> Result<(), Failure> {
-    let place = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let resolved = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let is_stream = |path: &Path| path.as_os_str() == "-";
     for (index, path) in outputs.iter().enumerate() {
-        if !is_stream(path) && place(path) == place(scene) {
+        if !is_stream(path) && resolved(path) == resolved(scene) {
             let name = path.display();
-            return Err(Failure::Call(format!("{name} is the scene; write somewhere else")));
+            return Err(Failure::Call(format!(
+                "the output {name} is the scene itself; choose another file"
+            )));
         }
-        if outputs[..index].iter().any(|other| place(other) == place(path)) {
+        if outputs[..index].iter().any(|other| resolved(other) == resolved(path)) {
             let name = path.display();
-            return Err(Failure::Call(format!("two outputs go to {name}; one place holds one")));
+            return Err(Failure::Call(format!(
+                "two outputs are written to {name}; choose different files"
+            )));
         }
     }
     Ok(())

@@ -1,66 +1,67 @@
-//! Sequences of frames: which, at what times, in which files.
+//! Sequences of frames: numbers, times and file names.
 
 use std::path::{Path, PathBuf};
 
-/// Most frames of one call.
+/// At most this many frames are drawn at once.
 const MAX_FRAMES: u32 = 1_000_000;
-/// Most frames a second.
+/// Greatest frame rate, in frames per second.
 const MAX_RATE: f64 = 1000.0;
 
-/// Frames by their numbers: the first, and the one after the last.
+/// A half-open range of frame numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// The first.
+    /// First frame.
     pub first: u32,
-    /// The one after the last.
+    /// Frame after the last.
     pub end: u32,
 }
 
 impl Frames {
-    /// How many.
+    /// Number of frames.
     pub fn count(&self) -> u32 {
         self.end - self.first
     }
 
-    /// Their numbers.
+    /// The frame numbers.
     pub fn numbers(&self) -> std::ops::Range<u32> {
         self.first..self.end
     }
 }
 
-/// `0..60`: a number belongs to one range only when a sequence is cut at it.
+/// Parses a range such as `0..60`. It is half-open, so that adjacent ranges share no frame.
 pub fn frames(text: &str) -> Result<Frames, String> {
     let ends = text.split_once("..").map(|(a, b)| (a.parse::<u32>(), b.parse::<u32>()));
     let Some((Ok(first), Ok(end))) = ends else {
-        return Err("write the first frame and the one after the last, such as 0..60".to_owned());
+        return Err("expected FIRST..END, such as 0..60 for frames 0 to 59".to_owned());
     };
     if first >= end {
-        return Err(format!("{text} has no frame: the second number is not drawn"));
+        return Err(format!("{text} contains no frame: END itself is not drawn"));
     }
     if end - first > MAX_FRAMES {
-        return Err(format!("at most {MAX_FRAMES} frames are drawn in one call"));
+        return Err(format!("a sequence has at most {MAX_FRAMES} frames"));
     }
     Ok(Frames { first, end })
 }
 
-/// Frames a second.
+/// Parses a frame rate.
 pub fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse::<f64>().ok().filter(|rate| *rate > 0.0 && *rate <= MAX_RATE);
-    rate.ok_or_else(|| format!("write a number above 0 and up to {MAX_RATE}"))
+    rate.ok_or_else(|| format!("expected a number above 0 and at most {MAX_RATE}"))
 }
 
-/// When a frame is, in seconds.
+/// Returns the time of a frame in seconds.
 pub fn time(number: u32, rate: f64) -> f64 {
     f64::from(number) / rate
 }
 
-/// How long a frame is shown, in hundredths of a second: the rounding errors of a sequence do not add up.
+/// Returns how long a frame is shown, in hundredths of a second. Rounding errors of a sequence do not
+/// add up.
 pub fn hundredths(number: u32, rate: f64) -> u32 {
     let start = |number: f64| (100.0 * number / rate).round();
     (start(f64::from(number) + 1.0) - start(f64::from(number))) as u32
 }
 
-/// `ball.png` and 7 as `ball.0007.png`.
+/// Returns the file name of a frame: `ball.0007.png` for `ball.png` and 7.
 pub fn numbered(path: &Path, number: u32) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push(format!(".{number:04}"));
@@ -85,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_are_above_zero() {
+    fn rates_must_be_positive() {
         assert_eq!((rate("29.97"), time(60, 30.0)), (Ok(29.97), 2.0));
         for wrong in ["0", "-3", "nan", "inf", "1e9", "thirty"] {
             assert!(rate(wrong).is_err(), "{wrong}");
@@ -101,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn files_are_numbered_before_their_ending() {
+    fn files_are_numbered_before_their_extension() {
         let name = |path: &str, number| numbered(Path::new(path), number);
         assert_eq!(name("a/b.c/ball.png", 7), Path::new("a/b.c/ball.0007.png"));
         assert_eq!(name("ball", 12345), Path::new("ball.12345"));

@@ -8,7 +8,7 @@ mod common;
 
 use common::{folder, names, run_in, said};
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::render::testing::{LOSE_DEVICE, without_gpu};
+use sdfc_render::testing::{LOSE_DEVICE, without_gpu};
 
 const BALL: &str = "sphere(0.8)\nplane(y: -0.8)\n";
 

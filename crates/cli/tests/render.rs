@@ -166,10 +166,14 @@ fn depths_of_a_sequence_are_numbered() {
 fn numbers_move_where_asked_for() {
     let folder = knobs();
     let plain = drawn(&folder, "");
-    assert_eq!(drawn(&folder, "--slots"), plain);
+    assert_eq!(drawn(&folder, "--live-literals"), plain);
 
     refused(&folder, "--set at_6_20=9", "no param `at_6_20`");
-    assert_ne!(drawn(&folder, "--slots --set at_6_20=9"), plain, "the camera is further away");
+    assert_ne!(
+        drawn(&folder, "--live-literals --set at_6_20=9"),
+        plain,
+        "the camera is further away"
+    );
 }
 
 /// Of a scene that wants another method the processor draws what it can, unless it was asked for just that.
@@ -182,7 +186,7 @@ fn without_an_adapter_auto_stands_in_for_methods_that_the_processor_lacks() {
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     if cfg!(target_os = "linux") {
         assert!(
-            said(&output).contains("has no method `relaxed`, `auto` stands in"),
+            said(&output).contains("has no method `relaxed`, `auto` is used instead"),
             "{}",
             said(&output)
         );

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use sdfc::render::{Animation, Image, RenderError};
+use sdfc::{Animation, Image, RenderError};
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@
 //! let path = Path::new("scene.sdf");
 //! let input = sdfc_files::read(path)?;
 //! let folder = sdfc_files::Folder::of(path);
-//! let compiled = sdfc::compile_with_imports(&input.name, &input.text, &folder);
+//! let compiled = sdfc::Compiler::new().resolver(&folder).compile(&input.name, &input.text);
 //! # Ok::<(), sdfc_files::ReadError>(())
 //! ```
 

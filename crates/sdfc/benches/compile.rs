@@ -4,7 +4,7 @@
 //! process does only once. Other work on the machine counts in all columns but the last.
 
 use cpu_time::ProcessTime;
-use sdfc::compile;
+use sdfc::Compiler;
 
 /// Runs of each scene; the first, in which the library is read, is left out.
 const RUNS: usize = 21;
@@ -72,8 +72,7 @@ fn median_times(name: &str, text: &str) -> [f64; 5] {
 
 fn times(name: &str, text: &str) -> [f64; 5] {
     let processor = ProcessTime::now();
-    let compiled = compile(name, text);
-    let Some(scene) = compiled.scene else {
+    let Ok(scene) = Compiler::new().compile(name, text) else {
         return [f64::NAN; 5];
     };
     let start = std::time::Instant::now();

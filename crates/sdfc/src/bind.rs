@@ -1,16 +1,18 @@
-//! What a written shader reads, as a bind group of someone's own pipeline.
+//! Buffers and bind group of a written shader, for your own wgpu pipeline.
 //!
 //! ```no_run
 //! use sdfc::bind::Bindings;
-//! use sdfc::{Code, Scene, ShaderOptions, wgpu};
+//! use sdfc::{Code, Compiler, ShaderOptions, wgpu};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let (device, queue): (wgpu::Device, wgpu::Queue) = unimplemented!();
-//! let scene = Scene::from_source("ball.sdf", "param r = 1 in 0..2\nsphere(r)")?;
-//! let written = scene.write_shader(&ShaderOptions { group: 1, ..ShaderOptions::default() })?;
-//! let mut ball = Bindings::new((&device, &queue), &scene, &written, wgpu::ShaderStages::FRAGMENT)?;
+//! let scene = Compiler::new().compile("ball.sdf", "param r = 1 in 0..2\nsphere(r)")?;
+//! let written = scene.write_shader(&ShaderOptions::new().group(1))?;
+//! let visibility = wgpu::ShaderStages::FRAGMENT;
+//! let mut ball = Bindings::new((&device, &queue), &scene, &written, visibility)?;
 //!
-//! // Behind your own text, which calls `sdf_distance`; `ball.layout()` is the second of the pipeline's layouts.
+//! // Append your own shader source, which calls `sdf_distance`. `ball.layout()` is the second
+//! // bind group layout of the pipeline.
 //! let Code::Text(field) = &written.code else { unreachable!("WGSL is text") };
 //! # let own = "";
 //! let text = format!("{field}\n{own}");
@@ -29,32 +31,26 @@ use sdfc_graph::Param;
 use sdfc_graph::eval::FrameValues;
 
 use crate::params::{ParamError, Value, set};
-use crate::{Scene, uniform_bytes};
+use crate::scene::Scene;
+use crate::uniforms::uniform_bytes;
 
-/// Why a shader's buffers cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Why the buffers of a shader cannot be made.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BindError {
-    /// The shader writes pixels to a buffer, whose size is the host's affair: bind those of its reflection by hand.
+    /// The shader writes pixels to a buffer whose size only its host knows. Bind the buffers of
+    /// its reflection by hand.
+    #[error(
+        "this shader writes its pixels to a buffer whose size its host decides: bind the buffers \
+         of its reflection, or write the fragment stage"
+    )]
     Pixels,
-    /// The buffers lie in more than one group.
+    /// The buffers lie in more than one bind group.
+    #[error("the shader's buffers lie in more than one bind group")]
     Groups,
 }
 
-impl std::fmt::Display for BindError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Pixels => {
-                "this shader writes its pixels to a buffer whose size its host decides: bind by the \
-                 reflection, or write the fragment form"
-            }
-            Self::Groups => "the shader's buffers lie in more than one bind group",
-        })
-    }
-}
-
-impl std::error::Error for BindError {}
-
-/// The buffers of one written field, ray method or fragment form, with their bind group.
+/// Buffers of a written field, ray method or fragment shader, with their bind group.
 #[derive(Debug)]
 pub struct Bindings {
     params: Vec<Param>,
@@ -67,8 +63,9 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// Makes the buffers and fills them: params with their defaults, lists with what the shader looks up. Without
-    /// buffers the group is empty, and may be bound all the same.
+    /// Makes the buffers and fills them: params with their defaults, lists with their elements.
+    ///
+    /// If the shader has no buffers the group is empty and can still be bound.
     ///
     /// # Errors
     ///
@@ -117,22 +114,22 @@ impl Bindings {
         Ok(bindings)
     }
 
-    /// For the pipeline's layout, at the place [`Bindings::group`].
+    /// The bind group layout, for index [`Bindings::group`] of the pipeline's layout.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// Of the buffers.
+    /// The bind group of the buffers.
     pub fn bind_group(&self) -> &wgpu::BindGroup {
         &self.bind_group
     }
 
-    /// The number of the group that the shader was written for; 0 where it has no buffers.
+    /// Index of the bind group that the shader was written for; 0 if it has no buffers.
     pub fn group(&self) -> u32 {
         self.group
     }
 
-    /// The values that [`Bindings::upload`] writes; `time` and `frame` are set here.
+    /// The values that [`Bindings::upload`] writes. Set `time` and `frame` here.
     pub fn frame_mut(&mut self) -> &mut FrameValues {
         &mut self.frame
     }
@@ -141,20 +138,20 @@ impl Bindings {
     ///
     /// # Errors
     ///
-    /// [`ParamError`]; the value stays as it was.
+    /// [`ParamError`]. The value is not changed.
     pub fn set<'v>(&mut self, name: &str, value: impl Into<Value<'v>>) -> Result<(), ParamError> {
         set(&self.params, &mut self.frame, name, value.into())
     }
 
-    /// Writes the values to the buffer, for the frames that are submitted from then on.
+    /// Writes the values to the buffer, for frames that are submitted later.
     pub fn upload(&self, queue: &wgpu::Queue) {
         if let Some(buffer) = self.buffer(BufferRole::Params) {
             queue.write_buffer(buffer, 0, &uniform_bytes(&self.reflection, &self.frame));
         }
     }
 
-    /// The buffer of a role, where the shader has one: [`BufferRole::View`] of a fragment form is written by its host,
-    /// with [`view_bytes`](sdfc_render::view_bytes).
+    /// The buffer with a role, if the shader has one. The buffer [`BufferRole::View`] of a fragment
+    /// shader is written by its host, with `view_bytes` of the crate `sdfc-render`.
     pub fn buffer(&self, role: BufferRole) -> Option<&wgpu::Buffer> {
         self.buffers.iter().find(|buffer| buffer.0 == role).map(|buffer| &buffer.1)
     }
@@ -174,7 +171,7 @@ fn make_buffer(device: &wgpu::Device, buffer: &Buffer, list_bytes: usize) -> wgp
     let (size, usage) = match buffer.role {
         BufferRole::Lists => (list_bytes, wgpu::BufferUsages::STORAGE),
         BufferRole::View | BufferRole::Params | BufferRole::Pixels => {
-            // WebGL wants whole vectors.
+            // WebGL requires a multiple of 16 bytes.
             ((buffer.size as usize).next_multiple_of(16), wgpu::BufferUsages::UNIFORM)
         }
     };

@@ -1,40 +1,36 @@
-//! A scene's field at points, on the CPU, in f64.
+//! Evaluates a scene's field on the CPU, in f64.
 
-use sdfc_graph::eval::{Dual, Evaluator, FieldSample, FrameValues, Packet, Tape, TapeError};
+use sdfc_graph::eval::{Dual, Evaluator, FieldSample, FrameValues, Packet};
 
-use crate::{Error, Scene};
+use crate::error::Error;
+use crate::scene::Scene;
+use crate::tapes::Tapes;
 
-/// Points that are evaluated together.
+/// Number of points that are evaluated together.
 const LANES: usize = 8;
 
-/// What a scene's field is computed by.
-#[derive(Debug)]
-pub(crate) struct Tapes {
-    distance: Tape,
-    /// The fields of `MaterialField::ALL`, where something is painted.
-    material: Option<Tape>,
-}
-
-/// What a surface is made of at a point.
+/// The material of a surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Material {
     /// Linear red, green and blue.
     pub color: [f64; 3],
-    /// How much of it is painted, 0..1: what is not has the colour of unpainted surfaces.
+    /// Weight of this material, 0..1; the rest is the default material.
     pub coverage: f64,
-    /// 0 smooth to 1 rough.
+    /// Roughness, from 0 (smooth) to 1 (rough).
     pub roughness: f64,
-    /// 0 dielectric to 1 metal.
+    /// Metalness, from 0 (dielectric) to 1 (metal).
     pub metallic: f64,
-    /// Linear light that it gives off.
+    /// Emitted light: linear red, green and blue.
     pub emission: [f64; 3],
-    /// Part of the light from everywhere that reaches it, 0..1.
+    /// Fraction of the ambient light that reaches the surface, 0..1.
     pub occlusion: f64,
 }
 
 /// A scene's field at one frame's values of params, `time` and `frame`: see [`Scene::field`].
 ///
-/// What is known per frame has been computed; evaluating allocates nothing. Threads each clone their own.
+/// Per-frame values are already computed, and an evaluation allocates nothing. For several
+/// threads, clone it.
 #[derive(Clone, Debug)]
 pub struct Field<'s> {
     one: Evaluator<'s, f64>,
@@ -44,21 +40,23 @@ pub struct Field<'s> {
 }
 
 impl Scene {
-    /// The field at a frame's values, to be asked at many points. Params that the frame lacks and such as are
-    /// not numbers give a field that is not a number; nothing else comes of them.
+    /// The field at a frame's values, for evaluations at many points.
+    ///
+    /// If the frame lacks a param or has NaN for it, the field is NaN.
     ///
     /// ```
-    /// use sdfc::{FrameValues, Scene};
+    /// use sdfc::Compiler;
     ///
-    /// let scene = Scene::from_source("a.sdf", "param r = 1 in 0..2\nsphere(r).color(#f00)")?;
-    /// let mut frame = FrameValues::defaults(scene.params());
+    /// let text = "param r = 1 in 0..2\nsphere(r).color(#f00)";
+    /// let scene = Compiler::new().compile("a.sdf", text)?;
+    /// let mut frame = scene.defaults();
     /// scene.set(&mut frame, "r", 0.5)?;
     ///
     /// let mut field = scene.field(&frame)?;
     /// assert_eq!(field.distance([0.0, 2.0, 0.0]), 1.5);
     /// assert_eq!(field.gradient([0.0, 2.0, 0.0]).gradient, [0.0, 1.0, 0.0]);
     /// assert_eq!(field.distances(&[[0.0; 3], [1.0, 0.0, 0.0]]), [-0.5, 0.5]);
-    /// let red = field.material([0.0, 0.5, 0.0]).expect("it is painted");
+    /// let red = field.material([0.0, 0.5, 0.0]).expect("it has a material");
     /// assert_eq!(red.color, [1.0, 0.0, 0.0]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -67,7 +65,7 @@ impl Scene {
     ///
     /// [`Error::NothingDrawn`].
     pub fn field(&self, frame: &FrameValues) -> Result<Field<'_>, Error> {
-        let tapes = self.tapes.get_or_init(|| Tapes::of(self)).as_ref();
+        let tapes = self.tapes.get_or_init(|| Tapes::of(&self.program)).as_ref();
         let tapes = tapes.map_err(|&error| error)?.as_ref().ok_or(Error::NothingDrawn)?;
         Ok(Field {
             one: tapes.distance.prepare(frame),
@@ -77,8 +75,8 @@ impl Scene {
         })
     }
 
-    /// Signed distance at a point, at the params' defaults; never more than the true distance where the scene is
-    /// certified. For many points or other values, [`Scene::field`].
+    /// Signed distance at a point, at the params' defaults. If the scene is certified this is
+    /// never more than the true distance. For many points or other values use [`Scene::field`].
     ///
     /// # Errors
     ///
@@ -87,7 +85,7 @@ impl Scene {
         Ok(self.field(&self.defaults())?.distance(point))
     }
 
-    /// The derivative of [`Scene::distance`], and the distance.
+    /// Distance and gradient at a point, at the params' defaults.
     ///
     /// # Errors
     ///
@@ -96,28 +94,14 @@ impl Scene {
         Ok(self.field(&self.defaults())?.gradient(point))
     }
 
-    /// What the nearest surface is made of, at the params' defaults; `None` where nothing is painted.
+    /// Material of the nearest surface, at the params' defaults. `None` if the scene has no
+    /// materials.
     ///
     /// # Errors
     ///
     /// [`Error::NothingDrawn`].
     pub fn material(&self, point: [f64; 3]) -> Result<Option<Material>, Error> {
         Ok(self.field(&self.defaults())?.material(point))
-    }
-
-    /// The params' defaults, at time 0 and frame 0.
-    pub fn defaults(&self) -> FrameValues {
-        FrameValues::defaults(self.params())
-    }
-}
-
-impl Tapes {
-    fn of(scene: &Scene) -> Result<Option<Self>, TapeError> {
-        let program = &scene.program;
-        let Some(distance) = program.distance else { return Ok(None) };
-        let tape = |roots: &[_]| Tape::new(&program.graph, roots);
-        let material = program.material.map(|fields| tape(&fields)).transpose()?;
-        Ok(Some(Self { distance: tape(&[distance])?, material }))
     }
 }
 
@@ -127,7 +111,7 @@ impl Field<'_> {
         self.one.scalar(point)
     }
 
-    /// Distance at many points: faster than one after the other.
+    /// Distances at many points, faster than one by one.
     pub fn distances(&mut self, points: &[[f64; 3]]) -> Vec<f64> {
         let mut found = Vec::with_capacity(points.len());
         let (packets, rest) = points.as_chunks::<LANES>();
@@ -139,18 +123,18 @@ impl Field<'_> {
         found
     }
 
-    /// Distance and its derivative at a point.
+    /// Distance and gradient at a point.
     pub fn gradient(&mut self, point: [f64; 3]) -> FieldSample {
         let Dual { value, partials } = self.slopes.scalar(Dual::point(point));
         FieldSample { distance: value, gradient: partials }
     }
 
-    /// Distance and its derivative at many points.
+    /// Distances and gradients at many points.
     pub fn gradients(&mut self, points: &[[f64; 3]]) -> Vec<FieldSample> {
         points.iter().map(|&point| self.gradient(point)).collect()
     }
 
-    /// What the nearest surface is made of; `None` where nothing is painted.
+    /// Material of the nearest surface. `None` if the scene has no materials.
     pub fn material(&mut self, point: [f64; 3]) -> Option<Material> {
         let fields = self.material.as_mut()?.eval(point);
         let &[color, coverage, roughness, metallic, emission, occlusion] = fields else {
@@ -167,7 +151,7 @@ impl Field<'_> {
         })
     }
 
-    /// Materials at many points; empty where nothing is painted.
+    /// Materials at many points. Empty if the scene has no materials.
     pub fn materials(&mut self, points: &[[f64; 3]]) -> Vec<Material> {
         points.iter().filter_map(|&point| self.material(point)).collect()
     }

@@ -1,116 +1,101 @@
-//! A compiler for signed distance functions: scene scripts to specialised shaders.
+//! Compiles scenes of signed distance functions to specialised shaders.
 //!
 //! # What
 //!
-//! [`compile`] takes the text of a scene and gives [`Compiled`]: findings as data, and a [`Scene`] if
-//! none of them is an error. A scene can be evaluated on the CPU, written as a shader, explained, and
+//! [`Compiler`] turns the source of a scene into a [`Scene`], or into [`Diagnostics`] if it has
+//! errors. A scene is evaluated on the CPU, written as a shader for another program, explained, or
 //! drawn.
 //!
 //! # How
 //!
 //! ```
-//! use sdfc::{Backend, PictureOptions, compile, no_progress};
+//! use sdfc::{Backend, Code, Compiler, PictureOptions, ShaderOptions, no_progress};
 //!
-//! let compiled = compile("ball.sdf", "sphere(0.5)\nplane(y: -0.5)");
-//! assert!(compiled.diagnostics.is_empty());
-//! let scene = compiled.scene.expect("no errors");
+//! let source = "param r = 0.5 in 0.1..1\nsphere(r)\nplane(y: -0.5)";
+//! let scene = Compiler::new().compile("ball.sdf", source)?;
 //!
-//! let shader = scene.field_shader(&sdfc::FieldOptions::default())?;
-//! assert!(shader.wgsl()?.contains("fn sdf_distance"));
+//! // The field on the CPU, with a value for the param.
+//! let mut frame = scene.defaults();
+//! scene.set(&mut frame, "r", 0.25)?;
+//! assert_eq!(scene.field(&frame)?.distance([0.0, 2.0, 0.0]), 1.75);
 //!
-//! let options = PictureOptions { size: [32, 18], backend: Backend::Cpu, ..Default::default() };
+//! // The field as WGSL functions for your own shader.
+//! let written = scene.write_shader(&ShaderOptions::new())?;
+//! let Code::Text(wgsl) = written.code else { unreachable!("WGSL is text") };
+//! assert!(wgsl.contains("fn sdf_distance"));
+//!
+//! // A picture.
+//! let options = PictureOptions::new().size([32, 18]).backend(Backend::Cpu);
 //! let picture = scene.render(&options, &mut no_progress)?;
 //! assert!(picture.stats.pixels.hit > 0);
-//! # Ok::<(), sdfc::Error>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Features
 //!
-//! All are on by default. Without any this is the compiler: a scene on the CPU and as a shader, without wgpu.
+//! All are on by default. Without them the crate is the compiler alone: scenes on the CPU and as
+//! shaders, without wgpu.
 //!
-//! - `fonts`: letters in scenes; without it a scene that uses `text` is refused.
-//! - `render`: pictures, drawn with wgpu or on the CPU, and written as files.
-//! - `wgpu`: the buffers and the bind group that a written shader wants of its host: [`bind`].
-//! - `measure`: the oracle, charts and benchmarks; needs `render`.
+//! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
+//! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
+//! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
 //! # Limits
 //!
-//! Nothing here prints, opens files or exits. A scene that imports other files needs a [`Resolver`] that hands
-//! them in, see [`compile_with_imports`].
+//! This crate does not print, open files or exit. A scene that imports files needs a [`Resolver`]
+//! that returns their contents. `sdfc-files` has one that reads a folder.
 
-#[cfg(feature = "measure")]
-mod accuracy;
-#[cfg(feature = "measure")]
-pub mod baseline;
-#[cfg(feature = "measure")]
-mod bench;
 #[cfg(feature = "wgpu")]
 pub mod bind;
-#[cfg(feature = "measure")]
-mod comparison;
-mod compile;
+mod compiler;
+mod derived_bounds;
+mod diagnostics;
 mod error;
 mod explain;
-#[cfg(feature = "measure")]
-mod faults;
+mod explanation;
 mod field;
-mod findings;
 mod marched;
-mod origin;
 mod params;
 #[cfg(feature = "render")]
 mod picture;
 mod quality;
+mod rebase;
 mod reflection;
-mod rows;
-#[cfg(feature = "measure")]
-mod sampler;
 mod scene;
 mod shader;
+mod source_id;
+mod tapes;
 mod uniforms;
 
-#[cfg(feature = "measure")]
-pub use accuracy::{ChartOptions, OracleOptions};
-#[cfg(feature = "measure")]
-pub use bench::{BenchOptions, BenchReport, BenchRow, BenchVariant, large_suite, suite};
-#[cfg(feature = "measure")]
-pub use comparison::Comparison;
-pub use compile::{
-    Compiled, FrontTimes, Scene, SourceErrors, check, compile, compile_with, compile_with_imports,
-    format,
-};
+pub use compiler::{Compiler, format};
+pub use diagnostics::{DiagnosticRow, Diagnostics};
 pub use error::Error;
-pub use explain::{Bounds, Explanation, Knob, QualityRow};
-#[cfg(feature = "measure")]
-pub use faults::{FaultReport, FaultRow, FaultVariant, faults};
+pub use explanation::{Bounds, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
 pub use marched::Marched;
 pub use params::{ParamError, Value};
 #[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{
-    BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
-    StructRow, UniformRow,
+    BufferRow, Certificate, EntryRow, EntryStage, FunctionRow, MemberRow, ParamRow,
+    ShaderReflection, Sides, StructRow, UniformRow,
 };
-pub use rows::DiagnosticRow;
-#[cfg(feature = "measure")]
-pub use sampler::Sampler;
+pub use scene::{FrontTimes, Scene};
 pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
-
-#[cfg(feature = "measure")]
-pub use sdfc_accuracy as accuracy_data;
-pub use sdfc_analyze as analyze;
-pub use sdfc_analyze::LoopStrategy;
-pub use sdfc_codegen as codegen;
-pub use sdfc_codegen::{Code, FieldOptions, Shader, Stage, Target, Written};
-pub use sdfc_diagnostics as diagnostics;
-pub use sdfc_graph as graph;
-pub use sdfc_graph::eval::{FieldSample, FrameValues};
-pub use sdfc_lang as lang;
-pub use sdfc_lang::Resolver;
-pub use sdfc_march as march;
-pub use sdfc_render as render;
-pub use sdfc_render::{Progress, no_progress};
 pub use uniforms::uniform_bytes;
+
+pub use sdfc_analyze::LoopStrategy;
+pub use sdfc_codegen::{
+    Buffer, BufferRole, Code, FieldOptions, Lists, Member, Reflection, Shader, Stage, Target,
+    Written,
+};
+pub use sdfc_diagnostics::{Diagnostic, FileId, LineColumn, Located, Severity, Sources, Span};
+pub use sdfc_graph::eval::{FieldSample, FrameValues};
+pub use sdfc_graph::{Param, ParamKind};
+pub use sdfc_lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
+pub use sdfc_lang::{NoFiles, Resolver};
+#[cfg(feature = "render")]
+pub use sdfc_render::{Animation, Image, Pose, Progress, Stats, no_progress};
+pub use sdfc_render::{RenderError, View, ViewError};
 #[cfg(feature = "wgpu")]
 pub use wgpu;

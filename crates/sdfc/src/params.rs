@@ -1,70 +1,60 @@
-//! Values of a scene's params for one frame, from text.
+//! Sets the params of a scene for one frame.
 
 use sdfc_diagnostics::{Sources, has_errors};
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Param, ParamKind};
 
-use crate::Scene;
+use crate::scene::Scene;
 
-/// Why a param does not take a value.
-#[derive(Clone, Debug, PartialEq)]
+/// Why a param cannot be set to a value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ParamError {
-    /// The scene has no param of that name.
+    /// The scene has no param with this name.
+    #[error("the scene has no param `{name}`; {}", known_params(known))]
     Unknown {
         /// The name.
         name: String,
-        /// Names of those that it has.
+        /// Names of all params of the scene.
         known: Vec<String>,
     },
-    /// The text is no value for a param of that kind.
+    /// The value does not fit the kind of the param.
+    #[error("the param `{name}` takes {expected}, not `{text}`")]
     NotAValue {
         /// The param.
         name: String,
-        /// The text.
+        /// The value as text.
         text: String,
         /// What the param takes.
         expected: String,
     },
     /// The value lies outside the param's range.
+    #[error("the param `{name}` takes {range}; {text} is outside")]
     Outside {
         /// The param.
         name: String,
-        /// The text.
+        /// The value as text.
         text: String,
         /// The range as a scene writes it.
         range: String,
     },
 }
 
-impl std::fmt::Display for ParamError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Unknown { name, known } if known.is_empty() => {
-                write!(f, "the scene has no param `{name}`; it has none at all")
-            }
-            Self::Unknown { name, known } => {
-                write!(f, "the scene has no param `{name}`; it has {}", known.join(", "))
-            }
-            Self::NotAValue { name, text, expected } => {
-                write!(f, "the param `{name}` takes {expected}, not `{text}`")
-            }
-            Self::Outside { name, text, range } => {
-                write!(f, "the param `{name}` takes {range}; {text} is outside")
-            }
-        }
+fn known_params(known: &[String]) -> String {
+    match known {
+        [] => "it has no params".to_owned(),
+        known => format!("it has {}", known.join(", ")),
     }
 }
-
-impl std::error::Error for ParamError {}
 
 /// A value of a param.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value<'a> {
-    /// Of a number, a whole number, or an angle in radians.
+    /// A number, an integer, or an angle in radians.
     Number(f64),
-    /// Of a truth value.
+    /// A truth value.
     Bool(bool),
-    /// Of a colour: linear red, green, blue, alpha.
+    /// A colour: linear red, green, blue, alpha.
     Color([f64; 4]),
     /// The name of a choice.
     Choice(&'a str),
@@ -121,10 +111,10 @@ impl Scene {
     /// Sets one param of a frame.
     ///
     /// ```
-    /// use sdfc::Scene;
+    /// use sdfc::Compiler;
     ///
     /// let text = "param r = 1 in 0..2\nparam lid = true\nsphere(r)";
-    /// let scene = Scene::from_source("a.sdf", text)?;
+    /// let scene = Compiler::new().compile("a.sdf", text)?;
     /// let mut frame = scene.defaults();
     /// scene.set(&mut frame, "r", 0.5)?;
     /// scene.set(&mut frame, "lid", false)?;
@@ -135,7 +125,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`ParamError`], also for what is infinite or not a number; the frame is left as it was.
+    /// [`ParamError`], also for infinite numbers and NaN. The frame is not changed.
     pub fn set<'v>(
         &self,
         frame: &mut FrameValues,
@@ -145,22 +135,22 @@ impl Scene {
         set(self.params(), frame, name, value.into())
     }
 
-    /// Sets one param of a frame. The text is written as in a scene: `0.5`, `-2`, `90deg`, `true`,
-    /// `#d94f30`; a choice by its name.
+    /// Sets one param of a frame from text, written as in a scene: `0.5`, `-2`, `90deg`, `true`,
+    /// `#d94f30`, or the name of a choice.
     ///
     /// ```
-    /// let scene = sdfc::compile("a.sdf", "param r = 1 in 0..2\nsphere(r)").scene.expect("no errors");
-    /// let mut frame = sdfc::FrameValues::defaults(scene.params());
+    /// let scene = sdfc::Compiler::new().compile("a.sdf", "param r = 1 in 0..2\nsphere(r)")?;
+    /// let mut frame = scene.defaults();
     /// scene.set_param(&mut frame, "r", "0.5")?;
     /// assert_eq!(frame.params[0][0], 0.5);
     /// let error = scene.set_param(&mut frame, "r", "3").expect_err("outside");
     /// assert_eq!(error.to_string(), "the param `r` takes 0..2; 3 is outside");
-    /// # Ok::<(), sdfc::ParamError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`ParamError`]; the frame is left as it was.
+    /// [`ParamError`]. The frame is not changed.
     pub fn set_param(
         &self,
         frame: &mut FrameValues,
@@ -180,7 +170,7 @@ pub(crate) fn set(
 ) -> Result<(), ParamError> {
     put(params, frame, name, |param| {
         let text = value.to_string();
-        let lanes = value.lanes(param).ok_or_else(|| refused(param, &text))?;
+        let lanes = value.lanes(param).ok_or_else(|| not_a_value(param, &text))?;
         within_range(param, lanes, &text)
     })
 }
@@ -204,10 +194,10 @@ fn put(
     Ok(())
 }
 
-/// The lanes of a param for a text.
+/// Parses the value of a param.
 fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
     let text = text.trim();
-    let refused = || refused(param, text);
+    let refused = || not_a_value(param, text);
     if param.kind == ParamKind::Choice {
         let index = param.choices.iter().position(|choice| choice == text.trim_matches('"'));
         return index.map(|index| [index as f64, 0.0, 0.0, 0.0]).ok_or_else(refused);
@@ -229,7 +219,7 @@ fn value(param: &Param, text: &str) -> Result<[f64; 4], ParamError> {
 }
 
 impl Value<'_> {
-    /// The lanes that a param of that kind has for it.
+    /// Returns the lanes of the value for a param, or `None` if it does not fit the param's kind.
     fn lanes(self, param: &Param) -> Option<[f64; 4]> {
         let one = |number: f64| number.is_finite().then_some([number, 0.0, 0.0, 0.0]);
         match (self, param.kind) {
@@ -247,7 +237,7 @@ impl Value<'_> {
     }
 }
 
-fn refused(param: &Param, text: &str) -> ParamError {
+fn not_a_value(param: &Param, text: &str) -> ParamError {
     let (name, text) = (param.name.clone(), text.to_owned());
     ParamError::NotAValue { name, text, expected: expected(param) }
 }
@@ -264,8 +254,8 @@ fn within_range(param: &Param, lanes: [f64; 4], text: &str) -> Result<[f64; 4], 
     }
 }
 
-/// Kind and lanes of a constant: it is read as the default of a param, so that a call writes values as
-/// a scene does.
+/// Returns kind and lanes of a constant. It is parsed as the default of a param, so that values are
+/// written as in a scene.
 fn literal(text: &str) -> Option<(ParamKind, [f64; 4])> {
     if text.contains(['\n', '\r']) {
         return None;
@@ -285,7 +275,7 @@ fn literal(text: &str) -> Option<(ParamKind, [f64; 4])> {
 fn expected(param: &Param) -> String {
     match param.kind {
         ParamKind::Number => "a number".to_owned(),
-        ParamKind::Int => "a whole number".to_owned(),
+        ParamKind::Int => "an integer".to_owned(),
         ParamKind::Angle => "an angle with its unit, such as 90deg".to_owned(),
         ParamKind::Bool => "true or false".to_owned(),
         ParamKind::Color => "a colour, such as #d94f30".to_owned(),
@@ -293,10 +283,10 @@ fn expected(param: &Param) -> String {
     }
 }
 
-/// A range as a scene writes it.
+/// Returns a range as a scene writes it.
 fn range(kind: ParamKind, ends: [f64; 2]) -> String {
     let [lo, hi] = ends.map(|end| match kind {
-        // Radians are seldom round in degrees.
+        // Hides the rounding of the conversion from degrees to radians and back.
         ParamKind::Angle => format!("{}deg", (end.to_degrees() * 1e9).round() / 1e9),
         ParamKind::Number
         | ParamKind::Int
@@ -309,16 +299,14 @@ fn range(kind: ParamKind, ends: [f64; 2]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
 
     const SCENE: &str = "param r = 1.5 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt = 10deg in \
                          0deg..45deg\nparam lid = true\nparam wood = #8a5a34\nparam style = \
                          \"round\" in [\"round\", \"flat\"]\nsphere(r)\n";
 
     fn set(name: &str, text: &str) -> Result<[f64; 4], String> {
-        let compiled = crate::compile("a.sdf", SCENE);
-        let scene = compiled.scene.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
-        let mut frame = FrameValues::defaults(scene.params());
+        let scene = crate::compiler::Compiler::new().compile("a.sdf", SCENE).unwrap();
+        let mut frame = scene.defaults();
         scene.set_param(&mut frame, name, text).map_err(|e| e.to_string())?;
         let index = scene.params().iter().position(|param| param.name == name).unwrap();
         Ok(frame.params[index])
@@ -339,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_value_is_refused_with_what_would_be_one() {
+    fn an_invalid_value_is_refused_with_a_valid_example() {
         for (name, text, part) in [
             ("q", "1", "it has r, n, tilt, lid, wood, style"),
             ("r", "2.5", "0.5..2; 2.5 is outside"),
@@ -348,7 +336,7 @@ mod tests {
             ("r", "1\nparam x = 2", "a number"),
             ("r", "", "a number"),
             ("r", "true", "a number"),
-            ("n", "2.5", "a whole number"),
+            ("n", "2.5", "an integer"),
             ("tilt", "10", "its unit"),
             ("tilt", "90deg", "0deg..45deg"),
             ("lid", "1", "true or false"),

@@ -1,4 +1,4 @@
-//! From a compiled scene to a picture, on the GPU or the CPU.
+//! Draws pictures of a scene, on the GPU or the CPU.
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -12,44 +12,103 @@ use sdfc_render::{
     milliseconds_since, sample_offsets, uniform_values,
 };
 
-use crate::{Error, Marched, Scene};
+use crate::error::Error;
+use crate::marched::Marched;
+use crate::scene::Scene;
 
-/// Where a picture is drawn.
+/// The device that draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// On the GPU if there is an adapter, else on the CPU.
+    /// The GPU if there is one, otherwise the CPU.
     #[default]
     Auto,
-    /// On the GPU, or not at all.
+    /// The GPU. Without one, drawing fails.
     Gpu,
-    /// On the CPU.
+    /// The CPU.
     Cpu,
 }
 
-/// How a picture is drawn.
+/// Options of [`Scene::render`] and [`Scene::painter`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PictureOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Ray method; `None` takes the scene's, or `auto`.
     pub method: Option<String>,
-    /// Where.
+    /// The device that draws.
     pub backend: Backend,
-    /// From where; `None` takes the scene's camera, or one that sees all of it.
+    /// The camera; `None` takes the scene's, or one that sees the whole scene.
     pub pose: Option<Pose>,
-    /// The knob of the method, for most its tolerance, as a multiple of the scene's.
+    /// Factor by which the method's parameter, most often its tolerance, differs from the scene's.
     pub tolerance: f64,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
-    /// Rays from the eye for each pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes
-    /// the scene's, or 1.
+    /// Rays per pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes the
+    /// scene's, or 1.
     pub samples: Option<u32>,
     /// How often the frame is drawn, to time it; at least 1.
     pub repetitions: u32,
 }
 
+impl PictureOptions {
+    /// The default options: 640 by 360 pixels, everything else chosen by the scene and the machine.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets width and height in pixels.
+    #[must_use]
+    pub fn size(self, size: [u32; 2]) -> Self {
+        Self { size, ..self }
+    }
+
+    /// Sets the ray method; `None` takes the scene's, or `auto`.
+    #[must_use]
+    pub fn method(self, method: impl Into<Option<String>>) -> Self {
+        Self { method: method.into(), ..self }
+    }
+
+    /// Sets the device that draws.
+    #[must_use]
+    pub fn backend(self, backend: Backend) -> Self {
+        Self { backend, ..self }
+    }
+
+    /// Sets the camera; `None` takes the scene's, or one that sees the whole scene.
+    #[must_use]
+    pub fn pose(self, pose: impl Into<Option<Pose>>) -> Self {
+        Self { pose: pose.into(), ..self }
+    }
+
+    /// Sets the factor by which the method's parameter, most often its tolerance, differs from the
+    /// scene's.
+    #[must_use]
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// Sets the values of params, time and frame; `None` takes the defaults at time 0.
+    #[must_use]
+    pub fn frame(self, frame: impl Into<Option<FrameValues>>) -> Self {
+        Self { frame: frame.into(), ..self }
+    }
+
+    /// Sets the number of rays per pixel; `None` takes the scene's, or 1.
+    #[must_use]
+    pub fn samples(self, samples: impl Into<Option<u32>>) -> Self {
+        Self { samples: samples.into(), ..self }
+    }
+
+    /// Sets how often the frame is drawn, to time it.
+    #[must_use]
+    pub fn repetitions(self, repetitions: u32) -> Self {
+        Self { repetitions, ..self }
+    }
+}
+
 impl Default for PictureOptions {
-    /// 640 by 360, everything else left to the scene and the machine.
+    /// As [`PictureOptions::new`].
     fn default() -> Self {
         Self {
             size: [640, 360],
@@ -66,22 +125,23 @@ impl Default for PictureOptions {
 
 /// A finished picture.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Picture {
-    /// Pixels: colour, depth, status, evaluations.
+    /// The pixels: colour, depth, status, number of evaluations.
     pub image: Image,
-    /// Figures.
+    /// Times and counts.
     pub stats: Stats,
-    /// Why it was drawn elsewhere or otherwise than asked, in one line.
+    /// One line that says why the device or the method differs from the options.
     pub note: Option<String>,
 }
 
 impl Scene {
-    /// Draws the scene. `progress` is called now and then and may cancel.
+    /// Draws the scene. `progress` is called repeatedly and may cancel.
     ///
     /// # Errors
     ///
-    /// [`Error::View`] where the settings make no picture, [`Error::Render`] where the machine cannot
-    /// draw it, [`Error::Codegen`] where the scene cannot be lowered.
+    /// [`Error::View`] if the settings give no valid view, [`Error::Render`] if the machine cannot
+    /// draw the scene, [`Error::Codegen`] if the scene cannot be lowered.
     pub fn render(
         &self,
         options: &PictureOptions,
@@ -92,13 +152,13 @@ impl Scene {
         self.painter(options)?.paint(&values, options.repetitions, progress)
     }
 
-    /// Makes all ready to draw pictures that differ only in the frame's values: nothing is compiled
-    /// again between them. `frame` and `repetitions` of the options have no effect here.
+    /// Prepares to draw many pictures that differ only in the frame's values, without compiling
+    /// again. `frame` and `repetitions` of the options have no effect here.
     ///
     /// # Errors
     ///
-    /// [`Error::Render`] where the machine cannot draw or there are too many samples, [`Error::Codegen`]
-    /// where the scene cannot be lowered.
+    /// [`Error::Render`] if the machine cannot draw or there are too many samples,
+    /// [`Error::Codegen`] if the scene cannot be lowered.
     pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
         let start = Instant::now();
         let method = options.method.as_deref().unwrap_or(self.method());
@@ -109,7 +169,7 @@ impl Scene {
             Backend::Cpu => Err(None),
             Backend::Auto => Gpu::new().map_err(|error| Some(format!("{error}; drawn on the CPU"))),
         };
-        // Whoever asks for both by name is told that they do not go together.
+        // A method that the CPU lacks is an error if both are asked for by name.
         let both = options.backend == Backend::Cpu && options.method.is_some();
         let Marched { program, method, note: why } = match gpu {
             Err(_) if !both => self.marched_on_cpu(method),
@@ -181,27 +241,27 @@ fn cpu_times(start: Instant) -> CompileTimes {
     }
 }
 
-/// What draws.
+/// The device that draws, with the scene compiled for it.
 #[derive(Debug)]
 enum Engine {
     Gpu(Box<Pipeline>),
     Cpu(Box<CpuScene>),
 }
 
-/// A scene made ready to be drawn with one method at one size: see [`Scene::painter`].
+/// Draws one scene with one method at one size: see [`Scene::painter`].
 #[derive(Debug)]
 pub struct Painter<'s> {
     scene: &'s Scene,
-    /// The scene's, with what the method asks for.
+    /// The scene's program, with the functions that the method needs.
     program: Cow<'s, Program>,
     engine: Engine,
     method: String,
-    /// Why this method, where it is not for a certified field.
+    /// Why this method draws, if the field is uncertified.
     why: Option<String>,
     size: [u32; 2],
     pose: Option<Pose>,
     tolerance: f64,
-    /// Where in a pixel its rays pass.
+    /// Where the rays pass through a pixel.
     samples: Vec<[f64; 2]>,
     compile: CompileTimes,
     note: Option<String>,
@@ -209,13 +269,14 @@ pub struct Painter<'s> {
 }
 
 impl Painter<'_> {
-    /// Draws one frame, `repetitions` times (at least once) to time it. `progress` is called now and
-    /// then and may cancel; it counts each sample of a pixel.
+    /// Draws one frame, `repetitions` times (at least once) to time it.
+    ///
+    /// `progress` is called repeatedly and may cancel; it counts each sample of a pixel.
     ///
     /// # Errors
     ///
-    /// [`Error::View`] where the settings make no picture, [`Error::Render`] where the machine cannot
-    /// draw it.
+    /// [`Error::View`] if the settings give no valid view, [`Error::Render`] if the machine cannot
+    /// draw the scene.
     pub fn paint(
         &self,
         values: &FrameValues,
@@ -260,8 +321,8 @@ impl Painter<'_> {
         }
     }
 
-    /// The mean of all samples in linear light. Depth and status are those of the first, which is the
-    /// nearest to the pixel's centre.
+    /// Returns the mean of all samples in linear light. Depth and status are those of the first
+    /// sample, which is nearest to the centre of the pixel.
     fn averaged(
         &self,
         view: &View,
@@ -307,7 +368,7 @@ impl Painter<'_> {
     }
 }
 
-/// The last frame, and the time that each took.
+/// Returns the last frame, and the time of each in milliseconds.
 fn repeated(
     repetitions: u32,
     mut draw: impl FnMut() -> Result<Frame, RenderError>,

@@ -1,15 +1,15 @@
-//! What is known of each shape of a scene, at the call that made it.
+//! What is known of each shape of a scene, with the call that made it.
 
 use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_graph::eval::evaluate_frame;
 use sdfc_graph::{Dim, NodeId};
 use sdfc_lang::Site;
 
-use crate::Scene;
-use crate::explain::{Bounds, QualityRow};
+use crate::explanation::{Bounds, QualityRow};
+use crate::scene::Scene;
 
 impl Scene {
-    /// One row for each call in the scene's own files whose shape is drawn.
+    /// Returns one row for each call in the scene whose shape is drawn.
     pub(crate) fn quality_rows(&self) -> Vec<QualityRow> {
         let report = |site: &Site| self.report.shapes.iter().find(|s| s.shape == site.shape);
         let sites: Vec<(&Site, &ShapeReport)> =
@@ -29,13 +29,13 @@ impl Scene {
         let rows = sites.iter().zip(corners).zip(reaches);
         let mut rows: Vec<QualityRow> = rows
             .map(|(((site, shape), corners), reach)| {
-                let place = self.sources.line_column(site.span.file, site.span.start);
+                let start = self.sources().line_column(site.span.file, site.span.start);
                 // A region has no third coordinate.
                 let far = if graph.shape(site.shape).dim == Dim::Two { f64::INFINITY } else { 0.0 };
                 let corner = |[x, y, z, _]: [f64; 4]| [x, y, z + far];
                 QualityRow {
-                    line: place.line,
-                    column: place.column,
+                    line: start.line,
+                    column: start.column,
                     bounds: Bounds::of(corners.map(corner)),
                     blend_margin: reach,
                     ..self.quality_row(shape, &site.name)
@@ -46,7 +46,7 @@ impl Scene {
         rows
     }
 
-    /// What the analysis found, wherever the call stands.
+    /// Returns the results of the analysis, without the location.
     fn quality_row(&self, shape: &ShapeReport, name: &str) -> QualityRow {
         let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
         let lipschitz = match shape.lipschitz {
@@ -56,11 +56,11 @@ impl Scene {
         let why = match (&shape.lipschitz, uncertified) {
             (_, Some(found)) => Some(found.reason.to_string()),
             (Lipschitz::Unknown(_), None) if shape.sides.is_bound() => {
-                Some("a bound, which needs no constant".to_owned())
+                Some("a bound; it needs no constant".to_owned())
             }
             (Lipschitz::Unknown(reason), None) => Some(reason.clone()),
             (_, None) if shape.from_interval_derivatives => {
-                Some("found by interval derivatives, within its bounds".to_owned())
+                Some("constant from interval derivatives within its bounds".to_owned())
             }
             (_, None) if shape.divided => Some("divided by its constant".to_owned()),
             (_, None) => None,

@@ -1,180 +1,208 @@
-//! What a written shader offers, and what is known of its field, for programs.
+//! The interface of a written shader and the properties of its field, as data.
 
 use sdfc_analyze::{Promise, Sides as ShapeSides};
 use sdfc_codegen::{Buffer, BufferRole, Member, Structure, Written};
 use sdfc_graph::{FrameInput, Param, ParamKind, Type};
 use serde::Serialize;
 
-use crate::{Bounds, QualityRow, Scene, ShaderOptions};
+use crate::explanation::{Bounds, QualityRow};
+use crate::scene::Scene;
+use crate::shader::ShaderOptions;
 
-/// The reflection of a written shader. The keys are a promise to other tools: some may be added, none
-/// renamed.
+/// The interface of a written shader.
+///
+/// Other tools rely on the keys of its JSON: new ones may be added, none is renamed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ShaderReflection {
     /// Version of sdfc.
     pub sdfc: &'static str,
-    /// As [`Scene::source_hash`].
+    /// The hash of [`Scene::source_hash`].
     pub source_hash: String,
-    /// Start of every name.
+    /// Prefix of every name.
     pub prefix: String,
-    /// The language.
+    /// Shader language.
     pub target: &'static str,
     /// Functions that a host may call.
     pub functions: Vec<FunctionRow>,
-    /// Members of the uniform structure, in its order.
+    /// Members of the uniform structure, in order.
     pub params: Vec<ParamRow>,
-    /// The uniform buffer; null where nothing is known per frame only.
+    /// The uniform buffer; null if the shader reads no params.
     pub uniform: Option<UniformRow>,
-    /// All buffers that a host binds, that one included.
+    /// All buffers that a host binds, including the uniform buffer.
     pub buffers: Vec<BufferRow>,
-    /// What the buffer of the role `lists` holds: numbers of 32 bits, four to an element. Empty without one.
+    /// Contents of the buffer with the role `lists`: 32-bit floats, four per element. Empty without
+    /// such a buffer.
     pub lists: Vec<f32>,
-    /// What the buffer of the role `view` holds for a picture of [`VIEW_SIZE`](crate::VIEW_SIZE) at the params' defaults and time 0: words
-    /// of 32 bits, floats by their bits. Empty without one.
+    /// Contents of the buffer with the role `view`, for a picture of
+    /// [`VIEW_SIZE`](crate::VIEW_SIZE) at the params' defaults and time 0: 32-bit words, floats as
+    /// their bits. Empty without such a buffer.
     pub view: Vec<u32>,
-    /// The structures that functions take or give and buffers hold, members before what holds them.
+    /// Structures of function signatures and buffers. A structure follows those it contains.
     pub structs: Vec<StructRow>,
     /// The entry points.
     pub entry_points: Vec<EntryRow>,
-    /// What is known of the field.
+    /// Properties of the field.
     pub certificate: Certificate,
 }
 
 /// A function of the point, or of a ray.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct FunctionRow {
     /// `distance`, `gradient`, `material` or `trace`.
     pub role: &'static str,
-    /// Its name in the text.
+    /// Name in the shader.
     pub name: String,
-    /// How the text declares it; as WGSL would for SPIR-V.
+    /// Declaration in the shader; in WGSL syntax for SPIR-V.
     pub signature: String,
 }
 
 /// A member of the uniform structure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ParamRow {
-    /// Its name in the text.
+    /// Name in the shader.
     pub name: String,
-    /// Its name in the scene, `time` or `frame`.
+    /// Name in the scene, or `time` or `frame`.
     pub param: String,
     /// `number`, `int`, `angle` (radians), `bool` (0 or 1, of 32 bits), `color` (linear red, green,
     /// blue, alpha) or `choice` (its index, as a float).
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// Bytes from the start of the structure.
+    /// Offset in the structure, in bytes.
     pub offset: u32,
-    /// Bytes.
+    /// Size in bytes.
     pub size: u32,
-    /// Its default, one number for each lane.
+    /// Default value, one number per lane.
     pub default: Vec<f64>,
-    /// Least value; null without a range.
+    /// Lowest value; null without a range.
     pub min: Option<f64>,
-    /// Greatest value; null without a range.
+    /// Highest value; null without a range.
     pub max: Option<f64>,
-    /// Names of the choices, in the order of their indices.
+    /// Names of the choices, in order of their indices.
     pub choices: Vec<String>,
 }
 
 /// The uniform buffer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct UniformRow {
-    /// Name of its structure in the text; null for an array of values computed per frame.
+    /// Name of its structure; null for an array of values computed per frame.
     #[serde(rename = "struct")]
     pub structure: Option<String>,
     /// Bind group.
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Bytes, a multiple of 16.
+    /// Size in bytes, a multiple of 16.
     pub size: u32,
-    /// In GLSL, the name of its block; else null.
+    /// Name of its block in GLSL; otherwise null.
     pub block: Option<String>,
 }
 
 /// A buffer that a host binds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct BufferRow {
-    /// `view`: camera, limits and lights; `params`; `pixels`, which the shader writes; or `lists`, which a
-    /// host fills once with [`ShaderReflection::lists`].
+    /// `view` (camera, limits and lights), `params`, `pixels` (written by the shader), or `lists`
+    /// (filled once by the host with [`ShaderReflection::lists`]).
     pub role: &'static str,
-    /// Name of its variable.
+    /// Name of the variable.
     pub name: String,
-    /// Its type as WGSL calls it, or that of its elements.
+    /// WGSL type of the buffer, or of its elements.
     #[serde(rename = "type")]
     pub ty: String,
-    /// Whether it has as many elements as the host likes.
+    /// True if the host chooses the number of elements.
     pub array: bool,
     /// Bind group.
     pub group: u32,
     /// Binding in the group.
     pub binding: u32,
-    /// Bytes, of one element where there may be many; of a uniform a multiple of 16.
+    /// Size in bytes: of one element for an array, a multiple of 16 for a uniform buffer.
     pub size: u32,
-    /// In GLSL, the name of its block; else null.
+    /// Name of its block in GLSL; otherwise null.
     pub block: Option<String>,
 }
 
 /// A structure.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct StructRow {
-    /// Its name in the text.
+    /// Name in the shader.
     pub name: String,
-    /// Bytes in a buffer.
+    /// Size in a buffer, in bytes.
     pub size: u32,
-    /// Its members.
+    /// The members.
     pub members: Vec<MemberRow>,
 }
 
 /// A member of a structure.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct MemberRow {
-    /// Its name in the text.
+    /// Name in the shader.
     pub name: String,
-    /// Its type as WGSL calls it.
+    /// WGSL type.
     #[serde(rename = "type")]
     pub ty: String,
-    /// Bytes from the start of the structure in a buffer.
+    /// Offset in a buffer, in bytes.
     pub offset: u32,
+}
+
+/// A stage of the graphics or compute pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EntryStage {
+    /// A vertex stage.
+    Vertex,
+    /// A fragment stage.
+    Fragment,
+    /// A compute stage.
+    Compute,
 }
 
 /// An entry point.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct EntryRow {
-    /// `vertex`, `fragment` or `compute`.
-    pub stage: &'static str,
-    /// Its name in the text.
+    /// The stage that it is for.
+    pub stage: EntryStage,
+    /// Name in the shader.
     pub name: String,
 }
 
-/// What is known of the emitted field, at the params' defaults.
+/// Properties of the emitted field, at the params' defaults.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Certificate {
-    /// Whether every part has a Lipschitz constant: then the field never exceeds the distance.
+    /// True if every part has a Lipschitz constant: then the field never exceeds the distance.
     pub certified: bool,
-    /// Where the scene lies; null where infinite.
+    /// Bounds of the scene; null is infinite.
     pub bounds: Bounds,
-    /// Constant of the emitted field, which is divided where it must be: 1, or null where not known.
+    /// Lipschitz constant of the emitted field: 1, since the field is divided by its constant, or
+    /// null if unknown.
     pub lipschitz: Sides<Option<f64>>,
-    /// `exact`, `bound` or `none`.
+    /// Promise: `exact`, `bound` or `none`.
     pub promise: Sides<String>,
-    /// By what the distance is multiplied to be a safe step.
+    /// Factor that turns a distance into a safe step.
     pub step_scale: f64,
-    /// The calls of the scene that made shapes, in order of place.
+    /// The shapes that calls in the scene made, in source order.
     pub parts: Vec<QualityRow>,
 }
 
 /// A property outside and inside the surface.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Sides<T> {
-    /// Where the field is positive.
+    /// Outside, where the field is positive.
     pub outside: T,
-    /// Where it is negative.
+    /// Inside, where the field is negative.
     pub inside: T,
 }
 
 impl Scene {
-    /// What a shader that was written with these options offers.
+    /// Returns the interface of a shader that was written with these options.
     pub fn reflect(&self, options: &ShaderOptions, written: &Written) -> ShaderReflection {
         let found = &written.reflection;
         let functions = found.functions.iter().map(|function| FunctionRow {
@@ -190,7 +218,8 @@ impl Scene {
             block: uniform.block.clone(),
         });
         let entries = found.entries.iter();
-        let entries = entries.map(|e| EntryRow { stage: e.stage, name: e.name.clone() });
+        let entries =
+            entries.map(|e| EntryRow { stage: entry_stage(e.stage), name: e.name.clone() });
         ShaderReflection {
             sdfc: env!("CARGO_PKG_VERSION"),
             source_hash: self.source_hash(),
@@ -208,7 +237,7 @@ impl Scene {
         }
     }
 
-    /// Empty too where the settings make no picture: a host may have others.
+    /// Returns the view's words. Empty if the settings give no valid view: the host has its own.
     fn reflected_view(&self, found: &sdfc_codegen::Reflection) -> Vec<u32> {
         if !found.buffers.iter().any(|buffer| buffer.role == BufferRole::View) {
             return Vec::new();
@@ -251,7 +280,7 @@ impl Scene {
         let certified = self.report.uncertified.is_empty();
         let root = self.graph().root;
         let root = self.report.shapes.iter().find(|shape| Some(shape.shape) == root);
-        // What is 1-Lipschitz and 0 on the surface never exceeds the distance to it.
+        // A 1-Lipschitz field that is 0 on the surface never exceeds the distance to it.
         let least = if certified { Promise::Bound } else { Promise::None };
         let promise = |side: fn(&ShapeSides) -> Promise| {
             root.map_or(Promise::None, |shape| side(&shape.sides)).max(least).to_string()
@@ -265,6 +294,14 @@ impl Scene {
             step_scale: 1.0,
             parts: self.quality_rows(),
         }
+    }
+}
+
+fn entry_stage(name: &str) -> EntryStage {
+    match name {
+        "vertex" => EntryStage::Vertex,
+        "fragment" => EntryStage::Fragment,
+        _ => EntryStage::Compute,
     }
 }
 
@@ -321,11 +358,13 @@ fn lanes(ty: Type) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use crate::{ShaderOptions, Target, compile};
+    use super::*;
+    use crate::compiler::Compiler;
+    use crate::shader::{Emit, VIEW_SIZE};
+    use sdfc_codegen::Target;
 
     fn reflection(text: &str, target: Target) -> serde_json::Value {
-        let compiled = compile("a.sdf", text);
-        let scene = compiled.scene.unwrap();
+        let scene = Compiler::new().compile("a.sdf", text).unwrap();
         let options = ShaderOptions { target, group: 1, binding: 2, ..Default::default() };
         let written = scene.write_shader(&options).unwrap();
         serde_json::to_value(scene.reflect(&options, &written)).unwrap()
@@ -335,7 +374,7 @@ mod tests {
                          (sphere(r) | plane(y: -1)).color(tint)\nsphere(0.2).translate(x: time)";
 
     #[test]
-    fn the_keys_are_those_that_other_tools_rely_on() {
+    fn the_keys_of_the_reflection_are_stable() {
         let found = reflection(SCENE, Target::Wgsl);
         assert_eq!(found["sdfc"], env!("CARGO_PKG_VERSION"));
         assert_eq!(found["source_hash"].as_str().unwrap().len(), 16);
@@ -358,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn a_uniform_of_one_number_takes_sixteen_bytes() {
+    fn a_uniform_buffer_of_one_number_has_sixteen_bytes() {
         let found = reflection("param r = 0.5 in 0.1..1\nsphere(r)", Target::GlslEs);
         assert_eq!(
             (&found["uniform"]["size"], &found["params"][0]["size"]),
@@ -369,9 +408,9 @@ mod tests {
 
     #[test]
     fn the_view_has_a_word_for_every_lane_of_its_structure() {
-        let compiled = compile("a.sdf", "sphere(1)\ncamera(eye: [0, 0, 5], fov: 90deg)");
-        let scene = compiled.scene.unwrap();
-        let options = ShaderOptions { emit: crate::Emit::Render, ..Default::default() };
+        let text = "sphere(1)\ncamera(eye: [0, 0, 5], fov: 90deg)";
+        let scene = Compiler::new().compile("a.sdf", text).unwrap();
+        let options = ShaderOptions { emit: Emit::Render, ..Default::default() };
         let written = scene.write_shader(&options).unwrap();
         let found = scene.reflect(&options, &written);
         let buffer = found.buffers.iter().find(|buffer| buffer.role == "view").unwrap();
@@ -383,19 +422,19 @@ mod tests {
         };
         assert_eq!(words("eye")[..3], [0.0, 0.0, 5.0_f32].map(f32::to_bits));
         assert_eq!(words("up")[..3], [0.0, 1.0, 0.0_f32].map(f32::to_bits));
-        assert_eq!(words("size")[..2], crate::VIEW_SIZE);
+        assert_eq!(words("size")[..2], VIEW_SIZE);
         assert!(reflection("sphere(1)", Target::Wgsl)["view"].as_array().unwrap().is_empty());
     }
 
     #[test]
-    fn the_certificate_says_what_the_analysis_found() {
+    fn the_certificate_holds_the_results_of_the_analysis() {
         let found = reflection(SCENE, Target::Msl);
         let certificate = &found["certificate"];
         assert_eq!(
             (&certificate["certified"], &certificate["step_scale"]),
             (&true.into(), &1.0.into())
         );
-        assert!(certificate["bounds"]["max"][0].is_null(), "the plane is without end");
+        assert!(certificate["bounds"]["max"][0].is_null(), "the plane is infinite");
         assert!((certificate["bounds"]["max"][1].as_f64().unwrap() - 0.5).abs() < 1e-6);
         assert_eq!(certificate["lipschitz"]["outside"], 1.0);
         assert_eq!(certificate["promise"]["outside"], "exact");
@@ -404,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_tell_of_jumps_blends_and_bounds() {
+    fn parts_have_jumps_blend_margins_and_bounds() {
         let text = "solid stairs() = p.y - 0.2 * floor(p.x)\n\
                     union(sphere(0.5), box(1), blend: smooth(0.4))\n\
                     sphere(1).round(0.1) - circle(0.2).extrude(3)\nstairs()";
@@ -414,7 +453,7 @@ mod tests {
         let margin = |name| part(name)["blend_margin"].as_f64().unwrap();
         assert!((margin("union") - 0.1).abs() < 1e-3, "{}", margin("union"));
         assert!((margin("round") - 0.1).abs() < 1e-3);
-        assert!(margin("difference") < 1e-6, "a hard operator carries nothing");
+        assert!(margin("difference") < 1e-6, "a hard operator moves no surface");
         assert!(part("sphere")["blend_margin"].is_null());
         assert_eq!(part("stairs")["jump"], "floor");
         assert!(part("union")["jump"].is_null());
@@ -423,7 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_constant_nothing_is_certified() {
+    fn a_field_without_a_constant_is_not_certified() {
         let found = reflection("solid s() = p.x * p.x + p.y * p.y - 1\ns()", Target::Glsl);
         let certificate = &found["certificate"];
         assert_eq!(certificate["certified"], false);

@@ -1,55 +1,125 @@
-//! A compiled scene's field on the CPU, as a shader, and explained.
+//! A compiled scene.
 
-use sdfc_codegen::{FieldOptions, Role, Shader, field_module, render_module};
-use sdfc_graph::eval::{FrameValues, evaluate_frame};
-use sdfc_graph::{FrameInput, Graph, Node, NodeId, Shape, ShapeId, bounds, reachable};
+use std::sync::OnceLock;
+
+use sdfc_analyze::{LoopStrategy, Prepared, Report};
+use sdfc_diagnostics::Sources;
+use sdfc_graph::eval::{FrameValues, TapeError};
+use sdfc_graph::{Param, Program};
+use sdfc_lang::live_literals::LiveLiteral;
+use sdfc_lang::{Elaborated, Site};
 use sdfc_render::View;
 
-use crate::explain::{Bounds, Explanation, Knob, feature_names};
-use crate::marched::with_stretches;
-use crate::{Error, Scene};
+use crate::derived_bounds::DerivedBounds;
+use crate::diagnostics::Diagnostics;
+use crate::error::Error;
+use crate::source_id::SourceId;
+use crate::tapes::Tapes;
 
-/// Lowest and highest point of what is drawn, per-frame nodes of a graph of their own.
+/// Time spent before code generation, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FrontTimes {
+    /// Parsing, checking, elaborating.
+    pub front: f64,
+    /// Analyses and passes.
+    pub analyze: f64,
+}
+
+/// A compiled scene, before a target is chosen.
+///
+/// It can be evaluated on the CPU ([`Self::field`]), written as a shader ([`Self::write_shader`]),
+/// explained ([`Self::explain`]) and, with the feature `render`, drawn (`render`).
 #[derive(Debug)]
-pub(crate) struct DerivedBounds {
-    graph: Graph,
-    corners: [NodeId; 2],
+pub struct Scene {
+    pub(crate) diagnostics: Diagnostics,
+    pub(crate) elaborated: Elaborated,
+    pub(crate) program: Program,
+    pub(crate) report: Report,
+    pub(crate) loops: LoopStrategy,
+    /// The program with its origin at what the camera looks at, if pictures need that. Built when
+    /// the first picture is drawn.
+    pub(crate) rebased: OnceLock<Option<Program>>,
+    /// Derived on first use; a shader needs no bounds.
+    pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
+    /// True if `interval` reaches the surface within its steps. Determined on first use.
+    pub(crate) intervals_end: OnceLock<bool>,
+    /// The tapes that evaluate the field. Built on first use.
+    pub(crate) tapes: OnceLock<Result<Option<Tapes>, TapeError>>,
+    pub(crate) times: FrontTimes,
+    pub(crate) id: SourceId,
 }
 
 impl Scene {
-    /// Whether the field is known nowhere to exceed the distance.
+    pub(crate) fn new(
+        diagnostics: Diagnostics,
+        elaborated: Elaborated,
+        prepared: Prepared,
+        loops: LoopStrategy,
+        times: FrontTimes,
+        id: SourceId,
+    ) -> Self {
+        let Prepared { program, report } = prepared;
+        let (rebased, bounds, intervals_end, tapes) = Default::default();
+        Self {
+            diagnostics,
+            elaborated,
+            program,
+            report,
+            loops,
+            rebased,
+            bounds,
+            intervals_end,
+            tapes,
+            times,
+            id,
+        }
+    }
+
+    /// The warnings of the compilation.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        &self.diagnostics
+    }
+
+    /// The sources that the scene was compiled from: its own, the library and all imports.
+    pub fn sources(&self) -> &Sources {
+        self.diagnostics.sources()
+    }
+
+    /// The params, in order of declaration.
+    pub fn params(&self) -> &[Param] {
+        &self.program.params
+    }
+
+    /// The params' defaults, at time 0 and frame 0.
+    pub fn defaults(&self) -> FrameValues {
+        FrameValues::defaults(self.params())
+    }
+
+    /// The numbers of the scene that are params. Empty unless compiled with
+    /// [`Compiler::live_literals`](crate::Compiler::live_literals).
+    pub fn live_literals(&self) -> &[LiveLiteral] {
+        &self.elaborated.live_literals
+    }
+
+    /// True if the scene draws anything.
+    pub fn draws(&self) -> bool {
+        self.program.distance.is_some()
+    }
+
+    /// True if the field is proven never to exceed the distance to the surface.
     pub fn is_certified(&self) -> bool {
         self.report.uncertified.is_empty()
     }
 
-    /// The field alone, as functions to embed.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Codegen`].
-    pub fn field_shader(&self, options: &FieldOptions) -> Result<Shader, Error> {
-        Ok(field_module(&self.program, options)?)
-    }
-
-    /// The shader of the picture.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Codegen`], for an unknown method too.
-    pub fn picture_shader(&self, method: &str) -> Result<Shader, Error> {
-        let method = self.marched_by(method);
-        Ok(render_module(&with_stretches(&self.program, method), method)?)
-    }
-
-    /// Where the scene lies at a frame: lowest and highest corner, infinite where not limited.
+    /// Lowest and highest corner of the scene at a frame, infinite where the scene has no limit.
+    /// `None` if nothing is drawn.
     pub fn bounds_at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
-        let derived = self.bounds.get_or_init(|| self.derive_bounds()).as_ref()?;
-        let values = evaluate_frame(&derived.graph, &derived.corners, frame);
-        let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
-        Some([corner(values.first()?), corner(values.get(1)?)])
+        let derive = || DerivedBounds::of(&self.elaborated.scene);
+        self.bounds.get_or_init(derive).as_ref()?.at(frame)
     }
 
-    /// The view of a frame that a picture of that size has.
+    /// The view of a picture of `size` pixels at a frame.
     ///
     /// # Errors
     ///
@@ -58,120 +128,37 @@ impl Scene {
         Ok(View::new(self.drawn(), frame, self.bounds_at(frame), size)?)
     }
 
-    fn derive_bounds(&self) -> Option<DerivedBounds> {
-        let mut graph = self.graph().graph.clone();
-        let corners = bounds(&mut graph, self.graph().root?, self.params());
-        Some(DerivedBounds { graph, corners })
+    /// Time spent so far.
+    pub fn times(&self) -> FrontTimes {
+        self.times
     }
 
-    /// What was modelled and why.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NothingDrawn`], [`Error::Codegen`].
-    pub fn explain(&self) -> Result<Explanation, Error> {
-        let program = &self.program;
-        if program.distance.is_none() {
-            return Err(Error::NothingDrawn);
-        }
-        let options = FieldOptions { gradient: false, material: false, ..FieldOptions::default() };
-        let costs = self.field_shader(&options)?.instructions()?;
-        let field = costs.iter().find(|cost| cost.role == Role::Distance);
-        let features = self.picture_shader(self.method())?.features();
-        let report = &self.report;
-        Ok(Explanation {
-            leaves: report.leaves,
-            nodes: report.distance_cost.nodes,
-            ops_per_eval: report.distance_cost.operations,
-            ops_per_gradient: report.gradient_cost.operations,
-            ops_per_frame: report.distance_cost.per_frame,
-            writing: if report.loops.is_empty() { "inline" } else { "rolled" },
-            writing_why: self.why_written(),
-            loops: report.loops.iter().map(|rolled| rolled.operands).collect(),
-            closed: self.names(&report.analytic),
-            marched: self.names(&report.marched),
-            ops_per_ray: report.ray_cost.operations,
-            ops_per_step: report.marched_cost.operations,
-            spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
-            spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
-            features: feature_names(features),
-            method: self.marched_by(self.method()).to_owned(),
-            method_why: self.why_marched_by(self.method()),
-            step_scale: 1.0,
-            certified: self.is_certified(),
-            bounds: self.finite_bounds(),
-            knobs: self.knobs(),
-            quality: self.quality_rows(),
-        })
+    /// A hash of everything that the scene was compiled from, including the library and imports:
+    /// 16 hexadecimal digits (FNV-1a).
+    pub fn source_hash(&self) -> String {
+        format!("{:016x}", self.id.hash)
+    }
+}
+
+/// Internal representations, for the other crates of this workspace.
+impl Scene {
+    /// The flat program, with its origin at the origin of the scene.
+    pub fn program(&self) -> &Program {
+        &self.program
     }
 
-    /// Why the field is written as it is, in one line.
-    fn why_written(&self) -> String {
-        let rolled = &self.report.loops;
-        let most = self.report.unrolled_limit;
-        if rolled.is_empty() {
-            return match self.report.distance_cost.operations > most {
-                true => "few of its parts are alike".to_owned(),
-                false => format!("at most {most} operations"),
-            };
-        }
-        let parts: usize = rolled.iter().map(|rolled| rolled.operands).sum();
-        let loops = match rolled.len() {
-            1 => "one loop".to_owned(),
-            count => format!("{count} loops"),
-        };
-        let visited = match self.program.cullable_loops.is_empty() {
-            true => "rays visit all",
-            false => "rays visit what they can meet",
-        };
-        format!("{parts} parts in {loops}, over {most} operations; {visited}")
+    /// The graph with its shapes, as elaborated.
+    pub fn graph(&self) -> &sdfc_graph::Scene {
+        &self.elaborated.scene
     }
 
-    fn names(&self, shapes: &[ShapeId]) -> Vec<String> {
-        let shape = |&id: &ShapeId| self.graph().graph.shape(id);
-        let name = |id| {
-            let Shape { name, definition, .. } = shape(id);
-            name.as_ref().unwrap_or(definition).clone()
-        };
-        shapes.iter().map(name).collect()
+    /// The calls that made the shapes.
+    pub fn sites(&self) -> &[Site] {
+        &self.elaborated.sites
     }
 
-    pub(crate) fn finite_bounds(&self) -> Bounds {
-        let frame = self.defaults();
-        self.bounds_at(&frame).map(Bounds::of).unwrap_or_default()
-    }
-
-    fn knobs(&self) -> Vec<Knob> {
-        let used: Vec<Node> = reachable(&self.program.graph, &self.all_roots())
-            .into_iter()
-            .map(|id| self.program.graph.node(id))
-            .collect();
-        let is_used =
-            |input| used.iter().any(|node| matches!(node, Node::Frame(i, _) if *i == input));
-        let mut knobs: Vec<Knob> = self
-            .params()
-            .iter()
-            .enumerate()
-            .map(|(index, param)| Knob {
-                name: param.name.clone(),
-                stage: "frame",
-                used: is_used(FrameInput::Param(index as u32)),
-            })
-            .collect();
-        for (name, input) in [("time", FrameInput::Time), ("frame", FrameInput::Frame)] {
-            if is_used(input) {
-                knobs.push(Knob { name: name.to_owned(), stage: "frame", used: true });
-            }
-        }
-        knobs
-    }
-
-    /// Field, gradient, material and settings.
-    fn all_roots(&self) -> Vec<NodeId> {
-        let program = &self.program;
-        let mut roots: Vec<NodeId> = program.distance.into_iter().collect();
-        roots.extend(program.material.into_iter().flatten());
-        roots.extend(program.settings.nodes());
-        roots
+    /// The results of the analyses.
+    pub fn report(&self) -> &Report {
+        &self.report
     }
 }

@@ -1,48 +1,56 @@
-//! A scene's shader in the language of choice.
+//! Writes a scene as a shader.
 
 use sdfc_codegen::{
     FieldOptions, PictureOptions, Shader, Stage, Target, Written, field_module, march_module,
-    picture_module, shadertoy_module,
+    picture_module, render_module, shadertoy_module,
 };
-use sdfc_diagnostics::{FileId, Sources};
 use sdfc_render::{Tile, View, view_bytes};
 
-use crate::marched::with_stretches;
-use crate::{Error, Scene};
+use crate::error::Error;
+use crate::marched::with_segment_bounds;
+use crate::scene::Scene;
 
-/// Which part of a shader is written.
+/// The part of a shader that is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Emit {
-    /// The functions for distance, gradient and material.
+    /// Functions for distance, gradient and material.
     #[default]
     Field,
-    /// The same and a ray method: where a ray meets the surface.
+    /// The same, and a ray method that finds where a ray meets the surface.
     March,
-    /// The whole shader that draws pictures.
+    /// A complete shader that draws pictures.
     Render,
 }
 
-/// How a shader is written.
+/// Options of [`Scene::write_shader`].
+///
+/// ```
+/// use sdfc::{Emit, ShaderOptions, Target};
+///
+/// let options = ShaderOptions::new().target(Target::Hlsl).emit(Emit::March).prefix("ball_");
+/// assert_eq!(options.as_arguments(), "--target hlsl --emit march --prefix ball_");
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ShaderOptions {
     /// The language.
     pub target: Target,
-    /// The part.
+    /// The part of the shader.
     pub emit: Emit,
-    /// The stages of [`Emit::Render`]; nothing elsewhere.
+    /// The shader stage of [`Emit::Render`]; ignored otherwise.
     pub stage: Stage,
     /// The ray method of [`Emit::March`] and [`Emit::Render`]; `None` takes the scene's, or `auto`.
     pub method: Option<String>,
-    /// Start of every name; [`Target::Shadertoy`] has none.
+    /// Prefix of every name; ignored by [`Target::Shadertoy`].
     pub prefix: String,
-    /// Bind group of the buffers, where the target has groups.
+    /// Bind group of the buffers, if the target has groups.
     pub group: u32,
-    /// Binding of the first of them, where the target has bindings.
+    /// Binding of the first buffer, if the target has bindings.
     pub binding: u32,
 }
 
 impl Default for ShaderOptions {
-    /// A field in WGSL, its names beginning with `sdf_`, its buffer at 0, 0.
+    /// As [`ShaderOptions::new`].
     fn default() -> Self {
         let FieldOptions { prefix, group, binding, .. } = FieldOptions::default();
         let (target, emit, stage) = (Target::Wgsl, Emit::Field, Stage::Compute);
@@ -51,7 +59,7 @@ impl Default for ShaderOptions {
 }
 
 impl Emit {
-    /// Its name, as the command line has it.
+    /// Name of the part on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Field => "field",
@@ -62,7 +70,55 @@ impl Emit {
 }
 
 impl ShaderOptions {
-    /// What `sdfc compile` is to be told for the same shader, but for what changes nothing.
+    /// The default options: a field in WGSL with the prefix `sdf_`, its buffers from group 0,
+    /// binding 0.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets the language.
+    #[must_use]
+    pub fn target(self, target: Target) -> Self {
+        Self { target, ..self }
+    }
+
+    /// Sets which part of the shader is written.
+    #[must_use]
+    pub fn emit(self, emit: Emit) -> Self {
+        Self { emit, ..self }
+    }
+
+    /// Sets the shader stage of [`Emit::Render`].
+    #[must_use]
+    pub fn stage(self, stage: Stage) -> Self {
+        Self { stage, ..self }
+    }
+
+    /// Sets the ray method; `None` takes the scene's, or `auto`.
+    #[must_use]
+    pub fn method(self, method: impl Into<Option<String>>) -> Self {
+        Self { method: method.into(), ..self }
+    }
+
+    /// Sets the prefix of every name.
+    #[must_use]
+    pub fn prefix(self, prefix: impl Into<String>) -> Self {
+        Self { prefix: prefix.into(), ..self }
+    }
+
+    /// Sets the bind group of the buffers.
+    #[must_use]
+    pub fn group(self, group: u32) -> Self {
+        Self { group, ..self }
+    }
+
+    /// Sets the binding of the first buffer.
+    #[must_use]
+    pub fn binding(self, binding: u32) -> Self {
+        Self { binding, ..self }
+    }
+
+    /// The arguments of `sdfc compile` that give the same shader, without those that are defaults.
     pub fn as_arguments(&self) -> String {
         let defaults = Self::default();
         let Self { target, emit, stage, method, prefix, group, binding } = self;
@@ -88,59 +144,48 @@ impl ShaderOptions {
     }
 }
 
-/// What a scene was compiled from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Origin {
-    /// Name of its file, without the folder: the same scene gives the same bytes wherever it lies.
-    name: String,
-    hash: u64,
-}
-
-impl Origin {
-    pub(crate) fn new(sources: &Sources, scene: FileId) -> Self {
-        let name = sources.name(scene);
-        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned();
-        let texts = (0..sources.len()).map(|file| sources.text(FileId(file as u32)));
-        Self { name, hash: texts.fold(FNV_OFFSET, fnv) }
-    }
-}
-
-const FNV_OFFSET: u64 = 0xcbf2_9ce4_8422_2325;
-const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
-
-/// FNV-1a of 64 bits over a text and the 0 that ends it.
-fn fnv(hash: u64, text: &str) -> u64 {
-    let bytes = text.bytes().chain([0]);
-    bytes.fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(FNV_PRIME))
-}
-
 impl Scene {
-    /// A hash of all that the scene was compiled from, the library and imported files included: 16
-    /// hexadecimal digits (FNV-1a).
-    pub fn source_hash(&self) -> String {
-        format!("{:016x}", self.origin.hash)
+    /// The functions of the field, to embed in a shader.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Codegen`].
+    pub fn field_shader(&self, options: &FieldOptions) -> Result<Shader, Error> {
+        Ok(field_module(&self.program, options)?)
     }
 
-    /// The shader in a target's language. A text says at its head what wrote it and from what; the same
-    /// source gives the same bytes.
+    /// The shader of a picture.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Codegen`], for an unknown method too.
+    pub fn picture_shader(&self, method: &str) -> Result<Shader, Error> {
+        let method = self.marched_by(method);
+        Ok(render_module(&with_segment_bounds(&self.program, method), method)?)
+    }
+
+    /// Writes the shader in the language of `options`.
+    ///
+    /// A shader in text form begins with a comment that names the version, the source and the
+    /// options. The same source gives the same bytes.
     ///
     /// ```
-    /// use sdfc::{Code, ShaderOptions, Target, compile};
+    /// use sdfc::{Code, Compiler, ShaderOptions, Target};
     ///
-    /// let scene = compile("ball.sdf", "sphere(0.5)").scene.expect("no errors");
-    /// let options = ShaderOptions { target: Target::Hlsl, ..ShaderOptions::default() };
+    /// let scene = Compiler::new().compile("ball.sdf", "sphere(0.5)")?;
+    /// let options = ShaderOptions::new().target(Target::Hlsl);
     /// let Code::Text(text) = scene.write_shader(&options)?.code else { unreachable!() };
     /// assert!(text.contains("float sdf_distance(float3 p)"));
-    /// # Ok::<(), sdfc::Error>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`Error::Codegen`], also where the target cannot hold what is asked for; [`Error::View`] for
-    /// [`Target::Shadertoy`], where the settings make no picture.
+    /// [`Error::Codegen`], also if the target does not support the options; [`Error::View`] for
+    /// [`Target::Shadertoy`] if the settings give no valid view.
     pub fn write_shader(&self, options: &ShaderOptions) -> Result<Written, Error> {
         let shader = self.shader(options)?;
-        let (version, name) = (env!("CARGO_PKG_VERSION"), &self.origin.name);
+        let (version, name) = (env!("CARGO_PKG_VERSION"), &self.id.name);
         let doubt = if self.is_certified() { "" } else { ", field uncertified" };
         let (hash, how) = (self.source_hash(), options.as_arguments());
         let comment = format!("sdfc {version}, {name}, source {hash}{doubt}, {how}");
@@ -160,7 +205,7 @@ impl Scene {
             FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
         };
         let method = self.marched_by(method);
-        let program = with_stretches(&self.program, method);
+        let program = with_segment_bounds(&self.program, method);
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
             Emit::March => march_module(&program, method, &functions())?,
@@ -178,7 +223,7 @@ impl Scene {
         Ok(shader)
     }
 
-    /// The view at the defaults, as a buffer would hold it. Its size says how wide it is, no more.
+    /// The contents of the view buffer at the params' defaults, for a picture of [`VIEW_SIZE`].
     pub(crate) fn default_view(&self) -> Result<Vec<u8>, Error> {
         let frame = self.defaults();
         let view = View::new(&self.program, &frame, self.bounds_at(&frame), VIEW_SIZE)?;
@@ -186,18 +231,19 @@ impl Scene {
     }
 }
 
-/// The size of picture that a view is written for, that of shadertoy.com beside a text.
+/// Picture size for which a default view is written: that of shadertoy.com beside its editor.
 pub const VIEW_SIZE: [u32; 2] = [640, 360];
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compiler::Compiler;
 
     #[test]
-    fn a_shader_says_where_its_field_is_uncertified() -> Result<(), crate::Error> {
-        let says = |text: &str| -> Result<bool, crate::Error> {
-            let scene = crate::compile("a.sdf", text).scene.ok_or(crate::Error::NothingDrawn)?;
-            let shader = scene.write_shader(&crate::ShaderOptions::default())?;
+    fn a_shader_says_if_its_field_is_uncertified() -> Result<(), Error> {
+        let says = |text: &str| -> Result<bool, Error> {
+            let scene = Compiler::new().compile("a.sdf", text).map_err(|_| Error::NothingDrawn)?;
+            let shader = scene.write_shader(&ShaderOptions::default())?;
             let sdfc_codegen::Code::Text(text) = shader.code else { return Ok(false) };
             Ok(text.lines().next().is_some_and(|line| line.contains("uncertified")))
         };
@@ -207,9 +253,10 @@ mod tests {
     }
 
     #[test]
-    fn a_text_says_how_it_was_made() -> Result<(), crate::Error> {
-        let scene = crate::compile("a.sdf", "sphere(1)").scene.ok_or(crate::Error::NothingDrawn)?;
-        let says = |options: &ShaderOptions| -> Result<String, crate::Error> {
+    fn a_shader_names_the_options_it_was_written_with() -> Result<(), Error> {
+        let scene = Compiler::new().compile("a.sdf", "sphere(1)");
+        let scene = scene.map_err(|_| Error::NothingDrawn)?;
+        let says = |options: &ShaderOptions| -> Result<String, Error> {
             let head = scene.write_shader(options)?.code.into_bytes();
             let head = String::from_utf8_lossy(&head).lines().next().unwrap_or("").to_owned();
             Ok(head.rsplit(", ").next().unwrap_or("").to_owned())
@@ -225,14 +272,5 @@ mod tests {
         let expected = "--target msl --emit render --stage fragment --march sphere --prefix a_";
         assert_eq!(says(&options)?, expected);
         Ok(())
-    }
-
-    #[test]
-    fn the_hash_is_fnv() {
-        // Published vector of FNV-1a: "foobar" gives 85944171f73967e8.
-        let bytes = "foobar".bytes();
-        let hash = bytes.fold(FNV_OFFSET, |h, b| (h ^ u64::from(b)).wrapping_mul(FNV_PRIME));
-        assert_eq!(hash, 0x8594_4171_f739_67e8);
-        assert_ne!(fnv(fnv(FNV_OFFSET, "a"), "b"), fnv(fnv(FNV_OFFSET, "ab"), ""));
     }
 }

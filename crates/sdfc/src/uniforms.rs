@@ -1,16 +1,19 @@
-//! A frame's values as the uniform buffer of a written shader holds them.
+//! The contents of a written shader's uniform buffer.
 
 use sdfc_codegen::{Member, Reflection};
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{FrameInput, Type};
 
-/// The bytes of the structure of params that a written field or ray method reads, little-endian; empty where it
-/// reads none. There are as many as a uniform buffer wants: a multiple of 16. Params that the frame lacks are 0.
+/// Returns the contents of the uniform buffer that a written field or ray method reads.
+///
+/// Numbers are little-endian. The size is a multiple of 16 bytes, and 0 if the shader reads no
+/// params. Params that the frame lacks are 0.
 ///
 /// ```
-/// use sdfc::{Scene, ShaderOptions, uniform_bytes};
+/// use sdfc::{Compiler, ShaderOptions, uniform_bytes};
 ///
-/// let scene = Scene::from_source("a.sdf", "param r = 1 in 0..2\nsphere(r).translate(x: time)")?;
+/// let source = "param r = 1 in 0..2\nsphere(r).translate(x: time)";
+/// let scene = Compiler::new().compile("a.sdf", source)?;
 /// let written = scene.write_shader(&ShaderOptions::default())?;
 /// let mut frame = scene.defaults();
 /// frame.time = 0.25;
@@ -23,8 +26,8 @@ pub fn uniform_bytes(reflection: &Reflection, frame: &FrameValues) -> Vec<u8> {
     let mut bytes = vec![0; size as usize];
     for member in &reflection.members {
         let words = words(member, frame);
-        let place = bytes.get_mut(member.offset as usize..).unwrap_or_default();
-        for (to, from) in place.chunks_exact_mut(4).zip(&words[..member.ty.width()]) {
+        let slot = bytes.get_mut(member.offset as usize..).unwrap_or_default();
+        for (to, from) in slot.chunks_exact_mut(4).zip(&words[..member.ty.width()]) {
             to.copy_from_slice(&from.to_le_bytes());
         }
     }

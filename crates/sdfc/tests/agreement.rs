@@ -7,7 +7,7 @@ mod common;
 
 use common::agree;
 use libtest_mimic::{Arguments, Trial};
-use sdfc::render::testing;
+use sdfc_render::testing;
 use sdfc_test_support::example_sources;
 
 fn main() {

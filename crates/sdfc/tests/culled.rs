@@ -5,12 +5,12 @@
 use std::fmt::Write;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::codegen::{FieldSource, Shader, benchmark_module, instrumented_module, render_module};
-use sdfc::graph::{Program, Type};
-use sdfc::render::{
+use sdfc::{Compiler, FrameValues, LoopStrategy, PictureOptions, Scene, no_progress};
+use sdfc_codegen::{FieldSource, Shader, benchmark_module, instrumented_module, render_module};
+use sdfc_graph::{Program, Type};
+use sdfc_render::{
     Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
-use sdfc::{FrameValues, LoopStrategy, PictureOptions, Scene, compile, no_progress};
 
 const SIZE: [u32; 2] = [160, 96];
 /// How many parts, few enough for a driver that ends all loops after 65,535 turns.
@@ -127,7 +127,7 @@ fn hard() -> String {
     let mut text = String::new();
     for i in 0..PARTS {
         let at = place(i);
-        // Writing to a String cannot fail.
+        // LoopStrategy to a String cannot fail.
         let _ = match i % 3 {
             0 => writeln!(text, "sphere(0.2){at}"),
             1 => writeln!(text, "box([0.3, 0.2, 0.4]).rotate(y: {i}deg){at}"),
@@ -153,9 +153,7 @@ fn chain(blend: &str) -> String {
 }
 
 fn scene(text: &str) -> Scene {
-    let compiled = compile("culled.sdf", text);
-    let findings = compiled.diagnostics_text(false);
-    compiled.scene.expect(&findings).written(LoopStrategy::Looped).expect("few nodes")
+    Compiler::new().loops(LoopStrategy::Looped).compile("culled.sdf", text).expect("compiles")
 }
 
 /// A picture by a program, in tiles that begin anywhere.
@@ -294,7 +292,7 @@ fn leaves_are_told() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
     let told = |method: &str| -> Result<Option<f64>, Failed> {
         let method = Some(method.to_owned());
-        let options = PictureOptions { size: [16, 16], method, ..PictureOptions::default() };
+        let options = PictureOptions::new().size([16, 16]).method(method);
         let drawn = scene.render(&options, &mut no_progress)?;
         Ok(drawn.stats.leaf_evals_per_pixel.mean)
     };

@@ -4,11 +4,11 @@
 use std::sync::Mutex;
 
 use proptest::prelude::*;
-use sdfc::lang::{NoFiles, Resolver};
 use sdfc::{
-    Compiled, Emit, Error, Field, FrameValues, Scene, ShaderOptions, SourceErrors, Stage, Target,
-    compile, compile_with_imports, uniform_bytes,
+    Compiler, Diagnostics, Emit, Error, Field, FrameValues, Resolver, Scene, ShaderOptions, Stage,
+    Target, uniform_bytes,
 };
+use sdfc_lang::NoFiles;
 
 const SCENE: &str = "param r = 1 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt = 10deg in \
                      0deg..45deg\nparam lid = true\nparam wood = #8a5a34\nparam style = \"round\" \
@@ -16,16 +16,15 @@ const SCENE: &str = "param r = 1 in 0.5..2\nparam n: int = 3 in 1..9\nparam tilt
                      ball.rotate(y: tilt).color(wood)\ntorus(major: n, minor: 0.1).translate(x: time)";
 
 fn scene() -> Scene {
-    Scene::from_source("a.sdf", SCENE).unwrap_or_else(|errors| panic!("{errors}"))
+    Compiler::new().compile("a.sdf", SCENE).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 #[test]
 fn threads_may_share_scenes() {
     fn shared<T: Send + Sync>() {}
     shared::<Scene>();
-    shared::<Compiled>();
     shared::<Field<'_>>();
-    shared::<SourceErrors>();
+    shared::<Diagnostics>();
     shared::<Error>();
     shared::<sdfc::ParamError>();
     shared::<sdfc::Written>();
@@ -131,7 +130,7 @@ proptest! {
         emit in prop::sample::select(&[Emit::Field, Emit::March, Emit::Render][..]),
         stage in prop::sample::select(&[Stage::Compute, Stage::Fragment][..]),
     ) {
-        let options = ShaderOptions { target, emit, stage, method, prefix, group, binding };
+        let options = ShaderOptions::new().target(target).emit(emit).stage(stage).method(method).prefix(prefix).group(group).binding(binding);
         let _ = scene().write_shader(&options);
     }
 }
@@ -151,8 +150,8 @@ fn a_batch_is_its_points() -> Result<(), Error> {
 }
 
 fn one_or_the_other(text: &str) {
-    match Scene::from_source("any.sdf", text) {
-        Err(errors) => assert!(!errors.found.is_empty()),
+    match Compiler::new().compile("any.sdf", text) {
+        Err(errors) => assert!(errors.has_errors()),
         Ok(scene) => {
             let _ = scene.distance([f64::NAN, f64::INFINITY, 0.0]);
             let _ = scene.gradient([1e300, 0.0, 0.0]);
@@ -186,9 +185,9 @@ const READERS: [&str; 6] = [
 fn a_scene_reads_no_file_unless_its_resolver_does() {
     for text in READERS {
         // Files of the repository are there to be read, by whoever would.
-        let compiled = compile_with_imports("crates/sdfc/a.sdf", text, &NoFiles);
-        assert!(compiled.scene.is_none(), "{text}");
-        assert!(compile("a.sdf", text).scene.is_none(), "{text}");
+        let compiler = Compiler::new().resolver(&NoFiles);
+        assert!(compiler.compile("crates/sdfc/a.sdf", text).is_err(), "{text}");
+        assert!(Compiler::new().compile("a.sdf", text).is_err(), "{text}");
     }
 }
 
@@ -196,7 +195,8 @@ fn a_scene_reads_no_file_unless_its_resolver_does() {
 fn a_resolver_is_asked_for_nothing_outside_the_folder_of_the_scene() {
     let asked = Asked::default();
     for text in READERS {
-        assert!(compile_with_imports("a.sdf", text, &asked).scene.is_none(), "{text}");
+        let compiler = Compiler::new().resolver(&asked);
+        assert!(compiler.compile("a.sdf", text).is_err(), "{text}");
     }
     assert_eq!(
         asked.0.into_inner().expect("nothing panicked"),

@@ -4,8 +4,8 @@
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::render::testing;
-use sdfc::{Backend, PictureOptions, no_progress};
+use sdfc::{Backend, Compiler, PictureOptions, no_progress};
+use sdfc_render::testing;
 
 const SIZE: [u32; 2] = [96, 54];
 /// Where the scenes are moved.
@@ -71,9 +71,8 @@ fn is_the_same(text: &str, place: &str, backend: Backend) -> Result<(), Failed> 
 type Drawn = (Vec<f32>, Vec<u8>);
 
 fn drawn(text: &str, at: &str, backend: Backend) -> Result<Drawn, Failed> {
-    let compiled = sdfc::compile("far.sdf", &format!("let at = {at}\n{text}\n"));
-    let scene = compiled.scene.as_ref().ok_or_else(|| compiled.diagnostics_text(false))?;
-    let options = PictureOptions { size: SIZE, backend, ..PictureOptions::default() };
+    let scene = Compiler::new().compile("far.sdf", &format!("let at = {at}\n{text}\n"))?;
+    let options = PictureOptions::new().size(SIZE).backend(backend);
     let image = scene.render(&options, &mut no_progress)?.image;
     Ok((image.pixels().iter().map(|pixel| pixel.depth).collect(), image.to_srgb8()))
 }

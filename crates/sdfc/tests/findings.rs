@@ -2,12 +2,12 @@
 
 #![allow(clippy::panic, reason = "a test stops where it fails")]
 
-use sdfc::lang::{NoFiles, library};
-use sdfc::{check, compile};
+use sdfc::Compiler;
+use sdfc_lang::library;
 
 /// Codes, the lines at which they stand, and messages.
 fn findings(text: &str) -> Vec<(&'static str, u32, String)> {
-    let found = check("scene.sdf", text, &NoFiles).located().into_iter();
+    let found = Compiler::new().verify(true).check("scene.sdf", text).located().into_iter();
     found.map(|f| (f.code, f.start.line, f.message)).collect()
 }
 
@@ -47,15 +47,15 @@ fn a_clause_that_sampling_refutes_is_an_error_at_the_clause() {
         found.retain(|(code, _)| *code != "W0602");
         let expected: &[_] = if line == 0 { &[] } else { &[("E0502", line)] };
         assert_eq!(found, expected, "{text}");
-        assert!(compile("scene.sdf", text).diagnostics.iter().all(|found| !found.is_error()));
+        assert!(!Compiler::new().check("scene.sdf", text).has_errors());
     }
 }
 
 #[test]
 fn no_clause_of_the_library_is_refuted() {
     for entry in library::entries() {
-        let compiled = compile(&entry.name, &entry.example);
-        let Some(scene) = compiled.scene else { panic!("{}", compiled.diagnostics_text(false)) };
+        let compiled = Compiler::new().compile(&entry.name, &entry.example);
+        let scene = compiled.unwrap_or_else(|errors| panic!("{errors}"));
         let shapes: Vec<_> = scene.graph().graph.shape_ids().collect();
         let refuted = sdfc_analyze::refute(scene.graph(), &shapes);
         assert!(refuted.is_empty(), "{}: {refuted:?}", entry.name);
@@ -111,8 +111,8 @@ fn a_soft_shadow_wants_distances_outside() {
     // The union is no distance inside, but that is not where shadows are made.
     let text =
         format!("{lamp}(sphere(1) | box(1))\n  | union(sphere(2), box(1), blend: smooth(0.2))");
-    let said = check("scene.sdf", &text, &NoFiles).diagnostics_text(false);
-    assert!(said.contains("not the distance since `union` at line 3"), "{said}");
+    let said = Compiler::new().verify(true).check("scene.sdf", &text).to_string();
+    assert!(said.contains("not the distance because of `union` at line 3"), "{said}");
 }
 
 #[test]

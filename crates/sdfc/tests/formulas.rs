@@ -8,10 +8,10 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use sdfc::graph::eval::{FrameValues, Tape};
-use sdfc::graph::{Dim, Expander};
-use sdfc::{Scene, compile};
+use sdfc::{Compiler, Scene};
 use sdfc_analyze::{Lipschitz, Promise, Sides};
+use sdfc_graph::eval::{FrameValues, Tape};
+use sdfc_graph::{Dim, Expander};
 
 /// Random scenes for each property.
 const SCENES: u32 = 256;
@@ -83,9 +83,8 @@ fn vector(depth: u32) -> BoxedStrategy<String> {
 }
 
 fn scene(text: &str) -> Scene {
-    let compiled = compile("random.sdf", text);
-    let findings = compiled.diagnostics_text(false);
-    compiled.scene.unwrap_or_else(|| panic!("{text}\n{findings}"))
+    let compiled = Compiler::new().compile("random.sdf", text);
+    compiled.unwrap_or_else(|errors| panic!("{text}\n{errors}"))
 }
 
 fn runner() -> TestRunner {

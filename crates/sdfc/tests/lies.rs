@@ -1,18 +1,16 @@
 //! Scenes whose fields lie: `check` says so at the place. What samples do not find, the chart's figures show: `lying`.
 
-use sdfc::check;
-use sdfc::diagnostics::Severity;
-use sdfc::lang::NoFiles;
+use sdfc::{Compiler, Diagnostic, Severity};
 
 /// Each finding's code, and the text that it points at.
 fn findings(text: &str) -> Vec<(String, String, Severity)> {
-    let found = check("lie.sdf", text, &NoFiles);
-    let told = |diagnostic: &sdfc::diagnostics::Diagnostic| {
+    let found = Compiler::new().verify(true).check("lie.sdf", text);
+    let told = |diagnostic: &Diagnostic| {
         let span = diagnostic.span;
         let place = text.get(span.start as usize..span.end as usize).unwrap_or_default();
         (diagnostic.code.0.to_owned(), place.to_owned(), diagnostic.severity)
     };
-    found.diagnostics.iter().map(told).collect()
+    found.iter().map(told).collect()
 }
 
 /// The one finding, its code and where it points.

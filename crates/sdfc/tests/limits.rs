@@ -1,15 +1,14 @@
 //! Scenes that would take all memory or time: each is compiled whole or refused with a code and the limit's
 //! number, and none ends the program.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::panic, reason = "a test fails by panicking")]
 
-use sdfc::compile;
+use sdfc::Compiler;
 
 /// The codes of the errors, and all text that people see.
 fn refused(text: &str) -> (Vec<String>, String) {
-    let compiled = compile("bomb.sdf", text);
-    let codes = compiled.located().iter().map(|found| found.code.to_owned()).collect();
-    assert!(compiled.scene.is_none(), "it was compiled");
-    (codes, compiled.diagnostics_text(false))
+    let Err(errors) = Compiler::new().compile("bomb.sdf", text) else { panic!("it was compiled") };
+    let codes = errors.located().iter().map(|found| found.code.to_owned()).collect();
+    (codes, errors.render(false))
 }
 
 /// Refused with this error alone, which says what the limit is.
@@ -40,9 +39,10 @@ fn chains() {
 #[test]
 fn a_union_over_a_long_list_is_compiled() {
     let text = "union(for i in 0..10000: sphere(0.01).translate(x: i))";
-    let compiled = compile("long.sdf", text);
-    assert_eq!(compiled.diagnostics_text(false), "");
-    assert_eq!(compiled.scene.map(|scene| scene.report().leaves), Some(10_000));
+    let compiled = Compiler::new().compile("long.sdf", text);
+    let scene = compiled.unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(scene.diagnostics().to_string(), "");
+    assert_eq!(scene.report().leaves, 10_000);
 }
 
 #[test]

@@ -4,8 +4,8 @@
 
 use std::fmt::Write;
 
-use sdfc::graph::eval::{FrameValues, sample_field};
-use sdfc::{LoopStrategy, Scene};
+use sdfc::{Compiler, LoopStrategy, Scene};
+use sdfc_graph::eval::{FrameValues, sample_field};
 
 /// How many parts.
 const PARTS: usize = 60;
@@ -25,7 +25,7 @@ fn scattered() -> String {
     let mut text = "plane(y: -3)\n".to_owned();
     for i in 0..PARTS {
         let (size, at) = (0.3 + 0.1 * number(i), place(i));
-        // Writing to a String cannot fail.
+        // LoopStrategy to a String cannot fail.
         let _ = match i % 3 {
             0 => writeln!(text, "sphere({size:.3}){at}"),
             1 => writeln!(text, "box([{size:.3}, 0.2, 0.4]).rotate(y: {i}deg){at}"),
@@ -46,9 +46,9 @@ fn chained(blend: &str) -> String {
 }
 
 fn written(text: &str, writing: LoopStrategy) -> Scene {
-    let compiled = sdfc::compile("rolled.sdf", text);
-    assert_eq!(compiled.diagnostics_text(false), "");
-    compiled.scene.expect("no errors").written(writing).expect("few nodes")
+    let scene = Compiler::new().loops(writing).compile("rolled.sdf", text).expect("no errors");
+    assert_eq!(scene.diagnostics().to_string(), "");
+    scene
 }
 
 /// Where fields are compared: on and off the parts.

@@ -2,33 +2,25 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use sdfc::graph::eval::sample_field;
-use sdfc::lang::{NoFiles, Options};
 use sdfc::{
-    Backend, Compiled, FrameValues, PictureOptions, Scene, compile, compile_with, no_progress,
+    Backend, Compiler, FrameValues, LiveLiteral, MAX_LIVE_LITERALS, PictureOptions, Scene,
+    no_progress,
 };
+use sdfc_graph::eval::sample_field;
 
-fn slotted(text: &str) -> (Compiled, Scene) {
-    let mut compiled = compile_with(
-        "a.sdf",
-        text,
-        &NoFiles,
-        Options { live_literals: true, ..Options::default() },
-    );
-    let scene = compiled.scene.take();
-    let scene = scene.unwrap_or_else(|| panic!("{}", compiled.diagnostics_text(false)));
-    (compiled, scene)
+/// The scene with its numbers as params.
+fn live(text: &str) -> Scene {
+    let compiler = Compiler::new().live_literals(None);
+    compiler.compile("a.sdf", text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// The numbers that move, as they are written.
-fn offered(text: &str) -> Vec<String> {
-    let (compiled, scene) = slotted(text);
-    let written = |slot: &sdfc::lang::live_literals::LiveLiteral| {
-        compiled.sources.slice(slot.span).to_owned()
-    };
-    let mut slots = scene.slots().to_vec();
-    slots.sort_by_key(|slot| slot.span);
-    slots.iter().map(written).collect()
+/// The live literals, as they are written.
+fn literals(text: &str) -> Vec<String> {
+    let scene = live(text);
+    let written = |literal: &LiveLiteral| scene.sources().slice(literal.span).to_owned();
+    let mut literals = scene.live_literals().to_vec();
+    literals.sort_by_key(|literal| literal.span);
+    literals.iter().map(written).collect()
 }
 
 fn distances(scene: &Scene, frame: &FrameValues) -> Vec<f64> {
@@ -40,12 +32,15 @@ fn distances(scene: &Scene, frame: &FrameValues) -> Vec<f64> {
 }
 
 #[test]
-fn every_example_is_the_same_scene_with_slots() {
+fn every_example_is_the_same_scene_with_live_literals() {
     let mut seen = 0;
     for (path, text) in sdfc_test_support::example_sources().unwrap() {
-        let Some(plain) = compile("a.sdf", &text).scene.filter(Scene::draws) else { continue };
-        let (_, slots) = slotted(&text);
-        if slots.slots().is_empty() {
+        let Ok(plain) = Compiler::new().compile("a.sdf", &text) else { continue };
+        if !plain.draws() {
+            continue;
+        }
+        let slots = live(&text);
+        if slots.live_literals().is_empty() {
             continue; // all its numbers decide what is built
         }
         assert_eq!(plain.report().uncertified.len(), slots.report().uncertified.len(), "{path}");
@@ -59,8 +54,7 @@ fn every_example_is_the_same_scene_with_slots() {
         if plain.program().settings.camera.is_none() {
             continue; // the view is fitted to bounds, which are wider where numbers move
         }
-        let options =
-            PictureOptions { size: [24, 15], backend: Backend::Cpu, ..Default::default() };
+        let options = PictureOptions::new().size([24, 15]).backend(Backend::Cpu);
         let [a, b] = [&plain, &slots]
             .map(|scene| scene.render(&options, &mut no_progress).unwrap().image.to_srgb8());
         let differing = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
@@ -70,12 +64,12 @@ fn every_example_is_the_same_scene_with_slots() {
 }
 
 #[test]
-fn a_moved_number_is_the_scene_with_that_number() {
-    let (_, scene) = slotted("sphere(0.5).translate(y: 2)\n");
+fn changing_a_live_literal_gives_the_scene_with_that_number() {
+    let scene = live("sphere(0.5).translate(y: 2)\n");
     let mut frame = FrameValues::defaults(scene.params());
     scene.set_param(&mut frame, "at_1_8", "0.75").unwrap();
     scene.set_param(&mut frame, "at_1_26", "-1").unwrap();
-    let (_, other) = slotted("sphere(0.75).translate(y: -1)\n");
+    let other = live("sphere(0.75).translate(y: -1)\n");
     let expected = distances(&other, &FrameValues::defaults(other.params()));
     assert_eq!(distances(&scene, &frame), expected);
     // The radius keeps the range of the library's parameter.
@@ -84,34 +78,33 @@ fn a_moved_number_is_the_scene_with_that_number() {
 }
 
 #[test]
-fn numbers_that_decide_what_is_built_stay() {
+fn numbers_that_decide_what_is_built_stay_constant() {
     let none: [&str; 0] = [];
-    assert_eq!(offered("sphere(0.5)\n"), ["0.5"]);
+    assert_eq!(literals("sphere(0.5)\n"), ["0.5"]);
     assert_eq!(
-        offered("let n = 3\nlet r = if n > 2 { 0.5 } else { 0.7 }\nsphere(r)\n"),
+        literals("let n = 3\nlet r = if n > 2 { 0.5 } else { 0.7 }\nsphere(r)\n"),
         ["0.5", "0.7"]
     );
-    assert_eq!(offered("union(for i in 0..3: sphere(0.5).translate(x: 2 * i))\n"), ["0.5", "2"]);
-    assert_eq!(offered("let a = [0.5, 0.6]\nsphere(a[1])\n"), ["0.5", "0.6"]);
-    assert_eq!(offered("solid s() = pow(length(p), 2) - 1\ns()\n"), ["1"]);
-    assert_eq!(offered("solid s(a, b) require a < b, \"a < b\" = length(p) - b\ns(1, 2)\n"), none);
-    assert_eq!(offered("solid s(a) exact if a > 1 = length(p) - a\ns(2)\n"), none);
+    assert_eq!(literals("union(for i in 0..3: sphere(0.5).translate(x: 2 * i))\n"), ["0.5", "2"]);
+    assert_eq!(literals("let a = [0.5, 0.6]\nsphere(a[1])\n"), ["0.5", "0.6"]);
+    assert_eq!(literals("solid s() = pow(length(p), 2) - 1\ns()\n"), ["1"]);
+    assert_eq!(literals("solid s(a, b) require a < b, \"a < b\" = length(p) - b\ns(1, 2)\n"), none);
+    assert_eq!(literals("solid s(a) exact if a > 1 = length(p) - a\ns(2)\n"), none);
     // What a range limits moves alone, not within a formula.
-    assert_eq!(offered("sphere(0.5 / 2)\n"), none);
-    assert_eq!(offered("sphere(pi)\n"), none);
+    assert_eq!(literals("sphere(0.5 / 2)\n"), none);
+    assert_eq!(literals("sphere(pi)\n"), none);
 }
 
 #[test]
-fn of_more_numbers_than_can_move_those_near_a_place_do() {
+fn beyond_the_limit_the_literals_around_the_focus_are_live() {
     let rows = (0..600).map(|i| format!("  + 0.00{i} * sin(p.x)\n"));
     let text = format!("solid waves() = p.y\n{}waves()\n", rows.collect::<String>());
     let lines = |near| {
-        let options = Options { live_literals: true, focus: near };
-        let compiled = compile_with("a.sdf", &text, &NoFiles, options);
-        let scene = compiled.scene.unwrap();
+        let scene = Compiler::new().live_literals(near).compile("a.sdf", &text).unwrap();
         let line = |at: u32| text[..at as usize].lines().count();
-        let lines: Vec<usize> = scene.slots().iter().map(|slot| line(slot.span.start)).collect();
-        assert_eq!(lines.len(), sdfc::lang::live_literals::MAX_LIVE_LITERALS);
+        let starts = scene.live_literals().iter().map(|literal| line(literal.span.start));
+        let lines: Vec<usize> = starts.collect();
+        assert_eq!(lines.len(), MAX_LIVE_LITERALS);
         [*lines.iter().min().unwrap(), *lines.iter().max().unwrap()]
     };
     assert_eq!(lines(None), [2, 513]);

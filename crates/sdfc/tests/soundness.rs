@@ -5,10 +5,10 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test stops where it fails")]
 
-use sdfc::graph::eval::{FrameValues, Tape};
-use sdfc::graph::{Dim, Expander};
-use sdfc::{Scene, compile};
+use sdfc::{Compiler, Scene};
 use sdfc_analyze::Promise;
+use sdfc_graph::eval::{FrameValues, Tape};
+use sdfc_graph::{Dim, Expander};
 
 /// Pairs of points for each scene.
 const PAIRS: usize = 20_000;
@@ -206,9 +206,7 @@ fn a_field_without_a_constant_is_told_with_its_reason() {
 }
 
 fn scene(name: &str, text: &str) -> Scene {
-    let compiled = compile(name, text);
-    let findings = compiled.diagnostics_text(false);
-    compiled.scene.unwrap_or_else(|| panic!("{findings}"))
+    Compiler::new().compile(name, text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn tape(scene: &Scene) -> Tape {

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use sdfc::render::milliseconds_since;
+use sdfc_render::milliseconds_since;
 use sdfc_viewer::session::Session;
 
 const SIZE: [u32; 2] = [640, 360];
@@ -62,7 +62,7 @@ fn main() {
         "| edit | edits | p50 | p99 | frames, p50 | p99 | watch | front end | analysis | lowering | pipeline | frame | rest |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
-    let mut suite = sdfc::suite();
+    let mut suite = sdfc_measure::suite();
     suite.push((ALIKE.to_owned(), alike(300)));
     for (scene, called, edits) in SCENES {
         let (_, text) = suite.iter().find(|(name, _)| name == scene).unwrap();

@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::march::METHODS;
-use sdfc::render::{Gpu, HIT, testing};
 use sdfc::{PictureOptions, no_progress};
+use sdfc_march::METHODS;
+use sdfc_render::{Gpu, HIT, testing};
 use sdfc_viewer::render::picture::Picture;
 use sdfc_viewer::scene::model::{Engine, Model};
 use sdfc_viewer::session::Session;
@@ -229,12 +229,8 @@ fn methods() -> Result<(), Failed> {
             expect(fixture.session.problem.is_none(), &format!("{:?}", fixture.session.problem))?;
             fixture.finish()?;
             let model = fixture.model()?;
-            let options = PictureOptions {
-                size: SIZE,
-                method: Some(method.name.to_owned()),
-                samples: Some(1),
-                ..PictureOptions::default()
-            };
+            let options =
+                PictureOptions::new().size(SIZE).method(method.name.to_owned()).samples(Some(1));
             let expected = model.scene.render(&options, &mut no_progress)?;
             let (shown, meant) = (fixture.picture()?.counts, expected.image.counts());
             let what = format!("{}: {shown:?}, not {meant:?}", method.name);
@@ -270,7 +266,7 @@ fn parallel() -> Result<(), Failed> {
             let worst = pixels.filter(is_hit).filter_map(off).fold(0.0, f64::max);
             expect(worst < 0.01, &format!("{lens} {parallel}: rays end {worst} off the ball"))?;
             let pose = Some(request.pose);
-            let options = PictureOptions { size: SIZE, pose, ..PictureOptions::default() };
+            let options = PictureOptions::new().size(SIZE).pose(pose);
             let file = request.model.scene.render(&options, &mut no_progress)?;
             expect(file.image.counts() == *counts, &format!("{:?}", file.image.counts()))?;
         }

@@ -25,7 +25,7 @@ mod options;
 #[cfg(target_family = "wasm")]
 mod wasm;
 
-use sdfc::{Code, DiagnosticRow, ShaderReflection};
+use sdfc::{Code, Compiler, DiagnosticRow, Diagnostics, ShaderReflection};
 use serde::Serialize;
 
 use options::{Files, Options};
@@ -85,11 +85,18 @@ pub fn compile(source: &str, options: &str) -> String {
 }
 
 fn answer(source: &str, options: Options) -> Answer {
-    let front = sdfc::lang::Options { live_literals: options.live_literals, ..Default::default() };
     let shader = options.shader();
-    let compiled = sdfc::compile_with(&options.name, source, &Files(options.files), front);
-    let diagnostics = compiled.rows().into_iter().map(Row::Scene).collect();
-    let Some(scene) = compiled.scene else { return Answer { diagnostics, ..Answer::default() } };
+    let files = Files(options.files);
+    let mut compiler = Compiler::new().resolver(&files);
+    if options.live_literals {
+        compiler = compiler.live_literals(None);
+    }
+    let rows = |found: &Diagnostics| found.rows().into_iter().map(Row::Scene).collect();
+    let scene = match compiler.compile(&options.name, source) {
+        Ok(scene) => scene,
+        Err(errors) => return Answer { diagnostics: rows(&errors), ..Answer::default() },
+    };
+    let diagnostics = rows(scene.diagnostics());
     let written = match scene.write_shader(&shader) {
         Ok(written) => written,
         Err(error) => {

@@ -64,15 +64,14 @@ impl Options {
             None => Stage::Fragment,
         };
         let standard = ShaderOptions::default();
-        ShaderOptions {
-            target,
-            emit,
-            stage,
-            method: self.march.clone(),
-            prefix: self.prefix.clone().unwrap_or(standard.prefix),
-            group: self.group.unwrap_or(standard.group),
-            binding: self.binding.unwrap_or(standard.binding),
-        }
+        ShaderOptions::new()
+            .target(target)
+            .emit(emit)
+            .stage(stage)
+            .method(self.march.clone())
+            .prefix(self.prefix.clone().unwrap_or(standard.prefix))
+            .group(self.group.unwrap_or(standard.group))
+            .binding(self.binding.unwrap_or(standard.binding))
     }
 }
 

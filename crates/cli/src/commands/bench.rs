@@ -1,27 +1,25 @@
-//! `sdfc bench`: the specialised shader against the interpreting baselines.
+//! `sdfc bench`: compares the specialised shader with interpreting baselines.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::accuracy_data::chart::{Font, Growth, growth_svg};
-use sdfc::lang::{NoFiles, Options};
-use sdfc::render::Gpu;
-use sdfc::{BenchOptions, BenchReport, BenchRow, BenchVariant, Scene, large_suite, suite};
+use sdfc::{Compiler, Scene};
+use sdfc_measure::chart::{Font, Growth, growth_svg};
+use sdfc_measure::{BenchOptions, BenchReport, BenchRow, BenchVariant, bench, large_suite, suite};
 
 use crate::args::Bench;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
-const WITH_SLOTS: Options = Options { live_literals: true, focus: None };
-
-/// Measures the scenes, shows a table and writes the figures.
+/// Measures the scenes, prints a table and writes the results.
 ///
 /// # Errors
 ///
-/// A scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write the figures.
+/// A scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write the
+/// results.
 pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
-    let scene = args.file.as_deref().map(|file| Entry::of_file(file, console)).transpose()?;
+    let scene = args.file.as_deref().map(|file| Entry::from_file(file, console)).transpose()?;
     let json = args.json.as_deref().map(Output::new);
     if let (Some(file), Some(json)) = (&args.file, &args.json) {
         output::distinct(file, &[json])?;
@@ -38,23 +36,22 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
     let large = args.large.then(large_suite).into_iter().flatten();
     let wanted = |name: &str| args.only.as_ref().is_none_or(|part| name.contains(part));
     for (name, text) in small.filter(|(name, _)| wanted(name)) {
-        scenes.push(Entry::of_suite(name, &text, true)?);
+        scenes.push(Entry::from_suite(name, &text, true)?);
     }
     for (name, text) in large.filter(|(name, _)| wanted(name)) {
-        scenes.push(Entry::of_suite(name, &text, false)?);
+        scenes.push(Entry::from_suite(name, &text, false)?);
     }
-    let failed = |error: sdfc::Error| super::lowering(&error, console);
-    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
+    let gpu = super::gpu(console)?;
     let mut rows = Vec::new();
-    for Entry { name, scene, slots, baselines } in &scenes {
+    for Entry { name, scene, live, baselines } in &scenes {
         let (size, baselines) = (args.size, *baselines);
-        let options = BenchOptions { size, baselines, ..BenchOptions::default() };
+        let options = BenchOptions::new().size(size).baselines(baselines);
         let progress = console.progress(name);
-        let row = scene.bench(slots, name, &gpu, &options, &mut |part| {
+        let row = bench(scene, live, name, &gpu, &options, &mut |part| {
             progress.set(part.done, part.total);
             ControlFlow::Continue(())
         });
-        rows.push(row.map_err(failed)?);
+        rows.push(row.map_err(|error| super::measuring(&error, console))?);
     }
     let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
     let report = BenchReport { adapter, driver, rows };
@@ -62,24 +59,24 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         output::to_stdout(table(&report).as_bytes())?;
     }
     if let Some(plot) = plot {
-        let drawn = growth_svg(&growth(&report), Font(sdfc::lang::font::SANS));
+        let drawn = growth_svg(&growth(&report), Font(sdfc_lang::font::SANS));
         plot.write(drawn.map_err(|error| Failure::Machine(error.to_string()))?.as_bytes())?;
     }
     json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
 }
 
-/// What a pixel of the scattered scenes costs, by time of the processor where it is the adapter.
+/// Returns the cost per pixel of the scattered scenes, as CPU time if the GPU is a software one.
 fn growth(report: &BenchReport) -> Growth {
     let names = ["pruned", "specialized"];
     let rows = || report.rows.iter().filter(|row| row.scene.starts_with("scattered"));
     let points = |name: &str| {
-        let place = |row: &BenchRow| {
+        let point = |row: &BenchRow| {
             let variant = row.variants.iter().find(|variant| variant.name == name)?;
             let frame = variant.cpu_ms.or(variant.frame_ms.map(|times| times.median))?;
             let [width, height] = row.size.map(f64::from);
             Some((row.leaves as f64, 1e6 * frame / (width * height)))
         };
-        (name.to_owned(), rows().filter_map(place).collect())
+        (name.to_owned(), rows().filter_map(point).collect())
     };
     let size = rows().next().map_or([0, 0], |row| row.size);
     let (adapter, driver) = (&report.adapter, &report.driver);
@@ -90,45 +87,44 @@ fn growth(report: &BenchReport) -> Growth {
     }
 }
 
-/// A scene to be measured.
+/// A scene that is measured.
 struct Entry {
     name: String,
     scene: Scene,
-    /// The same, its numbers as params.
-    slots: Scene,
-    /// Whether interpreters and slots take part, which take minutes on large scenes.
+    /// The same scene with its numbers as params.
+    live: Scene,
+    /// True if interpreters and live literals are measured. They take minutes on large scenes.
     baselines: bool,
 }
 
 impl Entry {
-    fn of_file(file: &Path, console: &Console) -> Result<Self, Failure> {
+    fn from_file(file: &Path, console: &Console) -> Result<Self, Failure> {
         let input = sdfc_files::read(file)?;
         let folder = sdfc_files::Folder::of(file);
-        let compile = |options| sdfc::compile_with(&input.name, &input.text, &folder, options);
-        let mut compiled = compile(Options::default());
-        super::show(&mut compiled, console);
-        let slots = compile(WITH_SLOTS).scene.ok_or(Failure::Scene)?;
-        let scene = compiled.scene.ok_or(Failure::Scene)?;
+        let compiler = Compiler::new().resolver(&folder);
+        let scene = super::shown(compiler.compile(&input.name, &input.text), console)?;
+        let live = compiler.live_literals(None).compile(&input.name, &input.text);
+        let live = live.map_err(|_| Failure::Scene)?;
         if !scene.draws() {
             return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
         }
-        Ok(Self { name: input.name, scene, slots, baselines: true })
+        Ok(Self { name: input.name, scene, live, baselines: true })
     }
 
-    fn of_suite(name: String, text: &str, baselines: bool) -> Result<Self, Failure> {
-        let compile = |options| {
-            let compiled = sdfc::compile_with(&name, text, &NoFiles, options);
-            // The suite's own scenes: that one of them has errors is a fault of this program.
-            let fault = || Failure::Machine(format!("the suite's scene `{name}` does not compile"));
-            compiled.scene.ok_or_else(fault)
+    fn from_suite(name: String, text: &str, baselines: bool) -> Result<Self, Failure> {
+        let compile = |compiler: Compiler<'_>| {
+            // The suite is part of this program, so an error in it is a bug of this program.
+            let bug = |_| Failure::Machine(format!("the suite's scene `{name}` does not compile"));
+            compiler.compile(&name, text).map_err(bug)
         };
-        let (scene, slots) = (compile(Options::default())?, compile(WITH_SLOTS)?);
-        Ok(Self { name, scene, slots, baselines })
+        let (scene, live) =
+            (compile(Compiler::new())?, compile(Compiler::new().live_literals(None))?);
+        Ok(Self { name, scene, live, baselines })
     }
 }
 
-/// The report for people: times in milliseconds, and each frame's in that of the specialised shader. Time of the
-/// processor is told where it is the adapter.
+/// Formats the report: times in milliseconds, and ratios to the specialised shader. CPU time is
+/// given for a software GPU.
 fn table(report: &BenchReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {
@@ -162,7 +158,7 @@ fn line(variant: &BenchVariant) -> String {
     };
     let (compile, leaves) = (variant.compile_ms.as_ref(), variant.leaf_evals_per_pixel.as_ref());
     let notes = [
-        variant.slots.map(|slots| format!("{slots} slots")),
+        variant.slots.map(|count| format!("{count} live literals")),
         variant.differing_pixels.filter(|count| *count > 0).map(|n| format!("{n} pixels differ")),
     ];
     let notes: Vec<String> = notes.into_iter().flatten().collect();

@@ -1,12 +1,12 @@
-//! `sdfc chart`: every ray method against the oracle.
+//! `sdfc chart`: compares all ray methods with the oracle.
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::accuracy_data::chart::{Chart as Figures, Font, Row, Theme, png, svg};
-use sdfc::accuracy_data::{Quantiles, TruthStore};
-use sdfc::render::Gpu;
-use sdfc::{ChartOptions, Error, OracleOptions, Scene};
+use sdfc::{Compiler, Error, Scene};
+use sdfc_measure::chart::{Chart as Results, Font, Row, Theme, png, svg};
+use sdfc_measure::{ChartOptions, OracleOptions, Quantiles, TruthStore};
+use sdfc_render::Gpu;
 
 use super::charts;
 use crate::args::{Cache, Chart};
@@ -15,21 +15,21 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
-/// The method that others are held against.
+/// The method that the others are compared with.
 const AUTO: &str = "auto";
 
-/// Charts the scene, shows a table and writes the picture and the figures.
+/// Charts scenes, and writes pictures, tables and results.
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing; the machine has no adapter, or cannot write.
+/// A scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write.
 pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
     match (&args.files[..], &args.output) {
         (files, None) if args.table.is_some() => charts::table(args, files, console),
         (files, Some(folder)) if folder.is_dir() => charts::run(args, files, folder, console),
         ([file], _) => one(args, file, console),
         (_, Some(_) | None) => {
-            Err(Failure::Call("several scenes need a folder that exists, with -o".to_owned()))
+            Err(Failure::Call("several scenes need an existing folder: add -o FOLDER".to_owned()))
         }
     }
 }
@@ -53,26 +53,25 @@ fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Failure> {
     json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
 }
 
-/// A scene's chart.
-pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Figures, Failure> {
-    let scene = super::scene(file, sdfc::lang::Options::default(), console)?;
-    let options =
-        ChartOptions { size: args.size, methods: args.march.clone(), ..ChartOptions::default() };
-    let chart = figures(file, &scene, &options, &args.cache, console)?;
-    Ok(Figures { made: args.note.clone(), ..chart })
+/// Returns the chart of a scene.
+pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Results, Failure> {
+    let scene = super::scene(file, Compiler::new(), console)?;
+    let options = ChartOptions::new().size(args.size).methods(args.march.clone());
+    let chart = measured(file, &scene, &options, &args.cache, console)?;
+    Ok(Results { made: args.note.clone(), ..chart })
 }
 
-/// A kind of picture.
+/// A picture format.
 #[derive(Clone, Copy)]
 pub(super) enum Form {
-    /// By its shapes.
+    /// Scalable Vector Graphics.
     Svg,
-    /// By its pixels.
+    /// Portable Network Graphics.
     Png,
 }
 
 impl Form {
-    /// By the path's ending; a stream is SVG.
+    /// Returns the format for a file extension; stdout is SVG.
     fn of(path: &Path) -> Result<Self, Failure> {
         if path.as_os_str() == "-" {
             return Ok(Self::Svg);
@@ -81,16 +80,16 @@ impl Form {
             Some(ending) if ending == "svg" => Ok(Self::Svg),
             Some(ending) if ending == "png" => Ok(Self::Png),
             Some(_) | None => Err(Failure::Call(format!(
-                "{} is no folder, and its name does not end in .svg or .png",
+                "{} is not a folder and does not end in .svg or .png",
                 path.display()
             ))),
         }
     }
 }
 
-/// The picture of a chart.
-pub(super) fn drawn(chart: &Figures, form: Form, dark: bool) -> Result<Vec<u8>, Failure> {
-    let font = Font(sdfc::lang::font::SANS);
+/// Draws a chart.
+pub(super) fn drawn(chart: &Results, form: Form, dark: bool) -> Result<Vec<u8>, Failure> {
+    let font = Font(sdfc_lang::font::SANS);
     let theme = if dark { Theme::DARK } else { Theme::LIGHT };
     let picture = match form {
         Form::Svg => svg(chart, font).map(String::into_bytes),
@@ -99,24 +98,25 @@ pub(super) fn drawn(chart: &Figures, form: Form, dark: bool) -> Result<Vec<u8>, 
     picture.map_err(|error| Failure::Machine(error.to_string()))
 }
 
-/// Draws and compares, with bars of progress.
-pub(super) fn figures(
+/// Measures all methods, with progress bars.
+pub(super) fn measured(
     file: &Path,
     scene: &Scene,
     options: &ChartOptions,
     cache: &Cache,
     console: &Console,
-) -> Result<Figures, Failure> {
+) -> Result<Results, Failure> {
     let failed = |error: Error| super::lowering(&error, console);
     let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
-    let truth = console.progress("oracle");
-    let pictures = console.progress("methods");
-    let kept = TruthFolder::of(cache);
+    let truth = console.progress("computing exact hits");
+    let pictures = console.progress("drawing with all methods");
+    let folder = TruthFolder::new(cache);
+    let name = file.display().to_string();
     let asked = OracleOptions {
         progress: &|part| truth.set(part.done, part.total),
-        kept: kept.as_ref().map(|folder| folder as &dyn TruthStore),
+        store: folder.as_ref().map(|folder| folder as &dyn TruthStore),
     };
-    let chart = scene.chart(&file.display().to_string(), &gpu, options, asked, &mut |part| {
+    let chart = sdfc_measure::chart(scene, &name, &gpu, options, asked, &mut |part| {
         pictures.set(part.done, part.total);
         ControlFlow::Continue(())
     });
@@ -124,8 +124,8 @@ pub(super) fn figures(
     chart.map_err(failed)
 }
 
-/// The chart for people who read figures.
-fn table(chart: &Figures) -> String {
+/// Formats the chart as a table.
+fn table(chart: &Results) -> String {
     let [width, height] = chart.size;
     let counts = chart.oracle;
     let mut text = format!(
@@ -142,12 +142,12 @@ fn table(chart: &Figures) -> String {
     );
     text += "  method         setting            evals/px   p99    ops/px  frame ms  missed  false   depth px p50      p99      max  normal deg p99  capped  nan\n";
     chart.methods.iter().for_each(|row| text += &line(row));
-    text += "\n*: the default; +: no other is cheaper and better.\n";
+    text += "\n*: default setting; +: no other setting is both cheaper and more accurate.\n";
     text + &outdone(chart)
 }
 
-/// A line where other methods take fewer operations than `auto` and err less.
-pub(super) fn outdone(chart: &Figures) -> String {
+/// Returns one line that names methods which are cheaper and more accurate than `auto`, if any.
+pub(super) fn outdone(chart: &Results) -> String {
     let mut names: Vec<&str> = Vec::new();
     for row in chart.outdoing(AUTO) {
         if !names.contains(&row.method.as_str()) {
@@ -157,20 +157,22 @@ pub(super) fn outdone(chart: &Figures) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     match names.as_slice() {
         [] => String::new(),
-        [name] => format!("{name} is cheaper and nearer than `{AUTO}` here.\n"),
-        names => format!("{} are cheaper and nearer than `{AUTO}` here.\n", names.join(", ")),
+        [name] => format!("{name} is cheaper and more accurate than `{AUTO}` here.\n"),
+        names => {
+            format!("{} are cheaper and more accurate than `{AUTO}` here.\n", names.join(", "))
+        }
     }
 }
 
-/// A figure of some errors; of none there is nothing to say.
-pub(super) fn told(errors: &Quantiles, figure: impl FnOnce(&Quantiles) -> String) -> String {
-    if errors.n == 0 { "-".to_owned() } else { figure(errors) }
+/// Formats a statistic of errors, or `-` if there are none.
+pub(super) fn statistic(errors: &Quantiles, format: impl FnOnce(&Quantiles) -> String) -> String {
+    if errors.n == 0 { "-".to_owned() } else { format(errors) }
 }
 
 fn line(row: &Row) -> String {
     let settings = row.settings.iter().map(|(name, value)| format!("{name} {value:.3e}"));
     let depth = |of: fn(&Quantiles) -> f64, places: usize| {
-        told(&row.depth_px, |errors| format!("{:.places$}", of(errors)))
+        statistic(&row.depth_px, |errors| format!("{:.places$}", of(errors)))
     };
     format!(
         "{}{} {:<13}  {:<17}  {:>8.1}  {:>4}  {:>8.0}  {:>8.1}  {:>6}  {:>5}  {:>12}  {:>7}  {:>7}  {:>14}  {:>6}  {:>3}\n",
@@ -187,7 +189,7 @@ fn line(row: &Row) -> String {
         depth(|errors| errors.p50, 5),
         depth(|errors| errors.p99, 4),
         depth(|errors| errors.max, 3),
-        told(&row.normal_deg, |errors| format!("{:.5}", errors.p99)),
+        statistic(&row.normal_deg, |errors| format!("{:.5}", errors.p99)),
         row.capped,
         row.nan,
     )

@@ -1,25 +1,25 @@
-//! `sdfc chart -o FOLDER`: the charts of several scenes, and a page that lists them.
+//! `sdfc chart -o FOLDER`: charts of several scenes, and a page that lists them.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use sdfc::accuracy_data::Quantiles;
-use sdfc::accuracy_data::chart::{Chart as Figures, Row};
+use sdfc_measure::Quantiles;
+use sdfc_measure::chart::{Chart as Results, Row};
 
-use super::chart::{Form, charted, drawn, outdone, told};
+use super::chart::{Form, charted, drawn, outdone, statistic};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::Output;
 
-/// How a page of charts begins.
+/// The first line of a page of charts.
 const TITLE: &str = "# Charts\n";
 
-/// Writes `NAME.svg`, `NAME.png` and `NAME.json` of each scene into the folder, and `README.md`.
+/// Writes `NAME.svg`, `NAME.png` and `NAME.json` for each scene, and `README.md`, into a folder.
 ///
 /// # Errors
 ///
-/// Those of one chart; what was written before stays.
+/// Those of one chart. Files that were already written stay.
 pub fn run(
     args: &Chart,
     files: &[PathBuf],
@@ -27,7 +27,7 @@ pub fn run(
     console: &Console,
 ) -> Result<(), Failure> {
     if args.json.is_some() {
-        let why = "into a folder each scene's figures go beside its chart; --json is for one scene without a folder";
+        let why = "--json is for one scene without a folder; in a folder the results are written beside each chart";
         return Err(Failure::Call(why.to_owned()));
     }
     let index = folder.join("README.md");
@@ -47,13 +47,15 @@ pub fn run(
     Output::new(&index).write(page(args, &charts).as_bytes())
 }
 
-/// The names of the files in the folder: those of the scenes, of which no two may be the same.
+/// Returns the file names in the folder: those of the scenes, which must differ.
 fn names(files: &[PathBuf]) -> Result<Vec<String>, Failure> {
     let mut names: Vec<String> = Vec::with_capacity(files.len());
     for file in files {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if names.contains(&name) {
-            let why = format!("two of the scenes are called {name}, and so would their charts be");
+            let why = format!(
+                "two of the scenes are called {name}; rename one, or write their charts to different folders"
+            );
             return Err(Failure::Call(why));
         }
         names.push(name);
@@ -61,22 +63,22 @@ fn names(files: &[PathBuf]) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// Refuses to overwrite a page that no such call has written.
+/// Refuses to overwrite a page that this command did not write.
 fn own_page(path: &Path) -> Result<(), Failure> {
     match std::fs::read_to_string(path) {
         Ok(text) if !text.starts_with(TITLE) => Err(Failure::Call(format!(
-            "{} is not a page of charts and would be overwritten; give another folder",
+            "{} is not a page of charts and would be overwritten; choose another folder",
             path.display()
         ))),
         Ok(_) | Err(_) => Ok(()),
     }
 }
 
-/// Writes the lines of the summary alone.
+/// Writes the summary only.
 ///
 /// # Errors
 ///
-/// Those of one chart; then nothing is written.
+/// Those of one chart. Then nothing is written.
 pub fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), Failure> {
     let Some(output) = args.table.as_deref().map(Output::new) else { return Ok(()) };
     output.check()?;
@@ -85,12 +87,13 @@ pub fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), F
         let name = file.with_extension("").to_string_lossy().into_owned();
         charts.push((name, charted(args, file, console)?));
     }
-    let head = head("# What `auto` does, scene by scene\n", &call(args, "--table FILE"), &charts);
+    let head =
+        head("# What `auto` does, scene by scene\n", &command_line(args, "--table FILE"), &charts);
     output.write((head + &summary(&charts)).as_bytes())
 }
 
-/// What was measured on what.
-fn head(title: &str, call: &str, charts: &[(String, Figures)]) -> String {
+/// Returns the title, the command line and the device.
+fn head(title: &str, call: &str, charts: &[(String, Results)]) -> String {
     let mut text = format!("{title}\nWritten by\n\n```\n{call}\n```\n\n");
     if let Some((_, chart)) = charts.first() {
         let [width, height] = chart.size;
@@ -100,8 +103,8 @@ fn head(title: &str, call: &str, charts: &[(String, Figures)]) -> String {
     text
 }
 
-/// The call that writes it again.
-fn call(args: &Chart, output: &str) -> String {
+/// Returns the command line that writes the page again.
+fn command_line(args: &Chart, output: &str) -> String {
     let mut text = "sdfc chart".to_owned();
     for file in &args.files {
         let _ = write!(text, " {}", file.display());
@@ -114,13 +117,15 @@ fn call(args: &Chart, output: &str) -> String {
     text + if args.note.is_some() { " --note TEXT" } else { "" }
 }
 
-/// A line for each scene: `auto` beside `sphere-cone`, and which methods are on the front.
-fn summary(charts: &[(String, Figures)]) -> String {
-    let mut text = "\nOf `auto`: evaluations and operations per pixel, pixels that are wrong (missed, false or NaN), rays out of \
-        steps, errors that 99 of 100 plain pixels keep, in depth in widths of a pixel and, where the surface is smooth, of the \
-        normal in degrees. *cone* is `sphere-cone`. On the front are the settings of a method that fail at no pixel and to which no other is \
-        preferable in operations, failures and depth, counted. A scene in italics has a field that is uncertified: \
-        what is found of it is measured here, and not known of other views.\n\n"
+/// Returns a table with one line per scene: `auto` beside `sphere-cone`, and the methods on the Pareto
+/// front.
+fn summary(charts: &[(String, Results)]) -> String {
+    let mut text = "\nColumns for `auto`: evaluations and operations per pixel; wrong pixels (missed, false or NaN); \
+        rays out of steps; 99th percentile of the error in depth (in widths of a pixel) and of the \
+        normal (in degrees, smooth surfaces only). *cone* is `sphere-cone`. *On the front* counts \
+        the settings of each method that have no wrong pixels and that no other setting beats in \
+        operations, failures and depth. A scene in italics has an uncertified field: its results \
+        hold for this view only.\n\n"
         .to_owned();
     text += "| scene | leaves | evaluations | cone | operations | cone | wrong | out of steps | depth | cone | normal | undecided | on the front |\n";
     text += "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
@@ -128,14 +133,13 @@ fn summary(charts: &[(String, Figures)]) -> String {
     text
 }
 
-fn summary_line(name: &str, chart: &Figures) -> String {
+fn summary_line(name: &str, chart: &Results) -> String {
     let row = |method: &str| chart.methods.iter().find(|row| row.default && row.method == method);
-    let figure = |method: &str, figure: &dyn Fn(&Row) -> String| {
-        row(method).map_or_else(|| "-".to_owned(), figure)
+    let cell = |method: &str, format: &dyn Fn(&Row) -> String| {
+        row(method).map_or_else(|| "-".to_owned(), format)
     };
-    let both = |of: &dyn Fn(&Row) -> String| {
-        format!("{} | {}", figure("auto", of), figure("sphere-cone", of))
-    };
+    let both =
+        |of: &dyn Fn(&Row) -> String| format!("{} | {}", cell("auto", of), cell("sphere-cone", of));
     let mut front: Vec<(&str, usize)> = Vec::new();
     for row in chart.front() {
         match front.iter_mut().find(|(known, _)| *known == row.method) {
@@ -150,18 +154,18 @@ fn summary_line(name: &str, chart: &Figures) -> String {
         chart.leaves,
         both(&|row| format!("{:.1}", row.evals_per_pixel.mean)),
         both(&|row| format!("{:.0}", row.ops_per_pixel)),
-        figure("auto", &|row| row.wrong().to_string()),
-        figure("auto", &|row| row.capped.to_string()),
+        cell("auto", &|row| row.wrong().to_string()),
+        cell("auto", &|row| row.capped.to_string()),
         both(&|row| p99(&row.depth_px)),
-        figure("auto", &|row| p99(&row.normal_deg)),
+        cell("auto", &|row| p99(&row.normal_deg)),
         chart.oracle.undecided,
         front.collect::<Vec<_>>().join(", "),
     )
 }
 
-/// The summary, then every method as it is used unless told otherwise, scene by scene.
-fn page(args: &Chart, charts: &[(String, Figures)]) -> String {
-    let mut text = head(TITLE, &call(args, "-o FOLDER"), charts) + &summary(charts);
+/// Returns the summary, then all methods at their defaults, scene by scene.
+fn page(args: &Chart, charts: &[(String, Results)]) -> String {
+    let mut text = head(TITLE, &command_line(args, "-o FOLDER"), charts) + &summary(charts);
     for (name, chart) in charts {
         let field = if chart.certified { "" } else { ", field uncertified" };
         let _ =
@@ -198,10 +202,10 @@ fn line(row: &Row) -> String {
 }
 
 fn p99(errors: &Quantiles) -> String {
-    told(errors, |errors| format!("{:.1e}", errors.p99))
+    statistic(errors, |errors| format!("{:.1e}", errors.p99))
 }
 
-/// As few digits as tell the value.
+/// Formats a number with few digits.
 fn short(value: f64) -> String {
     if value >= 0.01 { format!("{value}") } else { format!("{value:.1e}") }
 }

@@ -1,4 +1,6 @@
-//! `sdfc check`: all diagnostics of all files, nothing else.
+//! `sdfc check`: all diagnostics of all files.
+
+use sdfc::Compiler;
 
 use crate::args::Check;
 use crate::console::Console;
@@ -9,18 +11,20 @@ use crate::output;
 ///
 /// # Errors
 ///
-/// The worst of all files: one has errors, or one cannot be read.
+/// The worst failure of all files: one has errors, or cannot be read.
 pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
     let mut rows = Vec::new();
     let result = super::each(&args.files, console, |path| {
         let input = sdfc_files::read(path)?;
-        let mut compiled = sdfc::check(&input.name, &input.text, &sdfc_files::Folder::of(path));
+        let folder = sdfc_files::Folder::of(path);
+        let compiler = Compiler::new().resolver(&folder).verify(true);
+        let diagnostics = compiler.check(&input.name, &input.text);
         if args.json {
-            rows.extend(compiled.rows());
+            rows.extend(diagnostics.rows());
         } else {
-            super::show(&mut compiled, console);
+            super::show(&diagnostics, console);
         }
-        compiled.scene.map(drop).ok_or(Failure::Scene)
+        if diagnostics.has_errors() { Err(Failure::Scene) } else { Ok(()) }
     });
     if args.json {
         output::to_stdout(&super::json(&rows)?)?;

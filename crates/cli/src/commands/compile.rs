@@ -1,8 +1,7 @@
-//! `sdfc compile`: the shader of a scene.
+//! `sdfc compile`: writes the shader of a scene.
 
 use std::path::Path;
 
-use sdfc::lang::Options;
 use sdfc::{Emit, ShaderOptions, Stage, Target};
 
 use crate::args::Compile;
@@ -10,21 +9,18 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
-/// Writes the shader, and what it offers if asked to.
+/// Writes the shader, and its reflection if asked to.
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing; the target cannot hold what is asked for; an
-/// output is not writable.
+/// The scene cannot be read, has errors or draws nothing; the target does not support the options;
+/// an output is not writable.
 pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let paths: Vec<&Path> =
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
     let options = options(args)?;
-    let mut compiled =
-        super::compiled_with(&args.file, Options { live_literals: args.slots, focus: None })?;
-    super::show(&mut compiled, console);
-    let scene = compiled.scene.ok_or(Failure::Scene)?;
+    let scene = super::scene(&args.file, super::compiler(args.live_literals), console)?;
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {
@@ -44,11 +40,11 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the shader is to be. An option that would change nothing is refused.
+/// Returns the options of the shader. An option without effect is an error.
 ///
 /// # Errors
 ///
-/// The target or the part has no such thing.
+/// An option does not apply to the target or the part.
 fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
     let target = Target::from(args.target);
     let is_toy = target == Target::Shadertoy;
@@ -59,19 +55,22 @@ fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
     };
     let name = target.name();
     let refusals = [
-        (args.stage.is_some() && emit != Emit::Render, "--stage is for --emit render".to_owned()),
+        (
+            args.stage.is_some() && emit != Emit::Render,
+            "--stage applies to --emit render only; leave it out".to_owned(),
+        ),
         (
             args.march.is_some() && emit == Emit::Field,
-            "--march is for --emit march and render: a field has no ray method".to_owned(),
+            "--march applies to --emit march and render only; a field has no ray method".to_owned(),
         ),
-        (args.prefix.is_some() && is_toy, format!("{name} has no prefix; leave out --prefix")),
+        (args.prefix.is_some() && is_toy, format!("{name} has no name prefix; leave out --prefix")),
         (
             args.group.is_some() && !target.has_groups(),
             format!("{name} has no bind groups; leave out --group"),
         ),
         (
             args.binding.is_some() && !target.has_bindings(),
-            format!("{name} has no bindings: buffers go by their names; leave out --binding"),
+            format!("{name} binds buffers by name and has no bindings; leave out --binding"),
         ),
     ];
     if let Some((_, why)) = refusals.into_iter().find(|refusal| refusal.0) {
@@ -80,13 +79,12 @@ fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
     let has_compute = target.has_stage(Stage::Compute);
     let stage = if has_compute { Stage::Compute } else { Stage::Fragment };
     let defaults = ShaderOptions::default();
-    Ok(ShaderOptions {
-        target,
-        emit,
-        stage: args.stage.map_or(stage, Stage::from),
-        method: args.march.clone(),
-        prefix: args.prefix.clone().unwrap_or(defaults.prefix),
-        group: args.group.unwrap_or(defaults.group),
-        binding: args.binding.unwrap_or(defaults.binding),
-    })
+    Ok(ShaderOptions::new()
+        .target(target)
+        .emit(emit)
+        .stage(args.stage.map_or(stage, Stage::from))
+        .method(args.march.clone())
+        .prefix(args.prefix.clone().unwrap_or(defaults.prefix))
+        .group(args.group.unwrap_or(defaults.group))
+        .binding(args.binding.unwrap_or(defaults.binding)))
 }

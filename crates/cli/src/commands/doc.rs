@@ -1,10 +1,10 @@
-//! `sdfc doc`: the reference, from what the entries say of themselves.
+//! `sdfc doc`: prints the reference of the language.
 
 mod page;
 
-use sdfc::diagnostics::{ALL_CODES, CodeInfo};
-use sdfc::lang::library::Entry;
-use sdfc::lang::reference;
+use sdfc_diagnostics::{ALL_CODES, CodeInfo};
+use sdfc_lang::library::Entry;
+use sdfc_lang::reference;
 use serde::Serialize;
 
 use crate::args::Doc;
@@ -14,7 +14,7 @@ use crate::output;
 
 use page::Page;
 
-/// An entry for programs. The keys are a promise to other tools: some may be added, none renamed.
+/// An entry as JSON. Other tools rely on the keys: new ones may be added, none is renamed.
 #[derive(Serialize)]
 struct Row<'e> {
     name: &'e str,
@@ -31,7 +31,7 @@ struct Row<'e> {
     line: Option<u32>,
 }
 
-/// The code of a diagnostic, for programs.
+/// The code of a diagnostic as JSON.
 #[derive(Serialize)]
 struct CodeRow<'e> {
     code: &'e str,
@@ -46,12 +46,12 @@ struct Parameter<'e> {
     about: &'e str,
 }
 
-/// Writes to stdout what there is, or what is asked for: a name, a topic, a diagnostic's code, or a word that
-/// entries mention.
+/// Prints all entries, or those that match a name, a topic, a diagnostic's code or a word of their
+/// descriptions.
 ///
 /// # Errors
 ///
-/// Nothing has that name nor mentions it.
+/// Nothing matches.
 pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
     if let Some(code) = args.name.as_deref().and_then(code) {
         return write_code(code, args.json, console);
@@ -70,12 +70,12 @@ pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
     page.full(&found.full);
     page.list(&found.listed);
     if args.name.is_none() {
-        page.closing("`sdfc doc NAME` says all about one of them.");
+        page.closing("`sdfc doc NAME` describes one of them in full.");
     }
     output::to_stdout(page.text().as_bytes())
 }
 
-/// The code of a diagnostic with this name.
+/// Returns the diagnostic code with this name.
 fn code(name: &str) -> Option<&'static CodeInfo> {
     ALL_CODES.iter().find(|row| row.code.0.eq_ignore_ascii_case(name))
 }
@@ -91,29 +91,29 @@ fn write_code(row: &CodeInfo, as_json: bool, console: &Console) -> Result<(), Fa
     output::to_stdout(page.text().as_bytes())
 }
 
-/// What is shown of the reference.
+/// The entries that are printed.
 struct Found<'e> {
-    /// Entries to show in full.
+    /// Entries that are printed in full.
     full: Vec<&'e Entry>,
-    /// Entries to list.
+    /// Entries that are listed with one line each.
     listed: Vec<&'e Entry>,
 }
 
 fn find<'e>(entries: &'e [Entry], name: &str, console: &Console) -> Result<Found<'e>, Failure> {
-    let those = |wanted: &dyn Fn(&Entry) -> bool| -> Vec<&'e Entry> {
+    let matching = |wanted: &dyn Fn(&Entry) -> bool| -> Vec<&'e Entry> {
         entries.iter().filter(|entry| wanted(entry)).collect()
     };
-    let full = those(&|entry| entry.name == name);
-    let listed = those(&|entry| entry.topic == name);
+    let full = matching(&|entry| entry.name == name);
+    let listed = matching(&|entry| entry.topic == name);
     if !full.is_empty() || !listed.is_empty() {
         return Ok(Found { full, listed });
     }
     let meant = reference::meant(entries, name);
     let missing = match &meant {
-        Some(meant) => format!("nothing is called `{name}`; {meant}"),
-        None => format!("nothing is called `{name}`"),
+        Some(meant) => format!("there is no entry `{name}`; {meant}"),
+        None => format!("there is no entry `{name}`"),
     };
-    let listed = those(&|entry| mentions(entry, name));
+    let listed = matching(&|entry| mentions(entry, name));
     if listed.is_empty() {
         return Err(Failure::Call(missing));
     }
@@ -121,7 +121,7 @@ fn find<'e>(entries: &'e [Entry], name: &str, console: &Console) -> Result<Found
     Ok(Found { full, listed })
 }
 
-/// Whether a word stands in an entry's name or in what it says of itself.
+/// True if an entry's name or description contains a word.
 fn mentions(entry: &Entry, word: &str) -> bool {
     let word = word.to_lowercase();
     let texts = [&entry.name, &entry.summary, &entry.details];

@@ -1,26 +1,26 @@
-//! `sdfc bench --faults`: how far a classroom practical's pictures are from right, and ours.
+//! `sdfc bench --faults`: counts the wrong pixels of a naive ray marcher, and of sdfc.
 
-use sdfc::render::Gpu;
-use sdfc::{FaultReport, FaultRow, FaultVariant, compile, faults};
+use sdfc::Compiler;
+use sdfc_measure::{FaultReport, FaultRow, FaultVariant, count_faults, fault_scenes};
 
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::output::{self, Output};
 
-/// Measures the scenes, shows a table and writes the figures.
+/// Measures the scenes, prints a table and writes the results.
 ///
 /// # Errors
 ///
-/// The machine has no adapter, or cannot write the figures.
+/// The machine has no GPU, or cannot write the results.
 pub fn run(size: [u32; 2], json: Option<Output>, console: &Console) -> Result<(), Failure> {
-    let failed = |error: sdfc::Error| super::lowering(&error, console);
-    let gpu = Gpu::new().map_err(|error| failed(error.into()))?;
+    let gpu = super::gpu(console)?;
     let mut rows = Vec::new();
-    for (name, text) in faults() {
-        // The program's own scenes: that one of them has errors is a fault of this program.
-        let fault = || Failure::Machine(format!("the scene `{name}` does not compile"));
-        let scene = compile(name, text).scene.ok_or_else(fault)?;
-        rows.push(scene.faults(name, &gpu, size).map_err(failed)?);
+    for (name, text) in fault_scenes() {
+        // The scenes are part of this program, so an error in one is a bug of this program.
+        let bug = || Failure::Machine(format!("the scene `{name}` does not compile"));
+        let scene = Compiler::new().compile(name, text).map_err(|_| bug())?;
+        let row = count_faults(&scene, name, &gpu, size);
+        rows.push(row.map_err(|error| super::measuring(&error, console))?);
     }
     let (adapter, driver) = (gpu.info().name.clone(), gpu.info().driver.clone());
     let report = FaultReport { adapter, driver, rows };
@@ -30,7 +30,7 @@ pub fn run(size: [u32; 2], json: Option<Output>, console: &Console) -> Result<()
     json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
 }
 
-/// The report for people: shares of the compared pixels in percent.
+/// Formats the report: numbers of pixels, and the wrong ones in percent.
 fn table(report: &FaultReport) -> String {
     let mut text = format!("{}, driver {}\n", report.adapter, report.driver);
     for row in &report.rows {

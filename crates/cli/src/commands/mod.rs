@@ -1,4 +1,4 @@
-//! One file a command.
+//! The commands, one file each.
 
 pub mod bench;
 pub mod chart;
@@ -15,32 +15,55 @@ pub mod view;
 
 use std::path::{Path, PathBuf};
 
-use sdfc::Error;
-use sdfc::lang::Options;
-use sdfc::render::RenderError;
+use sdfc::{Compiler, Diagnostics, Error, Scene};
+use sdfc_measure::MeasureError;
+use sdfc_render::{Gpu, RenderError};
 
 use crate::console::Console;
 use crate::failure::Failure;
 
-/// Reads and compiles a scene and shows what was found.
+/// Reads and compiles a scene, and prints its diagnostics.
 ///
 /// # Errors
 ///
 /// The scene cannot be read, or has errors.
-fn scene(path: &Path, options: Options, console: &Console) -> Result<sdfc::Scene, Failure> {
-    let mut compiled = compiled_with(path, options)?;
-    show(&mut compiled, console);
-    compiled.scene.ok_or(Failure::Scene)
+fn scene(path: &Path, compiler: Compiler<'_>, console: &Console) -> Result<Scene, Failure> {
+    let input = sdfc_files::read(path)?;
+    let folder = sdfc_files::Folder::of(path);
+    shown(compiler.resolver(&folder).compile(&input.name, &input.text), console)
 }
 
-/// Why a scene that has compiled could not be lowered or drawn.
+/// Returns a compiler, with live literals if asked for.
+fn compiler<'r>(live_literals: bool) -> Compiler<'r> {
+    if live_literals { Compiler::new().live_literals(None) } else { Compiler::new() }
+}
+
+/// Prints the diagnostics of a compilation and returns its scene.
+///
+/// # Errors
+///
+/// The scene has errors.
+fn shown(compiled: Result<Scene, Diagnostics>, console: &Console) -> Result<Scene, Failure> {
+    match compiled {
+        Ok(scene) => {
+            show(scene.diagnostics(), console);
+            Ok(scene)
+        }
+        Err(errors) => {
+            show(&errors, console);
+            Err(Failure::Scene)
+        }
+    }
+}
+
+/// Converts an error that occurred after the scene compiled.
 fn lowering(error: &Error, console: &Console) -> Failure {
     let message = error.to_string();
     if error.is_machine() {
         return Failure::Machine(message);
     }
     if matches!(error, Error::Render(RenderError::Cancelled)) {
-        return Failure::Interrupted("stopped; no picture is written".to_owned());
+        return Failure::Interrupted("stopped; no picture was written".to_owned());
     }
     if error.is_call() {
         return Failure::Call(message);
@@ -49,20 +72,31 @@ fn lowering(error: &Error, console: &Console) -> Failure {
     Failure::Scene
 }
 
-fn compiled(path: &Path) -> Result<sdfc::Compiled, Failure> {
-    compiled_with(path, Options::default())
-}
-
-fn compiled_with(path: &Path, options: Options) -> Result<sdfc::Compiled, Failure> {
-    let input = sdfc_files::read(path)?;
-    Ok(sdfc::compile_with(&input.name, &input.text, &sdfc_files::Folder::of(path), options))
-}
-
-/// Does the same to every file, also after one that fails.
+/// Opens the GPU.
 ///
 /// # Errors
 ///
-/// The worst of all files' failures; the others have been told.
+/// There is no GPU.
+fn gpu(console: &Console) -> Result<Gpu, Failure> {
+    Gpu::new().map_err(|error| lowering(&error.into(), console))
+}
+
+/// Converts an error of a measurement.
+fn measuring(error: &MeasureError, console: &Console) -> Failure {
+    match error {
+        MeasureError::Scene(error) => lowering(error, console),
+        other => {
+            console.error(&other.to_string());
+            Failure::Scene
+        }
+    }
+}
+
+/// Runs `act` on every file, also after one that fails.
+///
+/// # Errors
+///
+/// The worst failure of all files; the others have been printed.
 fn each(
     files: &[PathBuf],
     console: &Console,
@@ -71,30 +105,31 @@ fn each(
     let mut worst = Ok(());
     for path in files {
         let Err(failure) = act(path) else { continue };
-        let (told, kept) = match worst {
+        let (printed, kept) = match worst {
             Err(before) if before > failure => (Some(failure), before),
             Err(before) => (Some(before), failure),
             Ok(()) => (None, failure),
         };
-        told.iter().for_each(|failure| console.failure(failure));
+        printed.iter().for_each(|failure| console.failure(failure));
         worst = Err(kept);
     }
     worst
 }
 
-/// The diagnostics on stderr; with `-q` errors only.
-fn show(compiled: &mut sdfc::Compiled, console: &Console) {
-    if !console.shows_warnings() {
-        compiled.diagnostics.retain(|found| found.is_error());
-    }
-    console.text(&compiled.diagnostics_text(console.color));
+/// Prints diagnostics to stderr; errors only with `-q`.
+fn show(diagnostics: &Diagnostics, console: &Console) {
+    let text = match console.shows_warnings() {
+        true => diagnostics.render(console.color),
+        false => diagnostics.without_warnings().render(console.color),
+    };
+    console.text(&text);
 }
 
-/// A value as JSON text with a final line end.
+/// Returns a value as JSON with a final newline.
 ///
 /// # Errors
 ///
-/// None for the plain data that commands write.
+/// Never, for the plain data that commands write.
 fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
     let text = serde_json::to_vec_pretty(value);
     let mut bytes = text.map_err(|e| Failure::Machine(format!("cannot write JSON: {e}")))?;

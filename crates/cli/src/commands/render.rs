@@ -1,13 +1,12 @@
-//! `sdfc render`: pictures of a scene.
+//! `sdfc render`: draws pictures of a scene.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use sdfc::lang::Options;
-use sdfc::render::{Animation, RenderError};
 use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene};
+use sdfc_render::{Animation, RenderError};
 
-use crate::args::{Backend, Render, Writing};
+use crate::args::{Backend, Render};
 use crate::console::{Console, Progress};
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
@@ -15,27 +14,21 @@ use crate::output::{self, Output};
 use crate::sequence::{self, Frames};
 use sdfc_files::Format;
 
-/// How often a frame is drawn for its figures.
+/// Number of frames that `--stats` times.
 const TIMED_FRAMES: u32 = 5;
-/// Viewers slow a GIF down whose frames are shorter than two hundredths of a second.
+/// Greatest frame rate of a GIF: programs slow down GIFs with shorter frames.
 const MAX_GIF_RATE: f64 = 50.0;
 
-/// Draws the scene, and says where the pictures are.
+/// Draws the scene, and prints the names of the files.
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing; a param does not take its value; two outputs,
-/// or an output and the scene, are one file; the machine cannot draw or write it; ctrl-C.
+/// The scene cannot be read, has errors or draws nothing; a param does not take its value; two of
+/// the outputs and the scene are the same file; the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
-    let scene =
-        super::scene(&args.file, Options { live_literals: args.slots, focus: None }, console)?;
-    let scene = match args.writing {
-        Writing::Auto => scene,
-        writing @ (Writing::Inline | Writing::Rolled) => {
-            scene.written(writing.into()).map_err(|e| super::lowering(&e, console))?
-        }
-    };
+    let compiler = super::compiler(args.live_literals).loops(args.loops.into());
+    let scene = super::scene(&args.file, compiler, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }
@@ -51,7 +44,7 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// Where the results go.
+/// The destinations of the results.
 struct Outputs {
     path: PathBuf,
     format: Format,
@@ -73,24 +66,28 @@ impl Outputs {
             && depth.as_os_str() != "-"
             && Format::of(depth).ok() != Some(Format::Exr)
         {
-            let message = format!("{}: depths are written as .exr", depth.display());
+            let message = format!(
+                "{}: depths are written as EXR; choose a name that ends in .exr",
+                depth.display()
+            );
             return Err(Failure::Call(message));
         }
         if args.frames.is_some() && format == Format::Gif && args.fps > MAX_GIF_RATE {
-            let message = format!("a GIF shows at most {MAX_GIF_RATE} frames a second");
+            let message =
+                format!("a GIF has at most {MAX_GIF_RATE} frames per second; lower --fps");
             return Err(Failure::Call(message));
         }
         let is_stdout = |path: &Path| path.as_os_str() == "-";
         let to_stdout = is_stdout(&path) || args.depth.as_deref().is_some_and(is_stdout);
         if args.frames.is_some() && to_stdout {
-            let message = "stdout takes one picture; name a file";
+            let message = "a sequence cannot be written to stdout; name a file with -o";
             return Err(Failure::Call(message.to_owned()));
         }
         let stats = args.stats.as_deref().map(Output::new);
         Ok(Self { path, format, depth: args.depth.clone(), stats })
     }
 
-    /// Fails now where writing would fail after long work.
+    /// Checks early that the outputs can be written, before long work.
     fn check(&self, frames: Option<Frames>) -> Result<(), Failure> {
         let first = frames.map(|frames| frames.first);
         self.picture(first).check()?;
@@ -98,7 +95,7 @@ impl Outputs {
         self.stats.as_ref().map_or(Ok(()), Output::check)
     }
 
-    /// Where a picture goes: one of a sequence by its number, unless all are one file.
+    /// The destination of a picture. Frames of a sequence are numbered, except in a GIF.
     fn picture(&self, number: Option<u32>) -> Output {
         match number {
             Some(number) if self.format != Format::Gif => {
@@ -108,7 +105,7 @@ impl Outputs {
         }
     }
 
-    /// Where the depths of a picture go: those of a sequence by its number.
+    /// The destination of a picture's depths. Frames of a sequence are numbered.
     fn depth(&self, number: Option<u32>) -> Option<Output> {
         let path = self.depth.as_deref()?;
         let numbered = number.map(|number| sequence::numbered(path, number));
@@ -117,20 +114,18 @@ impl Outputs {
 }
 
 fn options(args: &Render) -> PictureOptions {
-    PictureOptions {
-        size: args.size,
-        method: args.march.clone(),
-        backend: match args.backend {
+    PictureOptions::new()
+        .size(args.size)
+        .method(args.march.clone())
+        .backend(match args.backend {
             Backend::Auto => sdfc::Backend::Auto,
             Backend::Gpu => sdfc::Backend::Gpu,
             Backend::Cpu => sdfc::Backend::Cpu,
-        },
-        samples: args.samples,
-        ..PictureOptions::default()
-    }
+        })
+        .samples(args.samples)
 }
 
-/// The frame that the options ask for.
+/// Returns the values of params, time and frame.
 fn values(scene: &Scene, args: &Render) -> Result<FrameValues, Failure> {
     let mut values = FrameValues::defaults(scene.params());
     for set in &args.set {
@@ -142,7 +137,7 @@ fn values(scene: &Scene, args: &Render) -> Result<FrameValues, Failure> {
     Ok(values)
 }
 
-/// All that drawing needs.
+/// Everything that drawing needs.
 struct Job<'a> {
     args: &'a Render,
     console: &'a Console,
@@ -163,35 +158,34 @@ impl Job<'_> {
         if let Some(stats_output) = &outputs.stats {
             stats_output.write(&super::json(&picture.stats)?)?;
         }
-        self.tell(&picture);
+        self.print_notes(&picture);
         if let Output::File(path) = output {
-            self.tell_where(&picture, &path.display().to_string());
+            self.print_files(&picture, &path.display().to_string());
         }
         Ok(())
     }
 
-    /// One file a frame, each written as soon as it is drawn.
+    /// Writes one file per frame as soon as it is drawn.
     fn sequence(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
         let progress = self.console.progress("drawing");
         for (number, before) in frames.numbers().zip(0..) {
-            let place = [before, frames.count()];
-            let picture = self.frame(number, &progress, place)?;
+            let picture = self.frame(number, &progress, [before, frames.count()])?;
             outputs.picture(Some(number)).write(&self.encode(&picture, outputs.format)?)?;
             self.write_depth(&picture, outputs.depth(Some(number)))?;
             if before == 0 {
-                self.tell(&picture);
+                self.print_notes(&picture);
             }
             if before + 1 == frames.count() {
                 let first = sequence::numbered(&outputs.path, frames.first);
                 let last = sequence::numbered(&outputs.path, number);
                 let names = format!("{} to {}", first.display(), last.display());
-                self.tell_where(&picture, &names);
+                self.print_files(&picture, &names);
             }
         }
         Ok(())
     }
 
-    /// All frames in one file, written when the last is drawn.
+    /// Writes all frames to one file after the last is drawn.
     fn animation(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
         let refused = |error: RenderError| super::lowering(&error.into(), self.console);
         let progress = self.console.progress("drawing");
@@ -209,25 +203,30 @@ impl Job<'_> {
         let output = outputs.picture(None);
         output.write(&file)?;
         if let Some(picture) = last {
-            self.tell(&picture);
+            self.print_notes(&picture);
             if let Output::File(path) = output {
                 let name = format!("{}: {} frames", path.display(), frames.count());
-                self.tell_where(&picture, &name);
+                self.print_files(&picture, &name);
             }
         }
         Ok(())
     }
 
-    /// One frame of a sequence. `place` is how many come before it, and how many there are.
-    fn frame(&self, number: u32, progress: &Progress, place: [u32; 2]) -> Result<Picture, Failure> {
+    /// Draws one frame of a sequence. `position` is how many come before it, and how many there are.
+    fn frame(
+        &self,
+        number: u32,
+        progress: &Progress,
+        position: [u32; 2],
+    ) -> Result<Picture, Failure> {
         let time = sequence::time(number, self.args.fps);
         let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
-        let picture = self.paint(&values, 1, progress, place);
+        let picture = self.paint(&values, 1, progress, position);
         picture.map_err(|failure| {
             if !matches!(failure, Failure::Interrupted(_)) {
                 return failure;
             }
-            let [before, all] = place;
+            let [before, all] = position;
             Failure::Interrupted(format!("stopped after {before} of {all} frames"))
         })
     }
@@ -244,7 +243,7 @@ impl Job<'_> {
             progress.set(part.total * u64::from(before) + part.done, total);
             self.interrupt.flow()
         });
-        // Ctrl-C after the last tile counts too.
+        // Ctrl-C after the last tile counts as well.
         let picture = match self.interrupt.flow() {
             ControlFlow::Continue(()) => picture,
             ControlFlow::Break(()) => Err(RenderError::Cancelled.into()),
@@ -262,8 +261,8 @@ impl Job<'_> {
         output.write(&file.map_err(|e| super::lowering(&e.into(), self.console))?)
     }
 
-    /// Where it was drawn if not where one might think, and with `-v` what the rays met.
-    fn tell(&self, picture: &Picture) {
+    /// Prints why the device or the method differs from the options and, with `-v`, statistics.
+    fn print_notes(&self, picture: &Picture) {
         if let Some(note) = &picture.note {
             self.console.note(note);
         }
@@ -271,24 +270,29 @@ impl Job<'_> {
         self.console.detail(|| {
             let pixels = &stats.pixels;
             format!(
-                "method {} on {}: {:.1} ms a frame; {} pixels hit, {} miss, {} ran out of steps, {} not finite",
-                stats.method, adapter(picture), stats.frame_ms.median, pixels.hit, pixels.miss,
-                pixels.capped, pixels.nan
+                "method {} on {}: {:.1} ms per frame; {} pixels hit, {} missed, {} capped, {} NaN",
+                stats.method,
+                adapter(picture),
+                stats.frame_ms.median,
+                pixels.hit,
+                pixels.miss,
+                pixels.capped,
+                pixels.nan
             )
         });
     }
 
-    fn tell_where(&self, picture: &Picture, name: &str) {
+    fn print_files(&self, picture: &Picture, name: &str) {
         let [width, height] = picture.stats.size;
         self.console.note(&format!("{name}: {width}x{height}, drawn on {}", adapter(picture)));
     }
 }
 
 fn adapter(picture: &Picture) -> &str {
-    picture.stats.adapter.as_deref().unwrap_or("the processor")
+    picture.stats.adapter.as_deref().unwrap_or("the CPU")
 }
 
-/// `scenes/ball.sdf` is drawn to `ball.png` in the current folder.
+/// Returns the default output: `ball.png` in the current folder for `scenes/ball.sdf`.
 fn default_output(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().filter(|stem| *stem != "-");
     let mut name = stem.map_or_else(|| "scene".into(), ToOwned::to_owned);
@@ -301,7 +305,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_are_named_after_scenes() {
+    fn pictures_are_named_after_their_scenes() {
         assert_eq!(default_output(Path::new("a/b.c/ball.sdf")), Path::new("ball.png"));
         assert_eq!(default_output(Path::new("ball")), Path::new("ball.png"));
         assert_eq!(default_output(Path::new("-")), Path::new("scene.png"));

@@ -2,8 +2,8 @@
 //! within less, and far from the origin within what rounding does to coordinates.
 
 use libtest_mimic::Failed;
-use sdfc::render::{CpuScene, Difference, HIT, Image, View, compare};
-use sdfc::{Backend, FrameValues, PictureOptions, Scene, compile, no_progress};
+use sdfc::{Backend, Compiler, FrameValues, PictureOptions, Scene, no_progress};
+use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -18,11 +18,9 @@ const COLOR: u8 = 2;
 const EDGES: f64 = 0.5;
 const METHOD: &str = "auto";
 
-/// The scene, or what is wrong with it.
+/// Compiles a scene.
 pub fn scene(name: &str, text: &str) -> Result<Scene, Failed> {
-    let compiled = compile(name, text);
-    let findings = compiled.diagnostics_text(false);
-    compiled.scene.ok_or_else(|| Failed::from(findings))
+    Ok(Compiler::new().compile(name, text)?)
 }
 
 /// Compares the processor's two precisions; gives the pixels that are hit and the difference.
@@ -42,7 +40,7 @@ pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
         // One ray for each pixel, through its centre, as in the pictures of depths.
         let samples = Some(1);
         let options =
-            PictureOptions { size: [SIDE; 2], method, backend, samples, ..Default::default() };
+            PictureOptions::new().size([SIDE; 2]).method(method).backend(backend).samples(samples);
         scene.render(&options, &mut no_progress)
     };
     let (gpu, cpu) = (picture(Backend::Gpu)?.image, picture(Backend::Cpu)?.image);

@@ -1,7 +1,7 @@
 //! What is claimed of a field, from its clauses or by derivation, and whether samples refute it.
 
-use sdfc::graph::{Graph, NodeId, Scene, ShapeId, SidePromise};
 use sdfc_analyze::{Promise, Qualities};
+use sdfc_graph::{Graph, NodeId, Scene, ShapeId, SidePromise};
 
 use crate::field::Field;
 use crate::geometry::Point;

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use sdfc::diagnostics::{Sources, has_errors};
-use sdfc::graph::{Scene, ShapeId};
-use sdfc::lang::{front, library::Entry};
 use sdfc_analyze::Qualities;
+use sdfc_diagnostics::{Sources, has_errors};
+use sdfc_graph::{Scene, ShapeId};
+use sdfc_lang::{front, library::Entry};
 
 use crate::claims::{Claims, PROMISES, SIDES, Stated, says};
 use crate::field::Field;
@@ -100,7 +100,7 @@ fn of_entry<'s>(scene: &'s Scene, entry: &'s Entry) -> impl Iterator<Item = Shap
 
 fn is_of(scene: &Scene, entry: &Entry, id: ShapeId) -> bool {
     let shape = scene.graph.shape(id);
-    let dim = if shape.dim == sdfc::graph::Dim::Two { "region" } else { "solid" };
+    let dim = if shape.dim == sdfc_graph::Dim::Two { "region" } else { "solid" };
     let kind = entry.kind == "shape" || entry.kind == dim;
     shape.definition == entry.name && kind && shape.level == 0
 }

@@ -3,8 +3,8 @@
 //! The oracle knows a surface by changes of sign alone. A field's values are never taken for distances;
 //! its slopes only say where to look next.
 
-use sdfc::graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
-use sdfc::graph::{Dim, Expander, Graph, Scene, ShapeId, bounds};
+use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
+use sdfc_graph::{Dim, Expander, Graph, Scene, ShapeId, bounds};
 
 use crate::geometry::{Point, Random, add, combine, distance, dot, length, mix, scaled, sub};
 

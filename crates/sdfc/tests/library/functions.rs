@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use sdfc::graph::eval::{FrameValues, HASH_COUNT, Tape};
-use sdfc::graph::{Binary, Dim, FrameInput, Node, NodeId, Scene, gradient, reachable};
-use sdfc::lang::library::Entry;
+use sdfc_graph::eval::{FrameValues, HASH_COUNT, Tape};
+use sdfc_graph::{Binary, Dim, FrameInput, Node, NodeId, Scene, gradient, reachable};
+use sdfc_lang::library::Entry;
 
 use crate::contract::{self, Outcome};
 use crate::geometry::{Random, mix};

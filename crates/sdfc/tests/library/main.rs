@@ -33,8 +33,8 @@ use std::sync::Arc;
 
 use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::lang::library::{self, Entry};
-use sdfc::render::testing;
+use sdfc_lang::library::{self, Entry};
+use sdfc_render::testing;
 
 use table::{Column, Table};
 

@@ -2,8 +2,8 @@
 //! `copies` says so.
 
 use sdfc::FrameValues;
-use sdfc::graph::{Scene, ShapeId};
 use sdfc_analyze::{copies_obstacle, refute_copies, refute_intersect};
+use sdfc_graph::{Scene, ShapeId};
 
 /// What the intervals may be off, in parts of the lengths that they are computed from.
 const ROUNDING: [f64; 2] = [1e-8, 4e-6];

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use sdfc::lang::library::Entry;
+use sdfc_lang::library::Entry;
 
 use crate::contract::Outcome;
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use sdfc::FrameValues;
-use sdfc::accuracy_data::{Counts, Metrics};
-use sdfc::render::Pose;
+use sdfc_measure::{Counts, Metrics};
+use sdfc_render::Pose;
 
 use crate::scene::model::Model;
 

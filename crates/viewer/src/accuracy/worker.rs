@@ -10,13 +10,14 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Instant;
 
-use sdfc::codegen::render_module_with_camera;
-use sdfc::march::{METHODS, MethodDefinition};
-use sdfc::render::{
+use sdfc::Error;
+use sdfc_codegen::render_module_with_camera;
+use sdfc_march::{METHODS, MethodDefinition};
+use sdfc_measure::{Comparison, operations};
+use sdfc_render::{
     Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, View, milliseconds_since,
     uniform_values,
 };
-use sdfc::{Comparison, Error};
 
 use crate::accuracy::comparison::{ComparisonJob, ComparisonResult, MethodResult};
 use crate::latest_channel::LatestChannel;
@@ -177,7 +178,7 @@ impl ComparisonRunner {
         let bounds = scene.bounds_at(&job.frame);
         let size = job.compared_size();
         let view = View::from_pose(scene.drawn(), &job.frame, bounds, size, &job.pose)?;
-        scene.comparison(view, job.frame.clone(), &|progress| self.update(progress))
+        Comparison::new(scene, view, job.frame.clone(), &|progress| self.update(progress))
     }
 
     /// Compares the shown picture, and all methods if the job asks for them.
@@ -316,7 +317,7 @@ fn method_result(
 ) -> MethodResult {
     let scene = &job.model.scene;
     let metrics = comparison.metrics(&drawn.image);
-    let operations = scene.operations(&scene.marched(method), metrics.evaluations.mean);
+    let operations = operations(scene, &scene.marched(method), metrics.evaluations.mean);
     let milliseconds = drawn.milliseconds;
     MethodResult { method: method.to_owned(), setting, metrics, operations, milliseconds }
 }
@@ -325,7 +326,7 @@ fn method_result(
 mod tests {
     use std::sync::mpsc::{Receiver, channel};
 
-    use sdfc::render::Pose;
+    use sdfc_render::Pose;
 
     use super::*;
     use crate::test_support::{TIMEOUT, model};

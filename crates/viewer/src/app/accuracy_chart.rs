@@ -1,7 +1,7 @@
 //! The chart of all ray methods: cost to the right, error upwards.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
-use sdfc::march::method;
+use sdfc_march::method;
 
 use super::theme;
 use crate::accuracy::comparison::{ComparisonResult, MethodResult};

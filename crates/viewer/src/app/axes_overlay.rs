@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Color32, Pos2, Rect, Stroke, Ui, vec2};
 use glam::DVec3;
-use sdfc::render::Pose;
+use sdfc_render::Pose;
 
 use super::theme;
 use crate::render::picture::Picture;

@@ -7,7 +7,7 @@ use eframe::egui::{
     TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
 use glam::DVec3;
-use sdfc::render::{CAPPED, HIT};
+use sdfc_render::{CAPPED, HIT};
 
 use super::theme::{self, card};
 use super::{axes_overlay, legend_card};

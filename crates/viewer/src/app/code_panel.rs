@@ -1,8 +1,8 @@
 //! The panel with the scene's source, in which live literals can be dragged.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::live_literals::LiveLiteral;
+use sdfc_graph::{Param, ParamKind};
+use sdfc_lang::live_literals::LiveLiteral;
 
 use super::action::Action;
 use super::number_widget::number_drag;

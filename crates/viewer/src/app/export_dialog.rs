@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, Context, RichText, Ui};
-use sdfc::render::MAX_SIDE;
 use sdfc::{Backend, Emit, PictureOptions, ShaderOptions, Stage, Target};
+use sdfc_render::MAX_SIDE;
 
 use super::number_widget::number_drag;
 use super::theme;
@@ -261,7 +261,8 @@ impl ExportDialog {
                     (self.scene.clone(), session.param_values.source_with_values(model));
                 let (target, emit, stage) = (self.target, self.emit, self.stage);
                 let method = session.build().method.clone();
-                let options = ShaderOptions { target, emit, stage, method, ..Default::default() };
+                let options =
+                    ShaderOptions::new().target(target).emit(emit).stage(stage).method(method);
                 return session.exports().send(ExportJob::Shader { scene, source, path, options });
             }
             ExportKind::Screenshot => {
@@ -269,15 +270,13 @@ impl ExportDialog {
                 return ctx.request_repaint();
             }
         };
-        let options = PictureOptions {
-            size: self.size,
-            method: session.build().method.clone(),
-            backend: if session.build().on_cpu { Backend::Cpu } else { Backend::Auto },
-            pose: session.manual_pose(),
-            tolerance: session.tolerance,
-            samples: Some(self.samples),
-            ..PictureOptions::default()
-        };
+        let options = PictureOptions::new()
+            .size(self.size)
+            .method(session.build().method.clone())
+            .backend(if session.build().on_cpu { Backend::Cpu } else { Backend::Auto })
+            .pose(session.manual_pose())
+            .tolerance(session.tolerance)
+            .samples(Some(self.samples));
         let (model, options) = (std::sync::Arc::clone(model), Box::new(options));
         let job = ExportJob::Picture { model, path, options, frames, hundredths: HUNDREDTHS };
         session.exports().send(job);

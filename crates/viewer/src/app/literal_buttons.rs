@@ -1,7 +1,7 @@
 //! How many live literals have been changed, and buttons to save, copy or reset them.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc::lang::live_literals::MAX_LIVE_LITERALS;
+use sdfc_lang::live_literals::MAX_LIVE_LITERALS;
 
 use super::action::Action;
 use super::theme;
@@ -14,7 +14,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
     ui.horizontal_wrapped(|ui| {
         let text = match changed {
             0 if model.literals().next().is_none() => "no number can be dragged".to_owned(),
-            0 if model.scene.slots().len() == MAX_LIVE_LITERALS => {
+            0 if model.scene.live_literals().len() == MAX_LIVE_LITERALS => {
                 format!("{MAX_LIVE_LITERALS} numbers can be dragged")
             }
             0 => "drag a number".to_owned(),

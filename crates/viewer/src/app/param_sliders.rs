@@ -1,8 +1,8 @@
 //! A widget for each param of the scene, and for each number that a `let` names.
 
 use eframe::egui::{self, Response, RichText, SliderClamping, Ui};
-use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::live_literals::LiveLiteral;
+use sdfc_graph::{Param, ParamKind};
+use sdfc_lang::live_literals::LiveLiteral;
 
 use super::action::Action;
 use super::number_widget::number_drag;

@@ -1,7 +1,7 @@
 //! The line below the picture: how it was drawn, and messages.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc::render::Clock;
+use sdfc_render::Clock;
 
 use super::theme;
 use crate::render::picture::Picture;

@@ -1,7 +1,7 @@
 //! The bar above the picture: scene menu, view, ray method, and buttons that open panels.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc::march::{METHODS, MethodParameter};
+use sdfc_march::{METHODS, MethodParameter};
 
 use super::number_widget::number_drag;
 use super::open_panels::OpenPanels;

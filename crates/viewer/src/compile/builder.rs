@@ -10,9 +10,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::lang::Options;
-use sdfc::lang::live_literals::LiveLiteral;
-use sdfc::{Compiled, Error, FrameValues, Scene};
+use sdfc::{Compiler, Diagnostics, Error, FrameValues, Scene};
+use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::compile::diagnostics::SceneDiagnostics;
 use crate::compile::engines::{Engines, PreparedEngine, on_cpu};
@@ -136,10 +135,10 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         self.last_content_id += u64::from(!same_scene);
         let imports = Imports::new(&request.path);
         let focus = self.focus(request, &document.source);
-        let mut compiled = self.compile(request, &document, &imports, focus);
-        let scene = compiled.scene.take();
-        let shapes = scene.as_ref().map(|scene| ShapeIndex::new(scene, &compiled.sources));
-        let diagnostics = self.diagnostics(&document, &imports, compiled, scene.is_some());
+        let compiled = self.compile(request, &document, &imports, focus);
+        let diagnostics = self.diagnostics(&document, &imports, &compiled);
+        let scene = compiled.ok();
+        let shapes = scene.as_ref().map(|scene| ShapeIndex::new(scene, scene.sources()));
         let folders = imports.folders();
         self.last_read =
             Some(LastRead { request: request.clone(), source: document.source.clone(), imports });
@@ -188,7 +187,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         let touches = |literal: &LiveLiteral| {
             literal.span.start <= diff.old_end && diff.start <= literal.span.end
         };
-        if diff.is_empty() || shown.scene.slots().iter().any(touches) {
+        if diff.is_empty() || shown.scene.live_literals().iter().any(touches) {
             return shown.focus.map(|focus| diff.map_offset(focus));
         }
         Some(diff.start)
@@ -204,27 +203,28 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         document: &Document,
         imports: &Imports,
         focus: Option<u32>,
-    ) -> Compiled {
+    ) -> Result<Scene, Diagnostics> {
         let compile = |live_literals| {
-            let options = Options { live_literals, focus };
-            sdfc::compile_with(&document.name, &document.source, imports, options)
+            let compiler = Compiler::new().resolver(imports);
+            let compiler = if live_literals { compiler.live_literals(focus) } else { compiler };
+            compiler.compile(&document.name, &document.source)
         };
         if request.live_literals && !self.has_loops {
             let live = compile(true);
-            let counts = |scene: &Scene| [scene.program().graph.len(), scene.slots().len()];
-            let counts = live.scene.as_ref().map(counts);
+            let counts = |scene: &Scene| [scene.program().graph.len(), scene.live_literals().len()];
+            let counts = live.as_ref().ok().map(counts);
             let is_small = counts.is_none_or(|[nodes, _]| nodes <= MAX_UNROLLED_NODES);
             if is_small || counts == self.without_loops {
                 return live;
             }
             let constant = compile(false);
-            self.has_loops = constant.scene.as_ref().is_some_and(has_loops);
+            self.has_loops = constant.as_ref().is_ok_and(has_loops);
             self.without_loops = counts.filter(|_| !self.has_loops);
             return if self.has_loops { constant } else { live };
         }
         let constant = compile(false);
         // A scene with errors does not say whether it has loops.
-        self.has_loops &= constant.scene.as_ref().is_none_or(has_loops);
+        self.has_loops &= constant.as_ref().map_or(true, has_loops);
         if request.live_literals && !self.has_loops { compile(true) } else { constant }
     }
 
@@ -233,14 +233,16 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         &self,
         document: &Document,
         imports: &Imports,
-        compiled: Compiled,
-        compiles: bool,
+        compiled: &Result<Scene, Diagnostics>,
     ) -> SceneDiagnostics {
-        if !compiles || compiled.diagnostics.is_empty() {
-            return SceneDiagnostics::new(&compiled);
+        match compiled {
+            Ok(scene) if scene.diagnostics().is_empty() => SceneDiagnostics::default(),
+            Ok(_) => {
+                let compiler = Compiler::new().resolver(imports);
+                SceneDiagnostics::new(&compiler.check(&document.name, &document.source))
+            }
+            Err(errors) => SceneDiagnostics::new(errors),
         }
-        let constant = sdfc::compile_with_imports(&document.name, &document.source, imports);
-        SceneDiagnostics::new(&constant)
     }
 
     /// Makes a model of a scene. Returns false if that fails; a build that is skipped because a

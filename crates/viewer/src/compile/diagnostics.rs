@@ -1,8 +1,8 @@
 //! Errors and warnings of a scene as the window shows them: the command line's words, with source
 //! positions to click.
 
-use sdfc::Compiled;
-use sdfc::diagnostics::{Diagnostic, Sources, locate};
+use sdfc::{Diagnostic, Diagnostics, Sources};
+use sdfc_diagnostics::locate;
 
 use crate::scene::document::source_line;
 
@@ -38,9 +38,10 @@ pub struct ShownDiagnostic {
 
 impl SceneDiagnostics {
     /// The diagnostics of a compilation.
-    pub fn new(compiled: &Compiled) -> Self {
-        let shown = |diagnostic: &Diagnostic| ShownDiagnostic::new(&compiled.sources, diagnostic);
-        Self { all: compiled.diagnostics.iter().map(shown).collect() }
+    pub fn new(diagnostics: &Diagnostics) -> Self {
+        let shown =
+            |diagnostic: &Diagnostic| ShownDiagnostic::new(diagnostics.sources(), diagnostic);
+        Self { all: diagnostics.iter().map(shown).collect() }
     }
 
     /// The number of errors.
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_diagnostic_has_its_source_line_and_suggestions() {
-        let compiled = sdfc::compile("ball.sdf", "\u{feff}let a = 1\r\nspere(a)\r\n");
+        let compiled = sdfc::Compiler::new().check("ball.sdf", "\u{feff}let a = 1\r\nspere(a)\r\n");
         let diagnostics = SceneDiagnostics::new(&compiled);
         assert_eq!(diagnostics.errors(), 1);
         let found = diagnostics.all.iter().find(|found| found.is_error).unwrap();

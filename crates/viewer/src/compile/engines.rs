@@ -8,10 +8,10 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::codegen::{Shader, render_module_with_camera};
-use sdfc::graph::Program;
-use sdfc::render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
 use sdfc::{Error, Marched, Scene};
+use sdfc_codegen::{Shader, render_module_with_camera};
+use sdfc_graph::Program;
+use sdfc_render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
 
 use crate::scene::model::{BuildTimes, Engine};
 

@@ -153,7 +153,7 @@ mod tests {
             let lines: Vec<usize> = (model.literals())
                 .map(|(literal, _)| text[..literal.span.start as usize].lines().count())
                 .collect();
-            assert_eq!(lines.len(), sdfc::lang::live_literals::MAX_LIVE_LITERALS);
+            assert_eq!(lines.len(), sdfc_lang::live_literals::MAX_LIVE_LITERALS);
             lines.into_iter().fold([usize::MAX, 0], |[lo, hi], at| [lo.min(at), hi.max(at)])
         };
         assert_eq!(moving("0.5")[0], 2);
@@ -192,7 +192,7 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let (worker, events) = start_worker();
         worker.send(on_cpu(&path));
-        let expected = SceneDiagnostics::new(&sdfc::compile("a.sdf", text));
+        let expected = SceneDiagnostics::new(&sdfc::Compiler::new().check("a.sdf", text));
         assert_eq!(expect_compiled(&events).0, expected);
     }
 

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use sdfc::render::{Animation, Image, Progress};
 use sdfc::{Code, FrameValues, PictureOptions, ShaderOptions};
 use sdfc_files::{Folder, Format};
+use sdfc_render::{Animation, Image, Progress};
 
 use crate::scene::document::Document;
 use crate::scene::model::Model;
@@ -155,8 +155,9 @@ impl Exporter {
 /// A shader of a source compiled as from the file, without live literals: numbers are constants.
 fn shader(scene: &Path, source: &str, options: &ShaderOptions) -> Result<Vec<u8>, String> {
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
-    let compiled = sdfc::compile_with_imports(&name, source, &Folder::of(scene));
-    let scene = compiled.scene.ok_or("the scene has errors")?;
+    let folder = Folder::of(scene);
+    let compiled = sdfc::Compiler::new().resolver(&folder).compile(&name, source);
+    let scene = compiled.map_err(|_| "the scene has errors")?;
     let shader = scene.write_shader(options).map_err(|error| error.to_string())?;
     Ok(match shader.code {
         Code::Text(text) => text.into_bytes(),
@@ -212,11 +213,7 @@ mod tests {
         let model = model("sphere(0.5 + 0.1 * sin(time))\n");
         let in_folder = |name: &str| folder.path().join(name);
         let picture = |name: &str, count: usize| {
-            let options = PictureOptions {
-                size: [24, 16],
-                backend: sdfc::Backend::Cpu,
-                ..PictureOptions::default()
-            };
+            let options = PictureOptions::new().size([24, 16]).backend(sdfc::Backend::Cpu);
             let frames = vec![model.defaults(); count];
             let (model, path, options) = (Arc::clone(&model), in_folder(name), Box::new(options));
             ExportJob::Picture { model, path, options, frames, hundredths: 4 }

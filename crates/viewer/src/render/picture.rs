@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use sdfc::FrameValues;
-use sdfc::render::{Clock, EvaluationCounts, Image, PixelCounts, Pose, View};
+use sdfc_render::{Clock, EvaluationCounts, Image, PixelCounts, Pose, View};
 
 use crate::scene::model::Model;
 use crate::views::legend::Legend;

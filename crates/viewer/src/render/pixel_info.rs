@@ -1,7 +1,7 @@
 //! What the picture and the field say about one pixel.
 
 use glam::DVec3;
-use sdfc::render::HIT;
+use sdfc_render::HIT;
 
 use crate::render::picture::Picture;
 

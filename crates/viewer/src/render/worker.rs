@@ -13,7 +13,7 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use sdfc::Error;
-use sdfc::render::{
+use sdfc_render::{
     EvaluationCounts, Frame, Image, Progress, RenderError, RenderOptions, TileSize, View,
     milliseconds_since, sample_offsets, uniform_values,
 };

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use sdfc::Scene;
-use sdfc::analyze::Promise;
-use sdfc::graph::ShapeId;
+use sdfc_analyze::Promise;
+use sdfc_graph::ShapeId;
 
 /// What a field guarantees outside its shape, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

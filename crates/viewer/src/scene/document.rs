@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use sdfc::Resolver;
-use sdfc::diagnostics::{FileId, Sources, Span};
+use sdfc_diagnostics::{FileId, Sources, Span};
 use sdfc_files::{Folder, ReadError};
 
 /// The scene's source as it was read.

@@ -1,8 +1,8 @@
 //! Evaluates the scene's field on the CPU at the points that a picture shows.
 
 use sdfc::FrameValues;
-use sdfc::graph::Program;
-use sdfc::graph::eval::{Dual, Tape};
+use sdfc_graph::Program;
+use sdfc_graph::eval::{Dual, Tape};
 
 /// The fewest points for which another thread is started.
 const MIN_POINTS_PER_THREAD: usize = 2048;
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn the_field_of_a_ball_has_exact_distances_and_gradients() {
-        let scene = sdfc::compile("a", "sphere(0.5)").scene.unwrap();
+        let scene = sdfc::Compiler::new().compile("a", "sphere(0.5)").unwrap();
         let probe = FieldProbe::new(scene.program());
         let frame = FrameValues::defaults(scene.params());
         let points = [Some([2.0, 0.0, 0.0]), None, Some([0.0, 0.0, -0.25])];

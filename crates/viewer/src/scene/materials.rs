@@ -1,9 +1,9 @@
 //! Evaluates the scene's materials on the CPU at the points that a picture shows.
 
 use sdfc::FrameValues;
-use sdfc::graph::eval::Tape;
-use sdfc::graph::{MaterialField, Program};
-use sdfc::render::linear_to_srgb8;
+use sdfc_graph::eval::Tape;
+use sdfc_graph::{MaterialField, Program};
+use sdfc_render::linear_to_srgb8;
 
 use crate::scene::field_probe::in_parallel;
 
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     fn at(text: &str, point: [f64; 3]) -> Material {
-        let scene = sdfc::compile("a", text).scene.unwrap();
+        let scene = sdfc::Compiler::new().compile("a", text).unwrap();
         let frame = FrameValues::defaults(scene.params());
         Materials::new(scene.program()).at(&frame, &[Some(point)])[0].unwrap()
     }

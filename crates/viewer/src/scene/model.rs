@@ -4,11 +4,11 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::graph::{FrameInput, Node, Param, Program, reachable};
-use sdfc::lang::live_literals::LiveLiteral;
-use sdfc::march::{MethodParameter, method};
-use sdfc::render::{CpuScene, Pipeline};
 use sdfc::{FrameValues, Scene};
+use sdfc_graph::{FrameInput, Node, Param, Program, reachable};
+use sdfc_lang::live_literals::LiveLiteral;
+use sdfc_march::{MethodParameter, method};
+use sdfc_render::{CpuScene, Pipeline};
 
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;
@@ -76,14 +76,17 @@ pub struct Model {
 impl Model {
     /// The params that the scene declares.
     pub fn declared(&self) -> &[Param] {
-        let count = self.scene.params().len() - self.scene.slots().len();
+        let count = self.scene.params().len() - self.scene.live_literals().len();
         self.scene.params().get(..count).unwrap_or_default()
     }
 
     /// The live literals of its source, each with the param that it became.
     pub fn literals(&self) -> impl Iterator<Item = (&LiveLiteral, &Param)> {
         let params = self.scene.params();
-        self.scene.slots().iter().filter_map(|literal| Some((literal, params.get(literal.param)?)))
+        self.scene
+            .live_literals()
+            .iter()
+            .filter_map(|literal| Some((literal, params.get(literal.param)?)))
     }
 
     /// The live literals named by a line `let name = literal`, with that name.

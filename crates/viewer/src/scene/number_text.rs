@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use sdfc::graph::{Param, ParamKind};
-use sdfc::render::linear_to_srgb8;
+use sdfc_graph::{Param, ParamKind};
+use sdfc_render::linear_to_srgb8;
 
 /// A param's value as a scene writes it. Parsing it gives the same value.
 pub fn value_text(param: &Param, lanes: [f64; 4]) -> String {

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use sdfc::FrameValues;
-use sdfc::diagnostics::Span;
-use sdfc::graph::{Param, ParamKind};
-use sdfc::lang::live_literals::LiveLiteral;
+use sdfc_diagnostics::Span;
+use sdfc_graph::{Param, ParamKind};
+use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::scene::document::with_replacements;
 use crate::scene::model::Model;

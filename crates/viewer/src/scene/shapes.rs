@@ -8,10 +8,10 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
 
-use sdfc::diagnostics::Sources;
-use sdfc::graph::eval::Tape;
-use sdfc::graph::{Dim, Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
 use sdfc::{FrameValues, Scene};
+use sdfc_diagnostics::Sources;
+use sdfc_graph::eval::Tape;
+use sdfc_graph::{Dim, Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
 
 use crate::scene::field_probe::in_parallel;
 
@@ -111,7 +111,7 @@ impl ShapeIndex {
     /// Collects the names and source positions at which the scene writes its shapes.
     pub fn new(scene: &Scene, sources: &Sources) -> Self {
         let graph = &scene.graph().graph;
-        let label = |site: &sdfc::lang::Site| {
+        let label = |site: &sdfc_lang::Site| {
             let at = sources.line_column(site.span.file, site.span.start);
             let file = sources.name(site.span.file);
             let own = graph.shape(site.shape).name.as_ref();
@@ -197,7 +197,7 @@ mod tests {
     use super::*;
 
     fn named(text: &str, point: [f64; 3]) -> Option<String> {
-        let scene = sdfc::compile("a", text).scene.unwrap();
+        let scene = sdfc::Compiler::new().compile("a", text).unwrap();
         let frame = FrameValues::defaults(scene.params());
         let classifier = ShapeClassifier::leaves(&scene);
         let index = classifier.at(&frame, &[None, Some(point)])[1]?;
@@ -223,7 +223,7 @@ mod tests {
         for index in 0..600 {
             text += &format!("sphere(0.2{index:03}).translate(x: {index})\n");
         }
-        let scene = sdfc::compile("a", &text).scene.unwrap();
+        let scene = sdfc::Compiler::new().compile("a", &text).unwrap();
         let frame = FrameValues::defaults(scene.params());
         let classifier = ShapeClassifier::operands(&scene);
         assert_eq!((classifier.passes.len(), classifier.shapes().len()), (2, 600));

@@ -1,6 +1,6 @@
 //! The camera of a session: the scene's own until it is moved by hand.
 
-use sdfc::render::Pose;
+use sdfc_render::Pose;
 
 use super::Session;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sdfc::render::Pose;
+use sdfc_render::Pose;
 
 use super::Session;
 use crate::compile::request::CompileEvent;

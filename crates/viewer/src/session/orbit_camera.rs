@@ -5,7 +5,7 @@
 //! fixed: the horizon stays level.
 
 use glam::{DQuat, DVec3};
-use sdfc::render::{Bounds, Pose};
+use sdfc_render::{Bounds, Pose};
 
 /// The smallest angle between the direction and `up`, in radians.
 const MIN_POLE_ANGLE: f64 = 0.01;
@@ -454,9 +454,8 @@ mod tests {
             camera.orbit(0.123 * f64::from(step), -0.07);
             camera.set_parallel(step == 2);
             let text = format!("sphere(1)\n{}", camera.text());
-            let compiled = sdfc::compile("a", &text);
-            let scene =
-                compiled.scene.unwrap_or_else(|| panic!("{text}: {:?}", compiled.diagnostics));
+            let compiled = sdfc::Compiler::new().compile("a", &text);
+            let scene = compiled.unwrap_or_else(|errors| panic!("{text}: {errors}"));
             let frame = sdfc::FrameValues::defaults(scene.params());
             let pose = Pose::new(scene.program(), &frame, None, 1.5).unwrap();
             let own = camera.pose();

@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use sdfc::march::PixelBlock;
-use sdfc::render::linear_to_srgb8;
+use sdfc_march::PixelBlock;
+use sdfc_render::linear_to_srgb8;
 
 use crate::views::legend::mix;
 

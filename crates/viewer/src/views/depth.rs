@@ -1,7 +1,7 @@
 //! Lengths of the rays.
 
-use sdfc::march::PixelBlock;
-use sdfc::render::HIT;
+use sdfc_march::PixelBlock;
+use sdfc_render::HIT;
 
 use crate::views::colors::BACKGROUND;
 use crate::views::input::ViewInput;

@@ -1,6 +1,6 @@
 //! What the field guarantees about the distance.
 
-use sdfc::graph::ShapeId;
+use sdfc_graph::ShapeId;
 
 use crate::scene::distance_quality::DistanceQuality;
 use crate::views::colors::{ALARM, GOOD, NOTICE, OUTSIDE};

@@ -1,7 +1,7 @@
 //! Evaluations of the field.
 
-use sdfc::march::PixelBlock;
-use sdfc::render::EvaluationCounts;
+use sdfc_march::PixelBlock;
+use sdfc_render::EvaluationCounts;
 
 use crate::views::input::ViewInput;
 use crate::views::legend::{Legend, Ramp};

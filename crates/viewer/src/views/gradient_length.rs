@@ -1,7 +1,7 @@
 //! Length of the field's gradient.
 
 use glam::DVec3;
-use sdfc::march::PixelBlock;
+use sdfc_march::PixelBlock;
 
 use crate::views::colors::BACKGROUND;
 use crate::views::input::ViewInput;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use sdfc::graph::eval::Dual;
-use sdfc::march::PixelBlock;
-use sdfc::render::{HIT, Image, View};
 use sdfc::{FrameValues, Scene};
+use sdfc_graph::eval::Dual;
+use sdfc_march::PixelBlock;
+use sdfc_render::{HIT, Image, View};
 
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;

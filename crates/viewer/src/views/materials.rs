@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use sdfc::march::PixelBlock;
+use sdfc_march::PixelBlock;
 
 use crate::scene::materials::{Material, Materials};
 use crate::views::colors::BACKGROUND;

@@ -1,7 +1,7 @@
 //! Directions of the surface.
 
 use glam::DVec3;
-use sdfc::march::PixelBlock;
+use sdfc_march::PixelBlock;
 
 use crate::views::colors::BACKGROUND;
 use crate::views::input::ViewInput;

@@ -1,7 +1,7 @@
 //! Rays that ran out of steps.
 
-use sdfc::march::PixelBlock;
-use sdfc::render::{CAPPED, is_finite};
+use sdfc_march::PixelBlock;
+use sdfc_render::{CAPPED, is_finite};
 
 use crate::views::colors::{ALARM, NOT_FINITE, dimmed, to_srgb};
 use crate::views::input::ViewInput;

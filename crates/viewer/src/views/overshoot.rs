@@ -1,6 +1,6 @@
 //! Rays that went through a surface.
 
-use sdfc::march::PixelBlock;
+use sdfc_march::PixelBlock;
 
 use crate::views::colors::{ALARM, BACKGROUND, GOOD, NOTICE, dimmed, to_srgb};
 use crate::views::input::ViewInput;

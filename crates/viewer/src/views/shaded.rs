@@ -20,9 +20,8 @@ mod tests {
 
     #[test]
     fn the_shaded_view_is_the_picture_that_render_writes() {
-        let scene = sdfc::compile("a", BALL).scene.unwrap();
-        let options =
-            sdfc::PictureOptions { size: SIZE, backend: sdfc::Backend::Cpu, ..Default::default() };
+        let scene = sdfc::Compiler::new().compile("a", BALL).unwrap();
+        let options = sdfc::PictureOptions::new().size(SIZE).backend(sdfc::Backend::Cpu);
         let expected = scene.render(&options, &mut sdfc::no_progress).unwrap().image.to_srgb8();
         let (colors, _) = painted(BALL, ViewMode::Shaded, |_| {});
         for (color, expected) in colors.iter().flatten().zip(expected) {

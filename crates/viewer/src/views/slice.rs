@@ -1,9 +1,9 @@
 //! The field on a plane.
 
 use glam::DVec3;
-use sdfc::graph::eval::Dual;
-use sdfc::march::PixelBlock;
-use sdfc::render::HIT;
+use sdfc_graph::eval::Dual;
+use sdfc_march::PixelBlock;
+use sdfc_render::HIT;
 
 use crate::scene::number_text::display_text;
 use crate::views::colors::{INSIDE, NOT_FINITE, OUTSIDE, to_srgb};

@@ -1,7 +1,7 @@
 //! Small pictures for the tests of views, drawn on the CPU.
 
 use sdfc::FrameValues;
-use sdfc::render::{CpuScene, Image, RenderOptions, View, no_progress};
+use sdfc_render::{CpuScene, Image, RenderOptions, View, no_progress};
 
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;
@@ -31,7 +31,7 @@ pub fn painted(
     mode: ViewMode,
     change: impl Fn(&mut Image),
 ) -> (Vec<[u8; 3]>, Legend) {
-    let scene = sdfc::compile("a", source).scene.unwrap();
+    let scene = sdfc::Compiler::new().compile("a", source).unwrap();
     let frame = FrameValues::defaults(scene.params());
     let program = scene.program();
     let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE).unwrap();

@@ -1,7 +1,7 @@
 //! Prints a slice through a scene. A shader of this program computes the distances on the GPU.
 
 use sdfc::bind::Bindings;
-use sdfc::{Code, Scene, ShaderOptions, wgpu};
+use sdfc::{Code, Compiler, ShaderOptions, wgpu};
 
 /// The source of the scene: a ball and a block, blended.
 pub const SCENE: &str =
@@ -29,8 +29,8 @@ pub fn slice(r: f64) -> Result<Vec<f32>, Box<dyn std::error::Error>> {
     let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
 
     // The scene as functions in WGSL, and the buffers that they read, in bind group 1.
-    let scene = Scene::from_source("scene.sdf", SCENE)?;
-    let written = scene.write_shader(&ShaderOptions { group: 1, ..ShaderOptions::default() })?;
+    let scene = Compiler::new().compile("scene.sdf", SCENE)?;
+    let written = scene.write_shader(&ShaderOptions::new().group(1))?;
     let mut field =
         Bindings::new((&device, &queue), &scene, &written, wgpu::ShaderStages::COMPUTE)?;
     let Code::Text(text) = written.code else { return Err("WGSL is text".into()) };

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use sdfc::bind::Bindings;
-use sdfc::{Code, Emit, Scene, ShaderOptions};
+use sdfc::{Code, Compiler, Emit, ShaderOptions};
 
 use crate::SCENES;
 use crate::target::{FORMAT, Target};
@@ -48,10 +48,9 @@ impl Renderer {
         let mut text = String::new();
         let mut scenes = Vec::new();
         for ((name, source), group) in SCENES.into_iter().zip(1..) {
-            let scene = Scene::from_source(name, source)?;
+            let scene = Compiler::new().compile(name, source)?;
             let prefix = format!("{name}_");
-            let options =
-                ShaderOptions { emit: Emit::March, prefix, group, ..ShaderOptions::default() };
+            let options = ShaderOptions::new().emit(Emit::March).prefix(prefix).group(group);
             let written = scene.write_shader(&options)?;
             let fragment = wgpu::ShaderStages::FRAGMENT;
             scenes.push(Bindings::new((&device, &queue), &scene, &written, fragment)?);

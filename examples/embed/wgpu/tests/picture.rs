@@ -4,8 +4,8 @@
 
 use embed_wgpu::{Camera, Renderer, SCENES, open};
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::render::testing;
-use sdfc::{Backend, PictureOptions, Scene, no_progress};
+use sdfc::{Backend, Compiler, PictureOptions, no_progress};
+use sdfc_render::testing;
 
 #[path = "../examples/slice.rs"]
 #[allow(dead_code, reason = "its main is not called")]
@@ -41,13 +41,13 @@ fn same_picture() -> Result<(), Failed> {
                     sun(direction: [1, 2, 1.5])\nambient(strength: 0.15)\n\
                     background(rgb(0.1, 0.2, 0.3))";
     let [(_, bowl), (_, ring)] = SCENES;
-    let scene = Scene::from_source("both.sdf", &[bowl, ring, settings].join("\n"))?;
+    let scene = Compiler::new().compile("both.sdf", &[bowl, ring, settings].join("\n"))?;
     let mut frame = scene.defaults();
     scene.set(&mut frame, "wall", 0.15)?;
     scene.set(&mut frame, "opening", 0.4)?;
     frame.time = 2.0;
     let backend = Backend::Gpu;
-    let options = PictureOptions { size: SIZE, backend, frame: Some(frame), ..Default::default() };
+    let options = PictureOptions::new().size(SIZE).backend(backend).frame(frame);
     let expected = scene.render(&options, &mut no_progress)?.image.to_srgb8();
 
     let far = drawn
@@ -63,7 +63,7 @@ fn same_picture() -> Result<(), Failed> {
 
 fn same_slice() -> Result<(), Failed> {
     let sliced = slice::slice(0.5)?;
-    let scene = Scene::from_source("scene.sdf", slice::SCENE)?;
+    let scene = Compiler::new().compile("scene.sdf", slice::SCENE)?;
     let mut frame = scene.defaults();
     scene.set(&mut frame, "r", 0.5)?;
     let mut field = scene.field(&frame)?;

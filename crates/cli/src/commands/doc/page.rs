@@ -1,14 +1,14 @@
-//! The reference as text for a terminal.
+//! Formats the reference for a terminal.
 
-use sdfc::diagnostics::CodeInfo;
-use sdfc::lang::library::Entry;
+use sdfc_diagnostics::CodeInfo;
+use sdfc_lang::library::Entry;
 
-/// Lines are broken before this column.
+/// Greatest width of a line, in columns.
 const WIDTH: usize = 96;
-/// Summaries of a list begin here.
+/// Column at which the summaries of a list begin.
 const COLUMN: usize = 22;
 
-/// Text that grows, in colour or not.
+/// Text that is built up, optionally coloured.
 pub struct Page {
     text: String,
     color: bool,
@@ -20,12 +20,12 @@ impl Page {
         Self { text: String::new(), color }
     }
 
-    /// All of it.
+    /// The text of the page.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// One line for each entry, topic by topic.
+    /// Adds one line for each entry, by topic.
     pub fn list(&mut self, entries: &[&Entry]) {
         let mut topic = None;
         for entry in entries {
@@ -45,7 +45,7 @@ impl Page {
         }
     }
 
-    /// Everything that entries say of themselves.
+    /// Adds the full descriptions of entries.
     pub fn full(&mut self, entries: &[&Entry]) {
         for entry in entries {
             self.gap();
@@ -64,7 +64,7 @@ impl Page {
         }
     }
 
-    /// What a code means.
+    /// Adds the description of a diagnostic code.
     pub fn code(&mut self, row: &CodeInfo) {
         self.bold(row.code.0);
         self.text.push(' ');
@@ -75,19 +75,19 @@ impl Page {
         self.line("help", row.suggestion);
     }
 
-    /// A last line of its own.
+    /// Adds a final line after a gap.
     pub fn closing(&mut self, line: &str) {
         self.gap();
         self.text.push_str(line);
         self.text.push('\n');
     }
 
-    /// `solid sphere(r: length = 1 in 0..inf)`, the name in bold.
+    /// Adds the signature, such as `solid sphere(r: length = 1 in 0..inf)`, with the name in bold.
     fn head(&mut self, entry: &Entry) {
         self.dim(entry.kind);
         self.text.push(' ');
         let written = entry.kind.len() + 1;
-        // Nothing but the name itself would be bold where the signature starts otherwise: `m.with(...)`.
+        // Some signatures do not start with the name: `m.with(...)`.
         let rest = match entry.signature.strip_prefix(&entry.name) {
             Some(rest) => {
                 self.bold(&entry.name);
@@ -114,7 +114,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// `  key       text`, if there is text.
+    /// Adds `  key       text`, if there is text.
     fn line(&mut self, key: &str, text: &str) {
         const AT: usize = 12;
         if text.is_empty() {
@@ -131,7 +131,7 @@ impl Page {
         self.wrapped(text, 2, 2);
     }
 
-    /// Words from column `at` on, further lines from column `indent` on.
+    /// Adds wrapped words from column `at` on; further lines begin at column `indent`.
     fn wrapped(&mut self, text: &str, mut at: usize, indent: usize) {
         let mut first = true;
         for word in text.split(' ') {
@@ -151,7 +151,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// An empty line, but not at the top.
+    /// Adds an empty line, except at the top.
     fn gap(&mut self) {
         if !self.text.is_empty() {
             self.text.push('\n');

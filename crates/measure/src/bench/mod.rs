@@ -1,0 +1,641 @@
+//! The specialised shader against shaders that interpret the scene, in one run.
+
+mod suite;
+
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use sdfc::{Error, Scene};
+use sdfc_analyze::{LoopStrategy, cost, prepare_with};
+use sdfc_codegen::{FieldSource, benchmark_module, instrumented_module};
+use sdfc_graph::Program;
+use sdfc_graph::eval::FrameValues;
+use sdfc_render::{
+    CompileTimes, EvaluationCounts, Frame, FrameTimes, Gpu, HIT, Image, LeafEvaluations,
+    OnProgress, Pipeline, Progress, RenderOptions, TileSize, View, Why, edges, milliseconds_since,
+    uniform_values,
+};
+use serde::Serialize;
+
+use crate::baseline::{self, Encoded, Inexpressible};
+use crate::error::MeasureError;
+
+pub use suite::{large_suite, suite};
+
+/// The variant that the others are compared with.
+const REFERENCE: &str = "specialized";
+/// Hits whose depths differ by more than so many tolerances are different hits: rounding alone may make a ray
+/// take one step more, which is at most about one tolerance long.
+const TOLERANCES: f64 = 4.0;
+/// A picture that differs in more of its pixels, edges left out, is another picture.
+const MAX_DIFFERING: f64 = 1e-3;
+/// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver takes it for hung.
+const ONE_TILE: f64 = 1000.0;
+/// Variants that are slow or take long to compile by then are not measured on scenes of more leaves.
+const MOST_INTERPRETED: usize = 300;
+/// Nor are loops that leave out nothing on scenes of more.
+const MOST_FLAT: usize = 2000;
+/// A field of more operations is not measured written out: with normals by its derivative, and by differences.
+const MOST_INLINED: [usize; 2] = [5000, 14_000];
+/// A frame that takes longer, in milliseconds, is timed once.
+const LONG: f64 = 10_000.0;
+
+/// How scenes are measured.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BenchOptions {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// How many frames of each variant are timed, after one that is not; at least 1. One where frames take
+    /// longer than ten seconds.
+    pub repetitions: u32,
+    /// Ray method of all variants.
+    pub method: String,
+    /// Whether interpreters and slots take part. Then all variants are unpainted and take normals by differences, as interpreters
+    /// must; or else each is the picture that `sdfc render` draws.
+    pub baselines: bool,
+}
+
+impl BenchOptions {
+    /// The default options: 640 by 360 pixels, five frames, the method `sphere`, with baselines.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets width and height in pixels.
+    #[must_use]
+    pub fn size(self, size: [u32; 2]) -> Self {
+        Self { size, ..self }
+    }
+
+    /// Sets the number of timed frames.
+    #[must_use]
+    pub fn repetitions(self, repetitions: u32) -> Self {
+        Self { repetitions, ..self }
+    }
+
+    /// Sets if interpreters and live literals are measured too.
+    #[must_use]
+    pub fn baselines(self, baselines: bool) -> Self {
+        Self { baselines, ..self }
+    }
+}
+
+impl Default for BenchOptions {
+    /// 640 by 360, five frames, `sphere`: the method of the practical that `units` follows.
+    fn default() -> Self {
+        Self { size: [640, 360], repetitions: 5, method: "sphere".to_owned(), baselines: true }
+    }
+}
+
+/// What `bench --json` writes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BenchReport {
+    /// Name of the adapter.
+    pub adapter: String,
+    /// Name and version of its driver.
+    pub driver: String,
+    /// One for each scene.
+    pub rows: Vec<BenchRow>,
+}
+
+/// All variants of one scene; they share everything but the field.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BenchRow {
+    /// Name of the scene.
+    pub scene: String,
+    /// Leaves of the scene.
+    pub leaves: usize,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Ray method.
+    pub method: String,
+    /// The variant that `sdfc render` takes of its own accord.
+    pub auto: &'static str,
+    /// What its frame takes in that of the variant whose frame takes least; by time of the processor where that is measured.
+    pub auto_times_best_frame: Option<f64>,
+    /// What its first picture takes in that of the variant that is first.
+    pub auto_times_best_first_picture: Option<f64>,
+    /// One for each way to evaluate the field.
+    pub variants: Vec<BenchVariant>,
+}
+
+/// One way to evaluate the field. A figure that cannot be had is null, with the reason in `why`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BenchVariant {
+    /// `units`, `tape`, `specialized`, `specialized-slots`, `rolled` or `pruned`.
+    pub name: &'static str,
+    /// Time of one frame without compilation.
+    pub frame_ms: Option<FrameTimes>,
+    /// Median time of a frame in that of `specialized`.
+    pub times_specialized: Option<f64>,
+    /// Median time of processor that the process took for one frame, where the adapter is one; other work on the
+    /// machine does not count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_ms: Option<f64>,
+    /// That time in that of `specialized`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_times_specialized: Option<f64>,
+    /// Stages of compilation; encoding the tables is part of `lower`.
+    pub compile_ms: Option<CompileTimes>,
+    /// From reading the scene to its first finished picture, in milliseconds.
+    pub first_picture_ms: Option<f64>,
+    /// Evaluations of the field, shadows included, those for normals not.
+    pub evals_per_pixel: Option<EvaluationCounts>,
+    /// Evaluations of leaves.
+    pub leaf_evals_per_pixel: Option<LeafEvaluations>,
+    /// Turns of the interpreter's loop at each evaluation; none in a shader without one.
+    pub turns_per_eval: Option<usize>,
+    /// How many numbers of the scene are slots; of `specialized-slots` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slots: Option<usize>,
+    /// Pixels that differ from those of `specialized`, edges left out.
+    pub differing_pixels: Option<usize>,
+    /// Why figures are null, by their keys.
+    #[serde(skip_serializing_if = "Why::is_empty")]
+    pub why: Why,
+}
+
+/// How a variant evaluates the field.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Units,
+    Tape,
+    Specialized,
+    Slots,
+    /// Loops over alike parts; all rounds of them.
+    Rolled,
+    /// The same, rays from the eye by the lists of their tiles.
+    Pruned,
+}
+
+impl Kind {
+    /// In the order of a row.
+    const ALL: [Self; 6] =
+        [Self::Units, Self::Tape, Self::Specialized, Self::Slots, Self::Rolled, Self::Pruned];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Units => "units",
+            Self::Tape => "tape",
+            Self::Specialized => REFERENCE,
+            Self::Slots => "specialized-slots",
+            Self::Rolled => "rolled",
+            Self::Pruned => "pruned",
+        }
+    }
+
+    fn field(self, by_differences: bool) -> FieldSource {
+        match self {
+            Self::Units => FieldSource::Units,
+            Self::Tape => FieldSource::Tape,
+            Self::Specialized | Self::Slots | Self::Rolled | Self::Pruned => match by_differences {
+                true => FieldSource::Distance,
+                false => FieldSource::Scene,
+            },
+        }
+    }
+}
+
+/// A variant that draws.
+struct Contestant {
+    kind: Kind,
+    pipeline: Pipeline,
+    uniforms: Vec<[f32; 4]>,
+    compile: CompileTimes,
+    first_picture: f64,
+    options: RenderOptions,
+    /// How many frames are timed.
+    repetitions: u32,
+    image: Image,
+    leaf_evaluations: LeafEvaluations,
+    turns: Option<usize>,
+    times: Vec<f64>,
+    /// What the process took of the processor for each of them, on an adapter that is one.
+    cpu: Vec<f64>,
+}
+
+/// What a variant reads beside the view.
+enum Data {
+    Encoded(Encoded),
+    Uniforms(Vec<[f32; 4]>),
+}
+
+/// What all variants of a row share.
+struct Heat<'a> {
+    scene: &'a Scene,
+    slots: &'a Scene,
+    gpu: &'a Gpu,
+    options: &'a BenchOptions,
+    view: View,
+    /// The field written out.
+    inline: Program,
+    /// Its alike parts as loops, all rounds of which are visited, or those that matter; none: no parts are alike.
+    rolled: Option<Program>,
+    pruned: Option<Program>,
+    /// The variant that [`LoopStrategy::Auto`] is.
+    auto: Kind,
+}
+
+/// Measures the scene at its params' defaults: after a first frame of every variant, which is not timed,
+/// one frame of each in turn, then the next of each.
+///
+/// `slots` is the same scene with its numbers as params .
+///
+/// # Errors
+///
+/// [`MeasureError::Scene`] for a failure of the scene or the machine.
+pub fn bench(
+    scene: &Scene,
+    slots: &Scene,
+    name: &str,
+    gpu: &Gpu,
+    options: &BenchOptions,
+    progress: &mut OnProgress<'_>,
+) -> Result<BenchRow, MeasureError> {
+    if !scene.draws() {
+        return Err(Error::NothingDrawn.into());
+    }
+    let heat = Heat::new(scene, slots, gpu, options)?;
+    let rounds = options.repetitions.max(1);
+    let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
+    let mut counted = Counted { frames, drawn: 0, progress };
+    // What takes minutes to compile is compared with nothing.
+    let first = if heat.is_inlined() { Kind::Specialized } else { Kind::Pruned };
+    let reference = match heat.enter(first, &mut counted)? {
+        Ok(contestant) => contestant,
+        Err(Inexpressible(why)) => return Err(MeasureError::Inexpressible(why)),
+    };
+    let (mut contestants, mut variants) = (Vec::new(), Vec::new());
+    for kind in Kind::ALL.into_iter().filter(|kind| *kind != first) {
+        match heat.enter(kind, &mut counted)? {
+            Ok(contestant) if heat.refusal(&contestant, &reference).is_none() => {
+                contestants.push(contestant);
+                continue;
+            }
+            Ok(contestant) => variants.push(heat.result(&contestant, &reference)),
+            Err(Inexpressible(why)) => variants.push(BenchVariant::missing(kind.name(), &why)),
+        }
+        counted.frames -= u64::from(rounds);
+    }
+    contestants.push(reference);
+    for round in 0..rounds {
+        for contestant in contestants.iter_mut().filter(|entered| round < entered.repetitions) {
+            let start = ProcessTime::try_now().ok().filter(|_| gpu.info().software);
+            let frame = heat.draw(contestant, &mut counted)?;
+            contestant.times.push(frame.milliseconds);
+            let cpu = start.and_then(|start| start.try_elapsed().ok());
+            contestant.cpu.extend(cpu.map(|time| time.as_secs_f64() * 1e3));
+        }
+    }
+    if let Some(reference) = contestants.last() {
+        variants.extend(contestants.iter().map(|entered| heat.result(entered, reference)));
+    }
+    let place = |name| Kind::ALL.iter().position(|kind| kind.name() == name);
+    variants.sort_by_key(|variant| place(variant.name));
+    let auto = heat.auto.name();
+    let frame =
+        |variant: &BenchVariant| variant.cpu_ms.or(variant.frame_ms.map(|times| times.median));
+    Ok(BenchRow {
+        scene: name.to_owned(),
+        leaves: scene.report().leaves,
+        size: options.size,
+        method: options.method.clone(),
+        auto,
+        auto_times_best_frame: times_best(&variants, auto, frame),
+        auto_times_best_first_picture: times_best(&variants, auto, |v| v.first_picture_ms),
+        variants,
+    })
+}
+
+/// A figure of the variant of that name in the least that any variant has.
+fn times_best(
+    variants: &[BenchVariant],
+    name: &str,
+    figure: impl Fn(&BenchVariant) -> Option<f64>,
+) -> Option<f64> {
+    let own = figure(variants.iter().find(|variant| variant.name == name)?)?;
+    let best = variants.iter().filter_map(&figure).reduce(f64::min)?;
+    Some(own / best)
+}
+
+impl<'a> Heat<'a> {
+    fn new(
+        scene: &'a Scene,
+        slots: &'a Scene,
+        gpu: &'a Gpu,
+        options: &'a BenchOptions,
+    ) -> Result<Self, MeasureError> {
+        let prepared = |writing| prepare_with(scene.graph(), [0.0; 3], writing);
+        let inline = prepared(LoopStrategy::Unrolled)?.program;
+        let found = prepared(LoopStrategy::Looped)?;
+        let pruned = Some(found.program).filter(|_| !found.report.loops.is_empty());
+        let rolled =
+            pruned.clone().map(|program| Program { cullable_loops: Vec::new(), ..program });
+        let pruned = pruned.filter(|program| !program.cullable_loops.is_empty());
+        let frame = FrameValues::defaults(scene.params());
+        let seen = pruned.as_ref().unwrap_or(&inline);
+        let view = View::new(seen, &frame, scene.bounds_at(&frame), options.size)?;
+        let auto = match (scene.report().loops.is_empty(), pruned.is_some()) {
+            (true, _) => Kind::Specialized,
+            (false, true) => Kind::Pruned,
+            (false, false) => Kind::Rolled,
+        };
+        Ok(Self { scene, slots, gpu, options, view, inline, rolled, pruned, auto })
+    }
+
+    /// Whether the field written out can be waited for.
+    fn is_inlined(&self) -> bool {
+        self.pruned.is_none()
+            || cost(&self.inline.graph, self.inline.distance.as_slice()).operations
+                <= self.most_inlined()
+    }
+
+    fn most_inlined(&self) -> usize {
+        MOST_INLINED[usize::from(self.options.baselines)]
+    }
+
+    /// What a variant's field is compiled from.
+    fn program(&self, kind: Kind) -> Result<&Program, Inexpressible> {
+        fn alike(program: &Option<Program>) -> Result<&Program, Inexpressible> {
+            let why = "few of its parts are alike, or have no Lipschitz constant";
+            program.as_ref().ok_or_else(|| Inexpressible(why.to_owned()))
+        }
+        let leaves = self.scene.report().leaves;
+        match kind {
+            Kind::Units | Kind::Tape | Kind::Slots if !self.options.baselines => {
+                Err(Inexpressible("left out".to_owned()))
+            }
+            Kind::Units | Kind::Tape | Kind::Slots if leaves > MOST_INTERPRETED => {
+                let why = format!("over {MOST_INTERPRETED} leaves, which take it minutes");
+                Err(Inexpressible(why))
+            }
+            Kind::Specialized if !self.is_inlined() => {
+                let most = self.most_inlined();
+                let why = format!("over {most} operations, which take minutes to compile");
+                Err(Inexpressible(why))
+            }
+            Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.inline),
+            Kind::Slots => Ok(self.slots.program()),
+            Kind::Rolled if leaves > MOST_FLAT => {
+                let why = format!("over {MOST_FLAT} leaves, all of which it visits each time");
+                Err(Inexpressible(why))
+            }
+            Kind::Rolled => alike(&self.rolled),
+            Kind::Pruned => alike(&self.pruned),
+        }
+    }
+
+    /// Compiles a variant and draws its first frame, unless it cannot express the scene.
+    fn enter(
+        &self,
+        kind: Kind,
+        counted: &mut Counted<'_, '_>,
+    ) -> Result<Result<Contestant, Inexpressible>, MeasureError> {
+        let scene = if kind == Kind::Slots { self.slots } else { self.scene };
+        let start = Instant::now();
+        let program = match self.program(kind) {
+            Ok(program) => program,
+            Err(inexpressible) => return Ok(Err(inexpressible)),
+        };
+        let data = match data(kind, scene, program) {
+            Ok(data) => data,
+            Err(inexpressible) => return Ok(Err(inexpressible)),
+        };
+        let shader =
+            benchmark_module(program, &self.options.method, kind.field(self.options.baselines))?;
+        let validate = shader.validation_time().as_secs_f64() * 1e3;
+        let lower = milliseconds_since(start) - validate;
+        let (tables, uniforms, turns) = match &data {
+            Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.turns)),
+            Data::Uniforms(uniforms) => (&[][..], uniforms.clone(), None),
+        };
+        let pipeline = Pipeline::with_tables(self.gpu, shader, uniforms.len(), tables)?;
+        let times = scene.times();
+        let mut compile = CompileTimes {
+            front: Some(times.front),
+            analyze: Some(times.analyze),
+            lower: Some(lower),
+            validate: Some(validate),
+            pipeline: Some(pipeline.milliseconds()),
+            ..CompileTimes::default()
+        };
+        if kind == Kind::Units {
+            compile.analyze = None;
+            compile.why.insert("analyze", "units are read off the shapes".to_owned());
+        }
+        let options = RenderOptions::default();
+        let first = counted.draw(&pipeline, &self.view, &uniforms, &options)?;
+        let first_picture =
+            times.front + compile.analyze.unwrap_or(0.0) + milliseconds_since(start);
+        let of_all =
+            |leaves| LeafEvaluations::of_all_leaves(EvaluationCounts::of(&first.image), leaves);
+        let whole = TileSize::Fixed(self.options.size);
+        let tile_size = if first.milliseconds < ONE_TILE { whole } else { options.tile_size };
+        let once = first.milliseconds > LONG;
+        Ok(Ok(Contestant {
+            kind,
+            pipeline,
+            uniforms,
+            first_picture,
+            compile,
+            options: RenderOptions { tile_size },
+            repetitions: if once { 1 } else { self.options.repetitions.max(1) },
+            leaf_evaluations: match &data {
+                Data::Uniforms(uniforms) if kind == Kind::Pruned => {
+                    self.counted(program, uniforms, counted)?
+                }
+                Data::Uniforms(_) => of_all(scene.report().leaves),
+                Data::Encoded(encoded) => of_all(encoded.leaves),
+            },
+            image: first.image,
+            turns,
+            times: Vec::new(),
+            cpu: Vec::new(),
+        }))
+    }
+
+    /// Leaf evaluations where only those rounds of loops are visited that can matter, what finds these included, counted by a
+    /// shader of its own.
+    fn counted(
+        &self,
+        program: &Program,
+        uniforms: &[[f32; 4]],
+        counted: &mut Counted<'_, '_>,
+    ) -> Result<LeafEvaluations, MeasureError> {
+        let iterations = program.cullable_loops.iter().map(|one| one.iterations as usize);
+        let rounds = iterations.sum::<usize>();
+        if rounds != self.scene.report().leaves {
+            return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
+        }
+        let shader = instrumented_module(program, &self.options.method)?;
+        let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
+        // In one piece: lists of parts of a picture repeat what is asked for wide tiles.
+        let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
+        let frame = counted.draw(&pipeline, &self.view, uniforms, &options)?;
+        counted.drawn -= 1;
+        let visited = EvaluationCounts::of(&frame.image).mean;
+        let before = frame.culling_evaluations as f64 / frame.image.pixels().len() as f64;
+        Ok(LeafEvaluations { mean: Some(visited + before), ..LeafEvaluations::default() })
+    }
+
+    fn draw(
+        &self,
+        contestant: &Contestant,
+        counted: &mut Counted<'_, '_>,
+    ) -> Result<Frame, MeasureError> {
+        let Contestant { pipeline, uniforms, options, .. } = contestant;
+        counted.draw(pipeline, &self.view, uniforms, options)
+    }
+
+    /// The figures of a contestant; those of another picture than the reference's are null.
+    fn result(&self, contestant: &Contestant, reference: &Contestant) -> BenchVariant {
+        let clock = if self.gpu.has_timestamps() {
+            sdfc_render::Clock::Gpu
+        } else {
+            sdfc_render::Clock::Wall
+        };
+        let frame_ms = FrameTimes::of(&contestant.times, clock);
+        let median = |times: &[f64]| FrameTimes::of(times, clock).map(|times| times.median);
+        let ratio =
+            |of: fn(&Contestant) -> &[f64]| Some(median(of(contestant))? / median(of(reference))?);
+        let evals = EvaluationCounts::of(&contestant.image);
+        let mut variant = BenchVariant {
+            name: contestant.kind.name(),
+            frame_ms,
+            times_specialized: ratio(|entered| &entered.times),
+            cpu_ms: median(&contestant.cpu),
+            cpu_times_specialized: ratio(|entered| &entered.cpu),
+            compile_ms: Some(contestant.compile.clone()),
+            first_picture_ms: Some(contestant.first_picture),
+            evals_per_pixel: Some(evals),
+            leaf_evals_per_pixel: Some(contestant.leaf_evaluations.clone()),
+            turns_per_eval: contestant.turns,
+            slots: (contestant.kind == Kind::Slots).then(|| self.slots.live_literals().len()),
+            differing_pixels: Some(self.differing(contestant, reference)),
+            why: Why::new(),
+        };
+        if contestant.turns.is_none() {
+            variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
+        }
+        if let Some(reason) = self.refusal(contestant, reference) {
+            variant.refuse(&reason);
+        }
+        variant
+    }
+
+    /// Why the time of a contestant says nothing, if its picture is another than the reference's.
+    fn refusal(&self, contestant: &Contestant, reference: &Contestant) -> Option<String> {
+        let differing = self.differing(contestant, reference);
+        let pixels = contestant.image.pixels().len();
+        if differing as f64 <= MAX_DIFFERING * pixels as f64 {
+            return None;
+        }
+        Some(format!(
+            "another picture: {differing} of {pixels} pixels differ; software drivers end the loops of \
+             an invocation after a number of turns, Mesa 22.3 after 65,535"
+        ))
+    }
+
+    /// Pixels that are no edge in either picture and show different things.
+    fn differing(&self, contestant: &Contestant, reference: &Contestant) -> usize {
+        let (a, b) = (&contestant.image, &reference.image);
+        let near = (TOLERANCES * self.view.epsilon) as f32;
+        let edges = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b);
+        let pairs = a.pixels().iter().zip(b.pixels()).zip(edges);
+        let differ = pairs.filter(|((a, b), edge)| match [a, b].map(|pixel| pixel.status == HIT) {
+            // What is not finite is not near.
+            [true, true] if (a.depth - b.depth).abs() <= near => false,
+            [false, false] => false,
+            [true, true] | [true, false] | [false, true] => !edge,
+        });
+        differ.count()
+    }
+}
+
+/// What a variant reads of a scene at its params' defaults.
+fn data(kind: Kind, scene: &Scene, program: &Program) -> Result<Data, Inexpressible> {
+    let frame = FrameValues::defaults(scene.params());
+    let uniforms = || Data::Uniforms(uniform_values(program, &frame));
+    match kind {
+        Kind::Units => baseline::units(scene.graph(), &frame).map(Data::Encoded),
+        Kind::Tape => baseline::tape(program, scene.report().leaves, &frame).map(Data::Encoded),
+        Kind::Specialized | Kind::Rolled | Kind::Pruned => Ok(uniforms()),
+        Kind::Slots if scene.live_literals().is_empty() => {
+            Err(Inexpressible("no number of the scene can move".to_owned()))
+        }
+        Kind::Slots => Ok(uniforms()),
+    }
+}
+
+/// Tells how far all frames are.
+struct Counted<'a, 'b> {
+    frames: u64,
+    drawn: u64,
+    progress: &'a mut OnProgress<'b>,
+}
+
+impl Counted<'_, '_> {
+    fn draw(
+        &mut self,
+        pipeline: &Pipeline,
+        view: &View,
+        uniforms: &[[f32; 4]],
+        options: &RenderOptions,
+    ) -> Result<Frame, MeasureError> {
+        let Self { frames, drawn, progress } = self;
+        let frame = pipeline.render(view, uniforms, options, &mut |part| {
+            let Progress { done, total } = part;
+            progress(Progress { done: *drawn * total + done, total: *frames * total })
+        })?;
+        self.drawn += 1;
+        Ok(frame)
+    }
+}
+
+impl BenchVariant {
+    /// All of whose figures cannot be had, for one reason.
+    fn missing(name: &'static str, reason: &str) -> Self {
+        let keys = [
+            "frame_ms",
+            "times_specialized",
+            "compile_ms",
+            "first_picture_ms",
+            "evals_per_pixel",
+            "leaf_evals_per_pixel",
+            "turns_per_eval",
+            "differing_pixels",
+        ];
+        Self {
+            name,
+            frame_ms: None,
+            times_specialized: None,
+            cpu_ms: None,
+            cpu_times_specialized: None,
+            compile_ms: None,
+            first_picture_ms: None,
+            evals_per_pixel: None,
+            leaf_evals_per_pixel: None,
+            turns_per_eval: None,
+            slots: None,
+            differing_pixels: None,
+            why: keys.map(|key| (key, reason.to_owned())).into(),
+        }
+    }
+
+    /// Takes back the figures that say nothing.
+    fn refuse(&mut self, reason: &str) {
+        (self.frame_ms, self.times_specialized, self.first_picture_ms) = (None, None, None);
+        (self.cpu_ms, self.cpu_times_specialized) = (None, None);
+        (self.evals_per_pixel, self.leaf_evals_per_pixel) = (None, None);
+        for key in [
+            "frame_ms",
+            "times_specialized",
+            "first_picture_ms",
+            "evals_per_pixel",
+            "leaf_evals_per_pixel",
+        ] {
+            self.why.insert(key, reason.to_owned());
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! The faults of a classroom practical, measured: scenes under `examples/faults` as its own interpreter and march
+//! draw them, and as they are drawn otherwise.
+
+use sdfc::Scene;
+use sdfc_codegen::{FieldSource, benchmark_module};
+use sdfc_graph::Program;
+use sdfc_graph::eval::FrameValues;
+use sdfc_render::{
+    CpuScene, Gpu, HIT, Image, Pipeline, RenderOptions, View, edges, linear_to_srgb8, no_progress,
+    uniform_values,
+};
+use serde::Serialize;
+
+use crate::baseline::{self, Inexpressible};
+use crate::error::MeasureError;
+
+/// The reference ends a ray at this part of the scene's tolerance.
+const REFERENCE_PART: f64 = 1e-5;
+/// The reference's rays need many steps where they graze a surface.
+const REFERENCE_STEPS: u32 = 1_000_000;
+/// A colour that is off by more sRGB steps of 1/255 is another colour.
+const COLOR_STEPS: u8 = 8;
+
+/// What `bench --faults --json` writes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultReport {
+    /// Name of the adapter.
+    pub adapter: String,
+    /// Name and version of its driver.
+    pub driver: String,
+    /// One for each scene.
+    pub rows: Vec<FaultRow>,
+}
+
+/// One scene, drawn in several ways.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultRow {
+    /// Name of the scene.
+    pub scene: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Pixels compared: all but those at the reference's edges.
+    pub compared: usize,
+    /// One for each way.
+    pub variants: Vec<FaultVariant>,
+}
+
+/// How far a picture is from the reference, in pixels of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct FaultVariant {
+    /// Field and ray method.
+    pub name: &'static str,
+    /// Surface where none was found.
+    pub missed: usize,
+    /// Found where there is none.
+    pub false_hits: usize,
+    /// Found off its place by more than the width of a pixel there.
+    pub misplaced: usize,
+    /// Found in its place with a colour off by more than 8 of 255 steps.
+    pub miscolored: usize,
+    /// Share of the compared pixels that are any of these.
+    pub wrong: f64,
+    /// Mean evaluations of the field for each pixel of the picture.
+    pub evals_per_pixel: f64,
+}
+
+/// Names and texts of the scenes.
+pub fn fault_scenes() -> [(&'static str, &'static str); 4] {
+    [
+        ("overshoot", include_str!("../../../examples/faults/overshoot.sdf")),
+        ("stall", include_str!("../../../examples/faults/stall.sdf")),
+        ("small", include_str!("../../../examples/faults/small.sdf")),
+        ("far", include_str!("../../../examples/faults/far.sdf")),
+    ]
+}
+
+/// What is drawn, by which field and which ray method.
+const VARIANTS: [(&str, FieldSource, &str); 3] = [
+    ("units, practical", FieldSource::Units, "practical"),
+    ("units, sphere", FieldSource::Units, "sphere"),
+    ("scene, auto", FieldSource::Scene, "auto"),
+];
+
+/// Draws the scene unpainted with the practical's interpreter and march, with the interpreter and a march of
+/// ours, and as sdfc draws it, and compares each with a picture of the CPU in f64.
+///
+/// # Errors
+///
+/// [`MeasureError::Scene`] for a failure of the scene or the machine; [`MeasureError::Inexpressible`] where the interpreter cannot hold
+/// the scene.
+pub fn count_faults(
+    scene: &Scene,
+    name: &str,
+    gpu: &Gpu,
+    size: [u32; 2],
+) -> Result<FaultRow, MeasureError> {
+    let program = Program { material: None, ..scene.program().clone() };
+    let frame = FrameValues::defaults(scene.params());
+    let view = View::new(&program, &frame, scene.bounds_at(&frame), size)?;
+    let reference = reference(&program, &frame, &view)?;
+    let units = baseline::units(scene.graph(), &frame);
+    let units = units.map_err(|Inexpressible(why)| MeasureError::Inexpressible(why))?;
+    let draw = |(name, field, method)| {
+        let (tables, uniforms) = match field {
+            FieldSource::Units | FieldSource::Tape => (&units.tables[..], Vec::new()),
+            FieldSource::Scene | FieldSource::Distance => {
+                (&[][..], uniform_values(&program, &frame))
+            }
+        };
+        let shader = benchmark_module(&program, method, field)?;
+        let pipeline = Pipeline::with_tables(gpu, shader, uniforms.len(), tables)?;
+        let options = RenderOptions::default();
+        let drawn = pipeline.render(&view, &uniforms, &options, &mut no_progress)?;
+        Ok(compared(name, &drawn.image, &reference))
+    };
+    let variants = VARIANTS.into_iter().map(draw).collect::<Result<_, MeasureError>>()?;
+    let compared = edges(&reference).iter().filter(|edge| !**edge).count();
+    Ok(FaultRow { scene: name.to_owned(), size, compared, variants })
+}
+
+/// The CPU's picture in f64, by small steps of plain sphere tracing: apart from the shader in all but the formula.
+fn reference(program: &Program, frame: &FrameValues, view: &View) -> Result<Image, MeasureError> {
+    let (epsilon, steps) = (view.epsilon * REFERENCE_PART, REFERENCE_STEPS);
+    let view = View { epsilon, steps, ..view.clone() };
+    let scene = CpuScene::new(program)?;
+    let options = RenderOptions::default();
+    Ok(scene.render_in::<f64>(&view, frame, "sphere", &options, &mut no_progress)?.image)
+}
+
+fn compared(name: &'static str, image: &Image, reference: &Image) -> FaultVariant {
+    let mut found = FaultVariant { name, ..FaultVariant::default() };
+    let (mut compared, mut evaluations) = (0usize, 0u64);
+    let pairs = image.pixels().iter().zip(reference.pixels()).zip(edges(reference));
+    for ((pixel, right), edge) in pairs {
+        evaluations += u64::from(pixel.evaluations);
+        if edge {
+            continue;
+        }
+        compared += 1;
+        match [pixel, right].map(|pixel| pixel.status == HIT) {
+            [false, false] => continue,
+            [false, true] => found.missed += 1,
+            [true, false] => found.false_hits += 1,
+            [true, true] => {
+                let width = reference.pixel_width(right.depth);
+                let off = |channel: usize| {
+                    let [a, b] = [pixel, right].map(|pixel| linear_to_srgb8(pixel.color[channel]));
+                    a.abs_diff(b) > COLOR_STEPS
+                };
+                // What is no number is not near.
+                let near = (pixel.depth - right.depth).abs() <= width;
+                match (near, (0..3).any(off)) {
+                    (false, _) => found.misplaced += 1,
+                    (true, true) => found.miscolored += 1,
+                    (true, false) => {}
+                }
+            }
+        }
+    }
+    let wrong = found.missed + found.false_hits + found.misplaced + found.miscolored;
+    found.wrong = wrong as f64 / compared.max(1) as f64;
+    found.evals_per_pixel = evaluations as f64 / image.pixels().len().max(1) as f64;
+    found
+}

@@ -1,0 +1,102 @@
+//! What one ray method makes of a view: of each pixel how its ray ended, where, and with which normal.
+
+use std::borrow::Cow;
+
+use sdfc::{Error, Scene};
+use sdfc_codegen::normals_module;
+use sdfc_graph::Program;
+use sdfc_graph::eval::FrameValues;
+use sdfc_march::{MethodDefinition, PixelBlock};
+use sdfc_render::{Gpu, HIT, MISS, Pipeline, RenderOptions, View, no_progress, uniform_values};
+
+use crate::metrics::{PixelSample, Status};
+use crate::normals::Normal;
+
+/// A ray method that is ready to be compared with the oracle.
+#[derive(Debug)]
+pub struct Sampler<'s> {
+    program: Cow<'s, Program>,
+    pipeline: Pipeline,
+}
+
+impl<'s> Sampler<'s> {
+    /// Makes a ray method ready to be compared with the oracle.
+    ///
+    /// The shader has no lights and no materials; it writes the normals that they would use.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NothingDrawn`], [`Error::Codegen`], [`Error::Render`].
+    pub fn new(scene: &'s Scene, gpu: &Gpu, method: &MethodDefinition) -> Result<Self, Error> {
+        let marched = scene.marched(method.name);
+        // A method outside the table may have the name of one that is in it.
+        let other = sdfc_march::method(&marched.method).filter(|other| other.name != method.name);
+        let program = marched.program;
+        let shader = normals_module(&program, other.unwrap_or(method))?;
+        let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
+        Ok(Self { program, pipeline })
+    }
+}
+
+impl Sampler<'_> {
+    /// Every pixel of a view, row by row.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Render`].
+    pub fn samples(&self, view: &View, frame: &FrameValues) -> Result<Vec<PixelSample>, Error> {
+        let uniforms = uniform_values(&self.program, frame);
+        let options = RenderOptions::default();
+        let drawn = self.pipeline.render(view, &uniforms, &options, &mut no_progress)?;
+        Ok(drawn.image.pixels().iter().map(sample).collect())
+    }
+}
+
+fn sample(pixel: &PixelBlock) -> PixelSample {
+    // As `normals.wgsl` has it.
+    let [x, y, z, u] = pixel.color.map(f64::from);
+    let v = f64::from(f32::from_bits(pixel.evaluations));
+    PixelSample {
+        status: status(pixel),
+        t: f64::from(pixel.depth),
+        evaluations: pixel.primary_evaluations,
+        normal: Some(Normal { place: [x, y, z], direction: folded([u, v]) }),
+    }
+}
+
+/// The direction to a place on an octahedron whose lower half is turned outward.
+fn folded([u, v]: [f64; 2]) -> [f64; 3] {
+    let up = 1.0 - u.abs() - v.abs();
+    if up < 0.0 {
+        [(1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v), up]
+    } else {
+        [u, v, up]
+    }
+}
+
+/// How the ray of a pixel ended.
+pub(crate) fn status(pixel: &PixelBlock) -> Status {
+    match pixel.status {
+        HIT => Status::Hit,
+        MISS => Status::Miss,
+        _ => Status::Capped,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::folded;
+
+    #[test]
+    fn a_direction_is_what_the_octahedron_makes_of_it() {
+        for [x, y, z] in
+            [[1.0, 2.0, 5.0], [-3.0, 1.0, -2.0], [0.5, -1.0, -9.0], [0.0, 0.0, -1.0f64]]
+        {
+            let size = x.abs() + y.abs() + z.abs();
+            let [u, v] = [x / size, y / size];
+            let turned = [(1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v)];
+            let back = folded(if z < 0.0 { turned } else { [u, v] });
+            assert!([x, y, z].iter().zip(back).all(|(a, b)| (a / size - b).abs() < 1e-15));
+        }
+    }
+}

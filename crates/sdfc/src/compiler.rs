@@ -1,0 +1,183 @@
+//! The compiler: from the source of a scene to a [`Scene`].
+
+use std::sync::Arc;
+
+use sdfc_analyze::{LoopStrategy, prepare_with};
+use sdfc_codegen::Stopwatch;
+use sdfc_diagnostics::{Code, Diagnostic, Sources, Span, has_errors};
+use sdfc_lang::{NoFiles, Options, Resolver};
+
+use crate::diagnostics::Diagnostics;
+use crate::diagnostics::refutations::refutations;
+use crate::diagnostics::warnings::warnings;
+use crate::scene::{FrontTimes, Scene};
+use crate::source_id::SourceId;
+
+/// Compiles scenes: a builder of options, and [`compile`](Self::compile).
+///
+/// ```
+/// use sdfc::Compiler;
+///
+/// let scene = Compiler::new().compile("ball.sdf", "sphere(0.5) | plane(y: -0.5)")?;
+/// assert_eq!(scene.distance([0.0, 2.0, 0.0])?, 1.5);
+/// assert!(scene.diagnostics().is_empty());
+///
+/// let errors = Compiler::new().compile("ball.sdf", "spere(0.5)").expect_err("no such shape");
+/// let [error] = &errors.located()[..] else { panic!("one error") };
+/// assert_eq!((error.code, error.start.line, error.start.column), ("E0201", 1, 1));
+/// assert!(errors.to_string().contains("did you mean `sphere`?"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy)]
+#[must_use = "nothing is compiled before `compile` is called"]
+pub struct Compiler<'r> {
+    resolver: &'r dyn Resolver,
+    verify: bool,
+    options: Options,
+    loops: LoopStrategy,
+}
+
+impl Compiler<'_> {
+    /// A compiler with default options: no imports, no verification, no live literals.
+    pub fn new() -> Self {
+        Self {
+            resolver: &NoFiles,
+            verify: false,
+            options: Options::default(),
+            loops: LoopStrategy::Auto,
+        }
+    }
+}
+
+impl Default for Compiler<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl std::fmt::Debug for Compiler<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { resolver: _, verify, options, loops } = self;
+        f.debug_struct("Compiler")
+            .field("verify", verify)
+            .field("options", options)
+            .field("loops", loops)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'r> Compiler<'r> {
+    /// Reads the files that a scene imports, and fonts, through `resolver`. Without one, a scene
+    /// that imports a file is an error.
+    pub fn resolver(self, resolver: &'r dyn Resolver) -> Self {
+        Self { resolver, ..self }
+    }
+
+    /// Tests the clauses that the scene states about its own shapes and functions (`exact`,
+    /// `lipschitz`, `bounds` and so on) against samples. A refuted clause is an error (E0502).
+    ///
+    /// This takes some ten thousand field evaluations for each such shape.
+    ///
+    /// ```
+    /// use sdfc::Compiler;
+    ///
+    /// let text = "solid egg() exact = length(p * [1, 0.7, 1]) - 1\negg()";
+    /// let errors = Compiler::new().verify(true).compile("egg.sdf", text).expect_err("refuted");
+    /// assert!(errors.to_string().contains("this states `exact`, but at p = ["));
+    /// ```
+    pub fn verify(self, verify: bool) -> Self {
+        Self { verify, ..self }
+    }
+
+    /// Turns the numbers in the scene into params, so that they change without recompiling: see
+    /// [`Scene::live_literals`].
+    ///
+    /// If the scene has more than [`MAX_LIVE_LITERALS`](crate::MAX_LIVE_LITERALS) numbers, those
+    /// nearest to the byte offset `focus` become params; `None` takes the first ones.
+    ///
+    /// ```
+    /// use sdfc::Compiler;
+    ///
+    /// let scene = Compiler::new().live_literals(None).compile("ball.sdf", "sphere(0.5)")?;
+    /// let [literal] = scene.live_literals() else { panic!("one number is written") };
+    /// assert_eq!((literal.value, scene.sources().slice(literal.span)), (0.5, "0.5"));
+    ///
+    /// let mut frame = scene.defaults();
+    /// scene.set(&mut frame, &scene.params()[literal.param].name, 0.25)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn live_literals(self, focus: Option<u32>) -> Self {
+        Self { options: Options { live_literals: true, focus }, ..self }
+    }
+
+    /// Chooses between loops over similar parts of the scene and unrolled code. The default picks
+    /// the cheaper one.
+    pub fn loops(self, loops: LoopStrategy) -> Self {
+        Self { loops, ..self }
+    }
+
+    /// Compiles the source of a scene. Diagnostics call the scene `name`.
+    ///
+    /// Warnings are in [`Scene::diagnostics`].
+    ///
+    /// # Errors
+    ///
+    /// All errors and warnings, if there is at least one error.
+    pub fn compile(&self, name: &str, text: &str) -> Result<Scene, Diagnostics> {
+        let start = Stopwatch::start();
+        let mut sources = Sources::new();
+        let file = sources.add(name, text);
+        let (elaborated, mut found) =
+            sdfc_lang::front_with(&mut sources, file, self.resolver, self.options);
+        let front = start.milliseconds();
+        let id = SourceId::new(&sources, file);
+        let sources = Arc::new(sources);
+        let Some(elaborated) = elaborated else { return Err(Diagnostics::new(sources, found)) };
+        let start = Stopwatch::start();
+        let prepared = match prepare_with(&elaborated.scene, [0.0; 3], self.loops) {
+            Ok(prepared) => prepared,
+            Err(error) => {
+                let span = Span::new(file, 0, 0);
+                let error = Diagnostic::error(Code::TOO_MANY_NODES, span, error.to_string());
+                found.push(error.help("use `repeat` for copies, or draw fewer shapes"));
+                return Err(Diagnostics::new(sources, found));
+            }
+        };
+        let times = FrontTimes { front, analyze: start.milliseconds() };
+        found.extend(warnings(&elaborated, &prepared.report, &sources));
+        if self.verify {
+            found.extend(refutations(&elaborated));
+            if has_errors(&found) {
+                return Err(Diagnostics::new(sources, found));
+            }
+        }
+        let diagnostics = Diagnostics::new(sources, found);
+        Ok(Scene::new(diagnostics, elaborated, prepared, self.loops, times, id))
+    }
+
+    /// Compiles the source of a scene and returns all errors and warnings.
+    pub fn check(&self, name: &str, text: &str) -> Diagnostics {
+        match self.compile(name, text) {
+            Ok(scene) => scene.diagnostics().clone(),
+            Err(diagnostics) => diagnostics,
+        }
+    }
+}
+
+/// Returns the source of a scene in the standard layout. Formatting the result again changes
+/// nothing.
+///
+/// ```
+/// assert_eq!(sdfc::format("a.sdf", "sphere( 1 )")?, "sphere(1)\n");
+/// # Ok::<(), sdfc::Diagnostics>(())
+/// ```
+///
+/// # Errors
+///
+/// The syntax errors of a source that does not parse.
+pub fn format(name: &str, text: &str) -> Result<String, Diagnostics> {
+    let mut sources = Sources::new();
+    let file = sources.add(name, text);
+    let formatted = sdfc_syntax::format(&sources, file);
+    formatted.map_err(|found| Diagnostics::new(Arc::new(sources), found))
+}

@@ -1,0 +1,27 @@
+//! The bounding box of a scene, as nodes that are evaluated for each frame.
+
+use sdfc_graph::eval::{FrameValues, evaluate_frame};
+use sdfc_graph::{Graph, NodeId, Scene, bounds};
+
+/// Lowest and highest corner of everything that is drawn, in a graph of their own.
+#[derive(Debug)]
+pub(crate) struct DerivedBounds {
+    graph: Graph,
+    corners: [NodeId; 2],
+}
+
+impl DerivedBounds {
+    /// Derives the bounds of a scene, or returns `None` if it draws nothing.
+    pub(crate) fn of(scene: &Scene) -> Option<Self> {
+        let mut graph = scene.graph.clone();
+        let corners = bounds(&mut graph, scene.root?, &scene.params);
+        Some(Self { graph, corners })
+    }
+
+    /// Returns the corners at a frame, infinite where the scene has no limit.
+    pub(crate) fn at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
+        let values = evaluate_frame(&self.graph, &self.corners, frame);
+        let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
+        Some([corner(values.first()?), corner(values.get(1)?)])
+    }
+}

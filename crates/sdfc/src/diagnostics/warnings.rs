@@ -1,0 +1,102 @@
+//! Warnings about what the analyses could not prove, at the calls in the scene.
+
+use rustc_hash::FxHashSet;
+use sdfc_analyze::{CopiesObstacle, Report, copies_obstacle};
+use sdfc_diagnostics::{Code, Diagnostic, Sources};
+use sdfc_graph::ShapeId;
+use sdfc_lang::{Declared, Elaborated, Site};
+
+use super::origins::Origins;
+
+/// Returns the warnings W0601 (operators that need a distance and get a bound), W0602 (shapes
+/// without a Lipschitz constant), W0605 (soft shadows) and W0606 (useless clauses).
+pub(crate) fn warnings(
+    elaborated: &Elaborated,
+    report: &Report,
+    sources: &Sources,
+) -> Vec<Diagnostic> {
+    let origins = Origins::new(elaborated);
+    let mut seen = FxHashSet::default();
+    let mut warnings = Vec::new();
+    for part in &report.uncertified {
+        let Some(site) = origins.nearest_call(part.shape) else { continue };
+        if seen.insert((Code::UNCERTIFIED, site.span)) {
+            let message = format!("`{}` is uncertified: {}", site.name, part.reason);
+            let warning = Diagnostic::warning(Code::UNCERTIFIED, site.span, message);
+            let help = "a ray may step through this shape, so `auto` falls back to slower interval \
+                        tracing; add `lipschitz` and `bounds` clauses";
+            warnings.push(warning.help(help));
+        }
+    }
+    for part in &report.inexact_operators {
+        let Some(site) = origins.call(part.shape) else { continue };
+        if seen.insert((Code::NOT_EXACT, site.span)) {
+            let message = format!(
+                "`{}` is applied to a field that is only a bound: the distance between the \
+                 surfaces will vary",
+                site.name
+            );
+            let mut warning = Diagnostic::warning(Code::NOT_EXACT, site.span, message);
+            if let Some(cause) = origins.nearest_call(part.cause) {
+                warning = warning.note_at(cause.span, since("only a bound", cause, sources));
+            }
+            warnings.push(warning);
+        }
+    }
+    warnings.extend(soft_shadows(elaborated, report, &origins, sources));
+    warnings.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
+    warnings
+}
+
+/// Warns about a clause `copies` that helps no instance of its declaration (W0606).
+fn idle(elaborated: &Elaborated, declared: &Declared) -> Option<Diagnostic> {
+    let span = declared.copies?;
+    let mut graph = elaborated.scene.graph.clone();
+    let all = graph.shape_ids();
+    let instances: Vec<ShapeId> =
+        all.filter(|&id| graph.shape(id).definition == declared.definition).collect();
+    let mut reason = None;
+    for shape in instances {
+        reason = Some(copies_obstacle(&mut graph, shape)?);
+    }
+    let reason = match reason? {
+        CopiesObstacle::NotASample => {
+            "the `min(...)` has a term that is neither one sample nor a value without samples"
+        }
+        CopiesObstacle::NotRigid => "a sample is not at a rigid transform of p between jumps",
+        CopiesObstacle::NoSample => "the `min(...)` has no sample",
+        CopiesObstacle::NoLimit => {
+            "the `min(...)` has no term that bounds the distance to the other copies"
+        }
+    };
+    let message = format!("`copies` has no effect here: {reason}");
+    let help = "write the formula as `min(sample, ..., limit)`; without that the shape is marched \
+                as if the clause were absent";
+    Some(Diagnostic::warning(Code::IDLE_CLAUSE, span, message).help(help))
+}
+
+/// Warns about soft shadows of a field that is not the distance outside (W0605).
+fn soft_shadows(
+    elaborated: &Elaborated,
+    report: &Report,
+    origins: &Origins<'_>,
+    sources: &Sources,
+) -> Vec<Diagnostic> {
+    let Some(cause) = report.inexact_outside else { return Vec::new() };
+    let message = "soft shadows need exact distances, but this scene's field is only a bound in \
+                   places";
+    let warning = |&span| {
+        let warning = Diagnostic::warning(Code::SOFT_SHADOW, span, message);
+        match origins.nearest_call(cause) {
+            Some(cause) => warning.note_at(cause.span, since("not the distance", cause, sources)),
+            None => warning,
+        }
+    };
+    elaborated.soft_shadows.iter().map(warning).collect()
+}
+
+/// Returns, for example, "only a bound because of `smooth` at line 3".
+fn since(what: &str, cause: &Site, sources: &Sources) -> String {
+    let line = sources.line_column(cause.span.file, cause.span.start).line;
+    format!("{what} because of `{}` at line {line}", cause.name)
+}

@@ -1,0 +1,217 @@
+//! The explanation of a scene, as `sdfc explain` prints it.
+
+use serde::Serialize;
+
+/// How a scene was compiled, and what is known of its field.
+///
+/// Other tools rely on the keys of its JSON: new ones may be added, none is renamed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Explanation {
+    /// Leaves that one evaluation of the field evaluates.
+    pub leaves: usize,
+    /// Nodes of the flat field, including constants and per-frame nodes.
+    pub nodes: usize,
+    /// Arithmetic operations per evaluation of the field. A vector operation counts once.
+    pub ops_per_eval: usize,
+    /// Arithmetic operations per evaluation of the gradient, which only hits need.
+    pub ops_per_gradient: usize,
+    /// Arithmetic operations per frame, on the CPU.
+    pub ops_per_frame: usize,
+    /// `rolled` if similar parts are loops, `inline` if the code is unrolled.
+    pub writing: &'static str,
+    /// Why that was chosen.
+    pub writing_why: String,
+    /// Number of parts in each loop.
+    pub loops: Vec<usize>,
+    /// Shapes that `auto` intersects analytically.
+    pub closed: Vec<String>,
+    /// Shapes that `auto` marches.
+    pub marched: Vec<String>,
+    /// Arithmetic operations of the analytic pre-intersection, per ray.
+    pub ops_per_ray: usize,
+    /// Arithmetic operations of the marched operands, per step.
+    pub ops_per_step: usize,
+    /// SPIR-V instructions of the field's function, as emitted.
+    pub spirv_instructions: usize,
+    /// Arithmetic instructions among them.
+    pub spirv_arithmetic: usize,
+    /// Features of the picture's shader: `material`, `shadow` and so on.
+    pub features: Vec<String>,
+    /// The ray method that pictures are drawn with.
+    pub method: String,
+    /// Why this method was chosen, if the field is uncertified.
+    pub method_why: Option<String>,
+    /// Factor that turns a distance into a safe step. Always 1: the field is already divided by its
+    /// constant.
+    pub step_scale: f64,
+    /// True if every part has a Lipschitz constant.
+    pub certified: bool,
+    /// Bounds of the scene.
+    pub bounds: Bounds,
+    /// Params, and `time` and `frame` if they are used.
+    #[serde(rename = "knobs")]
+    pub inputs: Vec<Input>,
+    /// The shapes that calls in the scene made, in source order.
+    pub quality: Vec<QualityRow>,
+}
+
+/// An axis-aligned box. `None` (null) is infinite.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Bounds {
+    /// Lowest coordinates.
+    pub min: [Option<f64>; 3],
+    /// Highest coordinates.
+    pub max: [Option<f64>; 3],
+}
+
+impl Bounds {
+    /// Makes a box from its corners.
+    pub(crate) fn of(corners: [[f64; 3]; 2]) -> Self {
+        let [min, max] =
+            corners.map(|corner| corner.map(|value| value.is_finite().then_some(value)));
+        Self { min, max }
+    }
+}
+
+/// A param, `time` or `frame`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Input {
+    /// Its name.
+    pub name: String,
+    /// Evaluation rate: `frame`, since it changes without recompiling.
+    pub stage: &'static str,
+    /// True if the field, the material or a setting uses it.
+    pub used: bool,
+}
+
+/// What is known of the field of one shape.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct QualityRow {
+    /// Name: that of its `let`, or of its definition.
+    pub name: String,
+    /// Line of the call that made the shape, from 1.
+    pub line: u32,
+    /// Column of the call, from 1.
+    pub column: u32,
+    /// Promise outside the surface: `exact`, `bound` or `none`.
+    pub outside: String,
+    /// Promise inside the surface: `exact`, `bound` or `none`.
+    pub inside: String,
+    /// Lipschitz constant; null if it depends on a param or is unknown.
+    pub lipschitz: Option<f64>,
+    /// True if the constant depends on a param.
+    pub lipschitz_per_frame: bool,
+    /// The operation at which the field may jump; null if the field has a constant.
+    pub jump: Option<&'static str>,
+    /// Blend margin: where all operands are farther away than this, the result has no surface.
+    /// Null for a shape without operands, and if unknown.
+    pub blend_margin: Option<f64>,
+    /// Bounds about the shape's own origin, at the params' defaults.
+    pub bounds: Bounds,
+    /// True if the shape has a constant, or is a bound without one.
+    pub certified: bool,
+    /// Why the shape is uncertified, or how a constant above 1 is handled.
+    pub why: Option<String>,
+}
+
+impl std::fmt::Display for Explanation {
+    /// The explanation as text for people.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "leaves              {}", self.leaves)?;
+        writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
+        writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
+        writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
+        let code = if self.loops.is_empty() { "unrolled" } else { "loops" };
+        writeln!(f, "code                {code} ({})", self.writing_why)?;
+        if !self.closed.is_empty() {
+            writeln!(f, "analytic            {}", listed(&self.closed))?;
+            writeln!(f, "marched             {}", listed(&self.marched))?;
+        }
+        if self.ops_per_ray > 0 {
+            writeln!(f, "operations of auto  {} per ray, analytic", self.ops_per_ray)?;
+            writeln!(f, "                    {} per step, marched", self.ops_per_step)?;
+        }
+        let (all, arithmetic) = (self.spirv_instructions, self.spirv_arithmetic);
+        writeln!(f, "SPIR-V              {all} instructions, {arithmetic} of them arithmetic")?;
+        let features =
+            if self.features.is_empty() { "none".to_owned() } else { self.features.join(", ") };
+        writeln!(f, "features            {features}")?;
+        let why = self.method_why.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
+        writeln!(f, "method              {}{why}", self.method)?;
+        writeln!(f, "certified           {}", if self.certified { "yes" } else { "no" })?;
+        writeln!(f, "bounds              {}", self.bounds)?;
+        for input in &self.inputs {
+            let unused = if input.used { "" } else { ", unused" };
+            writeln!(f, "param               {}: per {}{unused}", input.name, input.stage)?;
+        }
+        if !self.quality.is_empty() {
+            writeln!(
+                f,
+                "\n  line  shape             outside  inside   lipschitz  jump   blend    bounds"
+            )?;
+        }
+        for row in &self.quality {
+            let constant = match row.lipschitz {
+                Some(value) => short(value),
+                None if row.lipschitz_per_frame => "per frame".to_owned(),
+                None if row.certified => "none".to_owned(),
+                None => "unknown".to_owned(),
+            };
+            write!(
+                f,
+                "{:>6}  {:<16}  {:<7}  {:<7}  {constant:<9}  {:<5}  {:<7}  {}",
+                row.line,
+                row.name,
+                row.outside,
+                row.inside,
+                row.jump.unwrap_or("-"),
+                row.blend_margin.map_or_else(|| "-".to_owned(), short),
+                row.bounds
+            )?;
+            match &row.why {
+                Some(why) if row.certified => writeln!(f, "  ({why})")?,
+                Some(why) => writeln!(f, "  (uncertified: {why})")?,
+                None => writeln!(f)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns a number with up to four decimal places.
+fn short(value: f64) -> String {
+    format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Lists names, each once with its count.
+fn listed(names: &[String]) -> String {
+    let mut counts: Vec<(&String, usize)> = Vec::new();
+    for name in names {
+        match counts.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((name, 1)),
+        }
+    }
+    let entry = |(name, count): &(&String, usize)| match count {
+        1 => (*name).clone(),
+        _ => format!("{count} {name}"),
+    };
+    match counts.is_empty() {
+        true => "nothing".to_owned(),
+        false => counts.iter().map(entry).collect::<Vec<_>>().join(", "),
+    }
+}
+
+impl std::fmt::Display for Bounds {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let end = |value: Option<f64>, infinite: &str| {
+            value.map_or_else(|| infinite.to_owned(), |v| format!("{:.4}", v + 0.0))
+        };
+        let point =
+            |ends: [Option<f64>; 3], infinite| ends.map(|value| end(value, infinite)).join(", ");
+        write!(f, "[{}] .. [{}]", point(self.min, "-inf"), point(self.max, "inf"))
+    }
+}
