@@ -125,7 +125,7 @@ enum Step {
 type Task = (NodeId, Env);
 
 impl Expander {
-    /// One that has expanded nothing yet.
+    /// An expander with an empty cache.
     pub fn new() -> Self {
         Self::default()
     }
@@ -175,9 +175,9 @@ impl Expander {
         point: NodeId,
     ) -> Result<[NodeId; 6], ExpandError> {
         let mut fields = [point; 6];
-        for (place, field) in fields.iter_mut().zip(MaterialField::ALL) {
+        for (entry, field) in fields.iter_mut().zip(MaterialField::ALL) {
             let node = graph.material_at(shape, point, field);
-            *place = self.under(graph, shape, &[], point, node)?;
+            *entry = self.under(graph, shape, &[], point, node)?;
         }
         Ok(fields)
     }

@@ -120,7 +120,7 @@ impl Graph {
 
     /// The shape and the point of a sample; `None` for any other node.
     pub fn as_sample(&self, id: NodeId) -> Option<(ShapeId, NodeId)> {
-        if let Node::Sample(shape, place) = self.node(id) { Some((shape, place)) } else { None }
+        if let Node::Sample(shape, point) = self.node(id) { Some((shape, point)) } else { None }
     }
 
     /// The node's type.

@@ -1,11 +1,11 @@
 //! Loops and constant tables: what a shader repeats or looks up instead of writing it out.
 //!
 //! A loop's body is ordinary math over [`Node::Variable`](crate::Node::Variable)s, which stand for
-//! the iteration index and for the parts of the state. A loop that is nested in `depth` others
-//! uses variables of that depth. Nodes that depend on no variable of the loop lie outside its body
-//! and are computed once. [`Graph::loops_around`](crate::Graph::loops_around) tells which loops a
-//! node lies in. Passes that treat nodes one by one need not know about loops; passes that decide
-//! where a node is computed (tapes, the lowering) call [`Graph::loop_body`](crate::Graph::loop_body).
+//! the iteration index and for the parts of the state. A loop that is nested in `depth` others uses
+//! variables of that depth. Nodes that depend on no variable of the loop lie outside its body and
+//! are computed once. [`Graph::loops_around`](crate::Graph::loops_around) tells which loops a node
+//! lies in. Passes that treat nodes one by one need not know about loops; passes that decide where
+//! a node is computed (tapes, the lowering) call [`Graph::loop_body`](crate::Graph::loop_body).
 
 use crate::node::{Const, NodeId, Type};
 

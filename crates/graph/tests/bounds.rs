@@ -1,4 +1,4 @@
-//! Derived bounds: of known shapes by hand, of random trees by sampling.
+//! Derived bounds: known shapes are compared with bounds found by hand, random trees with samples.
 
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape, evaluate_frame};
@@ -7,7 +7,7 @@ use sdfc_graph::{
     ParamKind, Shape, ShapeId, Stage, Ternary, Type, Unary,
 };
 
-/// Shapes as the library would make them.
+/// Shapes as the standard library would make them.
 #[derive(Default)]
 struct Scene {
     graph: Graph,
@@ -89,7 +89,7 @@ impl Scene {
         self.at(shape, q)
     }
 
-    /// Turned about z.
+    /// Rotates about z.
     fn turned(&mut self, shape: ShapeId, angle: NodeId) -> ShapeId {
         let p = self.p();
         let g = &mut self.graph;
@@ -178,7 +178,7 @@ impl Scene {
         self.graph.frame_input(FrameInput::Param(index), Type::Scalar)
     }
 
-    /// The bounds in numbers, for these values of the params.
+    /// The bounds in numbers, for given values of the params.
     fn corners(&mut self, shape: ShapeId, params: &[f64]) -> [[f64; 3]; 2] {
         let corners = Bounds::new(&self.params).of(&mut self.graph, shape);
         assert!(corners.iter().all(|&corner| self.graph.stage(corner) <= Stage::Frame));
@@ -209,14 +209,14 @@ fn cube(half: f64) -> [[f64; 3]; 2] {
 }
 
 #[test]
-fn stated_bounds_are_taken() {
+fn stated_bounds_are_used() {
     let mut scene = Scene::default();
     let ball = scene.ball(0.5);
     scene.assert_bounds(ball, cube(0.5), 0.0);
 }
 
 #[test]
-fn a_leaf_that_states_nothing_is_searched() {
+fn a_leaf_without_stated_bounds_is_searched() {
     let mut scene = Scene::default();
     let radius = scene.graph.number(0.7);
     let formula = scene.ball_formula(radius);
@@ -225,7 +225,7 @@ fn a_leaf_that_states_nothing_is_searched() {
 }
 
 #[test]
-fn a_plane_is_infinite_but_for_one_side() {
+fn a_plane_is_bounded_on_one_side_only() {
     let mut scene = Scene::default();
     let p = scene.p();
     let y = scene.graph.component(p, 1);
@@ -234,7 +234,7 @@ fn a_plane_is_infinite_but_for_one_side() {
 }
 
 #[test]
-fn a_field_that_is_positive_everywhere_is_nowhere() {
+fn a_field_that_is_positive_everywhere_has_empty_bounds() {
     let mut scene = Scene::default();
     let (p, one) = (scene.p(), scene.graph.number(1.0));
     let length = scene.graph.length(p);
@@ -245,7 +245,7 @@ fn a_field_that_is_positive_everywhere_is_nowhere() {
 }
 
 #[test]
-fn maps_of_the_point_carry_bounds_along() {
+fn maps_of_the_point_map_the_bounds() {
     let mut scene = Scene::default();
     let brick = scene.cuboid([3.0, 1.0, 0.5]);
     let moved = scene.moved(brick, [1.0, 2.0, -3.0]);
@@ -261,7 +261,7 @@ fn maps_of_the_point_carry_bounds_along() {
 }
 
 #[test]
-fn set_operations_follow_their_operands() {
+fn bounds_of_set_operations_follow_from_their_operands() {
     let mut scene = Scene::default();
     let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));
     let apart = scene.moved(ball, [3.0, 0.0, 0.0]);
@@ -274,7 +274,7 @@ fn set_operations_follow_their_operands() {
 }
 
 #[test]
-fn rounding_travels_down_to_the_leaves() {
+fn rounding_grows_the_bounds_of_the_leaves() {
     let mut scene = Scene::default();
     let brick = scene.cuboid([1.0, 2.0, 3.0]);
     let angle = scene.graph.number(0.3);
@@ -287,7 +287,7 @@ fn rounding_travels_down_to_the_leaves() {
 }
 
 #[test]
-fn a_smooth_union_swells_by_a_quarter_of_its_width() {
+fn a_smooth_union_grows_by_a_quarter_of_its_width() {
     let mut scene = Scene::default();
     let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));
     let apart = scene.moved(ball, [2.0, 0.0, 0.0]);
@@ -302,28 +302,28 @@ fn a_smooth_union_swells_by_a_quarter_of_its_width() {
 }
 
 #[test]
-fn a_copy_lies_just_where_what_was_searched_does() {
+fn a_moved_copy_has_exactly_the_moved_bounds() {
     let mut scene = Scene::default();
     let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));
     let blend = scene.smooth_union([brick, ball], 0.4);
     let found = scene.corners(blend, &[]);
     let copy = scene.moved(blend, [0.3, 0.0, -7.0]);
-    // A search of its own, among other numbers, would end elsewhere.
+    // A separate search, at other numbers, would end elsewhere.
     let expected = found.map(|[x, y, z]| [x + 0.3, y, z - 7.0]);
     assert_eq!(scene.corners(copy, &[]), expected);
 }
 
 #[test]
-fn a_smooth_difference_stays_near_its_first() {
+fn a_smooth_difference_stays_near_its_first_operand() {
     let mut scene = Scene::default();
     let (ball, brick) = (scene.ball(1.0), scene.cuboid([0.5, 2.0, 0.5]));
     let cut = scene.smooth_difference([brick, ball], 0.2);
-    // Intervals do not see that the blend only cuts away: a slack of its width remains.
+    // Intervals cannot show that the blend only removes material: a slack of its width remains.
     scene.assert_bounds(cut, [[-0.5, -2.0, -0.5], [0.5, 2.0, 0.5]], 0.2);
 }
 
 #[test]
-fn params_stay_live_where_rules_apply() {
+fn bounds_depend_on_params_where_rules_apply() {
     let mut scene = Scene::default();
     let radius = scene.param(1.0, None);
     let angle = scene.param(0.0, None);
@@ -344,7 +344,7 @@ fn params_stay_live_where_rules_apply() {
 }
 
 #[test]
-fn an_unbounded_param_that_no_rule_carries_leaves_bounds_open() {
+fn an_unbounded_param_without_a_rule_leaves_bounds_infinite() {
     let mut scene = Scene::default();
     let radius = scene.param(1.0, None);
     let formula = scene.ball_formula(radius);
@@ -353,7 +353,7 @@ fn an_unbounded_param_that_no_rule_carries_leaves_bounds_open() {
 }
 
 #[test]
-fn a_shape_made_at_each_point_gets_a_box_for_all_of_them() {
+fn a_shape_that_depends_on_outer_points_gets_a_box_for_all_of_them() {
     let mut scene = Scene::default();
     let outer = scene.p();
     let g = &mut scene.graph;
@@ -377,7 +377,7 @@ fn a_shape_made_at_each_point_gets_a_box_for_all_of_them() {
 }
 
 #[test]
-fn long_chains_are_cheap_and_do_not_overflow() {
+fn long_chains_are_cheap_and_do_not_overflow_the_stack() {
     let mut scene = Scene::default();
     let mut chain = scene.ball(1.0);
     for _ in 0..10_000 {
@@ -395,7 +395,7 @@ fn long_chains_are_cheap_and_do_not_overflow() {
     assert!(lo[0] <= -1.0 && hi[0] >= 1000.0 && hi[0] < 2000.0, "{lo:?} {hi:?}");
 }
 
-/// A random tree; each step makes a shape of the latest ones.
+/// A random tree; each step combines the latest shapes.
 fn tree(scene: &mut Scene, steps: &[(u8, [f64; 3])]) -> ShapeId {
     let mut stack = vec![scene.ball(0.6)];
     for &(kind, [a, b, c]) in steps {
@@ -428,8 +428,8 @@ fn tree(scene: &mut Scene, steps: &[(u8, [f64; 3])]) -> ShapeId {
     stack[stack.len() - 1]
 }
 
-/// Many places around the origin, from a seed: too many to print.
-fn places(mut seed: u32) -> impl Iterator<Item = [f64; 3]> {
+/// Many points around the origin, from a seed: too many to print.
+fn sample_points(mut seed: u32) -> impl Iterator<Item = [f64; 3]> {
     let mut next = move || {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(seed >> 8) / f64::from(1 << 24) * 10.0 - 5.0
@@ -441,7 +441,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) })]
 
     #[test]
-    fn bounds_hold_what_is_inside(
+    fn bounds_contain_every_inside_point(
         steps in prop::collection::vec((0_u8..11, prop::array::uniform3(-1.0..1.0)), 1..12),
         seed in any::<u32>(),
     ) {
@@ -452,11 +452,11 @@ proptest! {
         let field = Expander::new().field(&mut scene.graph, shape, p).unwrap();
         let tape = Tape::new(&scene.graph, &[field]).unwrap();
         let mut field = tape.prepare::<f64>(&FrameValues::default());
-        for point in places(seed) {
+        for point in sample_points(seed) {
             let inside = (0..3).all(|i| lo[i] - 1e-9 <= point[i] && point[i] <= hi[i] + 1e-9);
             prop_assert!(inside || field.scalar(point) > 0.0, "{point:?} not in {lo:?}..{hi:?}");
         }
-        // All that these trees are made of is bounded, and so are they.
+        // All leaves of these trees are bounded, and so are the trees.
         prop_assert!(lo.iter().chain(&hi).all(|x| x.abs() < 100.0 || lo[0] > hi[0]), "{lo:?}..{hi:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! All evaluators against each other, on random graphs.
+//! All evaluators, compared with each other on random graphs.
 
 mod common;
 
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use sdfc_graph::eval::{BranchPath, FrameValues, Interval, Number, Packet, Tape};
 use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
 
-/// Coordinates of all sizes, whole and half ones among them.
+/// Coordinates of all sizes, whole and half numbers among them.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -4.0..4.0,
@@ -17,7 +17,7 @@ fn coordinate() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// From a low end, a width of any size.
+/// A range: a low end, and a width of any size.
 fn range() -> impl Strategy<Value = [f64; 2]> {
     let width = prop_oneof![
         1 => Just(0.0),
@@ -27,7 +27,7 @@ fn range() -> impl Strategy<Value = [f64; 2]> {
     (coordinate(), width).prop_map(|(lo, width)| [lo, lo + width])
 }
 
-/// A place in a range by a fraction, its ends for the extreme ones.
+/// A number in a range by a fraction; extreme fractions give the ends.
 fn within([lo, hi]: [f64; 2], fraction: f64) -> f64 {
     (lo + (hi - lo) * ((fraction - 0.1) / 0.8).clamp(0.0, 1.0)).clamp(lo, hi)
 }
@@ -41,7 +41,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
-    fn a_tape_computes_what_its_nodes_do(
+    fn a_tape_computes_the_same_as_its_nodes(
         steps in steps(40),
         point in prop::array::uniform3(coordinate()),
         param in coordinate(),
@@ -49,7 +49,7 @@ proptest! {
         let graph = graph(&steps);
         let expected = each_node(&graph, point, param);
         let all: Vec<NodeId> = graph.ids().collect();
-        // Few roots make registers change hands; many show where a difference starts.
+        // Few roots make registers be reused; many show where a difference starts.
         for roots in [&all[..], &all[all.len() - 1..]] {
             let tape = Tape::new(&graph, roots).unwrap();
             let mut evaluator = tape.prepare::<f64>(&frame(param));
@@ -67,7 +67,7 @@ proptest! {
     }
 
     #[test]
-    fn intervals_hold_every_sample(
+    fn intervals_contain_every_sample(
         steps in steps(24),
         ranges in prop::array::uniform3(range()),
         param_range in range(),
@@ -98,9 +98,9 @@ proptest! {
         }
     }
 
-    /// Whichever way a field goes through its jumps at a point of a box, some path went that way.
+    /// Whatever results a field takes at its jumps at a point of a box, some path takes them too.
     #[test]
-    fn paths_hold_every_sample(
+    fn paths_contain_every_sample(
         steps in steps(24),
         ranges in prop::array::uniform3(range()),
         param in range(),
@@ -155,23 +155,23 @@ fn a_long_chain_needs_few_registers_and_no_deep_stack() {
     assert_eq!(tape.prepare::<f64>(&FrameValues::default()).scalar([1.0, 1.0, 0.0]), 20_001.0);
 }
 
-/// How far a point lies beyond a box is 0 within it, not nearly 0: a condition on it is decided.
+/// The distance of a point from a box is exactly 0 within it, so a condition on it is decided.
 #[test]
-fn intervals_within_a_range_exceed_it_by_nothing() {
+fn clamp_residuals_within_the_range_are_exactly_zero() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let [lo, hi] = [-1.0, 1.0].map(|end| graph.constant(Type::Vec3, &[end; 3]));
     let clamped = graph.ternary(Ternary::Clamp, p, lo, hi);
-    let beyond = graph.sub(p, clamped);
+    let residual = graph.sub(p, clamped);
     let [least, greatest] = [graph.max(p, lo), graph.min(p, hi)];
     let (below, above) = (graph.sub(p, least), graph.sub(p, greatest));
-    let tape = Tape::new(&graph, &[beyond, below, above]).expect("flat");
+    let tape = Tape::new(&graph, &[residual, below, above]).expect("flat");
     let mut ranges = tape.prepare::<Interval>(&FrameValues::default());
     let inside = Interval::new(-0.9, 0.3);
     let across = Interval::new(0.5, 1.5);
     let zero = Interval::new(0.0, 0.0);
     assert_eq!(ranges.eval([inside; 3]), [[zero, zero, zero, zero]; 3]);
-    let [beyond, below, above] = *ranges.eval([across; 3]) else { panic!("three roots") };
-    assert!(beyond[0].contains(0.0) && beyond[0].contains(0.5) && beyond[0].hi() < 0.51);
-    assert_eq!((below[0], above[0]), (zero, beyond[0]));
+    let [residual, below, above] = *ranges.eval([across; 3]) else { panic!("three roots") };
+    assert!(residual[0].contains(0.0) && residual[0].contains(0.5) && residual[0].hi() < 0.51);
+    assert_eq!((below[0], above[0]), (zero, residual[0]));
 }

@@ -8,7 +8,7 @@ use sdfc_graph::{
     ShapeId, Type, Unary, dump, fold_transforms, gradient, operation_count, uniforms,
 };
 
-/// A shape of level 0 whose shares are its formula's.
+/// A shape of level 0 whose material is weighted by its formula's derivatives.
 fn shape(graph: &mut Graph, definition: &str, formula: NodeId, children: &[ShapeId]) -> ShapeId {
     shape_at(graph, 0, definition, formula, children)
 }
@@ -60,8 +60,8 @@ fn scaled(graph: &mut Graph, child: ShapeId, by: f64) -> ShapeId {
     shape(graph, "scaled", formula, &[child])
 }
 
-/// Painted all over, in a grey.
-fn painted(graph: &mut Graph, child: ShapeId, grey: f64) -> ShapeId {
+/// A shape with a grey material.
+fn with_material(graph: &mut Graph, child: ShapeId, grey: f64) -> ShapeId {
     let p = graph.point(0, Dim::Three);
     let formula = graph.sample(child, p);
     let id = shape(graph, "painted", formula, &[child]);
@@ -69,7 +69,7 @@ fn painted(graph: &mut Graph, child: ShapeId, grey: f64) -> ShapeId {
     stated[0] = graph.constant(Type::Vec3, &[grey; 3]);
     stated[1] = graph.number(1.0);
     let shape = Shape {
-        definition: format!("painted {grey}"),
+        definition: format!("grey {grey}"),
         material: MaterialRule::Explicit(stated),
         ..graph.shape(id).clone()
     };
@@ -211,12 +211,13 @@ fn inner_formulas_see_the_points_around_them() {
     let outer = graph.point(0, Dim::Three);
     let middle = graph.point(1, Dim::Three);
     let inner = graph.point(2, Dim::Three);
-    // Level 2 subtracts what it sees of all three points.
+    // Level 2 subtracts components of all three points.
     let [x, y, z] = [(outer, 0), (middle, 1), (inner, 2)].map(|(p, i)| graph.component(p, i));
     let xy = graph.sub(x, y);
     let formula = graph.sub(xy, z);
     let innermost = shape_at(&mut graph, 2, "innermost", formula, &[]);
-    // Level 1 samples it at ten times its own point; level 0 samples that at a hundred times its own.
+    // Level 1 samples it at ten times its own point; level 0 samples that at a hundred times its
+    // own.
     let (ten, hundred) = (graph.number(10.0), graph.number(100.0));
     let q = graph.mul(middle, ten);
     let formula = graph.sample(innermost, q);
@@ -242,23 +243,23 @@ fn operators_that_compare_select_a_material() {
     let mut graph = Graph::new();
     let left = ball(&mut graph, 1.0);
     let left = moved(&mut graph, left, [-2.0, 0.0, 0.0]);
-    let left = painted(&mut graph, left, 0.25);
+    let left = with_material(&mut graph, left, 0.25);
     let right = ball(&mut graph, 1.5);
     let right = moved(&mut graph, right, [2.0, 0.0, 0.0]);
-    let dark = painted(&mut graph, right, 0.5);
+    let dark = with_material(&mut graph, right, 0.5);
     let either = union(&mut graph, [left, dark]);
     assert_eq!(grey(&mut graph, either, [-1.0, 0.0, 0.0]), 0.25);
     assert_eq!(grey(&mut graph, either, [1.0, 0.0, 0.0]), 0.5);
 }
 
 #[test]
-fn a_hole_shows_the_body_unless_its_cutter_is_painted() {
+fn a_hole_shows_the_body_unless_its_cutter_has_a_material() {
     let mut graph = Graph::new();
     let body = ball(&mut graph, 1.0);
-    let body = painted(&mut graph, body, 0.25);
+    let body = with_material(&mut graph, body, 0.25);
     let plain = ball(&mut graph, 1.0);
     let plain = moved(&mut graph, plain, [1.0, 0.0, 0.0]);
-    let dark = painted(&mut graph, plain, 0.5);
+    let dark = with_material(&mut graph, plain, 0.5);
     let (back, wall) = ([-1.0, 0.0, 0.0], [0.1, 0.0, 0.0]);
     let hole = difference(&mut graph, [body, plain]);
     assert_eq!([back, wall].map(|at| grey(&mut graph, hole, at)), [0.25, 0.25]);
@@ -267,13 +268,14 @@ fn a_hole_shows_the_body_unless_its_cutter_is_painted() {
 }
 
 #[test]
-fn blends_mix_materials_by_their_shares() {
+fn blends_mix_materials_by_the_weights_of_their_operands() {
     let mut graph = Graph::new();
     let left = ball(&mut graph, 1.0);
     let left = moved(&mut graph, left, [-1.0, 0.0, 0.0]);
     let right = ball(&mut graph, 1.0);
     let right = moved(&mut graph, right, [1.0, 0.0, 0.0]);
-    let (light, dark) = (painted(&mut graph, left, 1.0), painted(&mut graph, right, 0.0));
+    let (light, dark) =
+        (with_material(&mut graph, left, 1.0), with_material(&mut graph, right, 0.0));
     let blend = smooth(&mut graph, [light, dark], 0.5);
     for (x, share) in [(-1.0, 1.0), (0.0, 0.5), (-0.05, 0.6), (1.0, 0.0)] {
         let shown = grey(&mut graph, blend, [x, 0.0, 0.0]);
@@ -282,7 +284,7 @@ fn blends_mix_materials_by_their_shares() {
 }
 
 #[test]
-fn what_nothing_paints_shares_one_constant_material() {
+fn shapes_without_materials_share_one_constant_material() {
     let mut graph = Graph::new();
     let (a, b) = (ball(&mut graph, 1.0), ball(&mut graph, 2.0));
     let blend = smooth(&mut graph, [a, b], 0.5);
@@ -312,7 +314,7 @@ fn nodes_are_named_after_the_scene_before_the_library() {
 }
 
 #[test]
-fn a_bomb_is_stopped_at_the_limit() {
+fn expansion_stops_at_the_node_limit() {
     let mut graph = Graph::new();
     let mut bomb = ball(&mut graph, 1.0);
     for i in 0..40 {
@@ -325,16 +327,16 @@ fn a_bomb_is_stopped_at_the_limit() {
     let p = graph.point(0, Dim::Three);
     let error = Expander::with_limit(20_000).field(&mut graph, bomb, p).unwrap_err();
     assert_eq!(error, ExpandError::TooManyNodes { limit: 20_000 });
-    assert_eq!(error.to_string(), "the expanded scene passes 20000 nodes");
+    assert_eq!(error.to_string(), "the expanded scene has more than 20000 nodes");
 }
 
-/// Blended one after the other.
+/// A chain of blended balls.
 fn chain(graph: &mut Graph, length: u32) -> ShapeId {
     let mut chain = ball(graph, 1.0);
     for i in 0..length {
         let next = ball(graph, 1.0 + f64::from(i) / 1e6);
         let next = moved(graph, next, [f64::from(i % 100), 0.5, 0.0]);
-        let next = if i % 50 == 0 { painted(graph, next, 0.5) } else { next };
+        let next = if i % 50 == 0 { with_material(graph, next, 0.5) } else { next };
         chain = smooth(graph, [chain, next], 0.1);
     }
     chain

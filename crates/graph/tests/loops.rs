@@ -1,4 +1,4 @@
-//! A loop computes what its rounds written out compute: values, ranges and derivatives.
+//! A loop computes the same as its unrolled iterations: values, ranges and derivatives.
 
 #![allow(clippy::expect_used, reason = "a test that cannot be set up fails")]
 
@@ -9,29 +9,30 @@ use sdfc_graph::{
     fold_transforms, gradient, uniforms,
 };
 
-/// What a round makes of the state, and whether there is one, from the state and the number of the round.
-type Round = fn(&mut Graph, &[NodeId], NodeId) -> (Vec<NodeId>, Option<NodeId>);
+/// The state after an iteration and the condition to run it, given the state before and the
+/// iteration index.
+type Step = fn(&mut Graph, &[NodeId], NodeId) -> (Vec<NodeId>, Option<NodeId>);
 
 struct Case {
     name: &'static str,
-    cap: u32,
-    /// Whether the param says how many rounds there are.
+    max_iterations: u32,
+    /// True if the param gives the number of iterations.
     counted: bool,
-    start: fn(&mut Graph) -> Vec<NodeId>,
-    round: Round,
+    init: fn(&mut Graph) -> Vec<NodeId>,
+    step: Step,
 }
 
 fn cases() -> Vec<Case> {
     vec![
         Case {
-            name: "two values that change places",
-            cap: 5,
+            name: "two values that are swapped",
+            max_iterations: 5,
             counted: false,
-            start: |graph| {
+            init: |graph| {
                 let p = point(graph);
                 vec![graph.component(p, 0), graph.component(p, 1)]
             },
-            round: |graph, state, _| {
+            step: |graph, state, _| {
                 let half = graph.number(0.5);
                 let scaled = graph.mul(state[0], half);
                 (vec![state[1], graph.add(scaled, state[1])], None)
@@ -39,14 +40,14 @@ fn cases() -> Vec<Case> {
         },
         Case {
             name: "a power that escapes",
-            cap: 9,
+            max_iterations: 9,
             counted: false,
-            start: |graph| {
+            init: |graph| {
                 let (p, one) = (point(graph), graph.number(1.0));
                 let lanes = [0, 1, 2].map(|lane| graph.component(p, lane));
                 vec![graph.compose(&[lanes[0], lanes[1], lanes[2], one])]
             },
-            round: |graph, state, _| {
+            step: |graph, state, _| {
                 let p = point(graph);
                 let z = graph.swizzle(state[0], &[0, 1, 2]);
                 let slope = graph.component(state[0], 3);
@@ -63,14 +64,14 @@ fn cases() -> Vec<Case> {
             },
         },
         Case {
-            name: "a sum over as many rounds as a param says",
-            cap: 12,
+            name: "a sum with a param as its iteration count",
+            max_iterations: 12,
             counted: true,
-            start: |graph| vec![graph.number(0.0)],
-            round: |graph, state, round| {
+            init: |graph| vec![graph.number(0.0)],
+            step: |graph, state, index| {
                 let p = point(graph);
                 let (x, one) = (graph.component(p, 0), graph.number(1.0));
-                let frequency = graph.add(round, one);
+                let frequency = graph.add(index, one);
                 let phase = graph.mul(x, frequency);
                 let wave = graph.unary(Unary::Sin, phase);
                 let part = graph.div(wave, frequency);
@@ -78,27 +79,27 @@ fn cases() -> Vec<Case> {
             },
         },
         Case {
-            name: "the nearest of a list",
-            cap: 20,
+            name: "the nearest element of a table",
+            max_iterations: 20,
             counted: false,
-            start: |graph| vec![graph.number(100.0)],
-            round: |graph, state, round| {
+            init: |graph| vec![graph.number(100.0)],
+            step: |graph, state, index| {
                 let p = point(graph);
-                let place = graph.element(list(), round);
-                let offset = graph.sub(p, place);
+                let element = graph.element(table(), index);
+                let offset = graph.sub(p, element);
                 let distance = graph.length(offset);
                 (vec![graph.min(state[0], distance)], None)
             },
         },
         Case {
-            name: "a loop in a loop",
-            cap: 4,
+            name: "a nested loop",
+            max_iterations: 4,
             counted: false,
-            start: |graph| {
+            init: |graph| {
                 let p = point(graph);
                 vec![graph.component(p, 2)]
             },
-            round: |graph, state, round| {
+            step: |graph, state, index| {
                 let p = point(graph);
                 let inner = graph.variable(1, LoopVar::State(0), Type::Scalar);
                 let step = graph.variable(1, LoopVar::Index, Type::Scalar);
@@ -107,7 +108,7 @@ fn cases() -> Vec<Case> {
                 let mixed = graph.mul(sine, state[0]);
                 let moved = graph.add(mixed, y);
                 let moved = graph.add(moved, step);
-                let next = graph.add(moved, round);
+                let next = graph.add(moved, index);
                 let loop_ = Loop {
                     depth: 1,
                     max_iterations: 3,
@@ -129,12 +130,12 @@ fn point(graph: &mut Graph) -> NodeId {
     graph.point(0, Dim::Three)
 }
 
-fn list() -> Table {
-    let place = |i: usize| {
+fn table() -> Table {
+    let element = |i: usize| {
         let turn = i as f64;
         sdfc_graph::Const::new(Type::Vec3, &[turn.sin(), turn.cos(), 0.1 * turn])
     };
-    Table { ty: Type::Vec3, elements: (0..20).map(place).collect() }
+    Table { ty: Type::Vec3, elements: (0..20).map(element).collect() }
 }
 
 fn count(graph: &mut Graph) -> NodeId {
@@ -142,17 +143,17 @@ fn count(graph: &mut Graph) -> NodeId {
 }
 
 fn looped(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
-    let start = (case.start)(graph);
+    let start = (case.init)(graph);
     let state: Vec<NodeId> = (0..)
         .zip(&start)
         .map(|(i, &part)| graph.variable(0, LoopVar::State(i), graph.ty(part)))
         .collect();
-    let round = graph.variable(0, LoopVar::Index, Type::Scalar);
-    let (next, condition) = (case.round)(graph, &state, round);
+    let index = graph.variable(0, LoopVar::Index, Type::Scalar);
+    let (next, condition) = (case.step)(graph, &state, index);
     let count = case.counted.then(|| count(graph));
     graph.add_loop(Loop {
         depth: 0,
-        max_iterations: case.cap,
+        max_iterations: case.max_iterations,
         count,
         condition,
         init: start,
@@ -161,15 +162,15 @@ fn looped(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
     })
 }
 
-fn written_out(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
-    let mut state = (case.start)(graph);
+fn unrolled(graph: &mut Graph, case: &Case) -> Vec<NodeId> {
+    let mut state = (case.init)(graph);
     let mut running = graph.boolean(true);
-    for i in 0..case.cap {
-        let round = graph.number(f64::from(i));
-        let (next, condition) = (case.round)(graph, &state, round);
+    for i in 0..case.max_iterations {
+        let index = graph.number(f64::from(i));
+        let (next, condition) = (case.step)(graph, &state, index);
         if case.counted {
             let count = count(graph);
-            let within = graph.lt(round, count);
+            let within = graph.lt(index, count);
             running = graph.binary(Binary::And, running, within);
         }
         if let Some(condition) = condition {
@@ -201,12 +202,12 @@ fn close(a: f64, b: f64, tolerance: f64) -> bool {
         || (a.is_nan() && b.is_nan())
 }
 
-/// How the two compare at a point, in every domain.
+/// Compares the loop with its unrolled iterations at a point, in every number type.
 fn check(case: &Case, at: [f64; 3], param: f64) {
     let mut graph = Graph::new();
     let state = looped(&mut graph, case);
     let one = scalar(&mut graph, &state);
-    let state = written_out(&mut graph, case);
+    let state = unrolled(&mut graph, case);
     let other = scalar(&mut graph, &state);
     let p = point(&mut graph);
     let slopes = [one, other].map(|root| gradient(&mut graph, root, p));
@@ -230,7 +231,7 @@ fn check(case: &Case, at: [f64; 3], param: f64) {
 
     let narrow = at.map(|x| x as f32);
     let values = tape.prepare::<f32>(&frame).eval(narrow).to_vec();
-    // Written out, divisions by constants have become products.
+    // In the unrolled form, divisions by constants have become products.
     let both = [f64::from(values[0][0]), f64::from(values[1][0])];
     assert!(close(both[0], both[1], 1e-5), "{name} at {at:?} in f32: {both:?}");
     let pair = narrow.map(|x| Packet([x, x * 0.5]));
@@ -240,7 +241,7 @@ fn check(case: &Case, at: [f64; 3], param: f64) {
     assert_eq!(packets[0][0].0.map(f32::to_bits), expected.map(f32::to_bits), "{name} in packets");
 }
 
-/// Values at points of a box lie in the range over the box.
+/// Tests that values at points of a box lie in the range over the box.
 fn check_range(case: &Case, at: [f64; 3], size: f64) {
     let mut graph = Graph::new();
     let state = looped(&mut graph, case);
@@ -267,14 +268,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn a_loop_is_its_rounds(at in prop::array::uniform3(-1.6..1.6), param in 0.0..14.0) {
+    fn a_loop_equals_its_unrolled_iterations(at in prop::array::uniform3(-1.6..1.6), param in 0.0..14.0) {
         for case in cases() {
             check(&case, at, param);
         }
     }
 
     #[test]
-    fn ranges_hold_all_rounds(at in prop::array::uniform3(-1.6..1.6), size in 0.0..0.5) {
+    fn ranges_contain_the_results_of_all_iterations(at in prop::array::uniform3(-1.6..1.6), size in 0.0..0.5) {
         for case in cases() {
             check_range(&case, at, size);
         }
@@ -282,7 +283,7 @@ proptest! {
 }
 
 #[test]
-fn an_undecided_loop_ends_and_a_decided_one_is_tight() {
+fn an_undecided_loop_ends_and_a_decided_one_has_tight_bounds() {
     let mut graph = Graph::new();
     let case = &cases()[1];
     let state = looped(&mut graph, case);
@@ -290,24 +291,24 @@ fn an_undecided_loop_ends_and_a_decided_one_is_tight() {
     let tape = Tape::new(&graph, &[root]).expect("flat");
     let mut over = tape.prepare::<Interval>(&FrameValues::default());
     assert!(!over.scalar([Interval::ENTIRE; 3]).lo().is_finite());
-    // All of this box escapes before the first round: the state is its start.
+    // All of this box escapes before the first iteration: the state is the initial one.
     let out = over.scalar([Interval::new(3.0, 3.5); 3]);
     assert!(out.lo() > 9.9 && out.hi() < 11.6, "{out:?}");
 }
 
 #[test]
-fn an_interval_of_a_place_in_a_list_is_that_place() {
+fn a_constant_interval_as_an_index_selects_one_element() {
     let mut graph = Graph::new();
     let case = Case {
-        name: "every third of a list",
-        cap: 6,
+        name: "every third element of a table",
+        max_iterations: 6,
         counted: false,
-        start: |graph| vec![graph.number(0.0)],
-        round: |graph, state, round| {
+        init: |graph| vec![graph.number(0.0)],
+        step: |graph, state, index| {
             let three = graph.number(3.0);
-            let at = graph.mul(round, three);
-            let place = graph.element(list(), at);
-            let y = graph.component(place, 1);
+            let at = graph.mul(index, three);
+            let element = graph.element(table(), at);
+            let y = graph.component(element, 1);
             (vec![graph.add(state[0], y)], None)
         },
     };
@@ -319,7 +320,7 @@ fn an_interval_of_a_place_in_a_list_is_that_place() {
 }
 
 #[test]
-fn equal_loops_are_one_and_their_gradient_computes_the_state_once() {
+fn equal_loops_share_one_node_and_the_gradient_computes_the_state_once() {
     let mut graph = Graph::new();
     let case = &cases()[1];
     let first = looped(&mut graph, case);
@@ -346,7 +347,7 @@ fn equal_loops_are_one_and_their_gradient_computes_the_state_once() {
 }
 
 #[test]
-fn a_loop_moves_with_the_point_that_it_is_sampled_at() {
+fn expanding_a_loop_at_a_moved_point_moves_it() {
     let mut graph = Graph::new();
     let state = looped(&mut graph, &cases()[3]);
     let p = point(&mut graph);
@@ -361,7 +362,7 @@ fn a_loop_moves_with_the_point_that_it_is_sampled_at() {
 }
 
 #[test]
-fn what_a_round_reads_per_frame_is_a_uniform() {
+fn per_frame_values_that_an_iteration_reads_are_uniforms() {
     let mut graph = Graph::new();
     let state = looped(&mut graph, &cases()[2]);
     let input = count(&mut graph);
@@ -369,7 +370,7 @@ fn what_a_round_reads_per_frame_is_a_uniform() {
 }
 
 #[test]
-fn a_loop_that_changes_nothing_is_its_start() {
+fn a_loop_that_changes_nothing_is_its_initial_state() {
     let mut graph = Graph::new();
     let p = point(&mut graph);
     let variable = graph.variable(0, LoopVar::State(0), Type::Vec3);

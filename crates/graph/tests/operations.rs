@@ -1,5 +1,5 @@
-//! Each scalar operation: values by hand, derivatives against differences, f32 against f64 within what
-//! WGSL allows a device, and intervals where they are delicate.
+//! Each scalar operation: values found by hand, derivatives compared with differences, f32 compared
+//! with f64 within the accuracy that WGSL requires of a device, and intervals in difficult cases.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LN_2, PI};
 
@@ -10,7 +10,7 @@ type One<N> = fn(N) -> N;
 type Two<N> = fn(N, N) -> N;
 type Three<N> = fn(N, N, N) -> N;
 
-/// In both floating point domains: operation, arguments, result.
+/// Operation in f64 and in f32, arguments, result.
 type OneRow = (&'static str, One<f64>, One<f32>, f64, f64);
 type TwoRow = (&'static str, Two<f64>, Two<f32>, [f64; 2], f64);
 type ThreeRow = (&'static str, Three<f64>, Three<f32>, [f64; 3], f64);
@@ -18,7 +18,7 @@ type AccuracyRow = (&'static str, One<f32>, One<f64>, [f64; 2], Accuracy);
 
 const INF: f64 = f64::INFINITY;
 
-/// All are exact in f32 too.
+/// Cases whose results are exact in f32 too.
 const ONE: [OneRow; 38] = [
     ("neg", Number::neg, Number::neg, 2.5, -2.5),
     ("abs", Number::abs, Number::abs, -2.5, 2.5),
@@ -83,7 +83,7 @@ const TWO: [TwoRow; 43] = [
     ("atan2", Number::atan2, Number::atan2, [-0.0, -0.0], 0.0),
     ("step", Number::step, Number::step, [1.0, 0.5], 0.0),
     ("step", Number::step, Number::step, [1.0, 1.0], 1.0),
-    // By a separate program.
+    // Computed by a separate program.
     ("hash", Number::hash, Number::hash, [0.0, 0.0], 506_671.0),
     ("hash", Number::hash, Number::hash, [0.0, 0.9], 506_671.0),
     ("hash", Number::hash, Number::hash, [0.0, -0.5], 15_084_105.0),
@@ -169,7 +169,8 @@ fn variable(value: f64) -> Dual {
     Dual { value, partials: [1.0, 0.0, 0.0] }
 }
 
-/// `f` by central differences. At x of size 1, `h = 1e-6` leaves about `1e-10` of either error.
+/// The derivative of `f` by central differences. At x of size 1, `h = 1e-6` leaves about `1e-10` of
+/// truncation and of rounding error.
 fn difference(f: impl Fn(f64) -> f64, x: f64) -> f64 {
     let h = 1e-6;
     (f(x + h) - f(x - h)) / (2.0 * h)
@@ -233,7 +234,7 @@ fn derivatives_agree_with_differences_away_from_kinks() {
     ];
     for (name, dual, plain) in two {
         for (x, y) in [(0.7, 1.3), (2.3, 0.4), (0.2, -0.9)] {
-            // Along both arguments, the second at twice the speed.
+            // Both arguments vary, the second at twice the speed.
             let along = |t: f64| plain(x + t, y + 2.0 * t);
             let second = Dual { value: y, partials: [2.0, 0.0, 0.0] };
             assert_slope(name, x, dual(variable(x), second), plain(x, y), difference(along, 0.0));
@@ -255,7 +256,7 @@ fn derivatives_agree_with_differences_away_from_kinks() {
 }
 
 #[test]
-fn derivatives_at_kinks_are_those_stated() {
+fn derivatives_at_kinks_follow_the_documented_rules() {
     let at = |value: f64, speed: f64| Dual { value, partials: [speed, 0.0, 0.0] };
     let zero = at(0.0, 0.0);
     assert_eq!(at(0.0, 1.0).abs().partials[0], 1.0);
@@ -270,7 +271,7 @@ fn derivatives_at_kinks_are_those_stated() {
 }
 
 #[test]
-fn the_length_of_nothing_has_no_direction() {
+fn the_zero_vector_has_direction_zero() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let (length, unit) = (graph.length(p), graph.unary(Unary::Normalize, p));
@@ -282,7 +283,7 @@ fn the_length_of_nothing_has_no_direction() {
     assert_eq!(side, [[5.0, 0.0, 0.0, 0.0], [0.6, 0.0, 0.8, 0.0]]);
 }
 
-/// How far f32 may be from the exact result: units in the last place and an absolute part.
+/// Allowed error of f32: units in the last place, and an absolute error.
 /// <https://www.w3.org/TR/WGSL/#concrete-float-accuracy>
 struct Accuracy {
     ulps: fn(f64) -> f64,
@@ -300,7 +301,7 @@ const fn absolute(absolute: f64) -> Accuracy {
 }
 
 #[test]
-fn f32_is_as_accurate_as_a_device_must_be() {
+fn f32_is_as_accurate_as_wgsl_requires() {
     let table: [AccuracyRow; 19] = [
         ("floor", Number::floor, Number::floor, [-1e3, 1e3], EXACT),
         ("ceil", Number::ceil, Number::ceil, [-1e3, 1e3], EXACT),
@@ -343,7 +344,7 @@ fn assert_range(found: Interval, [lo, hi]: [f64; 2]) {
 }
 
 #[test]
-fn intervals_are_tight_where_it_matters() {
+fn intervals_are_tight_in_difficult_cases() {
     let range = Interval::new;
     assert_range(range(-2.0, 3.0).square(), [0.0, 9.0]);
     assert_range(range(-2.0, 3.0).mul(range(-1.0, 4.0)), [-8.0, 12.0]);
@@ -380,7 +381,7 @@ fn evaluate(graph: &Graph, root: NodeId, region: [Interval; 3]) -> Interval {
 }
 
 #[test]
-fn lengths_and_repeated_factors_do_not_forget_that_they_are_one_value() {
+fn lengths_and_repeated_factors_are_bounded_as_one_value() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let x = graph.component(p, 0);
@@ -404,7 +405,8 @@ fn lengths_and_repeated_factors_do_not_forget_that_they_are_one_value() {
 
 #[test]
 fn per_frame_values_are_rounded_once_for_f32() {
-    // A third of a param: the shader gets the quotient rounded, not the rounded param's quotient.
+    // A third of a param: the shader gets the rounded quotient, not the quotient of the rounded
+    // param.
     let mut graph = Graph::new();
     let param = graph.frame_input(sdfc_graph::FrameInput::Param(0), Type::Scalar);
     let p = graph.point(0, Dim::Three);

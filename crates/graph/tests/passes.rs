@@ -1,4 +1,4 @@
-//! Passes keep values: on random expressions, against plain arithmetic.
+//! Passes preserve values: tested on random expressions against plain arithmetic.
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 mod twin;
@@ -8,7 +8,7 @@ use sdfc_graph::eval::Tape;
 use sdfc_graph::{Graph, NodeId, adjoints, fold_transforms, gradient, uniforms};
 use twin::{case, frame, maps, steps};
 
-fn place() -> impl Strategy<Value = ([f64; 3], f64)> {
+fn point_and_param() -> impl Strategy<Value = ([f64; 3], f64)> {
     (prop::array::uniform3(-3.0..3.0), -2.0..2.0)
 }
 
@@ -24,7 +24,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
     #[test]
-    fn builders_keep_values(steps in steps(40), (point, param) in place()) {
+    fn builders_preserve_values(steps in steps(40), (point, param) in point_and_param()) {
         let case = case(&steps, point, param);
         let Some(expected) = case.expected() else { return Ok(()) };
         let ids: Vec<NodeId> = expected.iter().map(|(id, _)| *id).collect();
@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn equal_expressions_meet_in_one_node(steps in steps(30), (point, param) in place()) {
+    fn equal_expressions_share_one_node(steps in steps(30), (point, param) in point_and_param()) {
         let mut case = case(&steps, point, param);
         let (size, scalar, vector) = (case.graph.len(), case.scalar(), case.vector());
         case.replay(&steps);
@@ -54,8 +54,8 @@ proptest! {
     }
 
     #[test]
-    fn folded_transforms_keep_values(
-        turns in maps(12), rest in steps(10), (point, param) in place(),
+    fn folding_transforms_preserves_values(
+        turns in maps(12), rest in steps(10), (point, param) in point_and_param(),
     ) {
         let steps: Vec<_> = turns.into_iter().chain(rest).collect();
         let mut case = case(&steps, point, param);
@@ -75,7 +75,7 @@ proptest! {
     }
 
     #[test]
-    fn the_gradient_is_what_differences_show(steps in steps(24), (point, param) in place()) {
+    fn the_gradient_agrees_with_finite_differences(steps in steps(24), (point, param) in point_and_param()) {
         const STEP: f64 = 1e-5;
         let mut case = case(&steps, point, param);
         if case.expected().is_none() {
@@ -92,7 +92,7 @@ proptest! {
         for (axis, exact) in exact.into_iter().take(3).enumerate() {
             let [back, middle, forth] = [-STEP, 0.0, STEP].map(|step| at(axis, step));
             let central = (forth - back) / (2.0 * STEP);
-            // A kink or a pole within the step.
+            // There is a kink or a pole within the step.
             if ((forth - middle) - (middle - back)).abs() > 1e-9 || central.abs() > 1e3 {
                 continue;
             }
@@ -105,7 +105,7 @@ proptest! {
     }
 
     #[test]
-    fn slots_are_all_that_points_need(steps in steps(30), (point, param) in place()) {
+    fn uniforms_are_sufficient_for_points(steps in steps(30), (point, param) in point_and_param()) {
         let case = case(&steps, point, param);
         let slots = uniforms(&case.graph, &[case.scalar()]);
         prop_assert!(slots.iter().all(|&id| case.graph.stage(id) == sdfc_graph::Stage::Frame));
@@ -115,7 +115,7 @@ proptest! {
     }
 
     #[test]
-    fn shares_of_a_smooth_minimum_sum_to_one(a in -1.0..1.0, b in -1.0..1.0, k in 0.01..2.0) {
+    fn derivatives_of_a_smooth_minimum_sum_to_one(a in -1.0..1.0, b in -1.0..1.0, k in 0.01..2.0) {
         let mut graph = Graph::new();
         let input = |graph: &mut Graph, i| {
             graph.frame_input(sdfc_graph::FrameInput::Param(i), sdfc_graph::Type::Scalar)

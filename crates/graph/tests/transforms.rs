@@ -1,8 +1,8 @@
-//! Which form a chain of maps takes.
+//! The form that a chain of affine maps takes after folding.
 
 use sdfc_graph::{Dim, FrameInput, Graph, NodeId, Type, Unary, dump, fold_transforms, uniforms};
 
-/// About one axis, as a formula would.
+/// A rotation about one axis, as a formula would write it.
 fn turned(graph: &mut Graph, v: NodeId, axis: u8, angle: NodeId) -> NodeId {
     let (i, j) = (usize::from((axis + 1) % 3), usize::from((axis + 2) % 3));
     let (c, s) = (graph.unary(Unary::Cos, angle), graph.unary(Unary::Sin, angle));
@@ -23,14 +23,14 @@ fn moved(graph: &mut Graph, v: NodeId, by: [f64; 3]) -> NodeId {
 }
 
 fn folded(graph: &mut Graph, q: NodeId) -> String {
-    // Something that is not affine uses the chain.
+    // An operation that is not affine uses the chain.
     let field = graph.length(q);
     let roots = fold_transforms(graph, &[field]).roots;
     dump(graph, &[("field", roots[0])])
 }
 
 #[test]
-fn a_right_angle_picks_components() {
+fn a_rotation_by_a_right_angle_is_a_swizzle() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let quarter = degrees(&mut graph, 90.0);
@@ -62,7 +62,7 @@ fn a_cycle_of_axes_is_one_swizzle() {
 }
 
 #[test]
-fn three_turns_between_moves_are_one_transform_and_one_addition() {
+fn three_rotations_and_translations_are_one_transform_and_one_addition() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let mut q = moved(&mut graph, p, [1.0, 0.0, 0.0]);
@@ -77,7 +77,7 @@ fn three_turns_between_moves_are_one_transform_and_one_addition() {
 }
 
 #[test]
-fn one_turn_stays_as_it_is_written() {
+fn one_rotation_is_not_replaced() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let angle = degrees(&mut graph, 30.0);
@@ -88,7 +88,7 @@ fn one_turn_stays_as_it_is_written() {
 }
 
 #[test]
-fn what_several_maps_share_is_computed_once() {
+fn a_node_shared_by_several_maps_is_computed_once() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let mut q = p;
@@ -106,7 +106,7 @@ fn what_several_maps_share_is_computed_once() {
 }
 
 #[test]
-fn a_map_after_a_bend_folds_over_what_the_bend_gives() {
+fn a_map_after_a_bend_folds_over_the_result_of_the_bend() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let rate = graph.number(0.5);
@@ -123,7 +123,7 @@ fn a_map_after_a_bend_folds_over_what_the_bend_gives() {
 }
 
 #[test]
-fn per_frame_coefficients_fill_slots_as_vectors() {
+fn per_frame_coefficients_take_uniform_slots_as_vectors() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let time = graph.frame_input(FrameInput::Time, Type::Scalar);

@@ -69,7 +69,7 @@ impl Search {
                 work.close(axis, Side::Lower);
             }
         }
-        for (round, per_slab) in PER_SLAB.into_iter().enumerate() {
+        for (pass, per_slab) in PER_SLAB.into_iter().enumerate() {
             let before = work.region;
             work.per_slab = per_slab;
             for axis in 0..self.width {
@@ -77,7 +77,7 @@ impl Search {
                 work.shave(axis, Side::Lower);
             }
             // The first pass has few evaluations per slab, so its failure says little.
-            if round > 0 && !has_shrunk(before, work.region) {
+            if pass > 0 && !has_shrunk(before, work.region) {
                 break;
             }
         }
@@ -146,8 +146,8 @@ impl Work<'_> {
 
     /// Moves a face inwards by the remaining fractions of a step.
     fn polish(&mut self, axis: usize, side: Side) {
-        for part in FINER {
-            let step = self.size(axis, side) * part;
+        for fraction in FINER {
+            let step = self.size(axis, side) * fraction;
             if self.budget > 0 && step.is_finite() {
                 self.cuts_off(axis, side, step);
             }

@@ -11,7 +11,7 @@ use crate::node::{Binary, NodeId, Ternary, Type, Unary};
 /// ordinary size.
 const ANGLE: f64 = 1.0 / 65_536.0;
 /// Slack, in periods, when looking for the maxima and minima of sine and cosine.
-const TURN: f64 = 1.0 / 16_384.0;
+const PERIOD_SLACK: f64 = 1.0 / 16_384.0;
 /// e to this power exceeds twice [`LARGE`].
 const LARGEST_POWER: f64 = 36.0;
 
@@ -189,11 +189,11 @@ impl Encloser<'_> {
         let x = self.interval(x);
         let size = self.magnitude(x);
         let slack = self.scaled(size, 4.0 * ROUNDING);
-        let slack = self.offset(slack, TURN);
-        let turns = [x.lo, x.hi].map(|end| self.scaled(end, 1.0 / TAU));
-        let turns = self.expand(Interval::new(turns[0], turns[1]), slack);
+        let slack = self.offset(slack, PERIOD_SLACK);
+        let periods = [x.lo, x.hi].map(|end| self.scaled(end, 1.0 / TAU));
+        let periods = self.expand(Interval::new(periods[0], periods[1]), slack);
         let [crests, troughs] = [crest, trough].map(|phase| {
-            let ends = [turns.lo, turns.hi].map(|end| self.offset(end, -phase / TAU));
+            let ends = [periods.lo, periods.hi].map(|end| self.offset(end, -phase / TAU));
             let last = self.graph.unary(Unary::Floor, ends[1]);
             self.graph.le(ends[0], last)
         });
@@ -214,8 +214,8 @@ impl Encloser<'_> {
             let half_turns = self.scaled(end, 1.0 / PI);
             self.offset(half_turns, 0.5)
         });
-        let turns = self.expand_by(Interval::new(ends[0], ends[1]), TURN);
-        let [first, last] = [turns.lo, turns.hi].map(|end| self.graph.unary(Unary::Floor, end));
+        let periods = self.expand_by(Interval::new(ends[0], ends[1]), PERIOD_SLACK);
+        let [first, last] = [periods.lo, periods.hi].map(|end| self.graph.unary(Unary::Floor, end));
         let same = self.graph.binary(Binary::Eq, first, last);
         let result = self.monotone(Unary::Tan, Interval::overflowing(x.lo, x.hi));
         let result = self.widen_relative(result, ANGLE);

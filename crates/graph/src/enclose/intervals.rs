@@ -44,8 +44,8 @@ impl Encloser<'_> {
         if !even {
             return None;
         }
-        let nothing = self.graph.number(0.0);
-        let unused = Affine { ends: [nothing; 2], magnitude: nothing };
+        let zero = self.graph.number(0.0);
+        let unused = Affine { ends: [zero; 2], magnitude: zero };
         Some(all.map(|x| self.affine(x).unwrap_or(unused)))
     }
 
@@ -208,15 +208,15 @@ impl Encloser<'_> {
     }
 
     /// Widens by a fraction of the ends.
-    pub(super) fn widen_relative(&mut self, x: Interval, part: f64) -> Interval {
-        let (less, more) = (1.0 - part, 1.0 + part);
+    pub(super) fn widen_relative(&mut self, x: Interval, fraction: f64) -> Interval {
+        let (less, more) = (1.0 - fraction, 1.0 + fraction);
         if self.graph.range(x.lo).lo >= 0.0 {
             Interval { lo: self.scaled(x.lo, less), hi: self.scaled(x.hi, more), ..x }
         } else if self.graph.range(x.hi).hi <= 0.0 {
             Interval { lo: self.scaled(x.lo, more), hi: self.scaled(x.hi, less), ..x }
         } else {
             let magnitude = self.magnitude(x);
-            let margin = self.scaled(magnitude, part);
+            let margin = self.scaled(magnitude, fraction);
             self.expand(x, margin)
         }
     }

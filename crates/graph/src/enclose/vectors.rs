@@ -135,9 +135,9 @@ impl Encloser<'_> {
         }
         let mut sum = None;
         for (lane, column) in (0..).zip(columns) {
-            let part = self.component(v, lane);
-            let part = self.splat(Type::Vec3, part);
-            let term = self.product(column, part);
+            let factor = self.component(v, lane);
+            let factor = self.splat(Type::Vec3, factor);
+            let term = self.product(column, factor);
             sum = Some(sum.map_or(term, |sum| self.sum(sum, term)));
         }
         sum.unwrap_or(v)

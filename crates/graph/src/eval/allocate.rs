@@ -44,8 +44,7 @@ impl Recorder {
         }
         for position in (0..count).rev() {
             let needed = match self.definitions[position] {
-                // A loop runs if any part of its result is read, and then all its registers are in
-                // use.
+                // A loop runs if any of its results is read, and then all its registers are in use.
                 Definition::Leave(id) => {
                     self.loops[id].results.iter().any(|&id| liveness.needed[id as usize])
                 }

@@ -30,7 +30,8 @@ impl<N: Number, F: FnMut(NodeId) -> [N; 4]> ScalarBackend for Direct<N, F> {
 
     fn input(&mut self, node: &Node) -> Option<Lanes<N>> {
         let lanes = (self.input)(self.current);
-        let width = result_type(node, |_| Type::Scalar).width(); // the type of an input does not depend on its argument
+        // The type of an input does not depend on its argument.
+        let width = result_type(node, |_| Type::Scalar).width();
         Some(Lanes::new(width, |i| lanes[i]))
     }
 }

@@ -269,7 +269,8 @@ impl ScalarBackend for Recorder {
         let param = self.samples.as_ref().map(|samples| samples.get(node).copied());
         match *node {
             Node::Sample(..) | Node::Point(..) | Node::MaterialAt(..) if param.is_some() => {
-                let width = result_type(node, |_| Type::Scalar).width(); // does not depend on the argument
+                // The type of an input does not depend on its argument.
+                let width = result_type(node, |_| Type::Scalar).width();
                 let value = match param.flatten() {
                     Some(param) => {
                         self.define(Definition::Input(FrameInput::Param(param), 0), false)

@@ -50,7 +50,7 @@ fn default_material(graph: &mut Graph) -> Fields {
 fn samples_in_order(graph: &Graph, shape: ShapeId, order: &[NodeId]) -> Vec<NodeId> {
     let children = &graph.shape(shape).children;
     let order_of: FxHashMap<ShapeId, usize> =
-        children.iter().enumerate().rev().map(|(place, &child)| (child, place)).collect();
+        children.iter().enumerate().rev().map(|(index, &child)| (child, index)).collect();
     let mut samples: Vec<(usize, NodeId)> = Vec::new();
     for &id in order {
         if let Some((child, _)) = graph.as_sample(id) {
@@ -96,10 +96,10 @@ fn mix(graph: &mut Graph, mut a: Fields, b: Fields, t: NodeId) -> Fields {
 
 /// The weight of a derivative: a negative one counts as far as its material is set.
 fn weight(graph: &mut Graph, derivative: NodeId, coverage: NodeId) -> NodeId {
-    let nothing = graph.number(0.0);
+    let zero = graph.number(0.0);
     let size = graph.neg(derivative);
     let covered = graph.mul(size, coverage);
-    let negative = graph.lt(derivative, nothing);
+    let negative = graph.lt(derivative, zero);
     graph.select(negative, covered, derivative)
 }
 
@@ -234,8 +234,8 @@ impl<'a> Selection<'a> {
         if !negative {
             return material;
         }
-        let nothing = self.graph.number(0.0);
-        let has_material = self.graph.lt(nothing, material[COVERAGE]);
+        let zero = self.graph.number(0.0);
+        let has_material = self.graph.lt(zero, material[COVERAGE]);
         self.select(has_material, material, self.first)
     }
 

@@ -1,11 +1,12 @@
-//! Sums, products, quotients, negation.
+//! Rules for sums, products, quotients and negation.
 
 use super::lanes;
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Unary};
 
 impl Graph {
-    /// Commutative operands in canonical order: the later stage first, then the older node.
+    /// The operands of a commutative operation in canonical order: the later stage first, then the
+    /// older node.
     pub(super) fn ordered(&self, a: NodeId, b: NodeId) -> (NodeId, NodeId) {
         let key = |id| (std::cmp::Reverse(self.stage(id)), id);
         if key(a) <= key(b) { (a, b) } else { (b, a) }
@@ -35,7 +36,7 @@ impl Graph {
         self.sum_of_selections(a, b).or_else(|| Some(self.intern(Node::Binary(Binary::Add, a, b))))
     }
 
-    /// `x + f`, f known before the points and x not.
+    /// `x + f`, where f does not depend on the point and x does.
     fn add_low(&mut self, x: NodeId, f: NodeId) -> NodeId {
         if let Some((x, g)) = self.as_offset(x) {
             let sum = self.add(g, f);
@@ -89,7 +90,8 @@ impl Graph {
         if let Some(difference) = self.sub_low(a, b) {
             return Some(difference);
         }
-        // A per-frame value stays negated: outside it would cost an operation at each point.
+        // A per-frame value stays negated: outside of it, the negation would cost an operation per
+        // point.
         if let Some(x) = self.as_neg(a)
             && self.is_low(a) <= self.is_low(b)
         {
@@ -99,7 +101,8 @@ impl Graph {
         self.sub_cancelled(a, b).or_else(|| self.sub_scaled(a, b))
     }
 
-    /// Where one side is known before the points and the other ends in such a part.
+    /// A difference of which one side does not depend on the point and the other ends in such a
+    /// term.
     fn sub_low(&mut self, a: NodeId, b: NodeId) -> Option<NodeId> {
         if self.is_low(b) && !self.is_low(a) {
             if let Some((x, f)) = self.as_offset(a) {
@@ -139,7 +142,7 @@ impl Graph {
         None
     }
 
-    /// `a - x * f` is `a + x * -f`: one operation less where the target fuses multiply and add.
+    /// `a - x * f` is `a + x * -f`, one operation less where the target fuses multiply and add.
     fn sub_scaled(&mut self, a: NodeId, b: NodeId) -> Option<NodeId> {
         let (x, f) = self.as_scaled(b)?;
         let negative = self.neg(f);
@@ -183,7 +186,7 @@ impl Graph {
         }
     }
 
-    /// `-min(x, y)` is `max(-x, -y)` where both negatives are free.
+    /// `-min(x, y)` is `max(-x, -y)`, if both negatives are free.
     fn negated_choice(&mut self, opposite: Binary, x: NodeId, y: NodeId) -> Option<NodeId> {
         let (x, y) = (self.free_negative(x)?, self.free_negative(y)?);
         Some(self.binary(opposite, x, y))
@@ -209,8 +212,8 @@ impl Graph {
         {
             return Some(product);
         }
-        self.mul_fillings(a, b)
-            .or_else(|| self.mul_fillings(b, a))
+        self.mul_splats(a, b)
+            .or_else(|| self.mul_splats(b, a))
             .or_else(|| self.mul_selection(a, b))
             .or_else(|| self.mul_selection(b, a))
             .or_else(|| self.mul_reciprocal(a, b))
@@ -225,7 +228,7 @@ impl Graph {
             (Some(x), Some(y)) => Some(self.mul(x, y)),
             (Some(x), None) if self.is_low(b) => {
                 let negative = self.neg(b);
-                // Two negations of per-frame values would only swap places.
+                // Moving a negation between two per-frame values would gain nothing.
                 if self.is_low(a) { None } else { Some(self.mul(x, negative)) }
             }
             (Some(x), None) => {
@@ -240,7 +243,7 @@ impl Graph {
         }
     }
 
-    /// `x * f`, f known before the points and x not.
+    /// `x * f`, where f does not depend on the point and x does.
     fn mul_low(&mut self, x: NodeId, f: NodeId) -> Option<NodeId> {
         if let Some((x, g)) = self.as_scaled(x) {
             let factor = self.mul(g, f);
@@ -274,7 +277,7 @@ impl Graph {
         self.mul_mask(x, f)
     }
 
-    /// A vector times a constant of zeros and ones picks components.
+    /// A vector times a constant of zeros and ones selects components.
     fn mul_mask(&mut self, v: NodeId, f: NodeId) -> Option<NodeId> {
         if self.ty(v).width() == 1 {
             return None;
@@ -283,16 +286,16 @@ impl Graph {
         if mask.iter().any(|&lane| lane != 0.0 && lane != 1.0) {
             return None;
         }
-        let nothing = self.number(0.0);
+        let zero = self.number(0.0);
         let parts: Vec<NodeId> = (0..)
             .zip(&mask)
-            .map(|(i, &lane)| if lane == 0.0 { nothing } else { self.component(v, i) })
+            .map(|(i, &lane)| if lane == 0.0 { zero } else { self.component(v, i) })
             .collect();
         Some(self.compose(&parts))
     }
 
-    /// `(v * splat(s)) * splat(t)` multiplies the numbers first.
-    fn mul_fillings(&mut self, product: NodeId, other: NodeId) -> Option<NodeId> {
+    /// `(v * splat(s)) * splat(t)` multiplies the scalars first.
+    fn mul_splats(&mut self, product: NodeId, other: NodeId) -> Option<NodeId> {
         if self.ty(other).width() == 1 {
             return None;
         }
@@ -302,7 +305,7 @@ impl Graph {
             (Some(s), None) => (y, s),
             (None, None) | (Some(_), Some(_)) => return None,
         };
-        let t = self.as_filling(other)?;
+        let t = self.as_equal_lanes(other)?;
         let factor = self.mul(s, t);
         Some(self.mul(v, factor))
     }
@@ -310,20 +313,21 @@ impl Graph {
     /// `select(c, 1, 0) * x`
     fn mul_selection(&mut self, selection: NodeId, x: NodeId) -> Option<NodeId> {
         let [condition, yes, no] = match self.as_splat(selection) {
-            Some(filling) => self.as_select(filling)?,
+            Some(scalar) => self.as_select(scalar)?,
             None => self.as_select(selection)?,
         };
-        let nothing = self.zero_like(x);
+        let zero = self.zero_like(x);
         if self.is_uniform(yes, 1.0) && self.is_uniform(no, 0.0) {
-            return Some(self.select(condition, x, nothing));
+            return Some(self.select(condition, x, zero));
         }
         if self.is_uniform(yes, 0.0) && self.is_uniform(no, 1.0) {
-            return Some(self.select(condition, nothing, x));
+            return Some(self.select(condition, zero, x));
         }
         None
     }
 
-    /// Whether it is a constant that f32 takes for infinite: 0 times that is no number there, and 0 times its factors one by one is 0.
+    /// True if the constant overflows f32. Folding factors into it would turn `0 * a * b = 0` into
+    /// `0 * inf = NaN`.
     fn overflows(&self, id: NodeId) -> bool {
         let beyond = |lane: &f64| lane.abs() > f64::from(f32::MAX);
         self.as_const(id)

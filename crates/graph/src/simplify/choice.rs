@@ -1,10 +1,10 @@
-//! Minimum, maximum, limits and selections: decided where ranges decide them.
+//! Rules for minimum, maximum, clamps and selections, which are decided where ranges decide them.
 
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Ternary, Unary};
 
 impl Graph {
-    /// a is nowhere above b.
+    /// True if the ranges show that a is never above b.
     pub(super) fn never_above(&self, a: NodeId, b: NodeId) -> bool {
         self.range(a).hi <= self.range(b).lo
     }
@@ -52,7 +52,7 @@ impl Graph {
         Some(self.neg(choice))
     }
 
-    /// `min(min(x, f), g)` with f and g known before the points.
+    /// `min(min(x, f), g)`, where f and g do not depend on the point.
     fn choice_of_constants(&mut self, op: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
         let (inner, g) = if self.is_low(b) { (a, b) } else { (b, a) };
         if !self.is_low(g) || self.is_low(inner) {
@@ -102,8 +102,8 @@ impl Graph {
             return Some(self.min(x, one));
         }
         (range.hi <= 1.0).then(|| {
-            let nought = self.zero_like(x);
-            self.max(x, nought)
+            let zero = self.zero_like(x);
+            self.max(x, zero)
         })
     }
 
@@ -162,14 +162,15 @@ impl Graph {
             return Some(self.select(condition, yes, inner));
         }
         if let Some((x, y)) = self.both_splat(yes, no) {
-            let filling = self.select(condition, x, y);
-            return Some(self.splat(self.ty(yes), filling));
+            let scalar = self.select(condition, x, y);
+            return Some(self.splat(self.ty(yes), scalar));
         }
         self.select_of_truths(condition, yes, no)
             .or_else(|| self.select_of_compared(condition, yes, no))
     }
 
-    /// `select(a < b, b, a)` is a maximum; on a tie it is what the selection gives.
+    /// `select(a < b, b, a)` is a maximum. The operands are ordered so that a tie gives what the
+    /// selection gives.
     fn select_of_compared(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> Option<NodeId> {
         let Node::Binary(op, a, b) = self.node(condition) else { return None };
         let tied = match op {

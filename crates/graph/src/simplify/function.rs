@@ -1,4 +1,4 @@
-//! Powers and roots.
+//! Rules for powers and roots.
 
 use crate::graph::Graph;
 use crate::node::{Binary, NodeId, Unary};

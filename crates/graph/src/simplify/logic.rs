@@ -1,11 +1,11 @@
-//! Comparisons and truth values.
+//! Rules for comparisons and truth values.
 
 use super::is_truth;
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Unary};
 
 impl Graph {
-    /// The truth value, if the node is a constant one.
+    /// The truth value, if the node is a constant truth value.
     pub(super) fn as_truth(&self, id: NodeId) -> Option<bool> {
         self.as_splat_number(id).filter(|_| is_truth(self.ty(id))).map(|value| value != 0.0)
     }
@@ -86,7 +86,7 @@ impl Graph {
         }
     }
 
-    /// A commutative operation in canonical order; `None` if that is the order given.
+    /// A commutative operation in canonical order; `None` if the given order is canonical.
     pub(super) fn in_order(&mut self, op: Binary, a: NodeId, b: NodeId) -> Option<NodeId> {
         let (first, second) = self.ordered(a, b);
         (first != a).then(|| self.intern(Node::Binary(op, first, second)))

@@ -1,16 +1,18 @@
-//! What the builders do before they make a node: fold constants, and replace an operation by a cheaper one
+//! Simplification in the builders: folding constants, and replacing an operation by a cheaper one
 //! that is equal over the reals.
 //!
-//! Canonical forms, so that equal values meet in one node and constants gather:
+//! Canonical forms, so that equal values share one node and constants gather:
 //!
-//! - `a + b` and `a * b`: what is known earlier stands on the right, else the older node on the left.
+//! - `a + b` and `a * b`: the operand of the earlier stage stands on the right; within one stage,
+//!   the older node stands on the left.
 //! - `x - c` with a constant is an addition, unless no component of c is negative.
-//! - Constant and per-frame parts of sums and products are brought together: `(x + f) + g` is `x + (f + g)`,
-//!   `x / f` is `x * (1 / f)`.
-//! - Negation floats outwards, into constants where it meets one.
+//! - Constant and per-frame terms of sums and factors of products are gathered: `(x + f) + g` is
+//!   `x + (f + g)`, `x / f` is `x * (1 / f)`.
+//! - Negation moves outwards, and into constants where it meets one.
 //!
-//! Rules never make a non-finite constant: such an operation stays as it is ([`Graph::non_finite`]). Each
-//! rule looks a fixed number of levels down, so building is linear in the number of operations asked for.
+//! Rules never make a non-finite constant: such an operation stays as it is
+//! ([`Graph::non_finite`]). Each rule looks at a fixed number of levels, so building is linear in
+//! the number of operations.
 
 mod arithmetic;
 mod choice;
@@ -23,7 +25,7 @@ use crate::graph::Graph;
 use crate::node::{Binary, Const, LoopVar, Node, NodeId, Stage, Ternary, Type, Unary};
 
 impl Graph {
-    /// The node for an operation: a constant, a simpler equal, or the operation itself.
+    /// The node for an operation: a constant, a simpler equivalent, or the operation itself.
     pub(crate) fn make(&mut self, node: Node) -> NodeId {
         if let Some(value) = self.folded(&node) {
             return self.intern(Node::Const(value));
@@ -35,17 +37,17 @@ impl Graph {
         made
     }
 
-    /// Whether a node is an operation on constants without a finite result, such as `1 / 0`.
+    /// True if a node is an operation on constants without a finite result, such as `1 / 0`.
     pub fn non_finite(&self, id: NodeId) -> bool {
         self.stage(id) == Stage::Const && self.as_const(id).is_none()
     }
 
     fn folded(&self, node: &Node) -> Option<Const> {
-        // Most nodes depend on something, and stages are smaller to look at than nodes.
+        // Most nodes depend on an input, and stages are cheaper to read than nodes.
         if node.own_arguments().any(|argument| self.stage(argument) > Stage::Const) {
             return None;
         }
-        // A loop, or what only it knows, is no constant.
+        // A node without arguments (a loop or its variable, for example) is no constant.
         node.own_arguments().next()?;
         fold_where(node, |argument| self.const_at(argument))
     }
@@ -71,10 +73,10 @@ impl Graph {
     }
 
     fn simplified_unary(&mut self, op: Unary, a: NodeId) -> Option<NodeId> {
-        if let Some(filling) = self.as_splat(a)
+        if let Some(scalar) = self.as_splat(a)
             && is_componentwise(op)
         {
-            let result = self.unary(op, filling);
+            let result = self.unary(op, scalar);
             return Some(self.splat(self.ty(a), result));
         }
         match op {
@@ -147,7 +149,7 @@ impl Graph {
 
 /// Views of nodes that the rules match on.
 impl Graph {
-    /// Known before the points are.
+    /// True if the node does not depend on the point.
     fn is_low(&self, id: NodeId) -> bool {
         self.stage(id) < Stage::Point
     }
@@ -174,7 +176,7 @@ impl Graph {
             | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..) => false,
-            Node::Variable(_, place, _) => place == LoopVar::Index,
+            Node::Variable(_, var, _) => var == LoopVar::Index,
         }
     }
 
@@ -202,13 +204,13 @@ impl Graph {
         }
     }
 
-    /// The number that fills a vector.
+    /// The scalar that a `Splat` repeats.
     fn as_splat(&self, id: NodeId) -> Option<NodeId> {
         if let Node::Splat(_, a) = self.node(id) { Some(a) } else { None }
     }
 
-    /// The number that fills a vector, constants included; a number itself.
-    fn as_filling(&mut self, id: NodeId) -> Option<NodeId> {
+    /// The scalar that all lanes equal, for a `Splat` or a constant; a scalar itself.
+    fn as_equal_lanes(&mut self, id: NodeId) -> Option<NodeId> {
         if self.ty(id).width() == 1 {
             return Some(id);
         }
@@ -216,13 +218,13 @@ impl Graph {
         constant.or_else(|| self.as_splat(id))
     }
 
-    /// The fillings of two vectors, of which at least one is no constant.
+    /// The scalars of two vectors with equal lanes, at least one of them not constant.
     fn both_splat(&mut self, a: NodeId, b: NodeId) -> Option<(NodeId, NodeId)> {
         self.as_splat(a).or(self.as_splat(b))?;
-        self.as_filling(a).zip(self.as_filling(b))
+        self.as_equal_lanes(a).zip(self.as_equal_lanes(b))
     }
 
-    /// `(x, f)` of a node that is `x + f` with f known before the points.
+    /// `(x, f)` for a node `x + f`, where f does not depend on the point.
     fn as_offset(&mut self, id: NodeId) -> Option<(NodeId, NodeId)> {
         if let Some((x, f)) = self.as_binary(Binary::Add, id) {
             return self.is_low(f).then_some((x, f));
@@ -231,12 +233,12 @@ impl Graph {
         Some((x, self.neg(f)))
     }
 
-    /// `(x, f)` of a node that is `x * f` with f known before the points.
+    /// `(x, f)` for a node `x * f`, where f does not depend on the point.
     fn as_scaled(&self, id: NodeId) -> Option<(NodeId, NodeId)> {
         self.as_binary(Binary::Mul, id).filter(|&(_, f)| self.is_low(f))
     }
 
-    /// The negative of a node where it takes no further operation at a point.
+    /// The negative of a node, if it takes no further operation per point.
     fn free_negative(&mut self, id: NodeId) -> Option<NodeId> {
         if self.is_low(id) {
             return self.as_const(id).map(|_| self.neg(id));
@@ -259,7 +261,7 @@ impl Graph {
     }
 }
 
-/// Whether an operation on a vector is one on each component.
+/// True if the operation acts on each component separately.
 fn is_componentwise(op: Unary) -> bool {
     match op {
         Unary::Length | Unary::Normalize => false,
@@ -291,7 +293,7 @@ fn is_componentwise(op: Unary) -> bool {
     }
 }
 
-/// Whether an operation on two vectors is one on each pair of components.
+/// True if the operation acts on each pair of components separately.
 fn is_lanewise(op: Binary) -> bool {
     match op {
         Binary::Add
@@ -316,7 +318,7 @@ fn is_lanewise(op: Binary) -> bool {
     }
 }
 
-/// The lanes of a constant that its type has.
+/// The lanes of a constant within its width.
 fn lanes(value: &Const) -> Vec<f64> {
     value.lanes()[..value.ty().width()].to_vec()
 }

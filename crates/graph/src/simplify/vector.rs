@@ -1,4 +1,4 @@
-//! Vectors: joining, picking, products, lengths.
+//! Rules for vectors: composing, swizzling, products, lengths.
 
 use super::{is_componentwise, is_lanewise, lanes};
 use crate::graph::Graph;
@@ -9,8 +9,8 @@ impl Graph {
         self.gathered(parts).or_else(|| self.vectorised(parts))
     }
 
-    /// The parts as one vector without computing anything: components of one vector, constants, or one
-    /// number.
+    /// The parts as one vector without any computation: components of one vector, constants, or one
+    /// scalar.
     fn gathered(&mut self, parts: &[NodeId]) -> Option<NodeId> {
         let ty = Type::of_width(parts.len())?;
         if parts.iter().all(|&part| part == parts[0]) {
@@ -24,8 +24,8 @@ impl Graph {
         let component = |&part: &NodeId| {
             self.as_component(part).filter(|&(from, _)| from == source).map(|(_, lane)| lane)
         };
-        let picked: Option<Vec<u8>> = parts.iter().map(component).collect();
-        Some(self.swizzle(source, &picked?))
+        let selected: Option<Vec<u8>> = parts.iter().map(component).collect();
+        Some(self.swizzle(source, &selected?))
     }
 
     fn as_component(&self, id: NodeId) -> Option<(NodeId, u8)> {
@@ -36,7 +36,8 @@ impl Graph {
         }
     }
 
-    /// The same operation on each part becomes one on vectors, where those take nothing to gather.
+    /// The same operation on each part becomes one vector operation, if gathering its arguments is
+    /// free.
     fn vectorised(&mut self, parts: &[NodeId]) -> Option<NodeId> {
         if let Node::Unary(op, _) = self.node(parts[0]) {
             let inner: Option<Vec<NodeId>> =
@@ -55,25 +56,26 @@ impl Graph {
         Some(self.binary(op, left, right))
     }
 
-    pub(super) fn simplified_swizzle(&mut self, a: NodeId, picked: &[u8]) -> Option<NodeId> {
-        let identity = picked.len() == self.ty(a).width()
-            && (0..).zip(picked).all(|(place, &lane): (u8, _)| place == lane);
+    pub(super) fn simplified_swizzle(&mut self, a: NodeId, selected: &[u8]) -> Option<NodeId> {
+        let identity = selected.len() == self.ty(a).width()
+            && (0..).zip(selected).all(|(index, &lane): (u8, _)| index == lane);
         if identity {
             return Some(a);
         }
         match self.node(a) {
-            Node::Splat(_, filling) => {
-                let ty = Type::of_width(picked.len())?;
-                Some(self.splat(ty, filling))
+            Node::Splat(_, scalar) => {
+                let ty = Type::of_width(selected.len())?;
+                Some(self.splat(ty, scalar))
             }
             Node::Compose(_, parts) => {
                 let parts: Vec<NodeId> =
-                    picked.iter().map(|&lane| parts[usize::from(lane)]).collect();
+                    selected.iter().map(|&lane| parts[usize::from(lane)]).collect();
                 Some(self.compose(&parts))
             }
             Node::Swizzle(_, v, inner) => {
-                let picked: Vec<u8> = picked.iter().map(|&lane| inner[usize::from(lane)]).collect();
-                Some(self.swizzle(v, &picked))
+                let selected: Vec<u8> =
+                    selected.iter().map(|&lane| inner[usize::from(lane)]).collect();
+                Some(self.swizzle(v, &selected))
             }
             Node::Const(_)
             | Node::Point(..)
@@ -96,13 +98,13 @@ impl Graph {
         }
         match self.node(a) {
             Node::Unary(Unary::Neg | Unary::Abs, inner) => Some(self.length(inner)),
-            Node::Splat(ty, filling) => {
-                let size = self.abs(filling);
+            Node::Splat(ty, scalar) => {
+                let size = self.abs(scalar);
                 let factor = self.number((ty.width() as f64).sqrt());
                 Some(self.mul(size, factor))
             }
             Node::Binary(Binary::Mul, v, f) if self.is_low(f) => {
-                let factor = self.as_filling(f)?;
+                let factor = self.as_equal_lanes(f)?;
                 let (length, size) = (self.length(v), self.abs(factor));
                 Some(self.mul(length, size))
             }
@@ -148,7 +150,8 @@ impl Graph {
             .or_else(|| self.in_order(Binary::Dot, a, b))
     }
 
-    /// Components with weight 0 drop out; one component, or two of weight 1 or -1, need no dot product.
+    /// Components with weight 0 are dropped. One component, or two of weight 1 or -1, need no
+    /// scalar product.
     fn dot_constant(&mut self, v: NodeId, weights: &[f64]) -> Option<NodeId> {
         let kept: Vec<u8> =
             (0..).zip(weights).filter(|(_, weight)| **weight != 0.0).map(|(i, _)| i).collect();
@@ -179,21 +182,21 @@ impl Graph {
     fn dot_scaled(&mut self, a: NodeId, w: NodeId) -> Option<NodeId> {
         let (x, y) = self.as_binary(Binary::Mul, a)?;
         let (v, filled) = if self.as_splat(x).is_some() { (y, x) } else { (x, y) };
-        let factor = self.as_filling(filled)?;
+        let factor = self.as_equal_lanes(filled)?;
         let product = self.dot(v, w);
         Some(self.mul(product, factor))
     }
 
-    /// The sum of a vector's components, where those are known.
+    /// The sum of a vector's components, where these are known.
     fn dot_of_ones(&mut self, v: NodeId, ones: NodeId) -> Option<NodeId> {
         if !self.is_uniform(ones, 1.0) {
             return None;
         }
         match self.node(v) {
             Node::Binary(Binary::Mul, x, y) => Some(self.dot(x, y)),
-            Node::Splat(ty, filling) => {
+            Node::Splat(ty, scalar) => {
                 let width = self.number(ty.width() as f64);
-                Some(self.mul(filling, width))
+                Some(self.mul(scalar, width))
             }
             Node::Compose(ty, parts) => {
                 let parts = &parts[..ty.width()];
@@ -215,7 +218,7 @@ impl Graph {
         }
     }
 
-    /// With a constant along one axis.
+    /// A vector product with a constant along one axis.
     pub(super) fn simplified_cross(&mut self, a: NodeId, b: NodeId) -> Option<NodeId> {
         if let Some(value) = self.as_const(b) {
             return self.cross_axis(a, &lanes(&value));

@@ -52,8 +52,8 @@ pub(super) fn base(graph: &mut Graph, id: NodeId) -> Option<Affine> {
     let mut rows = [Row::ZERO; 3];
     if graph.stage(id) < Stage::Point {
         for (lane, row) in (0..width).zip(&mut rows) {
-            let part = graph.component(id, lane as u8);
-            *row = Row::constant(Coefficient::of(graph, part));
+            let component = graph.component(id, lane as u8);
+            *row = Row::constant(Coefficient::of(graph, component));
         }
         return Some(Affine { atoms: [None; 3], width, rows });
     }

@@ -69,10 +69,10 @@ const CONSTANTS: [f64; 16] = [
     0.1,
 ];
 
-/// The one param that random graphs read, as position.
+/// The only param that random graphs read, by index.
 const PARAM: FrameInput = FrameInput::Param(0);
 
-/// What a random graph is made from: small to print, and shrinks step by step.
+/// The steps that make a random graph: small to print, and shrinking step by step.
 pub type Steps = Vec<(u8, u8, [u8; 3])>;
 
 /// Up to `size` steps.
@@ -80,7 +80,7 @@ pub fn steps(size: usize) -> impl Strategy<Value = Steps> {
     prop::collection::vec((0_u8..13, any::<u8>(), any::<[u8; 3]>()), 1..size)
 }
 
-/// A graph of operations on a point, a param and constants; all its nodes are of interest.
+/// A graph of operations on a point, a param and constants. Tests look at all its nodes.
 pub fn graph(steps: &Steps) -> Graph {
     let mut build = Build::new();
     for &(kind, op, picks) in steps {
@@ -112,7 +112,7 @@ impl Build {
 
     fn step(&mut self, kind: u8, op: usize, picks: [u8; 3]) {
         let pick = |list: &[NodeId], i: usize| {
-            // Mostly recent ones, so that expressions grow deep.
+            // Mostly recent nodes, so that expressions grow deep.
             list[list.len() - 1 - usize::from(picks[i]) % list.len()]
         };
         let s = [0, 1, 2].map(|i| pick(&self.scalars, i));
@@ -151,7 +151,7 @@ impl Build {
                 _ => graph.binary(COMPARISONS[op % 4], s[0], s[1]),
             }),
             11 => {
-                // What intervals know to be one value: c x (1 - x).
+                // A product for which intervals have a rule of their own: c x (1 - x).
                 let one = graph.number(1.0);
                 let (rest, scaled) = (graph.sub(one, s[0]), graph.mul(s[0], s[1]));
                 self.scalars.push(graph.mul(scaled, rest));
@@ -164,13 +164,14 @@ impl Build {
     }
 }
 
-/// Each node's value, one node at a time; `None` where it, or what it is made of, is not finite.
+/// The value of each node, computed one node at a time; `None` where it, or a value that it depends
+/// on, is not finite.
 #[allow(dead_code, reason = "not all tests that share this compare with tapes")]
 pub fn each_node(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const>> {
     each_node_reading(graph, point, param, |_, value| value)
 }
 
-/// The same of a shader in real arithmetic: what is known before the point is comes to it in f32.
+/// Like [`each_node`], for a shader in real arithmetic: it reads per-frame values as f32.
 #[allow(dead_code, reason = "not all tests that share this compare with shaders")]
 pub fn each_node_in_shader(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Option<Const>> {
     each_node_reading(graph, point, param, |[reader, read], value| {
@@ -182,7 +183,7 @@ pub fn each_node_in_shader(graph: &Graph, point: [f64; 3], param: f64) -> Vec<Op
     })
 }
 
-/// Where `as_read` says what a node gets of the value of another.
+/// Like [`each_node`], where `as_read` gives the value of an argument as a node reads it.
 fn each_node_reading(
     graph: &Graph,
     point: [f64; 3],

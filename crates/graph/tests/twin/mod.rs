@@ -1,10 +1,11 @@
-//! Random expressions built twice: as nodes, through the simplifying builders, and as plain f64 arithmetic.
+//! Random expressions built twice: as nodes, through the simplifying builders, and as plain f64
+//! arithmetic.
 
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Number};
 use sdfc_graph::{Binary, Dim, FrameInput, Graph, NodeId, Ternary, Type, Unary};
 
-/// What one expression is made from.
+/// The choices that make one expression.
 pub type Step = (u8, [u8; 4]);
 
 /// Up to `size` steps.
@@ -12,7 +13,7 @@ pub fn steps(size: usize) -> impl Strategy<Value = Vec<Step>> {
     prop::collection::vec((0_u8..20, any::<[u8; 4]>()), 1..size)
 }
 
-/// Only maps of vectors: affine ones, and a turn that depends on the point.
+/// Only maps of vectors: affine maps, and a rotation that depends on the point.
 pub fn maps(size: usize) -> impl Strategy<Value = Vec<Step>> {
     let kind = prop_oneof![
         4 => Just(20_u8), 4 => Just(21), 2 => Just(22), 2 => Just(23), 2 => Just(24), 1 => Just(25),
@@ -31,18 +32,19 @@ struct Twin<const N: usize> {
     value: [f64; N],
 }
 
-/// Expressions with their values at one place.
+/// Expressions with their values at one point.
 pub struct Case {
     pub graph: Graph,
     pub point: NodeId,
     scalars: Vec<Twin<1>>,
     vectors: Vec<Twin<3>>,
-    /// Two compared values are so near that rounding decides.
+    /// True if two compared values are so close that rounding decides.
     fragile: bool,
 }
 
 impl Case {
-    /// All nodes with their values; `None` where rounding decides one, or one is too large to compare.
+    /// All nodes with their values; `None` where rounding decides one of them, or one is too large
+    /// to compare.
     pub fn expected(&self) -> Option<Vec<(NodeId, Vec<f64>)>> {
         let scalars = self.scalars.iter().map(|twin| (twin.id, twin.value.to_vec()));
         let vectors = self.vectors.iter().map(|twin| (twin.id, twin.value.to_vec()));
@@ -209,7 +211,7 @@ impl Case {
         self.vectors.push(Twin { id, value });
     }
 
-    /// Of the last vector, or of an earlier one.
+    /// A map of the last vector or of an earlier one.
     fn map(&mut self, kind: u8, picks: [u8; 4]) {
         let last = self.vectors.len() - 1;
         let v =
@@ -246,7 +248,7 @@ impl Case {
         }
     }
 
-    /// About one axis.
+    /// A rotation about one axis.
     fn turn(&mut self, v: Twin<3>, axis: u8, angle: Twin<1>) {
         let (i, j) = (usize::from(axis % 3), usize::from((axis % 3 + 1) % 3));
         let graph = &mut self.graph;
@@ -267,12 +269,12 @@ fn picks_max(op: usize) -> bool {
     (op / 8).is_multiple_of(2)
 }
 
-/// Mostly recent ones, so that expressions grow deep.
+/// Mostly recent values, so that expressions grow deep.
 fn pick(len: usize, by: u8) -> usize {
     len - 1 - usize::from(by) % len.min(if by.is_multiple_of(3) { len } else { 6 })
 }
 
-/// A point, a param and constants, and what the steps make of them.
+/// Expressions over a point, a param and constants.
 pub fn case(steps: &[Step], point: [f64; 3], param: f64) -> Case {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);

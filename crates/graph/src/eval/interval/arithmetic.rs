@@ -1,9 +1,10 @@
-//! Sums, products, quotients and what is made of them.
+//! Sums, products, quotients, remainders and mixtures.
 
 use super::{Interval, MARGIN, lower, upper};
 use crate::eval::Number;
 
-/// The rounding of a smaller product may fall below the smallest number.
+/// Smallest product whose exactness can be checked: the rounding error of a smaller one may
+/// underflow.
 const LEAST_CHECKED: f64 = 1e-200;
 
 impl Interval {
@@ -13,7 +14,8 @@ impl Interval {
 
     pub(super) fn product(self, y: Self) -> Self {
         if self.lo == self.hi && y.lo == y.hi {
-            // Places in lists are products of whole numbers: one that is rounded down is the place before.
+            // Indices into lists are products of whole numbers, and one that is rounded down
+            // selects the element before.
             let exact = product(self.lo, y.lo);
             let is_zero = self.lo == 0.0 || y.lo == 0.0;
             if is_zero || exact.abs() > LEAST_CHECKED && self.lo.mul_add(y.lo, -exact) == 0.0 {
@@ -29,7 +31,8 @@ impl Interval {
         signed(self, y, around(ends))
     }
 
-    /// A divisor with 0 at one end leaves one side unbounded, one with 0 inside both.
+    /// The quotient. A divisor with 0 at one end makes one side unbounded, a divisor with 0 inside
+    /// both sides.
     pub(super) fn quotient(self, y: Self) -> Self {
         if y.hi <= 0.0 {
             return self.neg().quotient_by_positive(y.neg());
@@ -39,7 +42,7 @@ impl Interval {
 
     fn quotient_by_positive(self, y: Self) -> Self {
         if self.lo == self.hi && y.lo == y.hi && y.lo > 0.0 {
-            // Counting relies on quotients of whole numbers.
+            // Code that counts relies on exact quotients of whole numbers.
             let exact = self.lo / y.lo;
             if exact.mul_add(-y.lo, self.lo) == 0.0 {
                 return Self { lo: exact, hi: exact };
@@ -64,8 +67,8 @@ impl Interval {
         }
     }
 
-    /// `x - y * n` where the quotient's floor is one whole number n, else the range between 0 and y.
-    /// As x grows, so does the error by which `x - y * floor(x / y)` misses that range in f64.
+    /// `x - y * n` if the quotient's floor is one whole number n, else the range between 0 and y.
+    /// In f64 `x - y * floor(x / y)` leaves that range by an error that grows with x.
     pub(super) fn remainder(self, y: Self, whole: Self) -> Self {
         if y.contains(0.0) {
             return Self::ENTIRE;
@@ -77,9 +80,10 @@ impl Interval {
         between.grown(MARGIN * (self.magnitude() + y.magnitude()))
     }
 
-    /// A component by its vector's length, which is not below the component's magnitude; 0 by 0 is 0.
+    /// A component of a vector, divided by the vector's length, which is at least the component's
+    /// magnitude; 0 divided by 0 is 0.
     pub(super) fn component(self, length: Self) -> Self {
-        // Where squares fall below the normal numbers, a computed length is off by up to a third.
+        // If the squares are subnormal, a computed length is off by up to a third.
         let limit = if length.lo > 1e-150 { 1.0 + MARGIN } else { 1.5 };
         let ratio = if length.lo > 0.0 { self.quotient(length) } else { Self::ENTIRE };
         let lo = if self.lo >= 0.0 { 0.0 } else { -limit };
@@ -87,8 +91,8 @@ impl Interval {
         ratio.clipped(lo, hi)
     }
 
-    /// `x * (1 - t) + y * t`. For t from 0 to 1 it rises with x and y and is linear in t, so its
-    /// extremes are at ends, and so are those of the rounded one but for a margin relative to the terms.
+    /// `x * (1 - t) + y * t`. For t from 0 to 1 it increases with x and y and is linear in t, so
+    /// its extremes are at ends, also when rounded, up to a margin relative to the terms.
     pub(super) fn mixture(self, y: Self, t: Self) -> Self {
         if t.lo < 0.0 || t.hi > 1.0 {
             return self.product(Self::TRUE.sum(t.neg())).sum(y.product(t));
@@ -99,7 +103,7 @@ impl Interval {
 
 impl Interval {
     /// `x * y` for `y = c * (1 - x)`: `x * (1 - x)` is extreme at the ends of x, and 1/4 at 1/2.
-    pub(super) fn dip(self, y: Self, c: Self) -> Self {
+    pub(super) fn x_times_complement(self, y: Self, c: Self) -> Self {
         let apart = self.product(y);
         let at = |x: f64| x * (1.0 - x);
         let (a, b) = (at(self.lo), at(self.hi));
@@ -111,7 +115,7 @@ impl Interval {
     }
 }
 
-/// Not above the least mixture of two lower ends, for t from 0 to 1.
+/// A lower bound of the mixtures of two lower ends, for t from 0 to 1.
 fn mixture_below(x: f64, y: f64, t: Interval) -> f64 {
     let mixed = |t: f64| product(x, 1.0 - t) + product(y, t);
     let (first, last) = (mixed(t.lo), mixed(t.hi));
@@ -122,7 +126,7 @@ fn mixture_below(x: f64, y: f64, t: Interval) -> f64 {
     lower(first.min(last) - MARGIN * (size(x) + size(y)))
 }
 
-/// The sum, rounded down unless it is exact (Knuth's two-sum tells).
+/// The sum, rounded down unless Knuth's two-sum shows it to be exact.
 fn sum_below(a: f64, b: f64) -> f64 {
     let sum = a + b;
     let part = sum - a;
@@ -130,17 +134,17 @@ fn sum_below(a: f64, b: f64) -> f64 {
     if error >= 0.0 && sum.is_finite() { sum } else { infinite_or_below(sum, a, b) }
 }
 
-/// An end that is infinite because a term is, else the number below.
+/// The sum itself if it is infinite because a term is, else the next number below.
 fn infinite_or_below(sum: f64, a: f64, b: f64) -> f64 {
     if sum == f64::INFINITY && (a.is_infinite() || b.is_infinite()) { sum } else { lower(sum) }
 }
 
-/// A product of ends; an infinite end is never reached, so 0 times it is 0.
+/// A product of ends. An infinite end is never reached, so 0 times it is 0.
 fn product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-/// A quotient of ends; of two infinite ones 0, since other ends then give the other extreme.
+/// A quotient of ends. It is 0 for two infinite ones, since other ends then give the other extreme.
 fn quotient(a: f64, b: f64) -> f64 {
     if a.is_infinite() && b.is_infinite() { 0.0 } else { a / b }
 }
@@ -152,7 +156,7 @@ fn around([a, b, c, d]: [f64; 4]) -> Interval {
     Interval { lo: lower(lo), hi: upper(hi) }
 }
 
-/// A product or quotient, kept on the side of 0 that the signs of its arguments leave it.
+/// A product or quotient, clipped to the sign that the signs of its arguments imply.
 fn signed(x: Interval, y: Interval, result: Interval) -> Interval {
     let (x_positive, y_positive) = (x.lo >= 0.0, y.lo >= 0.0);
     let (x_negative, y_negative) = (x.hi <= 0.0, y.hi <= 0.0);
@@ -170,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whole_numbers_stay_whole() {
+    fn products_and_sums_of_whole_numbers_are_exact() {
         let one = |x: i32| Interval::constant(f64::from(x));
         for (x, y) in [(0, 16), (16, 0), (-3, 0), (0, 0), (7, -5), (16, 12)] {
             assert_eq!(one(x).mul(one(y)), one(x * y), "{x} * {y}");

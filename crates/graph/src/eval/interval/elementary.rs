@@ -1,10 +1,10 @@
-//! Roots, logarithms, powers and angles.
+//! Roots, logarithms, powers, trigonometric functions and angles.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{Interval, MARGIN, above, below, lower, upper};
 
-/// Beyond this, the phase of an angle is not worth following.
+/// Largest angle whose phase is computed.
 const LARGEST_ANGLE: f64 = 1e9;
 
 impl Interval {
@@ -32,33 +32,38 @@ impl Interval {
     }
 
     pub(super) fn sine(self) -> Self {
-        self.wave(libm::sin, FRAC_PI_2, -FRAC_PI_2)
+        self.sine_wave(libm::sin, FRAC_PI_2, -FRAC_PI_2)
     }
 
     pub(super) fn cosine(self) -> Self {
-        self.wave(libm::cos, 0.0, PI)
+        self.sine_wave(libm::cos, 0.0, PI)
     }
 
-    /// A function of period 2π that falls from 1 at `crest` to -1 at `trough`.
-    fn wave(self, f: impl Fn(f64) -> f64, crest: f64, trough: f64) -> Self {
+    /// Bounds sine or cosine: a function of period 2π that falls from 1 at `crest` to -1 at
+    /// `trough`.
+    fn sine_wave(self, f: impl Fn(f64) -> f64, crest: f64, trough: f64) -> Self {
         let (a, b) = (f(self.lo), f(self.hi));
-        let hi = if self.meets(crest, TAU) { 1.0 } else { above(a.max(b)) };
-        let lo = if self.meets(trough, TAU) { -1.0 } else { below(a.min(b)) };
+        let hi = if self.contains_multiple(crest, TAU) { 1.0 } else { above(a.max(b)) };
+        let lo = if self.contains_multiple(trough, TAU) { -1.0 } else { below(a.min(b)) };
         Self { lo, hi }.clipped(-1.0, 1.0)
     }
 
     pub(super) fn tangent(self) -> Self {
-        if self.meets(FRAC_PI_2, PI) { Self::ENTIRE } else { self.increasing(libm::tan) }
+        if self.contains_multiple(FRAC_PI_2, PI) {
+            Self::ENTIRE
+        } else {
+            self.increasing(libm::tan)
+        }
     }
 
-    /// Whether some `place + k * period` may lie in it.
-    fn meets(self, place: f64, period: f64) -> bool {
+    /// True if the interval may contain `phase + k * period` for a whole number k.
+    fn contains_multiple(self, phase: f64, period: f64) -> bool {
         let size = self.magnitude();
         if size > LARGEST_ANGLE || self.hi - self.lo >= period {
             return true;
         }
         let slack = MARGIN * (size + period);
-        let last = ((self.hi + slack - place) / period).floor() * period + place;
+        let last = ((self.hi + slack - phase) / period).floor() * period + phase;
         last >= self.lo - slack
     }
 
@@ -77,7 +82,7 @@ impl Interval {
         Self { lo: below(libm::acos(hi)).max(0.0), hi: above(libm::acos(lo)) }
     }
 
-    /// Monotonic in the base and in the exponent apart, so the extremes are at corners.
+    /// `x^y`, monotonic in the base and in the exponent separately, so the extremes are at corners.
     pub(super) fn power(self, y: Self) -> Self {
         if self.hi < 0.0 {
             return Self::ENTIRE;
@@ -94,8 +99,8 @@ impl Interval {
         Self { lo, hi }.widened().clipped(0.0, f64::INFINITY)
     }
 
-    /// `atan2(self, x)`: a box that keeps off the origin and the cut along negative x is seen under
-    /// the angles between its corners.
+    /// `atan2(self, x)`: the angles of a box that contains neither the origin nor a point of the
+    /// branch cut along negative x lie between the angles of its corners.
     pub(super) fn angle(self, x: Self) -> Self {
         if self.contains(0.0) && x.lo <= 0.0 {
             return Self { lo: below(-PI), hi: above(PI) };
@@ -111,7 +116,7 @@ impl Interval {
         Self { lo, hi }.widened()
     }
 
-    /// `atan2(y, x)` for negative x and a y around 0: of a y that is not above 0, and of one that is not below.
+    /// `atan2(y, x)` for negative x and a y around 0: first for y ≤ 0, then for y ≥ 0.
     pub(super) fn angles_at_cut(y: Self, x: Self) -> [Self; 2] {
         let below = Self { lo: -PI, hi: if y.lo < 0.0 { libm::atan2(y.lo, x.hi) } else { -PI } };
         let above = Self { lo: if y.hi > 0.0 { libm::atan2(y.hi, x.hi) } else { PI }, hi: PI };

@@ -1,4 +1,4 @@
-//! Sound enclosures.
+//! Interval arithmetic with conservative rounding.
 
 mod arithmetic;
 mod elementary;
@@ -9,14 +9,15 @@ pub use path::BranchPath;
 use super::Number;
 use super::hash::{HASH_COUNT, hash};
 
-/// All numbers from `lo` to `hi`, in f64.
+/// An interval: all numbers from `lo` to `hi`, in f64.
 ///
-/// An operation on intervals gives an interval that holds the operation's result, both in real arithmetic and
-/// as computed in f64, for every choice of numbers from the arguments that it is defined for. So for a field
-/// over a box: wherever its formula is defined, its value lies in the result. If it is defined nowhere, the result is all
-/// numbers. An undecided truth value spans 0 to 1; a choice by it spans both branches.
+/// An operation on intervals gives an interval that contains the operation's result, both in real
+/// arithmetic and as computed in f64, for all numbers from the arguments for which it is defined.
+/// So for a field over a box: wherever its formula is defined, its value lies in the result. If it
+/// is defined nowhere, the result is all numbers. An undecided truth value spans 0 to 1; a
+/// selection by it spans both branches.
 ///
-/// Division by a negative zero counts as undefined, as does any division by zero.
+/// Division by zero, also by a negative zero, counts as undefined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     lo: f64,
@@ -31,7 +32,7 @@ impl Interval {
     const TRUE: Self = Self { lo: 1.0, hi: 1.0 };
     const UNDECIDED: Self = Self { lo: 0.0, hi: 1.0 };
 
-    /// From one end to the other; all numbers if they are out of order or NaN.
+    /// The interval between two ends; all numbers if they are out of order or NaN.
     pub fn new(lo: f64, hi: f64) -> Self {
         if lo <= hi { Self { lo, hi } } else { Self::ENTIRE }
     }
@@ -46,17 +47,17 @@ impl Interval {
         self.hi
     }
 
-    /// Whether the number lies in it.
+    /// True if the interval contains the number.
     pub fn contains(self, value: f64) -> bool {
         self.lo <= value && value <= self.hi
     }
 
-    /// The least interval that holds both.
+    /// The smallest interval that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// The part that lies in a range; the nearest end of the range if none does.
+    /// The part that lies in a range; the nearest end of the range if there is none.
     fn clipped(self, lo: f64, hi: f64) -> Self {
         Self { lo: self.lo.clamp(lo, hi), hi: self.hi.clamp(lo, hi) }
     }
@@ -66,7 +67,7 @@ impl Interval {
         self.lo.abs().max(self.hi.abs())
     }
 
-    /// As computed end by end with at most a few units in the last place of error.
+    /// Widened to cover ends that were computed with an error of a few units in the last place.
     fn widened(self) -> Self {
         Self { lo: below(self.lo), hi: above(self.hi) }
     }
@@ -76,12 +77,12 @@ impl Interval {
         Self { lo: lower(self.lo - margin), hi: upper(self.hi + margin) }
     }
 
-    /// The range of an increasing function that f64 computes to a few units in the last place.
+    /// The image under an increasing function that f64 computes to a few units in the last place.
     fn increasing(self, f: impl Fn(f64) -> f64) -> Self {
         Self { lo: f(self.lo), hi: f(self.hi) }.widened()
     }
 
-    /// A truth value: certain, impossible or neither.
+    /// A truth value: certain, impossible or undecided.
     fn truth(certain: bool, impossible: bool) -> Self {
         if certain {
             Self::TRUE
@@ -93,25 +94,25 @@ impl Interval {
     }
 }
 
-/// Relative margin for functions of the system's library, which promises no exact rounding.
+/// Relative margin for library functions, which do not promise exact rounding.
 const MARGIN: f64 = 8.0 * f64::EPSILON;
 
-/// Next below a lower end that was rounded once.
+/// The next number below a lower end that was rounded once.
 fn lower(end: f64) -> f64 {
     if end.is_nan() { f64::NEG_INFINITY } else { end.next_down() }
 }
 
-/// Next above an upper end that was rounded once.
+/// The next number above an upper end that was rounded once.
 fn upper(end: f64) -> f64 {
     -lower(-end)
 }
 
-/// Below a lower end that a library function gave.
+/// A number below a lower end that a library function computed.
 fn below(end: f64) -> f64 {
     if end.is_infinite() { lower(end) } else { lower(end - end.abs() * MARGIN) }
 }
 
-/// Above an upper end that a library function gave.
+/// A number above an upper end that a library function computed.
 fn above(end: f64) -> f64 {
     -below(-end)
 }
@@ -264,8 +265,8 @@ impl Number for Interval {
     }
     fn element(self, list: &[f64]) -> Self {
         let last = list.len().saturating_sub(1);
-        let place = |end: f64| (end.max(0.0) as usize).min(last);
-        let found = list.get(place(self.lo)..=place(self.hi)).unwrap_or_default();
+        let index = |end: f64| (end.max(0.0) as usize).min(last);
+        let found = list.get(index(self.lo)..=index(self.hi)).unwrap_or_default();
         let values = found.iter().map(|&value| Self::constant(value));
         values.reduce(Self::hull).unwrap_or(Self::ENTIRE)
     }
@@ -285,19 +286,19 @@ impl Number for Interval {
     fn smoothstep(self, hi: Self, x: Self) -> Self {
         let width = hi.sub(self);
         if width.contains(0.0) {
-            return Self::UNDECIDED; // a jump, by f64's division of a finite number by 0
+            return Self::UNDECIDED; // a jump: f64 divides a finite number by 0
         }
         let t = x.sub(self).div(width).saturate();
         t.increasing(|t| t * t * (3.0 - 2.0 * t)).grown(MARGIN)
     }
     fn clamp_residual(self, lo: Self, hi: Self) -> Self {
-        // x is compared with each end once, so within the range this is 0 and not nearly 0. Where the
-        // ends are out of order the upper one counts, as in `clamp`.
+        // Each end is subtracted once, so within the range this is exactly 0. Where the ends are
+        // out of order the upper one counts, as in `clamp`.
         let below = Number::min(self.sub(lo), Self::new(0.0, 0.0));
         Number::max(self.sub(hi), below)
     }
     fn x_times_one_minus_x(self, y: Self, c: Self) -> Self {
-        self.dip(y, c)
+        self.x_times_complement(y, c)
     }
     fn select(self, yes: Self, no: Self) -> Self {
         if self.contains(0.0) { if self == Self::FALSE { no } else { yes.hull(no) } } else { yes }

@@ -1,22 +1,24 @@
-//! A way through the jumps of a field over a box.
+//! One choice of results at the jumps of a field over a box.
 
 use super::Interval;
 use crate::eval::op::Op;
 use crate::eval::tracer::Tracer;
 
-/// Which results an evaluation over intervals takes at operations that jump within the box.
+/// A choice of results for an evaluation over intervals, at operations that jump within the box.
 ///
-/// Over a box that holds parts of two cells of a repetition, an interval of the cell's number is of little use, and one of
-/// its hash of none. So the first operation with more than one whole result can be decided: for each of these results the
-/// field is evaluated again, with that one in the place of all. An angle across its cut is decided as two results, one of each side. At each point of the box some path through the
-/// results gives the field, so what holds for all paths holds in the box; and on a path that leaves nothing open the formula is
-/// one without jumps, whose range shrinks with the box.
+/// Over a box that contains parts of two cells of a repetition, the interval of the cell's number
+/// is of little use, and the interval of its hash of none. So the first operation with more than
+/// one whole result is decided: for each of these results the field is evaluated again, with that
+/// result in place of the interval. An angle across its branch cut counts as two results, one per
+/// side. At each point of the box some path gives the field, so what holds on all paths holds in
+/// the box. On a path that leaves nothing open, the formula has no jumps, and its range shrinks
+/// with the box.
 ///
 /// ```
 /// use sdfc_graph::eval::{FrameValues, Interval, BranchPath, Tape};
 /// use sdfc_graph::{Dim, Graph, Unary};
 ///
-/// // x - round(x) + 1 lies between 0.5 and 1.5, which one interval cannot see about a jump.
+/// // x - round(x) + 1 lies between 0.5 and 1.5, which one interval cannot show at a jump.
 /// let mut graph = Graph::new();
 /// let p = graph.point(0, Dim::Three);
 /// let (x, one) = (graph.component(p, 0), graph.number(1.0));
@@ -38,76 +40,77 @@ use crate::eval::tracer::Tracer;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct BranchPath {
-    decided: Vec<Decision>,
-    /// How many decisions the evaluation under way has come by.
+    decisions: Vec<Decision>,
+    /// Number of decisions that the current evaluation has passed.
     passed: usize,
     open: Open,
-    /// How many operations had more than one result and were not decided.
+    /// Number of operations with several results that were not decided.
     undecided: usize,
 }
 
-/// The result taken of those that are possible.
+/// The chosen result, and the last possible one.
 #[derive(Clone, Copy, Debug)]
 struct Decision {
     taken: f64,
     last: f64,
 }
 
-/// What an evaluation left open.
+/// The jumps that an evaluation left open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Open {
     #[default]
     Nothing,
-    /// The results of the first operation that has more than one.
+    /// The possible results of the first operation that has several.
     Whole(Interval),
-    /// An operation jumps whose results cannot be told apart.
+    /// An operation whose results cannot be told apart jumps.
     Cut,
 }
 
 impl BranchPath {
-    /// An operation with more results is not decided.
+    /// Operations with more results than this are not decided.
     pub const MOST_RESULTS: f64 = 4.0;
 
-    /// Back to where nothing is decided.
+    /// Removes all decisions.
     pub fn clear(&mut self) {
-        self.decided.clear();
+        self.decisions.clear();
     }
 
-    /// Whether nothing is decided.
+    /// True if nothing is decided.
     pub fn is_empty(&self) -> bool {
-        self.decided.is_empty()
+        self.decisions.is_empty()
     }
 
-    /// Whether the last evaluation met a jump that was not decided.
+    /// True if the last evaluation passed a jump that was not decided.
     pub fn is_open(&self) -> bool {
         self.open != Open::Nothing
     }
 
-    /// Decides the first jump that the last evaluation left open, with the least result. `false` if it cannot be decided, or if
-    /// the path has more jumps than `most`.
+    /// Decides the first jump that the last evaluation left open, with the least result. Returns
+    /// false if it cannot be decided, or if the path has more than `most` jumps.
     pub fn fork(&mut self, most: usize) -> bool {
         let Open::Whole(results) = self.open else { return false };
         let few = results.hi - results.lo < Self::MOST_RESULTS;
-        if few && self.decided.len() + self.undecided <= most {
-            self.decided.push(Decision { taken: results.lo, last: results.hi });
+        if few && self.decisions.len() + self.undecided <= most {
+            self.decisions.push(Decision { taken: results.lo, last: results.hi });
             return true;
         }
         false
     }
 
-    /// On to the next result of the last decision that has one. `false` if all paths have been taken.
+    /// Advances the last decision that has a further result. Returns false if all paths have been
+    /// taken.
     pub fn advance(&mut self) -> bool {
-        while let Some(decision) = self.decided.last_mut() {
+        while let Some(decision) = self.decisions.last_mut() {
             if decision.taken < decision.last {
                 decision.taken += 1.0;
                 return true;
             }
-            self.decided.pop();
+            self.decisions.pop();
         }
         false
     }
 
-    /// Before an evaluation.
+    /// Prepares for an evaluation.
     pub(in crate::eval) fn begin(&mut self) {
         self.passed = 0;
         self.undecided = 0;
@@ -121,7 +124,7 @@ impl Tracer<Interval> for &mut BranchPath {
             return self.on_one_side(a, b, result);
         }
         if !op.is_whole() {
-            // At the vector that has no direction.
+            // At the zero vector, which has no direction.
             let cut = b.lo <= 0.0 && (op != Op::Atan2 || a.contains(0.0));
             if cut && self.open == Open::Nothing {
                 self.open = Open::Cut;
@@ -139,16 +142,16 @@ impl Tracer<Interval> for &mut BranchPath {
 }
 
 impl BranchPath {
-    /// The angle of a vector on one side of the cut, which is a choice of two.
+    /// The angle of a vector on one side of the branch cut: a choice of two.
     fn on_one_side(&mut self, y: Interval, x: Interval, result: Interval) -> Interval {
         let [below, above] = Interval::angles_at_cut(y, x);
         let taken = self.decision(Interval { lo: 0.0, hi: 1.0 });
         taken.map_or(result, |taken| if taken == 0.0 { below } else { above })
     }
 
-    /// The result that is taken of several; `None` where that is not decided.
+    /// The chosen one of several results; `None` if it is not decided.
     fn decision(&mut self, results: Interval) -> Option<f64> {
-        if let Some(decision) = self.decided.get(self.passed) {
+        if let Some(decision) = self.decisions.get(self.passed) {
             self.passed += 1;
             return Some(decision.taken);
         }

@@ -1,4 +1,4 @@
-//! What the builders leave of fields written as the library writes them.
+//! The code that the builders make of a field written as the standard library writes it.
 
 use sdfc_graph::{Dim, Graph, NodeId, Type, dump, gradient, operation_count};
 
@@ -79,7 +79,7 @@ field = %25
 ";
 
 #[test]
-fn a_ball_and_a_block_joined_over_a_plane() {
+fn a_ball_joined_with_a_block_over_a_plane_has_few_operations() {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
     let (a, b) = (ball(&mut graph, p, [0.4, 0.7, 0.4], 0.8), block(&mut graph, p, [1.6, 1.0, 1.6]));
@@ -90,6 +90,6 @@ fn a_ball_and_a_block_joined_over_a_plane() {
     assert_eq!(dump(&graph, &[("field", field)]), FIELD);
     assert_eq!(operation_count(&graph, &[field]), 21);
     let gradient = gradient(&mut graph, field, p);
-    // The field's operations are among the gradient's.
+    // The field's operations are a subset of the gradient's.
     assert_eq!(operation_count(&graph, &[field, gradient]), 54);
 }
