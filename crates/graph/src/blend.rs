@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Stage, Unary};
 
-/// A cache of the blends found so far, by node.
+/// A cache of the blends found so far, by node; `None` for nodes that are no blends.
 pub type Blends = FxHashMap<NodeId, Option<Blend>>;
 
 /// A smooth minimum: below the lesser of two values where they differ by less than a width, equal

@@ -115,7 +115,7 @@ impl Default for Expander {
     }
 }
 
-/// What an expansion waits for.
+/// The outcome of one step of an expansion.
 enum Step {
     Done(NodeId),
     Wait,
@@ -138,7 +138,7 @@ impl Expander {
     /// The distance of a shape of level 0 at a point.
     ///
     /// # Errors
-    /// Where a limit is passed.
+    /// If the node limit is exceeded.
     pub fn field(
         &mut self,
         graph: &mut Graph,
@@ -152,7 +152,7 @@ impl Expander {
     /// outermost first.
     ///
     /// # Errors
-    /// Where a limit is passed or a point is missing.
+    /// If the node limit is exceeded or a point is missing.
     pub fn field_under(
         &mut self,
         graph: &mut Graph,
@@ -167,7 +167,7 @@ impl Expander {
     /// The material of a shape of level 0 at a point, in the order of [`MaterialField::ALL`].
     ///
     /// # Errors
-    /// Where a limit is passed.
+    /// If the node limit is exceeded.
     pub fn material(
         &mut self,
         graph: &mut Graph,
@@ -185,7 +185,7 @@ impl Expander {
     /// Expands a node of a formula. `points` are the points of levels 0, 1, ….
     ///
     /// # Errors
-    /// Where a limit is passed or a point is missing.
+    /// If the node limit is exceeded or a point is missing.
     pub fn node(
         &mut self,
         graph: &mut Graph,

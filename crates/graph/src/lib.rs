@@ -1,6 +1,7 @@
 //! Shape instances and typed math in one hash-consed arena, with its evaluators.
 //!
-//! # What it holds//!
+//! # What it holds
+//!
 //! A [`Graph`] holds nodes of typed math ([`Node`]) and, above them, shape instances ([`Shape`]). A
 //! shape is a formula in its own point that may sample other shapes. Equal nodes are stored once.
 //! The operations are a closed set: the derivative, every evaluator and the lowering match them

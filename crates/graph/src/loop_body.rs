@@ -1,4 +1,4 @@
-//! What a loop computes in each iteration, and what it reads from outside.
+//! The nodes that a loop computes in each iteration, and the nodes outside it that it reads.
 
 use crate::graph::Graph;
 use crate::ids::IdSet;

@@ -9,7 +9,7 @@
 
 use crate::node::{Const, NodeId, Type};
 
-/// How deep loops may be nested.
+/// Maximum nesting depth of loops.
 pub const MAX_LOOP_DEPTH: u8 = 7;
 
 /// A loop. The state starts as `init`, and each iteration replaces it by `step`.

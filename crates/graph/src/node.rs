@@ -222,7 +222,7 @@ pub enum Ternary {
 pub enum MaterialField {
     /// Base colour, linear.
     Color,
-    /// How far a material is set, from 0 (the default material) to 1.
+    /// Coverage of the material, from 0 (the default material) to 1.
     Coverage,
     /// From 0 (mirror) to 1 (matt).
     Roughness,

@@ -172,8 +172,8 @@ impl Polynomial {
 }
 
 /// The square of the scale factor of a similarity: the squared length of the matrix's rows, if all
-/// rows have the same length and any two are orthogonal, whatever the values of the atoms. `None`
-/// for other matrices.
+/// rows have the same length and any two are orthogonal for all values of the atoms. `None` for
+/// other matrices.
 pub fn similarity_scale_squared(rows: &[[Polynomial; 3]]) -> Option<Polynomial> {
     let product = |a: &[Polynomial; 3], b: &[Polynomial; 3]| -> Option<Polynomial> {
         (0..3).try_fold(Polynomial::zero(), |sum, i| Some(sum.plus(&a[i].times(&b[i])?)))

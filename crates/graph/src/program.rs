@@ -66,7 +66,7 @@ pub struct Program {
     pub distance: Option<NodeId>,
     /// Gradient of `distance`, a 3-vector.
     pub gradient: Option<NodeId>,
-    /// How rays intersect the scene other than by marching `distance`.
+    /// Functions of a ray that replace or restrict marching `distance`.
     pub rays: Rays,
     /// Lower and upper bound of `distance` on the segment from `Point(0, Dim::Three)` to
     /// `Point(1, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.

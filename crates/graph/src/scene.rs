@@ -216,7 +216,7 @@ pub struct Reflections {
     pub strength: NodeId,
 }
 
-/// How a light's shadow is computed.
+/// Kinds of shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shadow {
     /// No shadow.

@@ -30,7 +30,7 @@ pub struct SidePromise {
     pub bound: Option<NodeId>,
 }
 
-/// What the clauses of an instance state, assuming that its children are exact, bounds or
+/// The promises that an instance's clauses make, assuming that its children are exact, bounds or
 /// 1-Lipschitz.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Contract {

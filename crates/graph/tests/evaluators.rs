@@ -98,7 +98,7 @@ proptest! {
         }
     }
 
-    /// Whatever results a field takes at its jumps at a point of a box, some path takes them too.
+    /// At each point of a box, some path takes the same results at jumps as the field does there.
     #[test]
     fn paths_contain_every_sample(
         steps in steps(24),

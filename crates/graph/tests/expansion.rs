@@ -64,7 +64,7 @@ fn scaled(graph: &mut Graph, child: ShapeId, by: f64) -> ShapeId {
 fn with_material(graph: &mut Graph, child: ShapeId, grey: f64) -> ShapeId {
     let p = graph.point(0, Dim::Three);
     let formula = graph.sample(child, p);
-    let id = shape(graph, "painted", formula, &[child]);
+    let id = shape(graph, "colored", formula, &[child]);
     let mut stated = MaterialField::ALL.map(|field| graph.material_at(child, p, field));
     stated[0] = graph.constant(Type::Vec3, &[grey; 3]);
     stated[1] = graph.number(1.0);

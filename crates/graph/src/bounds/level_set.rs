@@ -154,8 +154,8 @@ impl Deriver<'_> {
         self.opaque(query)
     }
 
-    /// Where a blend of finite width is not above the limit, one of its operands exceeds the limit
-    /// by at most the depth of the blend.
+    /// The box of a blend of finite width: where the blend is not above the limit, one of its
+    /// operands exceeds the limit by at most the depth of the blend.
     fn blended(&mut self, query: Query) -> Option<Zone> {
         let blend = blend_at(self.graph, &mut self.memo.blends, query.node)?;
         let depth = blend.depth(self.graph, query.node)?;

@@ -13,7 +13,8 @@ use crate::walk::{reachable, reachable_where};
 impl Tape {
     /// The tape that computes the roots, in their order.
     ///
-    /// If a root depends on anything but operations, per-frame inputs and the outermost point.
+    /// Fails if a root depends on anything but operations, per-frame inputs and the outermost
+    /// point.
     pub fn new(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
         Self::record(graph, Recorder::default(), &reachable(graph, roots), roots)
     }
@@ -21,7 +22,7 @@ impl Tape {
     /// The tape that computes functions of a ray: the outermost point is its origin, the point of
     /// level 1 its direction.
     ///
-    /// If a root depends on anything but operations, per-frame inputs and these points.
+    /// Fails if a root depends on anything but operations, per-frame inputs and these points.
     pub fn for_rays(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
         Self::record(graph, Recorder::of_levels(2), &reachable(graph, roots), roots)
     }
@@ -31,7 +32,7 @@ impl Tape {
     /// The samples are read as params; `first` is the index of the first of them. Points are NaN,
     /// which intervals take for any number.
     ///
-    /// Never: every input has a meaning here.
+    /// Never fails in practice: every input has a meaning here.
     pub fn for_operator(
         graph: &Graph,
         root: NodeId,

@@ -32,7 +32,7 @@ pub struct FieldSample {
 /// distance itself, independent of [`Program::gradient`], which it can be checked against. Empty if
 /// the scene draws nothing.
 ///
-/// If the program is not flat.
+/// Fails if the program is not flat.
 pub fn sample_field(
     program: &Program,
     frame: &FrameValues,

@@ -66,7 +66,7 @@ fn material_of(graph: &mut Graph, sample: NodeId) -> Fields {
     MaterialField::ALL.map(|field| graph.material_at(shape, point, field))
 }
 
-/// The general rule, as a chain of mixes: a mix of equal materials folds, whatever the weights are.
+/// The general rule, as a chain of mixes, so that a mix of equal materials folds for any weights.
 fn weighted(graph: &mut Graph, rule: NodeId, samples: &[NodeId]) -> Fields {
     let derivatives = adjoints(graph, rule, samples);
     let tiny = graph.number(TINY);
@@ -114,7 +114,7 @@ struct Selection<'a> {
     done: FxHashMap<(NodeId, bool), Fields>,
 }
 
-/// What a node of a rule selects. `negated` flips the sign of the weight.
+/// The material that a node of a rule selects. `negated` flips the sign of the weight.
 enum Choice {
     Material(Fields),
     Of { argument: NodeId, negated: bool },

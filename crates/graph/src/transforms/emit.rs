@@ -6,7 +6,7 @@ use crate::coefficient::Coefficient;
 use crate::graph::Graph;
 use crate::node::NodeId;
 
-/// How a form is computed, and its cost in scalar operations.
+/// A way to compute a form, and its cost in scalar operations.
 pub(super) struct Plan {
     pub(super) cost: usize,
     shape: Shape,

@@ -62,7 +62,7 @@ enum Open {
     Nothing,
     /// The possible results of the first operation that has several.
     Whole(Interval),
-    /// An operation whose results cannot be told apart jumps.
+    /// An operation jumps, and its results cannot be separated.
     Cut,
 }
 
