@@ -13,7 +13,8 @@
 //! | `length`, `normalize`, `sqrt` at 0 | 0 |
 //! | `abs` at 0 | +1 |
 //! | `min`, `max`, `clamp`, `saturate`, `select` | of the selected argument; the first on a tie |
-//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, `hash`, comparisons, a loop's iteration count | 0 |
+//! | `floor`, `ceil`, `round`, `trunc`, `sign`, `step`, `hash`, comparisons | 0 |
+//! | a loop's iteration count | 0 |
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
 mod loops;

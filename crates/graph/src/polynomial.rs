@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Unary};
 
-/// Maximum number of terms: more than any product of three rotations needs. Beyond it the analysis
+/// Maximum number of terms: more than any product of three rotations needs. With more, the analysis
 /// gives up.
 const MAX_TERMS: usize = 256;
 /// Maximum depth of a coefficient: more than three rotations in a row make. Deeper nodes are taken
