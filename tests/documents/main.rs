@@ -1,5 +1,6 @@
 //! The documentation is correct: code blocks compile or have the diagnostic code that they name,
-//! values in tables are right, pictures are current, and links lead to files that exist.
+//! values in tables are right, pictures are current, links lead to files that exist, and the
+//! examples in READMEs are those of the crates' documentation.
 //!
 //! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
 //! - ```` ```sdf E0304 ```` is a scene with that code and no other.
@@ -17,6 +18,7 @@
 
 mod charts;
 mod pictures;
+mod readmes;
 
 use std::path::PathBuf;
 
@@ -40,7 +42,12 @@ fn pages() -> Vec<(String, String)> {
             }
         }
     }
-    found.push(repository().join("README.md"));
+    for page in ["CONTRIBUTING.md", "README.md", "SECURITY.md"] {
+        found.push(repository().join(page));
+    }
+    for entry in std::fs::read_dir(repository().join("crates")).unwrap() {
+        found.push(entry.unwrap().path().join("README.md"));
+    }
     found.sort();
     let page = |path: PathBuf| {
         let name = path.strip_prefix(repository()).unwrap().display().to_string();

@@ -120,12 +120,11 @@ fn command_line(args: &Chart, output: &str) -> String {
 /// Returns a table with one line per scene: `auto` beside `sphere-cone`, and the methods on the Pareto
 /// front.
 fn summary(charts: &[(String, Results)]) -> String {
-    let mut text = "\nColumns for `auto`: evaluations and operations per pixel; wrong pixels (missed, false or NaN); \
-        rays out of steps; 99th percentile of the error in depth (in widths of a pixel) and of the \
-        normal (in degrees, smooth surfaces only). *cone* is `sphere-cone`. *On the front* counts \
-        the settings of each method that have no wrong pixels and that no other setting beats in \
-        operations, failures and depth. A scene in italics has an uncertified field: its results \
-        hold for this view only.\n\n"
+    let mut text = "\nColumns for `auto`: evaluations and operations per pixel; wrong pixels (missed, false or NaN); rays\n\
+        out of steps; 99th percentile of the error in depth (in pixel widths) and of the normal (in degrees,\n\
+        smooth surfaces only). *cone* is `sphere-cone`. *On the front* counts the settings of each method\n\
+        that have no wrong pixels and that no other setting beats in operations, failures and depth. A scene\n\
+        in italics has an uncertified field: its results hold for this view only.\n\n"
         .to_owned();
     text += "| scene | leaves | evaluations | cone | operations | cone | wrong | out of steps | depth | cone | normal | undecided | on the front |\n";
     text += "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
