@@ -14,9 +14,12 @@ pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).into_iter().flatten() {
             let path = entry.unwrap().path();
-            let is_hidden = path.file_name().is_some_and(|name| name.as_encoded_bytes()[0] == b'.');
-            let is_foreign = path.ends_with("target") || path.ends_with("node_modules");
-            if path.is_dir() && !is_hidden && !is_foreign {
+            // Hidden folders, and those of build tools such as `target` and `target-wasm`.
+            let is_foreign = path.file_name().is_some_and(|name| {
+                let name = name.to_string_lossy();
+                name.starts_with('.') || name.starts_with("target") || name == "node_modules"
+            });
+            if path.is_dir() && (!is_foreign || path.ends_with("tests/targets")) {
                 folders.push(path);
             } else if path.extension().is_some_and(|e| e == extension) {
                 found.push(path);
