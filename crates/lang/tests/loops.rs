@@ -141,5 +141,5 @@ fn the_iterations_of_nested_loops_are_limited_together() {
     assert!(support::front(&nested(16)).1.is_some());
     let (_, scene, found) = support::front(&nested(17));
     assert!(scene.is_none());
-    assert!(found[0].message.contains("68000 rounds; at most 65536"), "{found:?}");
+    assert!(found[0].message.contains("68000 iterations; the limit is 65536"), "{found:?}");
 }
