@@ -30,9 +30,10 @@ fn an_entry_is_shown_in_full() {
     let expected = "\
 solid torus(major: length = 1 in 0..inf, minor: length = 0.25 in 0..inf)
   A ring around the y axis.
+  The distance is exact outside, and also inside while `minor` is at most `major`.
 
-  major  radius of the ring's middle line, in scene units
-  minor  radius of its tube, in scene units; above `major` the hole closes
+  major  radius of the ring's centre line, in scene units
+  minor  radius of its tube, in scene units; if it is above `major`, the hole closes
 
   contract  exact outside; exact inside if minor <= major; lipschitz 1; bounds -[major + minor,
             minor, major + minor] .. [major + minor, minor, major + minor]

@@ -12,7 +12,7 @@
 //! - `kernel`, `builtins`, `math`, `iterate`: the functions of the kernel;
 //! - `operators`, `list`, `block`, `lambda`, `expr`: the forms of expressions;
 //! - `types`, `coerce`: which value can be used where;
-//! - `decl`: declarations, which are checked when they are first mentioned;
+//! - `decl`, `clauses`: declarations, which are checked when they are first mentioned;
 //! - `top`: the top level of a file, which drives the others;
 //! - `order`: circular dependencies, which are found at the end.
 #![allow(
@@ -26,6 +26,7 @@ mod block;
 mod body;
 mod builtins;
 mod call;
+mod clauses;
 mod coerce;
 mod decl;
 mod expr;
