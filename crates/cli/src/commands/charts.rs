@@ -97,7 +97,7 @@ fn head(title: &str, call: &str, charts: &[(String, Results)]) -> String {
     let mut text = format!("{title}\nWritten by\n\n```\n{call}\n```\n\n");
     if let Some((_, chart)) = charts.first() {
         let [width, height] = chart.size;
-        let made = chart.made.iter().map(|made| format!("; {made}")).collect::<String>();
+        let made = chart.made.iter().map(|made| format!(";\n{made}")).collect::<String>();
         let _ = writeln!(text, "{width}x{height} on {}, {}{made}.", chart.adapter, chart.driver);
     }
     text
