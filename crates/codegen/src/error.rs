@@ -1,70 +1,85 @@
 //! Why a program cannot become a shader.
 
-use std::fmt;
-
 use sdfc_graph::NodeId;
+use sdfc_march::UnknownMethod;
+use thiserror::Error as ThisError;
 
-use crate::Target;
+use crate::target::Target;
 
 /// Why a program cannot become a shader.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, ThisError)]
 #[non_exhaustive]
 pub enum Error {
     /// The program draws nothing: it has no distance.
+    #[error("the scene draws nothing, so there is no field")]
     NothingDrawn,
-    /// A function was asked for that the program has no root for.
+    /// The program has no root for a function that was requested.
+    #[error("the program has no {0}")]
     MissingRoot(&'static str),
     /// No ray method has this name.
+    #[error("{}", UnknownMethod(.0.clone()))]
     UnknownMethod(String),
     /// A prefix is not the start of a WGSL identifier.
+    #[error("`{0}` cannot start a name: expected letters, digits and single `_`, no digit first")]
     BadPrefix(String),
     /// A constant is infinite, not a number, or beyond the range of f32.
+    #[error("node {} is {value}, which 32-bit floats cannot hold", .node.index())]
     NotFinite {
         /// The constant.
         node: NodeId,
-        /// Its offending lane.
+        /// The first of its lanes that does not fit.
         value: f64,
     },
-    /// An operation on constants alone was left to the shader; the graph folds those.
+    /// An operation on constants alone, which the graph should have folded, reached the shader.
+    #[error("node {} has constant arguments and was not folded", .0.index())]
     NotFolded(NodeId),
     /// A node has no meaning in flat math: a sample, a material query, or a point other than the
     /// one the field is a function of.
+    #[error("node {} is not flat math", .0.index())]
     NotFlat(NodeId),
     /// A per-frame input is neither in `Program::uniforms` nor a param of the program.
+    #[error("node {} is a per-frame input without a uniform", .0.index())]
     UnboundInput(NodeId),
-    /// An operation got arguments of types that it does not take.
+    /// The arguments of an operation have the wrong types.
+    #[error("node {} has arguments of the wrong type", .0.index())]
     IllTyped(NodeId),
-    /// A vector component beyond the vector's width.
+    /// A vector component is beyond the vector's width.
+    #[error("node {} takes a component that its vector lacks", .0.index())]
     BadLane(NodeId),
-    /// Constant limits whose lanes are not in the same order.
+    /// The lanes of constant limits are not in the same order.
+    #[error("node {} has limits that ascend in some lanes only", .0.index())]
     MixedLimits(NodeId),
-    /// A target's language has no such thing.
+    /// The target's language lacks something.
+    #[error("{} has no {what}", .target.name())]
     Unsupported {
         /// The target.
         target: Target,
         /// What it lacks.
         what: &'static str,
     },
-    /// A bind group or a binding beyond what a target's numbers can say.
+    /// A bind group or binding is greater than the target allows.
+    #[error("{} counts groups and bindings up to 255, not {number}", .target.name())]
     BindingTooLarge {
         /// The target.
         target: Target,
-        /// The number.
+        /// The group or binding.
         number: u32,
     },
-    /// The bytes of a view are not as many as the shader reads.
+    /// The number of bytes of a view is not what the shader reads.
+    #[error("the view has {found} bytes, not the {expected} that the shader reads")]
     ViewBytes {
-        /// How many it reads.
+        /// How many the shader reads.
         expected: usize,
         /// How many there are.
         found: usize,
     },
-    /// The shader does not validate, or a writer refused it; naga's own words.
+    /// The shader does not validate, or a writer refused it; contains naga's message.
+    #[error("the shader was refused: {0}")]
     Naga(String),
 }
 
 impl Error {
-    /// Whether what was asked for is the cause, not the scene.
+    /// Returns true if the request is the cause, not the scene.
     pub fn is_call(&self) -> bool {
         match self {
             Self::UnknownMethod(_)
@@ -85,52 +100,3 @@ impl Error {
         }
     }
 }
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NothingDrawn => write!(f, "the scene draws nothing, so there is no field"),
-            Self::MissingRoot(role) => write!(f, "the program has no {role}"),
-            Self::UnknownMethod(name) => {
-                let names: Vec<_> = sdfc_march::METHODS.iter().map(|method| method.name).collect();
-                write!(f, "unknown ray method `{name}`; there are {}", names.join(", "))
-            }
-            Self::BadPrefix(prefix) => write!(
-                f,
-                "`{prefix}` cannot start a name: expected letters, digits and single `_`, \
-                 no digit first"
-            ),
-            Self::NotFinite { node, value } => {
-                write!(f, "node {} is {value}, which 32-bit floats cannot hold", node.index())
-            }
-            Self::NotFolded(node) => {
-                write!(f, "node {} has constant arguments and was not folded", node.index())
-            }
-            Self::NotFlat(node) => write!(f, "node {} is not flat math", node.index()),
-            Self::UnboundInput(node) => {
-                write!(f, "node {} is a per-frame input without a uniform", node.index())
-            }
-            Self::IllTyped(node) => {
-                write!(f, "node {} has arguments of the wrong type", node.index())
-            }
-            Self::BadLane(node) => {
-                write!(f, "node {} takes a component that its vector lacks", node.index())
-            }
-            Self::MixedLimits(node) => {
-                write!(f, "node {} has limits that ascend in some lanes only", node.index())
-            }
-            Self::Unsupported { target, what } => {
-                write!(f, "{} has no {what}", target.name())
-            }
-            Self::BindingTooLarge { target, number } => {
-                write!(f, "{} counts groups and bindings up to 255, not {number}", target.name())
-            }
-            Self::ViewBytes { expected, found } => {
-                write!(f, "the view has {found} bytes, not the {expected} that the shader reads")
-            }
-            Self::Naga(text) => write!(f, "the shader was refused: {text}"),
-        }
-    }
-}
-
-impl std::error::Error for Error {}

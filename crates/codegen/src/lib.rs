@@ -39,38 +39,33 @@
 //! on constants alone are refused, for the graph folds those. What the graph does not hold as a loop is written out, so
 //! drivers take long over thousands of leaves that are not alike.
 
-mod culling;
+mod assemble;
 mod error;
-mod field;
-mod inputs;
-mod instructions;
 mod link;
 mod lower;
 mod names;
-mod picture;
+mod options;
 mod reflect;
+mod reflection;
 mod shader;
-mod shadertoy;
 mod stopwatch;
-mod tables;
 mod target;
-mod types;
+mod write;
 
-pub use culling::Culling;
-pub use error::Error;
-pub use field::{FieldOptions, field_module, march_module};
-pub use instructions::FunctionCost;
-pub use picture::{
-    PictureOptions, Stage, benchmark_module, instrumented_module, normals_module, picture_module,
-    render_module, render_module_with_camera,
+pub use assemble::field::{field_module, march_module};
+pub use assemble::picture::{
+    benchmark_module, instrumented_module, normals_module, picture_module, render_module,
+    render_module_with_camera,
 };
-pub use reflect::{
+pub use assemble::shadertoy::shadertoy_module;
+pub use error::Error;
+pub use options::{FieldOptions, Lists, MAX_CONSTANT_LIST, PictureOptions, Stage};
+pub use reflection::{
     Buffer, BufferRole, Entry, FunctionInfo, Member, Reflection, Role, Structure, StructureMember,
     Uniform,
 };
 pub use sdfc_march::{Features, FieldSource};
-pub use shader::{Shader, Written};
-pub use shadertoy::shadertoy_module;
+pub use shader::{Culling, Shader, Written};
 pub use stopwatch::Stopwatch;
-pub use tables::{Lists, MAX_CONSTANT_LIST};
 pub use target::{Code, Target};
+pub use write::instructions::FunctionCost;

@@ -1,9 +1,10 @@
 //! What the parts of a module are called.
 
-use naga::{Module, TypeInner};
+use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
+use naga::{FastHashMap, Module, ShaderStage, TypeInner};
 
-use crate::Error;
-use crate::reflect::Parts;
+use crate::error::Error;
+use crate::reflection::ModuleParts;
 
 /// Letters, digits and `_`, no digit first, no `__`: what naga and WGSL both leave as it is.
 pub(crate) fn check_prefix(prefix: &str) -> Result<(), Error> {
@@ -18,7 +19,7 @@ pub(crate) fn check_prefix(prefix: &str) -> Result<(), Error> {
 
 /// Calls functions after what they compute, and puts the prefix before all names that a text declares at
 /// its top level.
-pub(crate) fn make_public(module: &mut Module, parts: &Parts, prefix: &str) {
+pub(crate) fn make_public(module: &mut Module, parts: &ModuleParts, prefix: &str) {
     for &(role, handle) in &parts.functions {
         module.functions.get_mut(handle).name = Some(role.name().to_owned());
     }
@@ -47,4 +48,32 @@ pub(crate) fn make_public(module: &mut Module, parts: &Parts, prefix: &str) {
     for entry in &mut module.entry_points {
         entry.name.insert_str(0, prefix);
     }
+}
+
+/// Names as naga's WGSL writer gives them: valid identifiers, no keywords, all different.
+pub(crate) type Names = FastHashMap<NameKey, String>;
+
+/// `march` has no other stages.
+pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
+    if stage == ShaderStage::Vertex {
+        "vertex"
+    } else if stage == ShaderStage::Fragment {
+        "fragment"
+    } else {
+        "compute"
+    }
+}
+
+/// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
+pub(crate) fn final_names(module: &Module) -> Names {
+    let mut names = Names::default();
+    Namer::default().reset(
+        module,
+        &naga::keywords::wgsl::RESERVED_SET,
+        &naga::keywords::wgsl::BUILTIN_IDENTIFIER_SET,
+        CaseInsensitiveKeywordSet::empty(),
+        &["__", "_naga"],
+        &mut names,
+    );
+    names
 }

@@ -6,12 +6,13 @@ use naga::Module;
 use naga::valid::ModuleInfo;
 use sdfc_march::Features;
 
-use crate::Error;
-use crate::culling::Culling;
-use crate::instructions::{FunctionCost, count};
-use crate::reflect::{Parts, Reflection, reflect, reflect_written};
+use crate::error::Error;
+use crate::reflect::{reflect, reflect_written};
+use crate::reflection::{ModuleParts, Reflection};
 use crate::stopwatch::Stopwatch;
-use crate::target::{self, Code, Target};
+use crate::target::{Code, Target};
+use crate::write::instructions::{FunctionCost, count};
+use crate::write::{self, validate};
 
 /// How names begin of what naga's writers add: conversions, and in HLSL constructors of arrays. Two texts in one file would both
 /// declare them.
@@ -31,16 +32,20 @@ pub struct Written {
 pub struct Shader {
     module: Module,
     info: ModuleInfo,
-    parts: Parts,
+    parts: ModuleParts,
     features: Features,
     validation: Duration,
     culling: Option<Box<Culling>>,
 }
 
 impl Shader {
-    pub(crate) fn new(module: Module, parts: Parts, features: Features) -> Result<Self, Error> {
+    pub(crate) fn new(
+        module: Module,
+        parts: ModuleParts,
+        features: Features,
+    ) -> Result<Self, Error> {
         let start = Stopwatch::start();
-        let info = target::validate(&module)?;
+        let info = validate(&module)?;
         Ok(Self { module, info, parts, features, validation: start.elapsed(), culling: None })
     }
 
@@ -114,7 +119,7 @@ impl Shader {
     /// [`Error::Unsupported`] where the language cannot hold it, [`Error::BindingTooLarge`],
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn write(&self, target: Target, comment: &str) -> Result<Written, Error> {
-        let mut written = target::write(target, &self.module, &self.info, comment)?;
+        let mut written = write::write(target, &self.module, &self.info, comment)?;
         if let Code::Text(text) = &mut written.code {
             for added in WRITERS_OWN {
                 *text = text.replace(added, &format!("{}{added}", self.parts.prefix));
@@ -130,7 +135,7 @@ impl Shader {
     ///
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn wgsl(&self) -> Result<String, Error> {
-        target::wgsl(&self.module, &self.info)
+        write::wgsl(&self.module, &self.info)
     }
 
     /// The words of the module in SPIR-V 1.3 for Vulkan, with names. A module without an entry point
@@ -140,7 +145,7 @@ impl Shader {
     ///
     /// [`Error::Naga`] where naga's writer refuses the module.
     pub fn spirv(&self) -> Result<Vec<u32>, Error> {
-        target::spirv(&self.module, &self.info)
+        write::spirv(&self.module, &self.info)
     }
 
     /// What each function of the point costs in SPIR-V as naga writes it, before any optimiser.
@@ -155,4 +160,21 @@ impl Shader {
         });
         Ok(count(&words, functions))
     }
+}
+
+/// A shader to run before a picture's, on the tiles that it is to draw.
+///
+/// Its entry points are `mark`, one invocation for each 32 rounds (x), tile of the level (y) and loop (z), to be run for each level from the
+/// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Those for cells are `least_of_groups` and
+/// `mark_groups`, one for each group of cells (x), 32 rounds (y) and loop (z), and `list_cells`, one for each cell (x). Its bindings are those
+/// of the picture, in place of the pixels storage arrays of words, at 4 `active_lists`, which the picture reads, at 5 `masks`, and at 7 `counters`, and
+/// at 6 the uniform `level`.
+#[derive(Debug)]
+pub struct Culling {
+    /// The shader.
+    pub shader: Shader,
+    /// How many iterations each loop has.
+    pub iterations: Vec<u32>,
+    /// Whether rays go by cells, and if so for each loop whether no round need be visited outside all cells.
+    pub cells: Option<Vec<bool>>,
 }

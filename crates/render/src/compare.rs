@@ -6,7 +6,7 @@
 
 use sdfc_march::PixelBlock;
 
-use crate::{Image, image::HIT, image::linear_to_srgb8};
+use crate::image::{HIT, Image, linear_to_srgb8};
 
 /// A depth that bends by more than so many pixel widths over three neighbouring pixels is an edge.
 const EDGE_PIXEL_WIDTHS: f32 = 4.0;
@@ -97,7 +97,7 @@ fn depth_difference(one: &PixelBlock, other: &PixelBlock) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Footprint;
+    use crate::view::footprint::Footprint;
 
     /// 5x5 hits whose depth is given by column and row.
     fn hits(depth: impl Fn(usize, usize) -> f32) -> Image {

@@ -1,38 +1,56 @@
 //! Why a picture could not be drawn.
 
-use std::fmt;
+use thiserror::Error;
 
-use crate::image::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+use crate::cpu::method::CpuMethod;
+use crate::limits::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
 /// Why a picture could not be drawn. Nothing in this crate panics in its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RenderError {
-    /// The machine has no adapter that fits; what the drivers said.
+    /// The machine has no suitable GPU; contains the drivers' message.
+    #[error("this machine has no Vulkan, Metal or DX12 adapter ({0})")]
     NoAdapter(String),
-    /// The adapter gave no device; what it said.
+    /// The adapter gave no device; contains its message.
+    #[error("the adapter gave no device: {0}")]
     NoDevice(String),
-    /// The device was lost while drawing; what the driver said.
+    /// The device was lost while drawing; contains the driver's message.
+    #[error("the device was lost while drawing: {0}")]
     DeviceLost(String),
-    /// No answer for so many seconds.
+    /// The device did not answer for this many seconds.
+    #[error("the device did not finish a tile within {0} s")]
     Stalled(u64),
-    /// Memory ran out, on the device or on the host; for what.
+    /// Memory ran out, on the device or on the host; contains what it was for.
+    #[error("out of memory for {0}")]
     OutOfMemory(String),
-    /// The device refused the shader or a call: a fault of the compiler, not of the scene.
+    /// The device refused the shader or a call: a bug of the compiler, not of the scene.
+    #[error("the device refused the shader: {0}")]
     Validation(String),
-    /// A side of the picture is 0 or beyond [`MAX_SIDE`], or it has more than [`MAX_PIXELS`].
+    /// A side of the picture is 0 or greater than [`MAX_SIDE`], or it has more than
+    /// [`MAX_PIXELS`].
+    #[error(
+        "a picture of {}x{}: each side must be 1 to {MAX_SIDE} pixels, both together at most \
+         {MAX_PIXELS} pixels", .0[0], .0[1]
+    )]
     Size([u32; 2]),
-    /// No rays for each pixel, or more than [`MAX_SAMPLES`].
+    /// There are no samples per pixel, or more than [`MAX_SAMPLES`].
+    #[error("{0} samples for each pixel: there must be 1 to {MAX_SAMPLES}")]
     Samples(u32),
     /// The scene has more per-frame values than a uniform buffer of this adapter holds.
+    #[error("the scene has {count} per-frame values, this adapter's uniform buffers hold {limit}")]
     Uniforms {
         /// How many the scene has.
         count: usize,
         /// How many fit.
         limit: usize,
     },
-    /// The scene needs more of something than this adapter has.
+    /// The scene exceeds a limit of this adapter.
+    #[error(
+        "{what} would take {needed}, and this adapter's `{name}` is {limit}; draw fewer parts in \
+         one scene, or draw on the CPU (`--backend cpu`)"
+    )]
     Limit {
-        /// What it is needed for.
+        /// What needs it.
         what: &'static str,
         /// How much is needed: bytes of a buffer, or workgroups.
         needed: u64,
@@ -41,25 +59,33 @@ pub enum RenderError {
         /// The limit.
         limit: u64,
     },
-    /// Another number of per-frame values than the shader was compiled for.
+    /// The number of per-frame values is not that which the shader was compiled for.
+    #[error("{given} per-frame values for a shader that reads {expected}")]
     UniformCount {
-        /// How many came.
+        /// How many were passed.
         given: usize,
         /// How many the shader reads.
         expected: usize,
     },
     /// The scene draws nothing.
+    #[error("the scene draws nothing")]
     NothingDrawn,
-    /// The progress callback asked to stop.
+    /// The progress callback cancelled the frame.
+    #[error("cancelled")]
     Cancelled,
     /// The method is none of [`CpuScene::METHODS`](crate::CpuScene::METHODS).
+    #[error(
+        "the CPU renderer has no method `{0}`; it has `{known}`",
+        known = CpuMethod::NAMES.join("`, `")
+    )]
     MethodNotOnCpu(String),
-    /// The CPU evaluator refused the scene; what it said.
+    /// The CPU evaluator refused the scene; contains its message.
+    #[error("the CPU evaluator refused the scene: {0}")]
     Evaluator(String),
 }
 
 impl RenderError {
-    /// Whether the machine is at fault, not the scene and not the call.
+    /// Returns true if the machine is the cause, not the scene and not the call.
     pub fn is_machine(&self) -> bool {
         match self {
             Self::NoAdapter(_)
@@ -80,49 +106,3 @@ impl RenderError {
         }
     }
 }
-
-impl fmt::Display for RenderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoAdapter(detail) => {
-                write!(f, "this machine has no Vulkan, Metal or DX12 adapter ({detail})")
-            }
-            Self::NoDevice(detail) => write!(f, "the adapter gave no device: {detail}"),
-            Self::DeviceLost(detail) => write!(f, "the device was lost while drawing: {detail}"),
-            Self::Stalled(seconds) => {
-                write!(f, "the device did not finish a tile within {seconds} s")
-            }
-            Self::OutOfMemory(what) => write!(f, "out of memory for {what}"),
-            Self::Validation(detail) => write!(f, "the device refused the shader: {detail}"),
-            Self::Size([width, height]) => write!(
-                f,
-                "a picture of {width}x{height}: each side must be 1 to {MAX_SIDE} pixels, \
-                 both together at most {MAX_PIXELS} pixels"
-            ),
-            Self::Samples(count) => {
-                write!(f, "{count} samples for each pixel: there must be 1 to {MAX_SAMPLES}")
-            }
-            Self::Uniforms { count, limit } => write!(
-                f,
-                "the scene has {count} per-frame values, this adapter's uniform buffers hold {limit}"
-            ),
-            Self::Limit { what, needed, name, limit } => write!(
-                f,
-                "{what} would take {needed}, and this adapter's `{name}` is {limit}; draw fewer parts in one scene, \
-                 or draw on the processor (`--backend cpu`)"
-            ),
-            Self::UniformCount { given, expected } => {
-                write!(f, "{given} per-frame values for a shader that reads {expected}")
-            }
-            Self::NothingDrawn => f.write_str("the scene draws nothing"),
-            Self::Cancelled => f.write_str("cancelled"),
-            Self::MethodNotOnCpu(name) => {
-                let own = crate::CpuScene::METHODS.join("`, `");
-                write!(f, "the CPU renderer has no method `{name}`; it has `{own}`")
-            }
-            Self::Evaluator(detail) => write!(f, "the CPU evaluator refused the scene: {detail}"),
-        }
-    }
-}
-
-impl std::error::Error for RenderError {}

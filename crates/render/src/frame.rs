@@ -7,7 +7,9 @@ use sdfc_graph::{
     eval::{FrameValues, evaluate_frame},
 };
 
-use crate::{Clock, Image, TileSize};
+use crate::clock::Clock;
+use crate::image::Image;
+use crate::tiles::TileSize;
 
 /// How a frame is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

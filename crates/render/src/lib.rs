@@ -40,48 +40,40 @@
 //! panic; that is caught and becomes [`RenderError::DeviceLost`], but the panic hook is run.
 
 mod blocks;
+mod clock;
 mod compare;
 mod cpu;
-#[cfg(feature = "gpu")]
-mod culling;
-#[cfg(feature = "gpu")]
-mod device;
 mod error;
 mod frame;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod image;
-#[cfg(feature = "gpu")]
-mod run;
+mod limits;
 mod stats;
-#[cfg(feature = "gpu")]
-pub mod testing;
 mod tiles;
 mod view;
 
 pub use blocks::{
     PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes,
 };
+pub use clock::{Clock, FrameTimes, milliseconds_since};
 pub use compare::{Difference, compare, edges};
 pub use cpu::{CpuScene, Real};
-#[cfg(feature = "gpu")]
-pub use device::Gpu;
 pub use error::RenderError;
 pub use frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, uniform_values};
 #[cfg(feature = "gpu")]
-pub use gpu::Pipeline;
+pub use gpu::{Gpu, Pipeline, testing};
 #[cfg(feature = "files")]
 pub use image::Animation;
 pub use image::{
-    CAPPED, HIT, Image, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, MISS, PixelCounts, is_finite,
-    linear_to_srgb, linear_to_srgb8, sample_offsets,
+    CAPPED, HIT, Image, MISS, PixelCounts, is_finite, linear_to_srgb, linear_to_srgb8,
+    sample_offsets,
 };
-pub use stats::{
-    AdapterInfo, Clock, CompileTimes, EvaluationCounts, FrameTimes, LeafEvaluations, Stats, Why,
-    milliseconds_since,
-};
+pub use limits::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+pub use stats::{AdapterInfo, CompileTimes, EvaluationCounts, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};
+pub use view::footprint::Footprint;
 pub use view::{
-    Background, Bounds, Footprint, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion,
-    ViewShadow, ViewSource,
+    Background, Bounds, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion, ViewShadow,
+    ViewSource,
 };

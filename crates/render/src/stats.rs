@@ -4,11 +4,12 @@
 //! and `why` of the object that holds it says the reason under the figure's key.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::{Frame, Image, PixelCounts};
+use crate::clock::FrameTimes;
+use crate::frame::Frame;
+use crate::image::{Image, PixelCounts};
 
 /// What an adapter says of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,16 +26,6 @@ pub struct AdapterInfo {
 
 /// Reasons by the key of the missing figure.
 pub type Why = BTreeMap<&'static str, String>;
-
-/// What measured a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Clock {
-    /// Timestamps that the GPU wrote.
-    Gpu,
-    /// The clock of the machine, waiting included.
-    Wall,
-}
 
 /// The figures of one rendering.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -109,38 +100,6 @@ impl Stats {
     }
 }
 
-/// Times of repeated frames, in milliseconds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct FrameTimes {
-    /// The middle one; the mean of the middle two for an even number.
-    pub median: f64,
-    /// The shortest.
-    pub min: f64,
-    /// The longest.
-    pub max: f64,
-    /// How many frames.
-    pub n: usize,
-    /// What measured them.
-    pub clock: Clock,
-}
-
-/// Time since then by the wall clock, in milliseconds.
-pub fn milliseconds_since(start: Instant) -> f64 {
-    start.elapsed().as_secs_f64() * 1e3
-}
-
-impl FrameTimes {
-    /// Of one time or more; `None` of none.
-    pub fn of(times: &[f64], clock: Clock) -> Option<Self> {
-        let mut sorted = times.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let (min, max) = (*sorted.first()?, *sorted.last()?);
-        let n = sorted.len();
-        let median = (sorted.get((n - 1) / 2)? + sorted.get(n / 2)?) / 2.0;
-        Some(Self { median, min, max, n, clock })
-    }
-}
-
 /// Times of the stages of compilation, in milliseconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CompileTimes {
@@ -210,16 +169,8 @@ impl LeafEvaluations {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Footprint;
-
-    #[test]
-    fn median_of_odd_and_even_numbers_of_frames() {
-        let times = FrameTimes::of(&[3.0, 1.0, 8.0], Clock::Wall).unwrap();
-        assert_eq!((times.median, times.min, times.max, times.n), (3.0, 1.0, 8.0, 3));
-        let times = FrameTimes::of(&[4.0, 1.0, 2.0, 8.0], Clock::Gpu).unwrap();
-        assert_eq!(times.median, 3.0);
-        assert!(FrameTimes::of(&[], Clock::Gpu).is_none());
-    }
+    use crate::clock::Clock;
+    use crate::view::footprint::Footprint;
 
     #[test]
     fn evaluations_of_a_hundred_pixels() {

@@ -16,7 +16,7 @@ impl Tile {
     }
 
     /// Column and row in the picture of its pixel at an index, row by row.
-    pub(crate) fn place(&self, index: usize) -> [u32; 2] {
+    pub(crate) fn position(&self, index: usize) -> [u32; 2] {
         let columns = self.size[0].max(1) as usize;
         let [x, y] = [index % columns, index / columns].map(|offset| offset as u32);
         [self.origin[0] + x, self.origin[1] + y]

@@ -6,7 +6,8 @@ use naga::{
 };
 use rustc_hash::FxHashMap;
 
-type Value = Handle<Expression>;
+/// A value within a function.
+pub(crate) type Value = Handle<Expression>;
 
 /// Values nest at most so deep in the written text; a deeper one gets a name. Writers recurse over
 /// what they nest, and people read it.

@@ -1,10 +1,12 @@
 //! Hashes, in words.
 
 use naga::{BinaryOperator, Expression, MathFunction, ScalarKind};
-use sdfc_graph::{Binary, Node, NodeId, Type};
+use sdfc_graph::{Node, NodeId, Type};
 
-use super::{Lowering, Value};
-use crate::{Error, types};
+use super::body::Value;
+use super::lowering::Lowering;
+use super::types;
+use crate::error::Error;
 
 impl Lowering<'_> {
     /// The word of a hash, as `sdfc_graph::eval::hash` mixes it, kept for hashes that start from it; and its value, if
@@ -75,9 +77,4 @@ impl Lowering<'_> {
         };
         self.body.binary(op, left, right)
     }
-}
-
-/// Whether a node reads its first argument as a word.
-pub(super) fn reads_word(node: &Node) -> bool {
-    matches!(node, Node::Binary(Binary::Hash, ..))
 }

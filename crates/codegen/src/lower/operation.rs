@@ -3,9 +3,11 @@
 use naga::{BinaryOperator, Expression, MathFunction, UnaryOperator};
 use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
 
+use super::body::Value;
+use super::lowering::Lowering;
+use super::types;
 use super::uses::{Filling, Product, product};
-use super::{Lowering, Value};
-use crate::{Error, types};
+use crate::error::Error;
 
 /// Vectors shorter than its square root are not brought to full length by `Normalize`.
 const LEAST_SQUARE: f32 = 1e-36;

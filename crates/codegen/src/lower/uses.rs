@@ -3,8 +3,7 @@
 use rustc_hash::FxHashSet;
 use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary};
 
-use super::hash::reads_word;
-use crate::inputs::Inputs;
+use super::inputs::Inputs;
 
 /// How often each node that the roots need is written in the text.
 #[derive(Debug)]
@@ -180,4 +179,9 @@ fn needed(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Vec<NodeId> {
         }
     }
     seen.to_vec()
+}
+
+/// Whether a node reads its first argument as a word.
+fn reads_word(node: &Node) -> bool {
+    matches!(node, Node::Binary(Binary::Hash, ..))
 }

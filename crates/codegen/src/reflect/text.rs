@@ -7,7 +7,7 @@ use naga::Module;
 use naga::TypeInner;
 use naga::proc::NameKey;
 
-use super::{Names, final_names};
+use crate::names::{Names, final_names};
 use crate::target::Code;
 
 /// Names of functions, structures, members and variables as they are written.

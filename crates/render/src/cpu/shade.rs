@@ -10,16 +10,16 @@
 
 use glam::DVec3;
 
-use super::surroundings::Lamp;
+use super::surroundings::IncomingLight;
 
 /// Linear colour of what nothing paints.
 const DEFAULT_COLOR: DVec3 = DVec3::splat(0.8);
 /// Reflectance of a dielectric seen straight on.
 const DIELECTRIC: f64 = 0.04;
 /// The highlight of a smoother surface would be thinner than a pixel.
-const LEAST_ROUGHNESS: f64 = 0.1;
+const MIN_ROUGHNESS: f64 = 0.1;
 /// Cosines of directions along the surface, or below it where a normal is not quite right.
-const LEAST_COSINE: f64 = 1e-4;
+const MIN_COSINE: f64 = 1e-4;
 
 /// Where a ray met something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +51,7 @@ impl Paint {
         let [color, emission] = [color, emission].map(|[x, y, z, _]| DVec3::new(x, y, z));
         Some(Self {
             color: DEFAULT_COLOR + (color - DEFAULT_COLOR) * coverage[0],
-            roughness: roughness[0].clamp(LEAST_ROUGHNESS, 1.0),
+            roughness: roughness[0].clamp(MIN_ROUGHNESS, 1.0),
             metallic: metallic[0],
             emission,
             occlusion: occlusion[0],
@@ -78,22 +78,22 @@ impl Surface {
         }
     }
 
-    /// What it returns of a lamp's light: Lambert's law and, where painted, a highlight.
-    pub(super) fn lit(&self, lamp: &Lamp) -> DVec3 {
-        let incidence = self.normal.dot(lamp.direction).max(0.0);
+    /// What it returns of a incoming's light: Lambert's law and, where painted, a highlight.
+    pub(super) fn lit(&self, incoming: &IncomingLight) -> DVec3 {
+        let incidence = self.normal.dot(incoming.direction).max(0.0);
         if incidence == 0.0 {
             return DVec3::ZERO;
         }
         let reflectance = match self.paint {
-            Some(paint) => paint.reflectance(self, lamp.direction),
+            Some(paint) => paint.reflectance(self, incoming.direction),
             None => DEFAULT_COLOR,
         };
-        lamp.color * incidence * reflectance
+        incoming.color * incidence * reflectance
     }
 
     /// Cosine between normal and eye.
     fn facing(&self) -> f64 {
-        self.normal.dot(self.toward_eye).max(LEAST_COSINE)
+        self.normal.dot(self.toward_eye).max(MIN_COSINE)
     }
 }
 
@@ -139,7 +139,7 @@ fn density(alpha: f64, cosine: f64) -> f64 {
     square / (cosine * cosine * (square - 1.0) + 1.0).powi(2)
 }
 
-/// The part of facets that both lamp and eye see.
+/// The part of facets that both incoming and eye see.
 fn visible(alpha: f64, entering: f64, leaving: f64) -> f64 {
     let lambda = |cosine: f64| {
         let tangent_squared = (1.0 - cosine * cosine).max(0.0) / (cosine * cosine);
@@ -160,8 +160,8 @@ fn karis(roughness: f64, facing: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    fn lamp(direction: DVec3) -> Lamp {
-        Lamp { direction, reach: None, color: DVec3::splat(2.0) }
+    fn incoming(direction: DVec3) -> IncomingLight {
+        IncomingLight { direction, distance: None, color: DVec3::splat(2.0) }
     }
 
     #[test]
@@ -169,8 +169,8 @@ mod tests {
         let surface = Surface::new(DVec3::Y * 3.0, DVec3::Z, None);
         assert_eq!(surface.normal, DVec3::Y);
         let slanted = DVec3::new(0.0, 0.5, 0.75f64.sqrt());
-        assert!((surface.lit(&lamp(slanted)) - 0.8).length() < 1e-6);
-        assert_eq!(surface.lit(&lamp(-slanted)), DVec3::ZERO);
+        assert!((surface.lit(&incoming(slanted)) - 0.8).length() < 1e-6);
+        assert_eq!(surface.lit(&incoming(-slanted)), DVec3::ZERO);
         assert!((surface.ambient(DVec3::ONE) - 0.8).length() < 1e-6);
     }
 
@@ -190,7 +190,7 @@ mod tests {
         // Facets face everywhere and hide nothing, so 0.04 / 4 is mirrored; 0.96 squared of the colour
         // comes back through the interface; the light is 2.
         let expected = (color_vector(color) * 0.96 * 0.96 + 0.01) * 2.0;
-        assert!((surface.lit(&lamp(DVec3::Z)) - expected).length() < 1e-12);
+        assert!((surface.lit(&incoming(DVec3::Z)) - expected).length() < 1e-12);
         // Occlusion halves the light from everywhere, not the emission.
         let [bright, dark] = [DVec3::ONE, DVec3::ZERO].map(|light| surface.ambient(light));
         assert_eq!(dark, DVec3::new(0.0, 0.0, 0.25));
@@ -239,7 +239,7 @@ mod tests {
                 }
                 let by_facet = density(alpha, halfway.z) * halfway.z
                     / (4.0 * halfway.dot(toward_eye)).max(1e-12);
-                sum += surface.lit(&lamp(light)).x / 2.0 / (by_facet + light.z);
+                sum += surface.lit(&incoming(light)).x / 2.0 / (by_facet + light.z);
             }
         }
         sum / (STEPS * STEPS) as f64

@@ -2,32 +2,32 @@
 
 use glam::DVec3;
 
-use crate::{Background, View, ViewFog, ViewLight, ViewShadow, ViewSource};
+use crate::view::{Background, View, ViewFog, ViewLight, ViewShadow, ViewSource};
 
-/// A lamp is never taken to be nearer than this.
-const LEAST_REACH: f64 = 1e-6;
+/// A incoming is never taken to be nearer than this.
+const MIN_DISTANCE: f64 = 1e-6;
 
 /// A light as a point sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Lamp {
+pub(super) struct IncomingLight {
     /// Unit vector towards it.
     pub(super) direction: DVec3,
     /// How far away it is; none for a sun.
-    pub(super) reach: Option<f64>,
+    pub(super) distance: Option<f64>,
     /// Linear colour of what arrives.
     pub(super) color: DVec3,
 }
 
-impl Lamp {
+impl IncomingLight {
     pub(super) fn seen_from(point: DVec3, light: &ViewLight) -> Self {
         match light.source {
-            ViewSource::Sun(direction) => Self { direction, reach: None, color: light.color },
+            ViewSource::Sun(direction) => Self { direction, distance: None, color: light.color },
             ViewSource::Point(position) => Self::at(position, point, light.color),
             ViewSource::Spot { position, axis, rim: [inner, outer] } => {
-                let lamp = Self::at(position, point, light.color);
-                let cosine = -axis.dot(lamp.direction);
+                let incoming = Self::at(position, point, light.color);
+                let cosine = -axis.dot(incoming.direction);
                 let share = fade((cosine - outer) / (inner - outer));
-                Self { color: lamp.color * share, ..lamp }
+                Self { color: incoming.color * share, ..incoming }
             }
         }
     }
@@ -35,8 +35,12 @@ impl Lamp {
     /// Light thins out with the square of the distance.
     fn at(position: DVec3, point: DVec3, color: DVec3) -> Self {
         let way = position - point;
-        let reach = way.length().max(LEAST_REACH);
-        Self { direction: way / reach, reach: Some(reach), color: color / (reach * reach) }
+        let distance = way.length().max(MIN_DISTANCE);
+        Self {
+            direction: way / distance,
+            distance: Some(distance),
+            color: color / (distance * distance),
+        }
     }
 }
 

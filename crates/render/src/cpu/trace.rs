@@ -1,156 +1,43 @@
 //! Marching rays on the CPU, several at a time.
 
-mod copies;
+pub(super) mod copies;
 mod interval;
 
-use std::ops::{Add, Mul, Sub};
+use sdfc_graph::eval::{Evaluator, Packet};
 
-use sdfc_graph::eval::{Evaluator, Number, Packet};
-
-use super::ahead::Ahead;
-use crate::{
-    RenderError,
-    image::{CAPPED, HIT, MISS},
-};
-
-/// Points evaluated together: enough that decoding an instruction costs little beside running it.
-pub(super) const LANES: usize = 8;
-
-/// An evaluator of [`LANES`] points at a time.
-pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;
-
-/// What rays are marched in: f32, as the shader does, or f64.
-pub trait Real:
-    Number
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Into<f64>
-    + Send
-    + Sync
-{
-}
-
-impl Real for f32 {}
-impl Real for f64 {}
-
-pub(super) use copies::trace_among_copies;
-
-/// The ray methods that the CPU has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Method {
-    /// Steps as long as the distance, up to an absolute tolerance.
-    Sphere,
-    /// Steps to where balls of free space just meet, up to a quarter of a pixel, then secants; or closing in on a sign change.
-    Auto,
-    /// Stretches of the ray are proven free or cut, the nearer part first, down to a part of the pixel.
-    Interval,
-}
-
-impl Method {
-    pub(super) const ALL: [(&'static str, Self); 3] =
-        [("auto", Self::Auto), ("sphere", Self::Sphere), ("interval", Self::Interval)];
-
-    pub(super) fn of_name(name: &str) -> Result<Self, RenderError> {
-        let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
-        found.map(|(_, method)| method).ok_or_else(|| RenderError::MethodNotOnCpu(name.to_owned()))
-    }
-
-    /// How many times the steps of the view a ray may take.
-    fn patience(self) -> u32 {
-        match self {
-            Self::Sphere | Self::Interval => 1,
-            Self::Auto => 4,
-        }
-    }
-
-    /// How many evaluations a sample is; `interval` counts those of stretches, to whose ends its samples belong.
-    fn counted(self) -> u32 {
-        match self {
-            Self::Sphere | Self::Auto => 1,
-            Self::Interval => 0,
-        }
-    }
-
-    /// Whether it asks what is known of rays before they are marched.
-    pub(super) fn pre_intersects(self) -> bool {
-        match self {
-            Self::Sphere | Self::Interval => false,
-            Self::Auto => true,
-        }
-    }
-}
-
-/// A ray with the cone that its pixel sees.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ray<T> {
-    pub(super) origin: [T; 3],
-    /// Of unit length.
-    pub(super) direction: [T; 3],
-    pub(super) t_max: T,
-    /// Radius of the cone at the origin, and its growth per length.
-    pub(super) radius: T,
-    pub(super) spread: T,
-    /// How near to the surface a hit is, in widths of the cone there (`auto`).
-    pub(super) tolerance: T,
-}
-
-/// Rounding of a point relative to its distance from the scene's origin: eight units in the last
-/// place of f32, also in f64, where the same tolerances are wanted.
-const ROUNDING: f64 = 1e-6;
+use super::method::CpuMethod;
+use super::pre_intersection::PreIntersection;
+use super::ray::{Batch, LANES, Ray, Real, packed};
+use crate::image::{CAPPED, HIT, MISS};
 
 /// A hit of `auto` is nearer than this part of the tolerance.
-const HIT_PART: f64 = 0.00390625;
+const HIT_FRACTION: f64 = 0.00390625;
 /// Weight of the last step's slope in the mean.
-const NEWEST: f64 = 0.5;
+const SLOPE_WEIGHT: f64 = 0.5;
 /// Steps of `auto` are at most so many distances.
-const MOST_RELAXATION: f64 = 4.0;
+const MAX_RELAXATION: f64 = 4.0;
 /// A secant of `auto` is at most the inverse of this times the distance, or that part of the tolerance.
-const LEAST_SLOPE: f64 = 0.25;
-const LEAST_PART: f64 = 0.25;
+const MIN_SLOPE: f64 = 0.25;
+const MIN_STEP_FRACTION: f64 = 0.25;
 /// What is left of the way at a hit is at most the inverse of this times the distance.
-const LEAST_LAST_SLOPE: f64 = 0.0078125;
-
-impl<T: Real> Ray<T> {
-    pub(super) fn at(&self, t: T) -> [T; 3] {
-        std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
-    }
-
-    /// Radius of the cone.
-    pub(super) fn footprint(&self, t: T) -> T {
-        self.radius + self.spread * t
-    }
-
-    /// The ray from one of its places on.
-    fn moved(&self, t: T) -> Self {
-        let (origin, radius, t_max) = (self.at(t), self.footprint(t), self.t_max - t);
-        Self { origin, radius, t_max, ..*self }
-    }
-
-    /// How far rounding may move a point of the ray.
-    pub(super) fn rounding(&self, t: T) -> T {
-        let [x, y, z] = self.origin;
-        T::constant(ROUNDING) * ((x * x + y * y + z * z).sqrt() + t)
-    }
-}
+const MIN_FINAL_SLOPE: f64 = 0.0078125;
 
 /// What limits all rays of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits<T> {
-    pub(super) method: Method,
+    pub(super) method: CpuMethod,
     pub(super) epsilon: T,
     pub(super) steps: u32,
     /// Whether it is wanted how narrowly rays pass what they do not meet.
-    pub(super) watched: bool,
+    pub(super) records_clearance: bool,
 }
 
 impl<T: Real> Limits<T> {
     /// How near to the surface a hit is.
     pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
         match self.method {
-            Method::Sphere => self.epsilon,
-            Method::Auto | Method::Interval => {
+            CpuMethod::Sphere => self.epsilon,
+            CpuMethod::Auto | CpuMethod::Interval => {
                 let part = T::constant(2.0) * ray.tolerance * ray.footprint(t);
                 part.max(ray.rounding(t))
             }
@@ -181,7 +68,7 @@ impl<T: Real> Trace<T> {
 #[derive(Clone, Copy)]
 struct Walk<T> {
     whole: Ray<T>,
-    ahead: Ahead<T>,
+    known: PreIntersection<T>,
     /// The ray from where its march begins on; places are counted from there.
     ray: Ray<T>,
     /// Where the march ends.
@@ -200,7 +87,7 @@ struct Walk<T> {
     /// Whether the last place outside is nearer to a surface than the tolerance (`auto`).
     close: bool,
     /// Length of the next stretch that is looked at (`interval`).
-    stretch: T,
+    segment: T,
 }
 
 /// What a sample of the field decides.
@@ -210,13 +97,13 @@ enum Turn<T> {
 }
 
 impl<T: Real> Walk<T> {
-    fn new(ray: Ray<T>, ahead: Ahead<T>) -> Self {
+    fn new(ray: Ray<T>, known: PreIntersection<T>) -> Self {
         let zero = T::constant(0.0);
         Self {
             whole: ray,
-            ahead,
-            ray: ray.moved(ahead.start),
-            end: ahead.end - ahead.start,
+            known,
+            ray: ray.advanced(known.start),
+            end: known.end - known.start,
             t: zero,
             evaluations: 0,
             clearance: T::constant(f64::INFINITY),
@@ -226,19 +113,19 @@ impl<T: Real> Walk<T> {
             stride: zero,
             slope: T::constant(-1.0),
             close: false,
-            stretch: ray.t_max,
+            segment: ray.t_max,
         }
     }
 
     fn ends(&self, t: T, status: u32) -> Trace<T> {
-        let evaluations = self.evaluations + self.ahead.evaluations;
+        let evaluations = self.evaluations + self.known.evaluations;
         Trace { t, status, evaluations, clearance: self.clearance }
     }
 
     /// How a ray ends that has met nothing on its march; a place that is no number stays one.
     fn unmet(&self) -> Trace<T> {
         let t_max = self.whole.t_max;
-        match self.ahead.hit(&self.whole) {
+        match self.known.hit(&self.whole) {
             Some(met) if self.t > self.end => self.ends(met, HIT),
             Some(_) | None if self.t <= t_max => self.ends(t_max, MISS),
             Some(_) | None => self.ends(self.t, MISS),
@@ -252,21 +139,21 @@ impl<T: Real> Walk<T> {
         limits: &Limits<T>,
         range: Option<&mut Evaluator<'_, T>>,
     ) -> Option<Trace<T>> {
-        self.evaluations += limits.method.counted();
-        if limits.watched {
+        self.evaluations += limits.method.evaluations_per_sample();
+        if limits.records_clearance {
             self.pass(distance);
         }
         let turn = match limits.method {
-            Method::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
-            Method::Sphere => Turn::Onward(self.t + distance),
-            Method::Auto => self.auto(distance, limits),
-            Method::Interval => match range {
+            CpuMethod::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
+            CpuMethod::Sphere => Turn::Onward(self.t + distance),
+            CpuMethod::Auto => self.auto(distance, limits),
+            CpuMethod::Interval => match range {
                 Some(range) => self.interval(distance, limits, range),
-                None => return Some(self.ends(self.ahead.start + self.t, CAPPED)),
+                None => return Some(self.ends(self.known.start + self.t, CAPPED)),
             },
         };
         match turn {
-            Turn::Hit(t) => return Some(self.ends(self.ahead.start + t, HIT)),
+            Turn::Hit(t) => return Some(self.ends(self.known.start + t, HIT)),
             Turn::Onward(t) => self.t = t,
         }
         // A place that is no number ends the ray too.
@@ -277,8 +164,10 @@ impl<T: Real> Walk<T> {
     fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<T>> {
         if !within {
             Some(self.unmet())
-        } else if self.evaluations >= limits.method.patience().saturating_mul(limits.steps) {
-            Some(self.ends(self.ahead.start + self.t, CAPPED))
+        } else if self.evaluations
+            >= limits.method.step_budget_factor().saturating_mul(limits.steps)
+        {
+            Some(self.ends(self.known.start + self.t, CAPPED))
         } else {
             None
         }
@@ -324,7 +213,7 @@ impl<T: Real> Walk<T> {
             T::constant(-1.0)
         };
         if distance.abs() < hit {
-            return Turn::Hit(self.t + secant(distance, gain, LEAST_LAST_SLOPE));
+            return Turn::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
         }
         self.keep(distance);
         if let Some(turn) = self.closing_in(hit) {
@@ -339,23 +228,23 @@ impl<T: Real> Walk<T> {
         if !goes_on {
             return Turn::Onward(free);
         }
-        self.slope = self.slope + T::constant(NEWEST) * (gain - self.slope);
+        self.slope = self.slope + T::constant(SLOPE_WEIGHT) * (gain - self.slope);
         self.close = distance < near;
         let step = if self.close {
-            let step = secant(distance, gain, LEAST_SLOPE);
+            let step = secant(distance, gain, MIN_SLOPE);
             // Along a surface no step need be shorter.
-            if gain > T::constant(-LEAST_SLOPE) {
-                step.max(T::constant(LEAST_PART) * near)
+            if gain > T::constant(-MIN_SLOPE) {
+                step.max(T::constant(MIN_STEP_FRACTION) * near)
             } else {
                 step
             }
         } else {
             // Two balls beside a plane touch.
             let apart = (T::constant(1.0) - self.slope)
-                .clamp(T::constant(2.0 / MOST_RELAXATION), T::constant(2.0));
+                .clamp(T::constant(2.0 / MAX_RELAXATION), T::constant(2.0));
             (T::constant(2.0) * distance).div(apart)
         };
-        let step = if limits.watched { step.min(distance) } else { step };
+        let step = if limits.records_clearance { step.min(distance) } else { step };
         self.stride = step.min(end - self.t);
         // Rounded up the sum may be past the end, where the ray would be taken to have met nothing without a look.
         Turn::Onward((self.t + self.stride).min(end))
@@ -363,7 +252,7 @@ impl<T: Real> Walk<T> {
 
     /// How near to the surface a hit is, in terms of what is near.
     fn hit_within(&self, near: T) -> T {
-        (T::constant(HIT_PART) * near).max(self.ray.rounding(self.t))
+        (T::constant(HIT_FRACTION) * near).max(self.ray.rounding(self.t))
     }
 
     fn keep(&mut self, distance: T) {
@@ -395,12 +284,12 @@ fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
 pub(super) fn trace<T: Real>(
     field: &mut Batch<'_, T>,
     mut range: Option<&mut Evaluator<'_, T>>,
-    rays: &[(Ray<T>, Ahead<T>)],
+    rays: &[(Ray<T>, PreIntersection<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
     let mut traces = vec![Trace::lost(); rays.len()];
-    let walks = rays.iter().map(|&(ray, ahead)| Walk::new(ray, ahead)).enumerate();
-    let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.ahead.leads_on());
+    let walks = rays.iter().map(|&(ray, known)| Walk::new(ray, known)).enumerate();
+    let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.known.must_march());
     for (index, walk) in ended {
         traces[index] = walk.unmet();
     }
@@ -423,25 +312,4 @@ pub(super) fn trace<T: Real>(
         }
     }
     traces
-}
-
-/// Values of a tape at points, in their order: for each point one array of lanes per root.
-pub(super) fn values_at<T: Real>(
-    evaluator: &mut Batch<'_, T>,
-    points: &[[T; 3]],
-) -> Vec<Vec<[f64; 4]>> {
-    let mut values = Vec::with_capacity(points.len());
-    for group in points.chunks(LANES) {
-        let mut filled = [[T::constant(0.0); 3]; LANES];
-        filled[..group.len()].copy_from_slice(group);
-        let roots = evaluator.eval(packed(&filled));
-        values.extend((0..group.len()).map(|lane| {
-            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
-        }));
-    }
-    values
-}
-
-pub(super) fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
-    std::array::from_fn(|axis| Packet(points.map(|point| point[axis])))
 }

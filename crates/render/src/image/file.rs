@@ -9,7 +9,8 @@ use exr::error::UnitResult;
 use exr::prelude::{SpecificChannels, Vec2, WritableImage as _};
 use sdfc_march::PixelBlock;
 
-use crate::{HIT, Image, RenderError};
+use super::{HIT, Image};
+use crate::error::RenderError;
 
 impl Image {
     /// The picture as a PNG file, sRGB, without alpha.
@@ -115,7 +116,7 @@ fn refused(error: image::ImageError) -> RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Footprint;
+    use crate::view::footprint::Footprint;
     use exr::prelude::traits::*;
     use image::AnimationDecoder as _;
 

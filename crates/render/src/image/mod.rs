@@ -6,15 +6,13 @@ mod samples;
 
 use sdfc_march::PixelBlock;
 
-use crate::{Footprint, RenderError, Tile};
+use crate::error::RenderError;
+use crate::limits::{MAX_PIXELS, MAX_SIDE};
+use crate::tiles::Tile;
+use crate::view::footprint::Footprint;
 #[cfg(feature = "files")]
 pub use file::Animation;
-pub use samples::{MAX_SAMPLES, sample_offsets};
-
-/// Longest side of a picture in pixels.
-pub const MAX_SIDE: u32 = 16_384;
-/// Most pixels of a picture: 2 GiB of [`PixelBlock`]s.
-pub const MAX_PIXELS: u64 = 1 << 26;
+pub use samples::sample_offsets;
 
 /// [`PixelBlock::status`] of a ray that met nothing.
 pub const MISS: u32 = 0;

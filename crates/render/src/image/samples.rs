@@ -1,9 +1,8 @@
 //! Several rays for each pixel, averaged.
 
-use crate::{Image, RenderError};
-
-/// Most rays from the eye for one pixel.
-pub const MAX_SAMPLES: u32 = 1024;
+use super::Image;
+use crate::error::RenderError;
+use crate::limits::MAX_SAMPLES;
 
 /// The golden ratio less 1: of all numbers the one whose multiples, modulo 1, stay furthest apart.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -63,7 +62,7 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Footprint;
+    use crate::view::footprint::Footprint;
 
     #[test]
     fn one_ray_passes_through_the_centre() {

@@ -4,7 +4,8 @@ use glam::DVec3;
 use sdfc_graph::{Light, LightSource, NodeId, Shadow};
 use sdfc_march::{LightBlock, MAX_LIGHTS, POINT, SHADOW_HARD, SHADOW_OFF, SHADOW_SOFT, SPOT, SUN};
 
-use super::{ViewError, finite, positive};
+use super::error::ViewError;
+use super::values::{finite, positive};
 
 /// A spot light's light falls off over this outer part of its angle.
 const RIM: f64 = 0.15;

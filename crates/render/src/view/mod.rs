@@ -3,30 +3,33 @@
 //! Right-handed, y up, z towards the viewer. Lengths are in scene units, angles in radians,
 //! colours linear.
 
+mod background;
 mod error;
+pub(crate) mod footprint;
 mod light;
+mod limits;
 mod pose;
+mod values;
 
 use glam::DVec3;
 use sdfc_graph::{
-    Fog, March, NodeId, Occlusion, Program, Settings, Sky,
+    NodeId, Program, Settings,
     eval::{FrameValues, evaluate_frame},
 };
 use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, MethodParameter, ViewBlock};
 
 use crate::tiles::Tile;
-pub use error::ViewError;
+use background::{background, view_fog, view_occlusion};
+use footprint::Footprint;
 use light::lights;
+use limits::Limits;
+use values::{aspect, finite, fraction, value_of};
+
+pub use background::{Background, ViewFog, ViewOcclusion};
+pub use error::ViewError;
 pub use light::{ViewLight, ViewShadow, ViewSource};
 pub use pose::Pose;
-
-/// Length of a ray in distances from eye to target, where neither scene nor bounds limit it.
-const DEFAULT_DISTANCE: f64 = 200.0;
-/// A ray that is limited by the bounds goes past them by so much, for the rounding of the bounds.
-const DISTANCE_MARGIN: f64 = 1.01;
-
-/// Lowest and highest corner of a box, in scene units; infinite where it is not limited.
-pub type Bounds = [[f64; 3]; 2];
+pub use values::Bounds;
 
 /// One frame's camera, lights and limits, in f64.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,54 +71,6 @@ pub struct View {
     pub reflection_strength: f64,
     /// A box around all surfaces that loops with lists of rounds are part of, if that is known.
     pub within: Option<[DVec3; 2]>,
-}
-
-/// What is seen where nothing is met, in linear colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Background {
-    /// One colour.
-    Plain(DVec3),
-    /// Colours by direction.
-    Sky {
-        /// Straight up.
-        zenith: DVec3,
-        /// At the horizon and below it.
-        horizon: DVec3,
-    },
-}
-
-/// What is far away fades.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewFog {
-    /// What is left of a surface's light after a length t is `exp(-density * t)`.
-    pub density: f64,
-    /// Linear colour that it fades to; none: what lies behind.
-    pub color: Option<DVec3>,
-}
-
-/// How much of the light from everywhere reaches a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewOcclusion {
-    /// What is farther away takes no light.
-    pub radius: f64,
-    /// By what part light is taken, 0..1.
-    pub strength: f64,
-}
-
-/// Half the width that a pixel sees.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Footprint {
-    /// Where rays start.
-    pub radius: f64,
-    /// What it gains per length.
-    pub spread: f64,
-}
-
-impl Footprint {
-    /// At a distance from where rays start.
-    pub fn at(self, t: f64) -> f64 {
-        self.radius + self.spread * t
-    }
 }
 
 impl View {
@@ -185,7 +140,7 @@ impl View {
         let limits = Limits::new(&settings.march, pose, bounds)?;
         let (reflections, reflection_strength) = match &settings.reflections {
             Some(mirrors) => {
-                let strength = share(value(mirrors.strength), "the strength of reflections")?;
+                let strength = fraction(value(mirrors.strength), "the strength of reflections")?;
                 (mirrors.count.min(MAX_REFLECTIONS), strength)
             }
             None => (0, 0.0),
@@ -317,118 +272,6 @@ impl View {
     }
 }
 
-/// How many times as wide as high.
-fn aspect([width, height]: [u32; 2]) -> f64 {
-    f64::from(width.max(1)) / f64::from(height.max(1))
-}
-
-/// The lanes of one of the settings' nodes.
-fn value_of(nodes: &[NodeId], values: &[[f64; 4]], id: NodeId) -> [f64; 4] {
-    let found = nodes.iter().position(|node| *node == id);
-    found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])
-}
-
-/// How far and how finely rays go.
-struct Limits {
-    t_max: f64,
-    epsilon: f64,
-    tolerance: f64,
-    steps: u32,
-}
-
-impl Limits {
-    fn new(march: &March, pose: &Pose, bounds: Option<Bounds>) -> Result<Self, ViewError> {
-        let reach = (pose.target - pose.eye).length();
-        let steps = march.steps.unwrap_or(MethodParameter::Steps.default_value() as u32);
-        if steps == 0 {
-            return Err(ViewError::NotPositive("march's steps", 0.0));
-        }
-        Ok(Self {
-            t_max: stated(march.distance, "march's distance")?
-                .unwrap_or_else(|| derived_distance(pose.eye, reach, bounds)),
-            epsilon: stated(march.epsilon, "march's epsilon")?
-                .unwrap_or(MethodParameter::Epsilon.default_value() * reach),
-            tolerance: stated(march.tolerance, "march's tolerance")?
-                .unwrap_or(MethodParameter::Tolerance.default_value()),
-            steps,
-        })
-    }
-}
-
-/// As far as the bounds' farthest corner, and from end to end of them for rays to a lamp, if they
-/// are finite and not empty.
-fn derived_distance(eye: DVec3, reach: f64, bounds: Option<Bounds>) -> f64 {
-    let farthest = bounds.map(|[lo, hi]| {
-        let (lo, hi) = (DVec3::from(lo), DVec3::from(hi));
-        let farthest = (lo - eye).abs().max((hi - eye).abs()).length();
-        if lo.cmple(hi).all() { farthest.max((hi - lo).length()) } else { f64::NAN }
-    });
-    match farthest {
-        Some(distance) if distance.is_finite() && distance > 0.0 => distance * DISTANCE_MARGIN,
-        _ => reach * DEFAULT_DISTANCE,
-    }
-}
-
-fn stated(value: Option<f64>, what: &'static str) -> Result<Option<f64>, ViewError> {
-    match value {
-        Some(value) if !value.is_finite() => Err(ViewError::NotFinite(what)),
-        Some(value) if value <= 0.0 => Err(ViewError::NotPositive(what, value)),
-        value => Ok(value),
-    }
-}
-
-fn background(
-    settings: &Settings,
-    value: &dyn Fn(NodeId) -> [f64; 4],
-) -> Result<Background, ViewError> {
-    if let Some(Sky { zenith, horizon }) = settings.sky {
-        let [zenith, horizon] =
-            [zenith, horizon].map(|node| finite(value(node), "the sky's colour"));
-        return Ok(Background::Sky { zenith: zenith?, horizon: horizon? });
-    }
-    let color = settings.background.map(|node| finite(value(node), "the background colour"));
-    Ok(Background::Plain(color.transpose()?.unwrap_or_default()))
-}
-
-fn view_fog(fog: Fog, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<ViewFog, ViewError> {
-    let density = value(fog.density)[0];
-    if density < 0.0 {
-        return Err(ViewError::NotPositive("the fog's density", density));
-    }
-    if !density.is_finite() {
-        return Err(ViewError::NotFinite("the fog's density"));
-    }
-    let color = fog.color.map(|node| finite(value(node), "the fog's colour")).transpose()?;
-    Ok(ViewFog { density, color })
-}
-
-fn view_occlusion(
-    occlusion: Occlusion,
-    value: &dyn Fn(NodeId) -> [f64; 4],
-) -> Result<ViewOcclusion, ViewError> {
-    Ok(ViewOcclusion {
-        radius: positive(value(occlusion.radius), "the radius of ambient occlusion")?,
-        strength: share(value(occlusion.strength), "the strength of ambient occlusion")?,
-    })
-}
-
-fn share([value, ..]: [f64; 4], what: &'static str) -> Result<f64, ViewError> {
-    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err(ViewError::NotShare(what, value)) }
-}
-
-fn positive([value, ..]: [f64; 4], what: &'static str) -> Result<f64, ViewError> {
-    match value {
-        value if !value.is_finite() => Err(ViewError::NotFinite(what)),
-        value if value <= 0.0 => Err(ViewError::NotPositive(what, value)),
-        value => Ok(value),
-    }
-}
-
-fn finite([x, y, z, _]: [f64; 4], what: &'static str) -> Result<DVec3, ViewError> {
-    let vector = DVec3::new(x, y, z);
-    if vector.is_finite() { Ok(vector) } else { Err(ViewError::NotFinite(what)) }
-}
-
 /// What a program says of [`View::within`] at a frame.
 fn within(program: &Program, frame: &FrameValues) -> Option<[DVec3; 2]> {
     let corners = evaluate_frame(&program.graph, &program.loop_bounds?, frame);
@@ -441,7 +284,7 @@ fn within(program: &Program, frame: &FrameValues) -> Option<[DVec3; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use sdfc_graph::{Camera, Lens, Light, LightSource, Reflections, Shadow};
+    use sdfc_graph::{Camera, Lens, Light, LightSource, March, Reflections, Shadow};
     use sdfc_march::{SHADOW_HARD, SUN};
 
     use super::*;

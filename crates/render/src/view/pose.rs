@@ -6,7 +6,8 @@ use sdfc_graph::{
     eval::{FrameValues, evaluate_frame},
 };
 
-use super::{Bounds, ViewError, finite, positive, value_of};
+use super::error::ViewError;
+use super::values::{Bounds, finite, positive, value_of};
 
 /// Vertical field of view of a camera that is fitted to the bounds.
 const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;

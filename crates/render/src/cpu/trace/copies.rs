@@ -2,25 +2,27 @@
 
 use sdfc_graph::eval::Packet;
 
-use super::super::ahead::Ahead;
-use super::{Batch, HIT, LANES, Limits, Ray, Real, Trace, Walk, packed};
+use super::{Limits, Trace, Walk};
+use crate::cpu::pre_intersection::PreIntersection;
+use crate::cpu::ray::{Batch, LANES, Ray, Real, packed};
+use crate::image::HIT;
 
 /// Takes all rays to their ends; the result has their order.
-pub(in super::super) fn trace_among_copies<T: Real>(
+pub(crate) fn trace_among_copies<T: Real>(
     copies: &mut Batch<'_, T>,
-    rays: &[(Ray<T>, Ahead<T>)],
+    rays: &[(Ray<T>, PreIntersection<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
     let mut traces = vec![Trace::lost(); rays.len()];
     for (group, traces) in rays.chunks(LANES).zip(traces.chunks_mut(LANES)) {
         let mut walks: Vec<Option<Walk<T>>> = Vec::with_capacity(LANES);
-        for (&(ray, ahead), trace) in group.iter().zip(traces.iter_mut()) {
-            let walk = Walk::new(ray, ahead);
-            let leads_on = walk.ahead.leads_on();
-            if !leads_on {
+        for (&(ray, known), trace) in group.iter().zip(traces.iter_mut()) {
+            let walk = Walk::new(ray, known);
+            let must_march = walk.known.must_march();
+            if !must_march {
                 *trace = walk.unmet();
             }
-            walks.push(leads_on.then_some(walk));
+            walks.push(must_march.then_some(walk));
         }
         let mut ends = [[[T::constant(0.0); 3]; LANES]; 2];
         while walks.iter().any(Option::is_some) {
@@ -49,7 +51,7 @@ impl<T: Real> Walk<T> {
         self.evaluations += 1;
         let [met, reach] = [met, reach].map(|way| self.t + way);
         if met <= reach && met <= self.end {
-            return Some(self.ends(self.ahead.start + met, HIT));
+            return Some(self.ends(self.known.start + met, HIT));
         }
         let within = reach <= self.end;
         let rounding = self.ray.rounding(self.t);

@@ -2,12 +2,13 @@
 
 use sdfc_graph::eval::Evaluator;
 
-use super::{Limits, Real, Turn, Walk};
+use super::{Limits, Turn, Walk};
+use crate::cpu::ray::Real;
 
 /// Of what is not free this part at most is looked at next, and this part at least.
-const CAUTION: f64 = 0.9;
-const SHORTEST: f64 = 0.0625;
-/// No stretch is cut shorter than this part of the tolerance; nor, of a ray that has spent its steps, than so many of it.
+const MAX_FRACTION: f64 = 0.9;
+const MIN_FRACTION: f64 = 0.0625;
+/// No segment is cut shorter than this part of the tolerance; nor, of a ray that has spent its steps, than so many of it.
 const FINEST: f64 = 0.0625;
 const COARSEST: f64 = 4.0;
 
@@ -37,30 +38,30 @@ impl<T: Real> Walk<T> {
             return Turn::Onward(self.ray.t_max + self.ray.t_max);
         }
         let rounding = self.ray.rounding(self.t);
-        self.stretch = self.stretch.max(above.max(rounding));
-        if limits.watched {
-            self.stretch = self.stretch.min(above.max(near));
+        self.segment = self.segment.max(above.max(rounding));
+        if limits.records_clearance {
+            self.segment = self.segment.min(above.max(near));
         }
         let mut shortened = false;
         let mut end = last;
         while self.evaluations < limits.steps {
-            end = (last + self.stretch).min(self.ray.t_max);
+            end = (last + self.segment).min(self.ray.t_max);
             self.evaluations += 1;
             let least = range.eval_ray(self.ray.at(last), self.ray.at(end))[0][0];
             let spent = f64::from(self.evaluations) / f64::from(limits.steps);
             let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
             let finest = finest.max(rounding);
-            if least > zero || self.stretch <= finest {
+            if least > zero || self.segment <= finest {
                 break;
             }
             // As far as the field would stay above 0 if it fell evenly to its least value.
             let fall = (above - least).max(T::constant(1e-30));
-            let part = (T::constant(CAUTION) * above).div(fall);
-            let part = part.clamp(T::constant(SHORTEST), T::constant(CAUTION));
-            self.stretch = (part * (end - last)).max(finest);
+            let part = (T::constant(MAX_FRACTION) * above).div(fall);
+            let part = part.clamp(T::constant(MIN_FRACTION), T::constant(MAX_FRACTION));
+            self.segment = (part * (end - last)).max(finest);
             shortened = true;
         }
-        self.stretch = if shortened { zero } else { self.stretch + self.stretch };
+        self.segment = if shortened { zero } else { self.segment + self.segment };
         Turn::Onward(end)
     }
 }

@@ -4,38 +4,17 @@ use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeIn
 use sdfc_graph::{Graph, MaterialField, NodeId, Program, Type};
 use sdfc_march::{Features, MethodDefinition, ray_source, stubs};
 
-use crate::inputs::{declare_members, raw_inputs};
-use crate::lower::struct_function;
+use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
+use super::template::{known_method, ray_features};
+use crate::error::Error;
+use crate::link::template::{bind, find_function, parse_template};
+use crate::lower::inputs::{declare_members, raw_inputs};
+use crate::lower::tables::Tables;
+use crate::lower::{struct_function, types};
 use crate::names::{check_prefix, make_public};
-use crate::picture::{Filling, ahead, known_method, ray_features, stretches};
-use crate::reflect::{Parts, Role};
-use crate::tables::Tables;
-use crate::{Error, Lists, Shader, link, types};
-
-/// What the functions of a scene hold and how they are named.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FieldOptions {
-    /// Start of every name.
-    pub prefix: String,
-    /// Whether to write the gradient.
-    pub gradient: bool,
-    /// Whether to write the material, if the program has one.
-    pub material: bool,
-    /// Bind group of the uniform structure.
-    pub group: u32,
-    /// Its binding in the group; lists have the next one.
-    pub binding: u32,
-    /// Where long lists are.
-    pub lists: Lists,
-}
-
-impl Default for FieldOptions {
-    fn default() -> Self {
-        let prefix = "sdf_".to_owned();
-        let lists = Lists::default();
-        Self { prefix, gradient: true, material: true, group: 0, binding: 0, lists }
-    }
-}
+use crate::options::FieldOptions;
+use crate::reflection::{ModuleParts, Role};
+use crate::shader::Shader;
 
 /// The functions `<prefix>distance`, `<prefix>gradient` and `<prefix>material` of a program, without
 /// an entry point. The gradient has the distance in its fourth lane.
@@ -75,24 +54,24 @@ fn functions(
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.clone();
     let features = ray_features(&program, method.is_some_and(|method| method.pre_intersects));
-    let mut fillings = vec![Filling::of_point(Some(Role::Distance), stubs::FIELD, distance)];
+    let mut bindings = vec![StubBinding::of_point(Some(Role::Distance), stubs::FIELD, distance)];
     if options.gradient {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let gradient = with_value(&mut program.graph, gradient, distance);
-        fillings.push(Filling::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
+        bindings.push(StubBinding::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
     }
     let program = &program;
-    fillings.extend(ahead(program, features));
+    bindings.extend(analytic_bindings(program, features));
     if let Some(method) = method {
-        fillings.extend(stretches(program, method)?);
+        bindings.extend(segment_bindings(program, method)?);
     }
     let material = program.material.filter(|_| options.material);
-    let mut nodes: Vec<_> = fillings.iter().map(|filling| filling.root).collect();
+    let mut nodes: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
     nodes.extend(material.into_iter().flatten());
 
     let mut module = match method {
         Some(method) => {
-            link::skeleton(&ray_source(method), &features.overrides(), &[stubs::RECORD_SAMPLE])?
+            parse_template(&ray_source(method), &features.overrides(), &[stubs::RECORD_SAMPLE])?
         }
         None => Module::default(),
     };
@@ -105,20 +84,20 @@ fn functions(
     inputs.tables.declare(&mut module, program, &nodes)?;
 
     let (uniform, prefix) = (inputs.buffer, options.prefix.clone());
-    let mut parts = Parts { members, uniform, prefix, ..Default::default() };
-    for filling in fillings {
-        let function = filling.function(program, &inputs, &mut module.types)?;
-        let place = fill_or_add(&mut module, filling.stub, function)?;
-        parts.functions.extend(filling.role.map(|role| (role, place)));
+    let mut parts = ModuleParts { members, uniform, prefix, ..Default::default() };
+    for binding in bindings {
+        let function = binding.function(program, &inputs, &mut module.types)?;
+        let place = bind_or_add(&mut module, binding.stub, function)?;
+        parts.functions.extend(binding.role.map(|role| (role, place)));
     }
     if let Some(fields) = material {
         let structure = material_type(&mut module);
         let (stub, types) = (stubs::MATERIAL, &mut module.types);
         let function = struct_function(program, &inputs, types, stub, &fields, structure)?;
-        parts.functions.push((Role::Material, fill_or_add(&mut module, stub, function)?));
+        parts.functions.push((Role::Material, bind_or_add(&mut module, stub, function)?));
     }
     for (role, name) in [(Role::Trace, stubs::TRACE), (Role::Intersect, stubs::INTERSECT)] {
-        parts.functions.extend(link::find_function(&module, name).map(|f| (role, f)));
+        parts.functions.extend(find_function(&module, name).map(|f| (role, f)));
     }
     parts.lists = inputs.tables.into_buffer();
     make_public(&mut module, &parts, &options.prefix);
@@ -132,13 +111,13 @@ fn with_value(graph: &mut Graph, derivative: NodeId, value: NodeId) -> NodeId {
 }
 
 /// Replaces the stub of that name where a ray method calls it, else adds the function.
-fn fill_or_add(
+fn bind_or_add(
     module: &mut Module,
     stub: &str,
     function: Function,
 ) -> Result<Handle<Function>, Error> {
-    if let Some(handle) = link::find_function(module, stub) {
-        link::fill(module, stub, function)?;
+    if let Some(handle) = find_function(module, stub) {
+        bind(module, stub, function)?;
         return Ok(handle);
     }
     Ok(module.functions.append(function, Span::UNDEFINED))

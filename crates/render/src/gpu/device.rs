@@ -6,7 +6,8 @@ use std::{
     time::Duration,
 };
 
-use crate::{AdapterInfo, RenderError};
+use crate::error::RenderError;
+use crate::stats::AdapterInfo;
 
 /// An open device without a window.
 ///

@@ -12,21 +12,9 @@ use naga::{
 use rustc_hash::FxHashMap;
 use sdfc_graph::{Const, Node, NodeId, Program, Table, TableId, Type, reachable};
 
-use crate::{Error, types};
-
-/// Lists up to this many elements are constants of a shader for an engine of someone else's.
-pub const MAX_CONSTANT_LIST: usize = 64;
-
-/// Where the lists of a shader for an engine of someone else's are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Lists {
-    /// If one has more than [`MAX_CONSTANT_LIST`] elements all are in a storage buffer, one after the other:
-    /// [`crate::Shader::lists`] is what it holds.
-    #[default]
-    Buffer,
-    /// All are constants in the shader, for languages without such buffers.
-    Constants,
-}
+use super::types;
+use crate::error::Error;
+use crate::options::{Lists, MAX_CONSTANT_LIST};
 
 /// Where a program's lists are.
 #[derive(Debug, Default)]

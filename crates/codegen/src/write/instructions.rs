@@ -5,7 +5,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::Role;
+use crate::reflection::Role;
 
 const HEADER: usize = 5;
 const OP_NAME: u32 = 5;

@@ -4,11 +4,11 @@ use naga::compact::{KeepUnused, compact};
 use naga::{Arena, Block, Expression, Function, GlobalVariable, Handle, Module, Statement};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::Error;
+use crate::error::Error;
 
 /// Parses joined files, takes one side of each branch on an override, and drops the calls to functions of `unused`,
 /// with all that only they and the other sides reached. `overrides` has a value for each override of the files.
-pub(crate) fn skeleton(
+pub(crate) fn parse_template(
     source: &str,
     overrides: &[(&str, bool)],
     unused: &[&str],
@@ -54,12 +54,12 @@ pub(crate) fn find_variable(module: &Module, name: &str) -> Option<Handle<Global
 
 /// Replaces a stub by a function of the same signature. A stub calls nothing, and what replaces it nothing but
 /// what stands before it in the files, so the arena keeps callees before callers.
-pub(crate) fn fill(module: &mut Module, name: &str, filling: Function) -> Result<(), Error> {
+pub(crate) fn bind(module: &mut Module, name: &str, replacement: Function) -> Result<(), Error> {
     let handle = find_function(module, name)
         .ok_or_else(|| Error::Naga(format!("the ray method has no `{name}`")))?;
     let stub = module.functions.get_mut(handle);
     let (arguments, result) = (std::mem::take(&mut stub.arguments), stub.result.take());
-    *stub = Function { name: stub.name.take(), arguments, result, ..filling };
+    *stub = Function { name: stub.name.take(), arguments, result, ..replacement };
     Ok(())
 }
 

@@ -6,23 +6,11 @@ use naga::{
 };
 use sdfc_graph::{LoopId, LoopVar, Node, NodeId, SkipCondition, TableId, Type};
 
-use super::{Body, Lowering, Value, hint};
-use crate::{Error, types};
-
-/// What a round reads: its number, and the state.
-pub(super) struct Round {
-    number: Value,
-    /// The same as a word, and what it is less than, where it comes from a list.
-    listed: Option<(Value, u32)>,
-    state: Vec<Value>,
-}
-
-impl Round {
-    /// A round by its number alone.
-    pub(super) fn of_number(number: Value) -> Self {
-        Self { number, listed: None, state: Vec::new() }
-    }
-}
+use super::body::{Body, Value};
+use super::iteration::Iteration;
+use super::lowering::{Lowering, hint};
+use super::types;
+use crate::error::Error;
 
 /// The rounds of a loop that are visited: where the first one's number stands, and the end of these.
 struct Listed {
@@ -82,7 +70,7 @@ impl Lowering<'_> {
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
         let depth = usize::from(repeated.depth);
         self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
-        self.rounds[depth] = Some(Round { number, listed, state: read });
+        self.rounds[depth] = Some(Iteration { number, listed, state: read });
         self.visit_needed(&body.condition)?;
         if let Some(go_on) = repeated.condition {
             let go_on = self.value(go_on)?;
@@ -109,7 +97,7 @@ impl Lowering<'_> {
 
     /// The distance, or less where what was left out could be nearer.
     pub(super) fn with_left_out(&mut self, distance: Value) -> Value {
-        let at = self.inputs.visits.as_ref().and_then(|visits| visits.at);
+        let at = self.inputs.active_lists.as_ref().and_then(|lists| lists.by_point);
         let Some((_, free)) = at.filter(|_| self.leaves_out) else { return distance };
         let pointer = self.body.declare(Expression::GlobalVariable(free));
         let free = self.body.load(pointer, "free");
@@ -119,11 +107,11 @@ impl Lowering<'_> {
     /// Where the rounds to visit are listed, if they are. Lists tell of places: a function of a whole ray visits all rounds.
     fn listed(&mut self, inert: Option<SkipCondition>) -> Option<Listed> {
         let is_of_a_place = self.arguments.len() == 1;
-        let visits = self.inputs.visits.as_ref().filter(|_| is_of_a_place)?;
-        let (spans, number, visited) = (visits.spans, visits.number(inert)?, visits.visited);
+        let visits = self.inputs.active_lists.as_ref().filter(|_| is_of_a_place)?;
+        let (spans, number, visited) = (visits.spans, visits.index_of(inert)?, visits.counter);
         let is_first = !self.leaves_out;
         self.leaves_out = true;
-        if let Some((function, _)) = visits.at.filter(|_| is_first) {
+        if let Some((function, _)) = visits.by_point.filter(|_| is_first) {
             let point = self.body.declare(Expression::FunctionArgument(self.first_point));
             let (arguments, result) = (vec![point], None);
             self.body.push(Statement::Call { function, arguments, result });
@@ -150,7 +138,7 @@ impl Lowering<'_> {
     /// The number of the round that stands at a place of the list, and the same as a word.
     fn listed_round(&mut self, index: Value) -> Option<(Value, Value)> {
         let base =
-            self.body.declare(Expression::GlobalVariable(self.inputs.visits.as_ref()?.lists));
+            self.body.declare(Expression::GlobalVariable(self.inputs.active_lists.as_ref()?.lists));
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
         let word = self.body.load(pointer, "visited");
         let round = self.body.cast(word, ScalarKind::Float, Some(4));

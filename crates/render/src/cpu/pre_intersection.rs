@@ -3,11 +3,11 @@
 use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
 use sdfc_graph::{FAR, Program};
 
-use super::trace::{Batch, LANES, Ray, Real, packed};
+use super::ray::{Batch, LANES, Ray, Real, packed};
 
 /// Functions of rays, made ready for the CPU.
 #[derive(Clone, Debug)]
-pub(super) struct AheadTapes {
+pub(super) struct PreIntersectionTapes {
     /// First hits and ways through the box, as far as there are such, in this order.
     asked: Tape,
     has_hits: bool,
@@ -18,7 +18,7 @@ pub(super) struct AheadTapes {
     copies: Option<Tape>,
 }
 
-impl AheadTapes {
+impl PreIntersectionTapes {
     /// `None` where nothing is known of rays.
     pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
         let Program { graph, rays, distance, .. } = program;
@@ -34,8 +34,8 @@ impl AheadTapes {
         Ok(Some(Self { asked, has_hits, has_clip, marched, copies }))
     }
 
-    pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> AheadBatch<'_, T> {
-        AheadBatch {
+    pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> PreIntersectionBatch<'_, T> {
+        PreIntersectionBatch {
             asked: self.asked.prepare::<Packet<T, LANES>>(frame),
             has_hits: self.has_hits,
             has_clip: self.has_clip,
@@ -47,7 +47,7 @@ impl AheadTapes {
 
 /// The same, for one frame.
 #[derive(Clone)]
-pub(super) struct AheadBatch<'t, T> {
+pub(super) struct PreIntersectionBatch<'t, T> {
     asked: Batch<'t, T>,
     has_hits: bool,
     has_clip: bool,
@@ -57,7 +57,7 @@ pub(super) struct AheadBatch<'t, T> {
 
 /// What is known of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ahead<T> {
+pub(super) struct PreIntersection<T> {
     /// Where it meets something without steps; beyond all rays' ends where it does not.
     met: T,
     /// Where its march begins and ends: before it begins, if there is nothing to march.
@@ -67,7 +67,7 @@ pub(super) struct Ahead<T> {
     pub(super) evaluations: u32,
 }
 
-impl<T: Real> Ahead<T> {
+impl<T: Real> PreIntersection<T> {
     /// Nothing: the ray is marched from end to end.
     pub(super) fn nothing(ray: &Ray<T>) -> Self {
         let (met, start) = (T::constant(FAR), T::constant(0.0));
@@ -80,14 +80,18 @@ impl<T: Real> Ahead<T> {
     }
 
     /// Whether there is something to march.
-    pub(super) fn leads_on(&self) -> bool {
+    pub(super) fn must_march(&self) -> bool {
         self.start <= self.end
     }
 }
 
-impl<T: Real> AheadBatch<'_, T> {
-    /// Of rays, in their order. Those that are watched are marched through all there is, unless they end anyway.
-    pub(super) fn look(&mut self, rays: &[Ray<T>], watched: bool) -> Vec<Ahead<T>> {
+impl<T: Real> PreIntersectionBatch<'_, T> {
+    /// Of rays, in their order. Those that are records_clearance are marched through all there is, unless they end anyway.
+    pub(super) fn look(
+        &mut self,
+        rays: &[Ray<T>],
+        records_clearance: bool,
+    ) -> Vec<PreIntersection<T>> {
         let mut known = Vec::with_capacity(rays.len());
         for group in rays.chunks(LANES) {
             let mut ends = [[[T::constant(0.0); 3]; LANES]; 2];
@@ -104,27 +108,33 @@ impl<T: Real> AheadBatch<'_, T> {
                 let met = self.has_hits.then(|| of(0, 0));
                 let way =
                     self.has_clip.then(|| [0, 1].map(|end| of(usize::from(self.has_hits), end)));
-                known.push(self.ahead(ray, met, way, watched));
+                known.push(self.known(ray, met, way, records_clearance));
             }
         }
         known
     }
 
-    fn ahead(&self, ray: &Ray<T>, met: Option<T>, way: Option<[T; 2]>, watched: bool) -> Ahead<T> {
-        let mut ahead = Ahead { evaluations: 1, ..Ahead::nothing(ray) };
-        ahead.met = met.unwrap_or(ahead.met);
+    fn known(
+        &self,
+        ray: &Ray<T>,
+        met: Option<T>,
+        way: Option<[T; 2]>,
+        records_clearance: bool,
+    ) -> PreIntersection<T> {
+        let mut known = PreIntersection { evaluations: 1, ..PreIntersection::nothing(ray) };
+        known.met = met.unwrap_or(known.met);
         let nowhere = T::constant(-1.0);
-        if watched {
-            if ahead.met <= ray.t_max {
-                ahead.end = nowhere;
+        if records_clearance {
+            if known.met <= ray.t_max {
+                known.end = nowhere;
             }
-            return ahead;
+            return known;
         }
-        ahead.end = if self.marched.is_some() { ray.t_max.min(ahead.met) } else { nowhere };
+        known.end = if self.marched.is_some() { ray.t_max.min(known.met) } else { nowhere };
         if let Some([enter, exit]) = way {
-            ahead.start = enter.max(T::constant(0.0));
-            ahead.end = ahead.end.min(exit);
+            known.start = enter.max(T::constant(0.0));
+            known.end = known.end.min(exit);
         }
-        ahead
+        known
     }
 }

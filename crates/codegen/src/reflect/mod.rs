@@ -1,200 +1,31 @@
-//! What a shader offers to those who embed it.
+//! Reads what a shader offers to a host off its module and its written source.
 
 mod text;
 
-use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
+use naga::proc::NameKey;
 use naga::{
-    AddressSpace, ArraySize, FastHashMap, GlobalVariable, Handle, Module, Scalar, ShaderStage,
-    StorageAccess, TypeInner,
+    AddressSpace, ArraySize, GlobalVariable, Handle, Module, Scalar, StorageAccess, TypeInner,
 };
-use sdfc_graph::{FrameInput, Type};
 
-use crate::target::{Code, Written};
-
-/// What a function computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Role {
-    /// Signed distance.
-    Distance,
-    /// Spatial gradient of the distance; for embedding, with the distance behind it.
-    Gradient,
-    /// Material.
-    Material,
-    /// Bounds of the distance along a stretch of a ray.
-    Range,
-    /// Bounds of the distance's slope along a stretch of a ray.
-    SlopeRange,
-    /// Where a ray meets the surface.
-    Trace,
-    /// The same of a ray without a footprint, from one place to another.
-    Intersect,
-}
-
-impl Role {
-    /// How functions for embedding are called, after a prefix.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Distance => "distance",
-            Self::Gradient => "gradient",
-            Self::Material => "material",
-            Self::Range => "range",
-            Self::SlopeRange => "slope_range",
-            Self::Trace => "trace",
-            Self::Intersect => "intersect",
-        }
-    }
-}
-
-/// A function of the point, or of a ray.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FunctionInfo {
-    /// What it computes.
-    pub role: Role,
-    /// Its name in the written text.
-    pub name: String,
-    /// How the text declares it, such as `fn sdf_distance(p: vec3<f32>) -> f32`; as WGSL would for
-    /// SPIR-V.
-    pub signature: String,
-}
-
-/// A member of the uniform structure of params.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Member {
-    /// What it sets.
-    pub input: FrameInput,
-    /// Its name in the written text.
-    pub name: String,
-    /// Its type in the scene; a truth value is a `u32`, 0 or 1, in the buffer.
-    pub ty: Type,
-    /// Bytes from the start of the structure.
-    pub offset: u32,
-    /// Bytes.
-    pub size: u32,
-}
-
-/// The uniform buffer that the scene's functions read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Uniform {
-    /// Name of its structure; `None` for an array of slots.
-    pub structure: Option<String>,
-    /// Name of the variable.
-    pub variable: String,
-    /// Bind group.
-    pub group: u32,
-    /// Binding in the group.
-    pub binding: u32,
-    /// Size in bytes, a multiple of 16.
-    pub size: u32,
-    /// In GLSL, the name of its block.
-    pub block: Option<String>,
-}
-
-/// What a buffer holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum BufferRole {
-    /// Camera, limits and lights.
-    View,
-    /// What the scene's functions read per frame.
-    Params,
-    /// The pixels of a tile, written.
-    Pixels,
-    /// Long lists, which the scene's functions look up.
-    Lists,
-}
-
-/// A buffer that the host binds.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Buffer {
-    /// What it holds.
-    pub role: BufferRole,
-    /// Name of the variable.
-    pub variable: String,
-    /// Its type, or that of its elements.
-    pub ty: String,
-    /// Whether there are as many elements as the host likes.
-    pub is_array: bool,
-    /// Bind group.
-    pub group: u32,
-    /// Binding in the group.
-    pub binding: u32,
-    /// Size in bytes, of one element where there may be many; that of a uniform is a multiple of 16.
-    pub size: u32,
-    /// In GLSL, the name of its block.
-    pub block: Option<String>,
-}
-
-/// A structure that functions take or give, or buffers hold.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Structure {
-    /// Its name in the written text.
-    pub name: String,
-    /// Size in a buffer, in bytes.
-    pub size: u32,
-    /// Its members.
-    pub members: Vec<StructureMember>,
-}
-
-/// A member of a structure.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct StructureMember {
-    /// Its name in the written text.
-    pub name: String,
-    /// Its type as WGSL calls it.
-    pub ty: String,
-    /// Bytes from the start of the structure in a buffer.
-    pub offset: u32,
-}
-
-/// An entry point.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// `vertex`, `fragment` or `compute`.
-    pub stage: &'static str,
-    /// Its name in the written text.
-    pub name: String,
-}
-
-/// What a shader offers. Names are those of the written text.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Reflection {
-    /// Functions that a host may call.
-    pub functions: Vec<FunctionInfo>,
-    /// Members of the uniform structure; empty for an array of slots.
-    pub members: Vec<Member>,
-    /// The uniform buffer; `None` where nothing that the functions need is known per frame.
-    pub uniform: Option<Uniform>,
-    /// All buffers.
-    pub buffers: Vec<Buffer>,
-    /// What the buffer of the role [`BufferRole::Lists`] holds.
-    pub lists: Vec<[f32; 4]>,
-    /// The structures of functions and buffers, members before what holds them.
-    pub structures: Vec<Structure>,
-    /// The entry points that are written.
-    pub entries: Vec<Entry>,
-}
-
-/// What is known of a module before names are final.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Parts {
-    pub(crate) functions: Vec<(Role, Handle<naga::Function>)>,
-    pub(crate) members: Vec<Member>,
-    pub(crate) uniform: Option<Handle<GlobalVariable>>,
-    /// The buffer of long lists, and what it holds.
-    pub(crate) lists: Option<(Handle<GlobalVariable>, Vec<[f32; 4]>)>,
-    /// Start of the names that are no one else's.
-    pub(crate) prefix: String,
-}
-
-/// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
-pub(crate) type Names = FastHashMap<NameKey, String>;
+use crate::names::{Names, final_names, stage_name};
+use crate::reflection::{
+    Buffer, BufferRole, Entry, FunctionInfo, ModuleParts, Reflection, Structure, StructureMember,
+    Uniform,
+};
+use crate::target::Code;
+use crate::write::WrittenModule;
 
 /// Reads the names off the module, as WGSL has them.
-pub(crate) fn reflect(module: &Module, parts: &Parts) -> Reflection {
+pub(crate) fn reflect(module: &Module, parts: &ModuleParts) -> Reflection {
     describe(module, parts, &final_names(module))
 }
 
 /// Reads the names off what a writer gave.
-pub(crate) fn reflect_written(module: &Module, parts: &Parts, written: &Written) -> Reflection {
+pub(crate) fn reflect_written(
+    module: &Module,
+    parts: &ModuleParts,
+    written: &WrittenModule,
+) -> Reflection {
     let mut reflection = describe(module, parts, &text::written_names(module, &written.code));
     if let Code::Text(text) = &written.code {
         for function in &mut reflection.functions {
@@ -219,7 +50,7 @@ pub(crate) fn reflect_written(module: &Module, parts: &Parts, written: &Written)
     reflection
 }
 
-fn describe(module: &Module, parts: &Parts, names: &Names) -> Reflection {
+fn describe(module: &Module, parts: &ModuleParts, names: &Names) -> Reflection {
     let name = |key: NameKey| names.get(&key).cloned().unwrap_or_default();
     let mut reflection = Reflection { members: parts.members.clone(), ..Default::default() };
     let mut structures = Vec::new();
@@ -276,7 +107,7 @@ fn describe(module: &Module, parts: &Parts, names: &Names) -> Reflection {
 /// The buffers that every host binds, and what they hold.
 fn buffers<'a>(
     module: &'a Module,
-    parts: &'a Parts,
+    parts: &'a ModuleParts,
 ) -> impl Iterator<Item = (Handle<GlobalVariable>, BufferRole)> + 'a {
     module.global_variables.iter().filter_map(|(handle, variable)| {
         variable.binding?;
@@ -373,29 +204,4 @@ fn scalar_name(scalar: Scalar) -> &'static str {
         Scalar::BOOL => "bool",
         _ => "f32",
     }
-}
-
-/// `march` has no other stages.
-pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
-    if stage == ShaderStage::Vertex {
-        "vertex"
-    } else if stage == ShaderStage::Fragment {
-        "fragment"
-    } else {
-        "compute"
-    }
-}
-
-/// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
-pub(crate) fn final_names(module: &Module) -> Names {
-    let mut names = Names::default();
-    Namer::default().reset(
-        module,
-        &naga::keywords::wgsl::RESERVED_SET,
-        &naga::keywords::wgsl::BUILTIN_IDENTIFIER_SET,
-        CaseInsensitiveKeywordSet::empty(),
-        &["__", "_naga"],
-        &mut names,
-    );
-    names
 }

@@ -8,10 +8,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Camera, FrameInput, Lens, Node, NodeId, Program, Type};
 use sdfc_march::{Form, stubs};
 
-use crate::inputs::{Inputs, Raw, input_name, raw_inputs};
-use crate::lower::{Body, struct_function};
-use crate::picture::{Picture, known_method};
-use crate::{Error, Shader, link, types};
+use super::linker::PictureLinker;
+use super::template::known_method;
+use crate::error::Error;
+use crate::link::template::{bind, find_function, find_variable};
+use crate::lower::body::Body;
+use crate::lower::inputs::{Inputs, Raw, input_name, raw_inputs};
+use crate::lower::{struct_function, types};
+use crate::shader::Shader;
 
 /// What `look` of `shadertoy.wgsl` sets.
 const LOOKED: [&str; 5] = ["forward", "right", "up", "pixel_radius", "size"];
@@ -30,7 +34,7 @@ pub fn shadertoy_module(
 ) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     let mut picture =
-        Picture::skeleton(program, Form::Shadertoy, method, None, &unused_loads(program), false)?;
+        PictureLinker::new(program, Form::Shadertoy, method, None, &unused_loads(program), false)?;
     picture.module.entry_points.clear();
 
     let camera = program.settings.camera.as_ref().map(camera_nodes);
@@ -38,16 +42,16 @@ pub fn shadertoy_module(
     nodes.extend(camera.into_iter().flatten());
     let raw = declare_raw(&mut picture.module, program, &nodes)?;
     picture.compute_slots(Inputs::of_raw(raw.clone()))?;
-    picture.fill()?;
+    picture.bind()?;
 
     let values = View::new(&picture.module, view)?;
     let load = values.load_function(&mut picture.module);
-    link::fill(&mut picture.module, stubs::LOAD_VIEW, load)?;
+    bind(&mut picture.module, stubs::LOAD_VIEW, load)?;
     let camera = match camera {
         Some(nodes) => camera_of_scene(&mut picture.module, program, &Inputs::of_raw(raw), &nodes)?,
         None => camera_of_view(&mut picture.module, &values)?,
     };
-    link::fill(&mut picture.module, stubs::CAMERA, camera)?;
+    bind(&mut picture.module, stubs::CAMERA, camera)?;
     picture.finish()
 }
 
@@ -93,7 +97,7 @@ fn declare_raw(
             }
             FrameInput::Time | FrameInput::Frame => {
                 let name = if input == FrameInput::Time { "time" } else { "frame" };
-                let variable = link::find_variable(module, name);
+                let variable = find_variable(module, name);
                 Raw::Variable(variable.ok_or(Error::MissingRoot("clock"))?)
             }
         };
@@ -178,7 +182,7 @@ fn camera_of_view(module: &mut Module, view: &View<'_>) -> Result<Function, Erro
 }
 
 fn camera_type(module: &Module) -> Result<Handle<naga::Type>, Error> {
-    let camera = link::find_function(module, stubs::CAMERA);
+    let camera = find_function(module, stubs::CAMERA);
     let result = camera.and_then(|camera| module.functions[camera].result.as_ref());
     result.map(|result| result.ty).ok_or(Error::MissingRoot("camera"))
 }
@@ -192,8 +196,7 @@ struct View<'b> {
 
 impl<'b> View<'b> {
     fn new(module: &Module, bytes: &'b [u8]) -> Result<Self, Error> {
-        let variable =
-            link::find_variable(module, stubs::VIEW).ok_or(Error::MissingRoot("view"))?;
+        let variable = find_variable(module, stubs::VIEW).ok_or(Error::MissingRoot("view"))?;
         let ty = &module.types[module.global_variables[variable].ty].inner;
         let TypeInner::Struct { members, span } = ty else {
             return Err(Error::MissingRoot("view"));

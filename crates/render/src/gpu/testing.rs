@@ -26,7 +26,8 @@ use std::sync::{
     atomic::{AtomicU32, Ordering},
 };
 
-use crate::{Gpu, RenderError};
+use super::device::Gpu;
+use crate::error::RenderError;
 
 /// The environment variable that makes tests fail, not be ignored, where there is no adapter.
 pub const REQUIRE_GPU: &str = "SDFC_REQUIRE_GPU";

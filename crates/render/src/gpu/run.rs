@@ -4,15 +4,21 @@ use std::{sync::mpsc, time::Duration};
 
 use glam::DVec3;
 
-use crate::{
-    Gpu, Image, Pipeline, RenderError, Tile, View,
-    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes},
-    culling::{self, Visits},
-    gpu::{FIRST_TABLE, WORKGROUP, buffer},
+use super::culling::{self, ActiveBuffers};
+use super::culling_layout;
+use super::device::Gpu;
+use super::kernel::Kernel;
+use super::resources::{FIRST_TABLE, WORKGROUP, buffer};
+use crate::blocks::{
+    PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, pixel_from_bytes, uniform_bytes, view_bytes,
 };
+use crate::error::RenderError;
+use crate::image::Image;
+use crate::tiles::Tile;
+use crate::view::View;
 
 /// A tile that takes longer is given up.
-const PATIENCE: Duration = Duration::from_secs(300);
+const TIMEOUT: Duration = Duration::from_secs(300);
 /// Bytes of the two timestamps about a pass, and of what follows them: how many operands were evaluated before.
 const TIMESTAMP_BYTES: u64 = 16;
 const COUNT_BYTES: u64 = 4;
@@ -36,14 +42,14 @@ pub(crate) struct Buffers {
     timestamps: Option<Timestamps>,
     /// Both grow with the tiles.
     pixels: Option<PixelBuffers>,
-    visits: Option<Visits>,
+    active: Option<ActiveBuffers>,
     /// The moment of which there are lists of cells; none: they are still to be made.
     listed: Option<Moment>,
 }
 
 /// A frame while it is drawn.
 pub(crate) struct Run<'a> {
-    pipeline: &'a Pipeline,
+    kernel: &'a Kernel,
     moment: Moment,
     buffers: Buffers,
     /// How many operands were evaluated before the rays, where they are counted.
@@ -67,16 +73,16 @@ struct Timestamps {
 }
 
 impl Buffers {
-    fn new(pipeline: &Pipeline, uniforms: usize) -> Self {
+    fn new(kernel: &Kernel, uniforms: usize) -> Self {
         use wgpu::BufferUsages as Usage;
-        let (gpu, usage) = (&pipeline.gpu, Usage::UNIFORM | Usage::COPY_DST);
+        let (gpu, usage) = (&kernel.gpu, Usage::UNIFORM | Usage::COPY_DST);
         let uniform_bytes = (uniforms * UNIFORM_BYTES) as u64;
         Self {
             view: buffer(gpu, "view", VIEW_BYTES as u64, usage),
             uniforms: (uniforms > 0).then(|| buffer(gpu, "uniforms", uniform_bytes, usage)),
             timestamps: gpu.has_timestamps().then(|| Timestamps::new(gpu)),
             pixels: None,
-            visits: None,
+            active: None,
             listed: None,
         }
     }
@@ -85,20 +91,20 @@ impl Buffers {
 impl<'a> Run<'a> {
     /// Goes on with the buffers of another frame of the pipeline, if there are such.
     pub(crate) fn new(
-        pipeline: &'a Pipeline,
+        kernel: &'a Kernel,
         buffers: Option<Buffers>,
         moment: Moment,
     ) -> Result<Self, RenderError> {
-        let gpu = &pipeline.gpu;
+        let gpu = &kernel.gpu;
         let buffers = gpu.scoped("the frame's buffers", || {
             let count = moment.uniforms.len();
-            let buffers = buffers.unwrap_or_else(|| Buffers::new(pipeline, count));
+            let buffers = buffers.unwrap_or_else(|| Buffers::new(kernel, count));
             if let Some(uniforms) = &buffers.uniforms {
                 gpu.queue.write_buffer(uniforms, 0, &uniform_bytes(&moment.uniforms));
             }
             buffers
         })?;
-        Ok(Self { pipeline, moment, buffers, culling_evaluations: 0 })
+        Ok(Self { kernel, moment, buffers, culling_evaluations: 0 })
     }
 
     pub(crate) fn into_buffers(self) -> Buffers {
@@ -111,17 +117,17 @@ impl<'a> Run<'a> {
     }
 
     /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
-    pub(crate) fn make_room(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
+    pub(crate) fn allocate(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
         use wgpu::BufferUsages as Usage;
-        let gpu = &self.pipeline.gpu;
-        if let Some(culling) = &self.pipeline.culling
-            && !self.buffers.visits.as_ref().is_some_and(|visits| visits.fit(groups))
+        let gpu = &self.kernel.gpu;
+        if let Some(culling) = &self.kernel.culling
+            && !self.buffers.active.as_ref().is_some_and(|active| active.fit(groups))
         {
-            (self.buffers.visits, self.buffers.pixels) = (None, None);
+            (self.buffers.active, self.buffers.pixels) = (None, None);
             self.buffers.listed = None;
             let (view, uniforms) = (&self.buffers.view, self.buffers.uniforms.as_ref());
-            let room = || culling.room(gpu, groups, view, uniforms);
-            self.buffers.visits = Some(gpu.scoped("lists of what can matter to a tile", room)?);
+            let make = || culling.allocate(gpu, groups, view, uniforms);
+            self.buffers.active = Some(gpu.scoped("lists of what can matter to a tile", make)?);
         }
         if self.buffers.pixels.as_ref().is_some_and(|buffers| buffers.capacity >= pixels) {
             return Ok(());
@@ -140,35 +146,35 @@ impl<'a> Run<'a> {
     }
 
     fn bind_group(&self, storage: &wgpu::Buffer) -> wgpu::BindGroup {
-        let Buffers { view, uniforms, visits, .. } = &self.buffers;
+        let Buffers { view, uniforms, active, .. } = &self.buffers;
         let buffers = [(0, Some(view)), (1, uniforms.as_ref()), (2, Some(storage))];
-        let tables = (FIRST_TABLE..).zip(self.pipeline.tables.iter().map(Some));
-        let visits = (culling::VISITS, visits.as_ref().map(|visits| &visits.lists));
+        let tables = (FIRST_TABLE..).zip(self.kernel.tables.iter().map(Some));
+        let active = (culling::ACTIVE_LISTS, active.as_ref().map(|active| &active.lists));
         let entries: Vec<_> = buffers
             .into_iter()
             .chain(tables)
-            .chain([visits])
+            .chain([active])
             .filter_map(|(binding, buffer)| {
                 Some(wgpu::BindGroupEntry { binding, resource: buffer?.as_entire_binding() })
             })
             .collect();
-        self.pipeline.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        self.kernel.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("tile"),
-            layout: &self.pipeline.layout,
+            layout: &self.kernel.layout,
             entries: &entries,
         })
     }
 
     /// How many groups of cells are to be looked at: none where the lists are those of the moment.
     fn cells_to_list(&self) -> Result<u32, RenderError> {
-        let Pipeline { gpu, culling: Some(culling), .. } = self.pipeline else { return Ok(0) };
-        let Some(visits) = &self.buffers.visits else { return Ok(0) };
+        let Kernel { gpu, culling: Some(culling), .. } = self.kernel else { return Ok(0) };
+        let Some(active) = &self.buffers.active else { return Ok(0) };
         if self.buffers.listed.as_ref() == Some(&self.moment) {
             return Ok(0);
         }
         let within = self.moment.within;
-        gpu.scoped("lists of what can matter in a cell", || culling.open(gpu, visits, within))?;
-        Ok(within.map_or(0, |_| culling::GROUPS))
+        gpu.scoped("lists of what can matter in a cell", || culling.open(gpu, active, within))?;
+        Ok(within.map_or(0, |_| culling_layout::GROUPS))
     }
 
     /// Draws a tile into the image; its time in milliseconds where the adapter tells one.
@@ -180,7 +186,7 @@ impl<'a> Run<'a> {
     ) -> Result<Option<f64>, RenderError> {
         let count = tile.pixels() as u32;
         let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
-        self.make_room(count.max(WORKGROUP * WORKGROUP), groups)?;
+        self.allocate(count.max(WORKGROUP * WORKGROUP), groups)?;
         let cell_groups = self.cells_to_list()?;
         self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, count)?;
         self.buffers.listed = Some(self.moment.clone());
@@ -196,10 +202,10 @@ impl<'a> Run<'a> {
         pixels: u32,
     ) -> Result<(), RenderError> {
         let Some(buffers) = &self.buffers.pixels else { return Ok(()) };
-        let gpu = &self.pipeline.gpu;
+        let gpu = &self.kernel.gpu;
         gpu.scoped("a tile", || {
-            if let Some(visits) = &self.buffers.visits {
-                visits.count_anew(gpu);
+            if let Some(active) = &self.buffers.active {
+                active.reset_count(gpu);
             }
             gpu.queue.write_buffer(&self.buffers.view, 0, view);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -212,15 +218,14 @@ impl<'a> Run<'a> {
                         .as_ref()
                         .map(Timestamps::about_a_pass),
                 });
-                if let (Some(culling), Some(visits)) =
-                    (&self.pipeline.culling, &self.buffers.visits)
+                if let (Some(culling), Some(active)) = (&self.kernel.culling, &self.buffers.active)
                 {
                     if cell_groups > 0 {
-                        culling.run_cells(&mut pass, visits, cell_groups);
+                        culling.run_cells(&mut pass, active, cell_groups);
                     }
-                    culling.run(&mut pass, visits, groups);
+                    culling.run(&mut pass, active, groups);
                 }
-                pass.set_pipeline(&self.pipeline.pipeline);
+                pass.set_pipeline(&self.kernel.pipeline);
                 pass.set_bind_group(0, &buffers.bind_group, &[]);
                 pass.dispatch_workgroups(groups[0], groups[1], 1);
             }
@@ -229,10 +234,10 @@ impl<'a> Run<'a> {
             if let Some(timestamps) = &self.buffers.timestamps {
                 timestamps.resolve(&mut encoder, &buffers.staging, bytes);
             }
-            if let Some(visits) = &self.buffers.visits {
-                let (from, to) = (4 * culling::EVALUATED, bytes + TIMESTAMP_BYTES);
+            if let Some(active) = &self.buffers.active {
+                let (from, to) = (4 * culling_layout::EVALUATED, bytes + TIMESTAMP_BYTES);
                 encoder.copy_buffer_to_buffer(
-                    &visits.tally,
+                    &active.counters,
                     from,
                     &buffers.staging,
                     to,
@@ -249,13 +254,13 @@ impl<'a> Run<'a> {
         let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
         let slice = buffers.staging.slice(..bytes + BESIDE_PIXELS);
         let (sender, receiver) = mpsc::channel();
-        self.pipeline.gpu.scoped("reading a tile", || {
+        self.kernel.gpu.scoped("reading a tile", || {
             slice.map_async(wgpu::MapMode::Read, move |result| {
                 // The receiver waits below; it is gone only where the wait itself failed.
                 let _ = sender.send(result);
             });
         })?;
-        self.pipeline.gpu.wait(Some(PATIENCE))?;
+        self.kernel.gpu.wait(Some(TIMEOUT))?;
         let refused = |detail: String| RenderError::DeviceLost(format!("reading a tile: {detail}"));
         match receiver.try_recv() {
             Ok(Ok(())) => {}
@@ -265,7 +270,7 @@ impl<'a> Run<'a> {
         let mapped = slice.get_mapped_range().map_err(|error| refused(error.to_string()))?;
         let (pixels, rest) = mapped.split_at(bytes as usize);
         let (times, count) = rest.split_at(TIMESTAMP_BYTES as usize);
-        if self.buffers.visits.is_some() {
+        if self.buffers.active.is_some() {
             let count = count.try_into().map_or(0, u32::from_ne_bytes);
             self.culling_evaluations = self.culling_evaluations.saturating_add(count);
         }

@@ -1,34 +1,28 @@
 //! Drawing a frame on the GPU: one compute dispatch a tile, read back tile by tile.
 
-use std::{borrow::Cow, num::NonZero, sync::Mutex, time::Instant};
+use std::{borrow::Cow, sync::Mutex, time::Instant};
 
-use crate::{
-    Clock, Frame, Gpu, Image, OnProgress, Progress, RenderError, RenderOptions, View,
-    blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes},
-    culling::{self, Culling},
-    image::check_size,
-    run::{BESIDE_PIXELS, Buffers, Moment, Run},
-    stats::milliseconds_since,
-    testing,
-    tiles::Tiler,
-};
+use super::culling::{self, Culling};
+use super::device::Gpu;
+use super::kernel::Kernel;
+use super::resources::{FIRST_TABLE, WORKGROUP, compute_pipeline, entry, table};
+use super::run::{BESIDE_PIXELS, Buffers, Moment, Run};
+use super::testing;
+use crate::blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes};
+use crate::clock::{Clock, milliseconds_since};
+use crate::error::RenderError;
+use crate::frame::{Frame, OnProgress, Progress, RenderOptions};
+use crate::image::{Image, check_size};
+use crate::tiles::Tiler;
+use crate::view::View;
 
-/// Columns and rows of a workgroup of the entry point `main`.
-pub(crate) const WORKGROUP: u32 = 8;
 /// Most pixels of a tile: 32 MiB to read back.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
-/// Binding of the first table.
-pub(crate) const FIRST_TABLE: u32 = 3;
-
 /// A shader made ready for a device.
 #[derive(Debug)]
 pub struct Pipeline {
-    pub(crate) gpu: Gpu,
-    pub(crate) pipeline: wgpu::ComputePipeline,
-    pub(crate) layout: wgpu::BindGroupLayout,
+    kernel: Kernel,
     uniform_count: usize,
-    pub(crate) tables: Vec<wgpu::Buffer>,
-    pub(crate) culling: Option<Culling>,
     milliseconds: f64,
     /// Of the last frame, where the next one has a use for what they hold.
     buffers: Mutex<Option<Buffers>>,
@@ -112,18 +106,9 @@ impl Pipeline {
             let pipeline = compute_pipeline(&gpu.device, &module, &layout, "main");
             (pipeline, layout, culling.map(|made| Culling::new(gpu, made, uniform_count)))
         })?;
-        let gpu = gpu.clone();
+        let kernel = Kernel { gpu: gpu.clone(), pipeline, layout, tables, culling };
         let buffers = Mutex::default();
-        let mut ready = Self {
-            gpu,
-            pipeline,
-            layout,
-            uniform_count,
-            tables,
-            culling,
-            milliseconds: 0.0,
-            buffers,
-        };
+        let mut ready = Self { kernel, uniform_count, milliseconds: 0.0, buffers };
         ready.dispatch_once()?;
         ready.milliseconds = milliseconds_since(start);
         Ok(ready)
@@ -136,23 +121,20 @@ impl Pipeline {
     ///
     /// [`RenderError`] if the device has no room for them.
     pub fn with_lists_of(&self, shader: &sdfc_codegen::Shader) -> Result<Self, RenderError> {
-        let gpu = &self.gpu;
+        let gpu = &self.kernel.gpu;
         let lists = Some(shader.lists()).filter(|lists| !lists.is_empty()).map(uniform_bytes);
         let (lists, culling) = gpu.scoped("the shader's lists", || {
-            let culling = self.culling.as_ref().zip(shader.culling());
+            let culling = self.kernel.culling.as_ref().zip(shader.culling());
             (
                 lists.map(|bytes| table(gpu, &bytes)),
                 culling.map(|(culling, made)| culling.with_lists_of(gpu, &made.shader)),
             )
         })?;
-        let kept = self.tables.iter().skip(usize::from(lists.is_some())).cloned();
+        let kept = self.kernel.tables.iter().skip(usize::from(lists.is_some())).cloned();
+        let tables = lists.into_iter().chain(kept).collect();
         Ok(Self {
-            gpu: gpu.clone(),
-            pipeline: self.pipeline.clone(),
-            layout: self.layout.clone(),
+            kernel: Kernel { tables, culling, ..self.kernel.clone() },
             uniform_count: self.uniform_count,
-            tables: lists.into_iter().chain(kept).collect(),
-            culling,
             milliseconds: self.milliseconds,
             buffers: Mutex::default(),
         })
@@ -165,12 +147,12 @@ impl Pipeline {
 
     /// Whether its rays visit only those parts of the scene that can matter to them.
     pub fn leaves_out(&self) -> bool {
-        self.culling.is_some()
+        self.kernel.culling.is_some()
     }
 
     /// The device that it was made for.
     pub fn gpu(&self) -> &Gpu {
-        &self.gpu
+        &self.kernel.gpu
     }
 
     /// Draws a frame. `uniforms` are what [`uniform_values`](crate::uniform_values) gives.
@@ -192,13 +174,13 @@ impl Pipeline {
         }
         let mut image = Image::new(view.size, view.footprint())?;
         let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
-        let clock = if self.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
+        let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
         let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
-        let mut run = Run::new(self, self.kept_buffers(), moment)?;
+        let mut run = Run::new(&self.kernel, self.kept_buffers(), moment)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
-            testing::lose_if_asked(&self.gpu);
+            testing::lose_if_asked(&self.kernel.gpu);
             let start = Instant::now();
             let gpu_time = run.draw(view, tile, &mut image)?;
             let elapsed = milliseconds_since(start);
@@ -211,7 +193,7 @@ impl Pipeline {
             }
         }
         let culling_evaluations = run.culling_evaluations();
-        if self.culling.is_some() {
+        if self.kernel.culling.is_some() {
             self.keep(run.into_buffers());
         }
         Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
@@ -230,22 +212,22 @@ impl Pipeline {
 
     /// What fits the limits of the adapter: a buffer, a binding, the workgroups of a row of tiles.
     fn max_tile_pixels(&self) -> u32 {
-        let limits = self.gpu.device.limits();
+        let limits = self.kernel.gpu.device.limits();
         let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
         let fitting = bytes.saturating_sub(BESIDE_PIXELS) / PIXEL_BYTES as u64;
-        let culled = self.culling.as_ref().map(|culling| culling.max_pixels(&limits));
+        let culled = self.kernel.culling.as_ref().map(|culling| culling.max_pixels(&limits));
         (fitting.min(u64::from(MAX_TILE_PIXELS)) as u32).min(culled.unwrap_or(u32::MAX))
     }
 
     /// Runs one workgroup over an empty tile, because software drivers compile when they run.
     fn dispatch_once(&self) -> Result<(), RenderError> {
         let uniforms = vec![[0.0; 4]; self.uniform_count];
-        let mut run = Run::new(self, None, Moment { uniforms, within: None })?;
-        run.make_room(WORKGROUP * WORKGROUP, [1, 1])?;
+        let mut run = Run::new(&self.kernel, None, Moment { uniforms, within: None })?;
+        run.allocate(WORKGROUP * WORKGROUP, [1, 1])?;
         let empty = vec![0; VIEW_BYTES];
         run.submit(&empty, [1, 1], 1, 0)?;
         // Compiling thousands of leaves can take a software driver many minutes.
-        self.gpu.wait(None)
+        self.kernel.gpu.wait(None)
     }
 }
 
@@ -264,65 +246,9 @@ fn bind_group_layout(
     let table = wgpu::BufferBindingType::Storage { read_only: true };
     // The device compares what the shader reads with what is bound.
     entries.extend((FIRST_TABLE..).take(table_count).map(|binding| entry(binding, table, 0)));
-    entries.extend(is_culled.then(|| entry(culling::VISITS, table, 0)));
+    entries.extend(is_culled.then(|| entry(culling::ACTIVE_LISTS, table, 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("tile"),
         entries: &entries,
-    })
-}
-
-/// A buffer of at least so many bytes in a layout.
-pub(crate) fn entry(
-    binding: u32,
-    kind: wgpu::BufferBindingType,
-    bytes: usize,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: kind,
-            has_dynamic_offset: false,
-            min_binding_size: NonZero::new(bytes as u64),
-        },
-        count: None,
-    }
-}
-
-/// The stage of a module that an entry point is.
-pub(crate) fn compute_pipeline(
-    device: &wgpu::Device,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::BindGroupLayout,
-    entry_point: &str,
-) -> wgpu::ComputePipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(entry_point),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: Some(&layout),
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    })
-}
-
-pub(crate) fn table(gpu: &Gpu, bytes: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-    let table = buffer(gpu, "table", bytes.len() as u64, usage);
-    gpu.queue.write_buffer(&table, 0, bytes);
-    table
-}
-
-pub(crate) fn buffer(gpu: &Gpu, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size,
-        usage,
-        mapped_at_creation: false,
     })
 }

@@ -10,11 +10,11 @@ use naga::{
 use rustc_hash::FxHashMap;
 use sdfc_graph::{FrameInput, Node, NodeId, Program, Type, reachable};
 
-use crate::culling::Visits;
-use crate::lower::Body;
-use crate::reflect::Member;
-use crate::tables::Tables;
-use crate::types;
+use super::active_lists::ActiveLists;
+use super::body::Body;
+use super::tables::Tables;
+use super::types;
+use crate::reflection::Member;
 
 /// Where a function finds what is known per frame.
 #[derive(Debug, Default)]
@@ -28,7 +28,7 @@ pub(crate) struct Inputs {
     /// Lists of constants.
     pub(crate) tables: Tables,
     /// Which rounds of loops to visit; none: all.
-    pub(crate) visits: Option<Visits>,
+    pub(crate) active_lists: Option<ActiveLists>,
 }
 
 /// Where a raw input is.

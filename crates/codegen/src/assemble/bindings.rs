@@ -1,0 +1,92 @@
+//! The functions of a scene that replace the stubs of a template.
+
+use naga::{Function, ResourceBinding, UniqueArena};
+use sdfc_graph::{NodeId, Program, Rays};
+use sdfc_march::{Features, MethodDefinition, stubs};
+
+use crate::error::Error;
+use crate::lower::function_of;
+use crate::lower::inputs::Inputs;
+use crate::reflection::Role;
+
+/// Where the uniform slots are bound.
+pub(crate) const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
+/// Where long lists are bound.
+pub(crate) const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
+
+/// What fills a stub.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StubBinding {
+    /// What it is to those who embed it; none: nothing.
+    pub role: Option<Role>,
+    pub stub: &'static str,
+    pub root: NodeId,
+    /// The points that it is a function of.
+    arguments: &'static [&'static str],
+}
+
+impl StubBinding {
+    pub(crate) fn of_point(role: Option<Role>, stub: &'static str, root: NodeId) -> Self {
+        Self { role, stub, root, arguments: &["p"] }
+    }
+
+    fn of_ray(stub: &'static str, root: NodeId) -> Self {
+        Self { role: None, stub, root, arguments: &["origin", "direction"] }
+    }
+
+    /// The stub, and what fills it where there is a root.
+    fn of_segment(
+        role: Role,
+        stub: &'static str,
+        root: Option<NodeId>,
+        arguments: &'static [&'static str],
+    ) -> (&'static str, Option<Self>) {
+        (stub, root.map(|root| Self { role: Some(role), stub, root, arguments }))
+    }
+
+    pub(crate) fn function(
+        &self,
+        program: &Program,
+        inputs: &Inputs,
+        types: &mut UniqueArena<naga::Type>,
+    ) -> Result<Function, Error> {
+        function_of(program, inputs, types, self.stub, self.root, self.arguments)
+    }
+}
+
+/// What fills the stubs of `rays.wgsl` that are called.
+pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<StubBinding> {
+    if !features.analytic && !features.clipped && !features.copies {
+        return Vec::new();
+    }
+    let Rays { first_hit: hits, analytic: closed, marched, clip, copies } = program.rays;
+    let closed = closed.filter(|_| features.soft_shadows);
+    let marched = marched.filter(|_| features.analytic && features.steps());
+    let of_ray =
+        [(stubs::ANALYTIC_HIT, hits), (stubs::CLIP_INTERVAL, clip), (stubs::COPIES, copies)]
+            .into_iter();
+    let of_point =
+        [(stubs::ANALYTIC_DISTANCE, closed), (stubs::MARCHED_DISTANCE, marched)].into_iter();
+    of_ray
+        .filter_map(|(stub, root)| Some(StubBinding::of_ray(stub, root?)))
+        .chain(of_point.filter_map(|(stub, root)| Some(StubBinding::of_point(None, stub, root?))))
+        .collect()
+}
+
+/// What a method wants to know of stretches of rays.
+pub(crate) fn segment_bindings(
+    program: &Program,
+    method: &MethodDefinition,
+) -> Result<Vec<StubBinding>, Error> {
+    let known = [
+        StubBinding::of_segment(Role::Range, stubs::RANGE, program.range, &["a", "b"]),
+        StubBinding::of_segment(
+            Role::SlopeRange,
+            stubs::SLOPE_RANGE,
+            program.slope_range,
+            &["a", "b", "direction"],
+        ),
+    ];
+    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub));
+    wanted.map(|(stub, binding)| binding.ok_or(Error::MissingRoot(stub))).collect()
+}

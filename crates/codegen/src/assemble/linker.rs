@@ -1,0 +1,113 @@
+//! Links a scene's functions into the template of its picture.
+
+use naga::Module;
+use sdfc_graph::{NodeId, Program};
+use sdfc_march::{FieldSource, Form, MethodDefinition, source_with, stubs};
+
+use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
+use super::template::{features, is_culled, template, used_slots};
+use crate::error::Error;
+use crate::link::template::{bind, find_function};
+use crate::lower::inputs::{Inputs, declare_variable};
+use crate::lower::{store_function, struct_function};
+use crate::reflection::{ModuleParts, Role};
+use crate::shader::Shader;
+use sdfc_march::Features;
+
+/// A picture's shader while the scene's parts are put into it.
+pub(crate) struct PictureLinker<'p> {
+    program: &'p Program,
+    bindings: Vec<StubBinding>,
+    pub(super) features: Features,
+    /// Positions in `Program::uniforms` of those that the scene's functions read.
+    pub(super) used: Vec<usize>,
+    pub(crate) module: Module,
+    pub(super) inputs: Inputs,
+    pub(super) parts: ModuleParts,
+}
+
+impl<'p> PictureLinker<'p> {
+    /// The files of `march`, without calls to these functions and what else the scene has no need of. It may be `culled` if
+    /// what calls it runs the other shader first. Rays are `parallel` as the scene's camera says, if nothing else does.
+    pub(crate) fn new(
+        program: &'p Program,
+        form: Form,
+        method: &MethodDefinition,
+        parallel: Option<bool>,
+        unused: &[&str],
+        culled: bool,
+    ) -> Result<Self, Error> {
+        let distance = program.distance.ok_or(Error::NothingDrawn)?;
+        let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
+        let mut features = features(program, method.pre_intersects);
+        features.culled = culled && is_culled(program, method);
+        features.parallel = parallel.unwrap_or(features.parallel);
+        let mut bindings = analytic_bindings(program, features);
+        let steps = features.steps() && !features.analytic;
+        if steps || features.occlusion {
+            bindings.push(StubBinding::of_point(Some(Role::Distance), stubs::FIELD, distance));
+        }
+        if method.gradient.is_none() {
+            bindings.push(StubBinding::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
+        }
+        bindings.extend(segment_bindings(program, method)?);
+        let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
+        roots.extend(program.material.into_iter().flatten());
+        let used = used_slots(program, roots);
+        let source = source_with(FieldSource::Scene, form, method, features);
+        let module = template(&source, features, &used, unused)?;
+        let (inputs, parts) = Default::default();
+        Ok(Self { program, bindings, features, used, module, inputs, parts })
+    }
+
+    pub(crate) fn slot_nodes(&self) -> Vec<NodeId> {
+        self.used.iter().map(|&slot| self.program.uniforms[slot]).collect()
+    }
+
+    /// Lets `load_frame` compute what follows from raw inputs, into private variables.
+    pub(crate) fn compute_slots(&mut self, mut raw: Inputs) -> Result<(), Error> {
+        let nodes = self.slot_nodes();
+        raw.tables.declare(&mut self.module, self.program, &nodes)?;
+        let (program, module) = (self.program, &mut self.module);
+        let stored = self.used.iter().map(|&slot| program.uniforms[slot]);
+        let stored = stored.filter(|&node| !raw.is_constant(program.graph.node(node)));
+        let declare = |node| (node, declare_variable(module, program, node));
+        let stored: Vec<_> = stored.map(declare).collect();
+        if find_function(module, stubs::LOAD_FRAME).is_some() {
+            let load = store_function(program, &raw, &mut module.types, &stored)?;
+            bind(module, stubs::LOAD_FRAME, load)?;
+        }
+        self.inputs = raw.with_slots(stored.into_iter().collect());
+        Ok(())
+    }
+
+    /// Fills the stubs with the scene's functions.
+    pub(crate) fn bind(&mut self) -> Result<(), Error> {
+        self.parts.uniform = self.inputs.buffer;
+        let mut roots: Vec<_> = self.bindings.iter().map(|binding| binding.root).collect();
+        roots.extend(self.program.material.into_iter().flatten());
+        self.inputs.tables.declare(&mut self.module, self.program, &roots)?;
+        let (module, inputs) = (&mut self.module, &self.inputs);
+        for binding in &self.bindings {
+            let function = binding.function(self.program, inputs, &mut module.types)?;
+            bind(module, binding.stub, function)?;
+            let place = find_function(module, binding.stub);
+            self.parts.functions.extend(binding.role.zip(place));
+        }
+        let Some(fields) = self.program.material else { return Ok(()) };
+        let stub = stubs::MATERIAL;
+        let handle = find_function(module, stub);
+        let structure = handle.and_then(|f| module.functions[f].result.as_ref());
+        let structure = structure.ok_or(Error::MissingRoot("material"))?.ty;
+        let types = &mut module.types;
+        let function = struct_function(self.program, inputs, types, stub, &fields, structure)?;
+        bind(module, stub, function)?;
+        self.parts.functions.extend(handle.map(|f| (Role::Material, f)));
+        Ok(())
+    }
+
+    pub(crate) fn finish(mut self) -> Result<Shader, Error> {
+        self.parts.lists = self.inputs.tables.into_buffer();
+        Shader::new(self.module, self.parts, self.features)
+    }
+}

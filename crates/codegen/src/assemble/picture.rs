@@ -1,0 +1,190 @@
+//! The shaders of pictures.
+
+use naga::ResourceBinding;
+use sdfc_graph::{Program, Settings};
+use sdfc_march::{Features, FieldSource, Form, MethodDefinition, source_with, stubs};
+
+use super::bindings::{LISTS, SLOTS, StubBinding};
+use super::culling::culling;
+use super::linker::PictureLinker;
+use super::template::{features, is_culled, known_method, template, used_slots};
+use crate::error::Error;
+use crate::link::template::bind;
+use crate::lower::active_lists::ActiveLists;
+use crate::lower::inputs::{declare_members, declare_slots, raw_inputs};
+use crate::lower::tables::Tables;
+use crate::names::{check_prefix, make_public};
+use crate::options::{PictureOptions, Stage};
+use crate::reflection::ModuleParts;
+use crate::shader::Shader;
+
+/// The compute shader of a program's picture, entry point `main`, workgroups of 8x8 pixels.
+///
+/// Group 0 has these bindings. 0: uniform `sdfc_march::ViewBlock`. 1: uniform array with one
+/// `vec4<f32>` for each of `Program::uniforms`, a value in its first lanes, a truth value as 0 or 1;
+/// absent where the functions use none of them ([`crate::Reflection::uniform`] is `None`). 2: storage
+/// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row. 3: storage array of what
+/// [`Shader::lists`] gives; absent if that is empty.
+///
+/// Of shading, what the settings and the program need is linked and nothing else: [`Shader::features`] tells.
+///
+/// # Errors
+///
+/// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program
+/// has no distance or no gradient; others where its nodes cannot be lowered.
+pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+    let method = known_method(method_name)?;
+    link_picture(program, Form::Compute, method, None)
+}
+
+/// As [`render_module`], for views from elsewhere than the scene's camera, by rays that are parallel or not whatever those of
+/// that camera are.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn render_module_with_camera(
+    program: &Program,
+    method_name: &str,
+    parallel: bool,
+) -> Result<Shader, Error> {
+    let method = known_method(method_name)?;
+    link_picture(program, Form::Compute, method, Some(parallel))
+}
+
+/// As [`render_module`], with the unit normals of what rays from the eye meet for colours, and no other rays: what
+/// the normals of pictures are measured by. The method may be one that is not in the table.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn normals_module(program: &Program, method: &MethodDefinition) -> Result<Shader, Error> {
+    let Settings { camera, march, .. } = program.settings.clone();
+    let settings = Settings { camera, march, ..Settings::default() };
+    let unlit = Program { material: None, settings, ..program.clone() };
+    link_picture(&unlit, Form::Normals, method, None)
+}
+
+/// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an
+/// interpreter, and without materials: what pictures have in common that are compared for speed.
+///
+/// An interpreter reads its program from storage buffers at the bindings that [`FieldSource`] tells, and
+/// nothing at binding 1.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn benchmark_module(
+    program: &Program,
+    method_name: &str,
+    field: FieldSource,
+) -> Result<Shader, Error> {
+    link_benchmark(program, method_name, field, false)
+}
+
+/// As [`benchmark_module`] of the scene's distance, whose pixels tell as evaluations how many rounds of loops were visited, where these
+/// are listed; those for normals are among them.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn instrumented_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
+    link_benchmark(program, method_name, FieldSource::Distance, true)
+}
+
+fn link_benchmark(
+    program: &Program,
+    method_name: &str,
+    field: FieldSource,
+    instrumented: bool,
+) -> Result<Shader, Error> {
+    let method = known_method(method_name)?;
+    let distance = match field {
+        FieldSource::Scene => return link_picture(program, Form::Compute, method, None),
+        FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
+        FieldSource::Units | FieldSource::Tape => None,
+    };
+    // All of the field is marched.
+    let culled = field == FieldSource::Distance && is_culled(program, method);
+    let instrumented = culled && instrumented;
+    let features = Features { materials: false, culled, instrumented, ..features(program, false) };
+    let used = distance.map_or_else(Vec::new, |distance| used_slots(program, vec![distance]));
+    let source = source_with(field, Form::Compute, method, features);
+    let mut module = template(&source, features, &used, &[])?;
+    let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
+    inputs.tables = Tables::in_buffer(LISTS);
+    inputs.active_lists = ActiveLists::find(&module, program);
+    inputs.tables.declare(&mut module, program, distance.as_slice())?;
+    if let Some(load_frame) = load_frame {
+        bind(&mut module, stubs::LOAD_FRAME, load_frame)?;
+    }
+    if let Some(distance) = distance {
+        let types = &mut module.types;
+        let field = StubBinding::of_point(None, stubs::FIELD, distance);
+        let function = field.function(program, &inputs, types)?;
+        bind(&mut module, stubs::FIELD, function)?;
+    }
+    let parts = ModuleParts { lists: inputs.tables.into_buffer(), ..ModuleParts::default() };
+    Ok(Shader::new(module, parts, features)?.culled_by(culling(program, features)?))
+}
+
+/// The shader of a program's picture, for an engine of someone else's: it needs no values but those of params,
+/// `time` and `frame`, in a structure as that of [`crate::field_module`]; what follows from them is computed once
+/// for each pixel.
+///
+/// Uniform `view` is a `sdfc_march::ViewBlock`. With [`Stage::Compute`] the entry point is `main`, and
+/// `pixels` a storage array as in [`render_module`]; with [`Stage::Fragment`] there are `vertex`, to be called for
+/// three vertices without buffers, and `fragment`, which gives a linear colour.
+///
+/// # Errors
+///
+/// [`Error::BadPrefix`]; others as [`render_module`].
+pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
+    check_prefix(&options.prefix)?;
+    let method = known_method(&options.method)?;
+    let form = match options.stage {
+        Stage::Compute => Form::Compute,
+        Stage::Fragment if options.rows_up => Form::FragmentUp,
+        Stage::Fragment => Form::Fragment,
+    };
+    let mut picture = PictureLinker::new(program, form, method, None, &[], false)?;
+    let place = |offset| ResourceBinding {
+        group: options.group,
+        binding: options.binding.saturating_add(offset),
+    };
+    for (_, variable) in picture.module.global_variables.iter_mut() {
+        if let Some(binding) = &mut variable.binding {
+            *binding = place(binding.binding);
+        }
+    }
+    let raw = raw_inputs(program, &picture.slot_nodes());
+    let (mut inputs, members) =
+        declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
+    inputs.tables = Tables::new(options.lists, place(LISTS.binding));
+    picture.parts.members = members;
+    picture.parts.prefix.clone_from(&options.prefix);
+    picture.compute_slots(inputs)?;
+    picture.bind()?;
+    make_public(&mut picture.module, &picture.parts, &options.prefix);
+    picture.finish()
+}
+
+/// `parallel` is as of [`Picture::skeleton`].
+fn link_picture(
+    program: &Program,
+    form: Form,
+    method: &MethodDefinition,
+    parallel: Option<bool>,
+) -> Result<Shader, Error> {
+    let mut picture = PictureLinker::new(program, form, method, parallel, &[], true)?;
+    let (inputs, load_frame) = declare_slots(&mut picture.module, program, &picture.used, SLOTS);
+    if let Some(load_frame) = load_frame {
+        bind(&mut picture.module, stubs::LOAD_FRAME, load_frame)?;
+    }
+    picture.inputs = inputs;
+    picture.inputs.tables = Tables::in_buffer(LISTS);
+    picture.inputs.active_lists = ActiveLists::find(&picture.module, program);
+    picture.bind()?;
+    let features = picture.features;
+    Ok(picture.finish()?.culled_by(culling(program, features)?))
+}

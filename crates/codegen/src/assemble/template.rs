@@ -1,0 +1,86 @@
+//! The template of a shader: the WGSL files that a scene needs, without what it does not.
+
+use naga::Module;
+use rustc_hash::FxHashSet;
+use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, reachable_where};
+use sdfc_march::{Features, MethodDefinition, method, stubs};
+
+use crate::error::Error;
+use crate::link::template::parse_template;
+
+/// The ray method of that name.
+pub(crate) fn known_method(name: &str) -> Result<&'static MethodDefinition, Error> {
+    method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
+}
+
+/// Files of `march` without what these features and slots do not need, nor calls to `unused` functions.
+pub(crate) fn template(
+    source: &str,
+    features: Features,
+    used_slots: &[usize],
+    unused: &[&str],
+) -> Result<Module, Error> {
+    let mut unused = unused.to_vec();
+    unused.extend(features.unused());
+    unused.extend(used_slots.is_empty().then_some(stubs::LOAD_FRAME));
+    parse_template(source, &features.overrides(), &unused)
+}
+
+/// What of a scene's rays is known before they are marched, for a method that asks for it.
+pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features {
+    let Rays { first_hit: hits, analytic: _, marched, clip, copies } = program.rays;
+    Features {
+        analytic: pre_intersects && hits.is_some(),
+        marched: !pre_intersects || hits.is_none() || marched.is_some(),
+        clipped: pre_intersects && clip.is_some(),
+        copies: pre_intersects && copies.is_some(),
+        ..Features::default()
+    }
+}
+
+/// What a scene's picture needs beyond the least.
+pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
+    let settings = &program.settings;
+    let mut features = Features {
+        materials: program.material.is_some(),
+        reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
+        occlusion: settings.occlusion.is_some(),
+        sky: settings.sky.is_some(),
+        fog: settings.fog.is_some(),
+        fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
+        parallel: settings.is_parallel(),
+        ..ray_features(program, pre_intersects)
+    };
+    for light in &settings.lights {
+        match light.source {
+            LightSource::Sun { .. } => {}
+            LightSource::Point { .. } => features.positional_lights = true,
+            LightSource::Spot { .. } => {
+                (features.positional_lights, features.spot_lights) = (true, true)
+            }
+        }
+        match light.shadow {
+            Shadow::Off => {}
+            Shadow::Hard => features.shadows = true,
+            Shadow::Soft(_) => (features.shadows, features.soft_shadows) = (true, true),
+        }
+    }
+    features
+}
+
+/// Whether rays from the eye visit the rounds of loops that can matter to them alone. Those of methods that look at stretches do
+/// not: what they know of a stretch holds all rounds.
+pub(super) fn is_culled(program: &Program, method: &MethodDefinition) -> bool {
+    let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
+    !program.cullable_loops.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
+}
+
+/// Positions in `Program::uniforms` of those that the roots read.
+pub(crate) fn used_slots(program: &Program, roots: Vec<NodeId>) -> Vec<usize> {
+    let slots: FxHashSet<_> = program.uniforms.iter().copied().collect();
+    let needed = reachable_where(&program.graph, &roots, |node| !slots.contains(&node));
+    // In ascending order, so that a search finds them.
+    let is_needed = |node: &NodeId| needed.binary_search(node).is_ok();
+    let positions = program.uniforms.iter().enumerate();
+    positions.filter(|(_, node)| is_needed(node)).map(|(slot, _)| slot).collect()
+}

@@ -1,0 +1,83 @@
+//! What a caller chooses about a shader for another engine.
+
+/// The stages of a picture's shader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// A compute stage that writes pixels into a buffer.
+    #[default]
+    Compute,
+    /// A full-screen triangle, and a fragment stage that returns a pixel's colour.
+    Fragment,
+}
+
+impl Stage {
+    /// Both stages, the default first.
+    pub const ALL: [Self; 2] = [Self::Compute, Self::Fragment];
+
+    /// The stage's name in messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Compute => "compute stage",
+            Self::Fragment => "fragment stage",
+        }
+    }
+}
+
+/// The largest number of elements of a list that is a constant in a shader for another engine.
+pub const MAX_CONSTANT_LIST: usize = 64;
+
+/// Where the lists of a shader for another engine are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Lists {
+    /// If one has more than [`MAX_CONSTANT_LIST`] elements all are in a storage buffer, one after
+    /// the other; [`crate::Shader::lists`] returns its contents.
+    #[default]
+    Buffer,
+    /// All are constants in the shader, for languages without storage buffers.
+    Constants,
+}
+
+/// What the functions of a scene hold and how they are named.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldOptions {
+    /// Start of every name.
+    pub prefix: String,
+    /// True to write the gradient.
+    pub gradient: bool,
+    /// True to write the material, if the program has one.
+    pub material: bool,
+    /// Bind group of the uniform structure.
+    pub group: u32,
+    /// Its binding in the group; lists have the next one.
+    pub binding: u32,
+    /// Where long lists are stored.
+    pub lists: Lists,
+}
+
+impl Default for FieldOptions {
+    fn default() -> Self {
+        let prefix = "sdf_".to_owned();
+        let lists = Lists::default();
+        Self { prefix, gradient: true, material: true, group: 0, binding: 0, lists }
+    }
+}
+
+/// The form and the names of a picture's shader for another engine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureOptions {
+    /// Name of the ray method.
+    pub method: String,
+    /// The stages.
+    pub stage: Stage,
+    /// True if the first row of the target is the lowest, as in OpenGL. Used for
+    /// [`Stage::Fragment`].
+    pub rows_up: bool,
+    /// Start of every name.
+    pub prefix: String,
+    /// Bind group of the buffers.
+    pub group: u32,
+    /// Binding of the view; params have the next one, then pixels, then lists.
+    pub binding: u32,
+    /// Where long lists are stored.
+    pub lists: Lists,
+}

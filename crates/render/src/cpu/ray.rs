@@ -1,0 +1,89 @@
+//! Rays on the CPU, and the evaluation of tapes at several points at once.
+
+use std::ops::{Add, Mul, Sub};
+
+use sdfc_graph::eval::{Evaluator, Number, Packet};
+
+/// Points evaluated together: enough that decoding an instruction costs little beside running it.
+pub(super) const LANES: usize = 8;
+
+/// An evaluator of [`LANES`] points at a time.
+pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;
+
+/// What rays are marched in: f32, as the shader does, or f64.
+pub trait Real:
+    Number
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Into<f64>
+    + Send
+    + Sync
+{
+}
+
+impl Real for f32 {}
+impl Real for f64 {}
+
+/// A ray with the cone that its pixel sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray<T> {
+    pub(super) origin: [T; 3],
+    /// Of unit length.
+    pub(super) direction: [T; 3],
+    pub(super) t_max: T,
+    /// Radius of the cone at the origin, and its growth per length.
+    pub(super) radius: T,
+    pub(super) spread: T,
+    /// How near to the surface a hit is, in widths of the cone there (`auto`).
+    pub(super) tolerance: T,
+}
+
+/// Rounding of a point relative to its distance from the scene's origin: eight units in the last
+/// place of f32, also in f64, where the same tolerances are wanted.
+const ROUNDING: f64 = 1e-6;
+
+impl<T: Real> Ray<T> {
+    pub(super) fn at(&self, t: T) -> [T; 3] {
+        std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
+    }
+
+    /// Radius of the cone.
+    pub(super) fn footprint(&self, t: T) -> T {
+        self.radius + self.spread * t
+    }
+
+    /// The ray from one of its places on.
+    pub(super) fn advanced(&self, t: T) -> Self {
+        let (origin, radius, t_max) = (self.at(t), self.footprint(t), self.t_max - t);
+        Self { origin, radius, t_max, ..*self }
+    }
+
+    /// How far rounding may move a point of the ray.
+    pub(super) fn rounding(&self, t: T) -> T {
+        let [x, y, z] = self.origin;
+        T::constant(ROUNDING) * ((x * x + y * y + z * z).sqrt() + t)
+    }
+}
+
+/// Values of a tape at points, in their order: for each point one array of lanes per root.
+pub(super) fn values_at<T: Real>(
+    evaluator: &mut Batch<'_, T>,
+    points: &[[T; 3]],
+) -> Vec<Vec<[f64; 4]>> {
+    let mut values = Vec::with_capacity(points.len());
+    for group in points.chunks(LANES) {
+        let mut filled = [[T::constant(0.0); 3]; LANES];
+        filled[..group.len()].copy_from_slice(group);
+        let roots = evaluator.eval(packed(&filled));
+        values.extend((0..group.len()).map(|lane| {
+            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
+        }));
+    }
+    values
+}
+
+pub(super) fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
+    std::array::from_fn(|axis| Packet(points.map(|point| point[axis])))
+}

@@ -1,0 +1,282 @@
+//! Drawing a group of pixels in waves: all camera rays, then all shadow rays, then all reflections.
+
+use glam::DVec3;
+use sdfc_graph::eval::Evaluator;
+use sdfc_march::PixelBlock;
+
+use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
+use super::ray::{Batch, Ray, Real, values_at};
+use super::shade::{Paint, Surface};
+use super::surroundings::{IncomingLight, behind, through_fog, unshaded};
+use super::trace::copies::trace_among_copies;
+use super::trace::{Limits, Trace, trace};
+use crate::image::HIT;
+use crate::view::footprint::Footprint;
+use crate::view::{View, ViewLight, ViewOcclusion, ViewShadow};
+
+/// Places above a surface at which it is asked what takes its light.
+const OCCLUSION_SAMPLES: u32 = 5;
+/// Tolerance of a ray to a lamp, whose footprint is as wide as it starts above the surface.
+const SHADOW_TOLERANCE: f64 = 0.25;
+/// What one thread needs to draw groups of pixels.
+#[derive(Clone)]
+pub(super) struct Wave<'a, T> {
+    pub(super) view: &'a View,
+    pub(super) limits: Limits<T>,
+    pub(super) field: Batch<'a, T>,
+    pub(super) pre_intersection: Option<PreIntersectionBatch<'a, T>>,
+    /// Bounds of the field between two points.
+    pub(super) range: Option<Evaluator<'a, T>>,
+    /// `None`: depths only.
+    pub(super) gradient: Option<Batch<'a, T>>,
+    pub(super) material: Option<Batch<'a, T>>,
+}
+
+/// A pixel in the making.
+#[derive(Clone, Copy)]
+struct Shade {
+    color: DVec3,
+    evaluations: u32,
+}
+
+/// A ray along which the eye sees, from it or from a mirror.
+#[derive(Clone, Copy)]
+struct Sight<T> {
+    /// Position in the group.
+    pixel: usize,
+    ray: Ray<T>,
+    /// What is seen along it counts by this factor.
+    weight: f64,
+}
+
+/// Where a sight met something.
+struct Meeting<T> {
+    sight: Sight<T>,
+    t: T,
+    surface: Surface,
+    /// Length of the gradient there.
+    slope: f64,
+}
+
+impl<T: Real> Meeting<T> {
+    fn point(&self) -> DVec3 {
+        vector(self.sight.ray.at(self.t))
+    }
+}
+
+impl<T: Real> Wave<'_, T> {
+    pub(super) fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
+        let mut sights: Vec<Sight<T>> = positions
+            .iter()
+            .enumerate()
+            .map(|(pixel, position)| Sight { pixel, ray: self.camera_ray(*position), weight: 1.0 })
+            .collect();
+        let mut shades = vec![Shade { color: DVec3::ZERO, evaluations: 0 }; positions.len()];
+        let seen = self.traced(&sights, &mut shades);
+        let mut meetings = self.lit_meetings(&sights, &seen, &mut shades);
+        for _ in 0..self.view.reflections {
+            sights = meetings.iter().map(|meeting| self.mirrored(meeting)).collect();
+            let traces = self.traced(&sights, &mut shades);
+            meetings = self.lit_meetings(&sights, &traces, &mut shades);
+        }
+        let pixels = seen.iter().zip(shades);
+        pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
+    }
+
+    fn traced(&mut self, sights: &[Sight<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
+        let rays: Vec<Ray<T>> = sights.iter().map(|sight| sight.ray).collect();
+        let traces = self.traces(&rays, false);
+        for (sight, trace) in sights.iter().zip(&traces) {
+            shades[sight.pixel].evaluations += trace.evaluations;
+        }
+        traces
+    }
+
+    /// Marches rays; those that are records_clearance through the whole field, so that it is known how narrowly they pass.
+    fn traces(&mut self, rays: &[Ray<T>], records_clearance: bool) -> Vec<Trace<T>> {
+        let known = match &mut self.pre_intersection {
+            Some(pre_intersection) => pre_intersection.look(rays, records_clearance),
+            None => rays.iter().map(PreIntersection::nothing).collect(),
+        };
+        let rays: Vec<_> = rays.iter().copied().zip(known).collect();
+        let limits = Limits { records_clearance, ..self.limits };
+        let pre_intersection = self.pre_intersection.as_mut().filter(|_| !records_clearance);
+        let marched = match pre_intersection {
+            Some(PreIntersectionBatch { copies: Some(copies), .. }) => {
+                return trace_among_copies(copies, &rays, &limits);
+            }
+            Some(PreIntersectionBatch { marched, .. }) => marched.as_mut(),
+            None => None,
+        };
+        trace(marched.unwrap_or(&mut self.field), self.range.as_mut(), &rays, &limits)
+    }
+
+    /// Adds what lies behind where sights met nothing, and what lights what they met.
+    fn lit_meetings(
+        &mut self,
+        sights: &[Sight<T>],
+        traces: &[Trace<T>],
+        shades: &mut [Shade],
+    ) -> Vec<Meeting<T>> {
+        for (sight, _) in sights.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
+            let seen = behind(self.view, vector(sight.ray.direction));
+            shades[sight.pixel].color += seen * sight.weight;
+        }
+        let mut meetings = self.meetings(sights, traces);
+        let open = self.open_parts(&meetings, shades);
+        for (Meeting { sight, t, surface, .. }, open) in meetings.iter_mut().zip(open) {
+            let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
+            let own = surface.ambient(self.view.ambient * open);
+            shades[sight.pixel].color += (own * clear + haze * (1.0 - clear)) * sight.weight;
+            sight.weight *= clear;
+        }
+        for light in &self.view.lights {
+            self.light(light, &meetings, shades);
+        }
+        meetings
+    }
+
+    /// The parts of the light from everywhere that reach where sights met something: 1, less what the field lacks
+    /// of the height above it, the nearer the more.
+    fn open_parts(&mut self, meetings: &[Meeting<T>], shades: &mut [Shade]) -> Vec<f64> {
+        let mut open = vec![1.0; meetings.len()];
+        let Some(ViewOcclusion { radius, strength }) = self.view.occlusion else { return open };
+        let weight = |sample: u32| 0.5f64.powi(sample as i32);
+        let all: f64 = (1..=OCCLUSION_SAMPLES).map(weight).sum();
+        for sample in 1..=OCCLUSION_SAMPLES {
+            let height = radius * f64::from(sample) / f64::from(OCCLUSION_SAMPLES);
+            let above = |meeting: &Meeting<T>| meeting.point() + meeting.surface.normal * height;
+            let points: Vec<[T; 3]> =
+                meetings.iter().map(|meeting| above(meeting).to_array().map(T::constant)).collect();
+            let values = values_at(&mut self.field, &points);
+            for ((open, meeting), value) in open.iter_mut().zip(meetings).zip(values) {
+                let distance = value.first().map_or(f64::NAN, |lanes| lanes[0]) / meeting.slope;
+                let closed = (1.0 - distance / height).clamp(0.0, 1.0);
+                *open -= strength * closed * weight(sample) / all;
+                shades[meeting.sight.pixel].evaluations += 1;
+            }
+        }
+        open
+    }
+
+    fn camera_ray(&self, [x, y]: [u32; 2]) -> Ray<T> {
+        let [origin, direction] =
+            self.view.ray(x, y).map(|value| value.to_array().map(T::constant));
+        let Footprint { radius, spread } = self.view.footprint();
+        Ray {
+            origin,
+            direction,
+            t_max: T::constant(self.view.t_max),
+            radius: T::constant(radius),
+            spread: T::constant(spread),
+            tolerance: T::constant(self.view.tolerance),
+        }
+    }
+
+    /// Normals and materials where sights met something.
+    fn meetings(&mut self, sights: &[Sight<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
+        let Some(gradient) = &mut self.gradient else { return Vec::new() };
+        let met = sights.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
+        let hits: Vec<(Sight<T>, T)> = met.map(|(sight, trace)| (*sight, trace.t)).collect();
+        let points: Vec<[T; 3]> = hits.iter().map(|(sight, t)| sight.ray.at(*t)).collect();
+        let gradients = values_at(gradient, &points);
+        let materials = self.material.as_mut().map(|material| values_at(material, &points));
+        let meeting = |(index, (sight, t)): (usize, (Sight<T>, T))| {
+            let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
+            let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
+            let toward_eye = -vector(sight.ray.direction);
+            let gradient = DVec3::new(x, y, z);
+            let surface = Surface::new(gradient, toward_eye, paint);
+            let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
+            Meeting { sight, t, surface, slope }
+        };
+        hits.into_iter().enumerate().map(meeting).collect()
+    }
+
+    /// Adds what a light lights, and the evaluations that it takes to know what shades it.
+    fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
+        let lit = meetings.iter().map(|meeting| {
+            let incoming = IncomingLight::seen_from(meeting.point(), light);
+            (meeting, incoming, meeting.surface.lit(&incoming) * meeting.sight.weight)
+        });
+        // A surface that returns nothing needs no ray to the incoming.
+        let casts = light.shadow != ViewShadow::Off;
+        let (asked, sure): (Vec<_>, Vec<_>) =
+            lit.partition(|(.., lit)| casts && lit.cmpgt(DVec3::ZERO).any());
+        for (meeting, _, lit) in sure {
+            shades[meeting.sight.pixel].color += lit;
+        }
+        let rays: Vec<Ray<T>> =
+            asked.iter().map(|(meeting, incoming, _)| self.shadow_ray(meeting, incoming)).collect();
+        let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
+        let traces = self.traces(&rays, records_clearance);
+        for ((meeting, _, lit), trace) in asked.into_iter().zip(traces) {
+            let shade = &mut shades[meeting.sight.pixel];
+            shade.evaluations += trace.evaluations;
+            if trace.status != HIT {
+                shade.color += lit * unshaded(light, trace.clearance.into());
+            }
+        }
+    }
+
+    /// How far along the ray a hit may be off.
+    fn near(&self, Meeting { sight, t, .. }: &Meeting<T>) -> T {
+        self.limits.tolerance(&sight.ray, *t).max(sight.ray.rounding(*t))
+    }
+
+    /// Where a ray starts that leaves the surface: so far above it, and a little before the hit, since
+    /// in a crease one surface's normal does not lead out of the other.
+    fn lifted(&self, meeting: &Meeting<T>, lift: T) -> [T; 3] {
+        let back = T::constant(0.25) * self.near(meeting);
+        let point = meeting.sight.ray.at(meeting.t - back);
+        let normal = meeting.surface.normal.to_array().map(T::constant);
+        std::array::from_fn(|axis| point[axis] + lift * normal[axis])
+    }
+
+    /// From a surface towards a incoming.
+    fn shadow_ray(&self, meeting: &Meeting<T>, incoming: &IncomingLight) -> Ray<T> {
+        let half_pixel = meeting.sight.ray.footprint(meeting.t);
+        let lift = (T::constant(3.0) * self.near(meeting)).max(half_pixel);
+        Ray {
+            origin: self.lifted(meeting, lift),
+            direction: incoming.direction.to_array().map(T::constant),
+            t_max: T::constant(incoming.distance.unwrap_or(self.view.t_max)),
+            radius: T::constant(0.5) * lift,
+            spread: T::constant(0.0),
+            tolerance: T::constant(SHADOW_TOLERANCE),
+        }
+    }
+
+    /// From a surface to what it mirrors.
+    fn mirrored(&self, meeting: &Meeting<T>) -> Sight<T> {
+        let Meeting { sight, t, surface, .. } = meeting;
+        let inward = -surface.toward_eye;
+        let direction = inward - 2.0 * inward.dot(surface.normal) * surface.normal;
+        let ray = Ray {
+            origin: self.lifted(meeting, T::constant(1.5) * self.near(meeting)),
+            direction: direction.to_array().map(T::constant),
+            t_max: T::constant(self.view.t_max),
+            radius: sight.ray.footprint(*t),
+            spread: sight.ray.spread,
+            tolerance: sight.ray.tolerance,
+        };
+        let weight = sight.weight * self.view.reflection_strength;
+        Sight { pixel: sight.pixel, ray, weight }
+    }
+
+    fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {
+        let t: f64 = trace.t.into();
+        let depth = if t > self.view.t_max { self.view.t_max } else { t };
+        PixelBlock {
+            color: shade.color.as_vec3().extend(1.0).to_array(),
+            depth: depth as f32,
+            status: trace.status,
+            evaluations: shade.evaluations,
+            primary_evaluations: trace.evaluations,
+        }
+    }
+}
+
+fn vector<T: Real>(lanes: [T; 3]) -> DVec3 {
+    DVec3::from(lanes.map(Into::into))
+}

@@ -1,0 +1,13 @@
+//! Drawing on a GPU.
+
+mod culling;
+mod culling_layout;
+mod device;
+mod kernel;
+mod pipeline;
+mod resources;
+mod run;
+pub mod testing;
+
+pub use device::Gpu;
+pub use pipeline::Pipeline;
