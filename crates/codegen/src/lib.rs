@@ -1,15 +1,17 @@
 //! From sdfc graphs to naga modules: lowering, linking, validation, writers, reflection.
 //!
-//! The only crate of sdfc that names naga. It takes a [`Program`](sdfc_graph::Program), flat math
-//! of one point, and makes of it
+//! This is the only crate of sdfc that uses naga. It takes a [`Program`](sdfc_graph::Program), flat
+//! math over one point, and makes these modules of it:
 //!
-//! - [`field_module`]: the distance, its gradient and the material as functions by themselves, for
-//!   those who embed them; params are members of one uniform structure.
-//! - [`render_module`]: the compute shader of a picture; the same functions fill the stubs of a ray
-//!   method and of shading, which are the `.wgsl` files of `sdfc-march`.
+//! - [`field_module`]: the distance, its gradient and the material as functions for embedders.
+//!   Params are members of one uniform structure.
+//! - [`march_module`]: the same, with a ray method beside them.
+//! - [`render_module`]: the compute shader of a picture. The scene's functions replace the stubs of
+//!   a ray method and of shading, which are the `.wgsl` files of `sdfc-march`.
+//! - [`picture_module`] and [`shadertoy_module`]: pictures for other engines.
 //!
-//! Both yield a [`Shader`]: a validated module, written in the language of a [`Target`], or handed over
-//! as it is.
+//! Each returns a [`Shader`]: a validated module, which can be written in the language of a
+//! [`Target`] or handed to wgpu as it is.
 //!
 //! ```
 //! use sdfc_codegen::{FieldOptions, field_module};
@@ -30,14 +32,20 @@
 //! # Ok::<(), sdfc_codegen::Error>(())
 //! ```
 //!
-//! How it works: nodes are lowered in the order of their ids to expressions of naga's arena, one
-//! function for each root; loops of the graph are loops there, and there is no other control flow. No text is assembled:
-//! names and statements are data, and naga writes them. A picture's files are parsed, calls to stubs that the scene has no
-//! need of are dropped with all that only they reached, then the rest is filled and validated.
+//! # How it works
 //!
-//! Limits: constants and results are 32-bit floats; numbers beyond them are an [`Error`]. Operations
-//! on constants alone are refused, for the graph folds those. What the graph does not hold as a loop is written out, so
-//! drivers take long over thousands of leaves that are not alike.
+//! Nodes are lowered in the order of their ids to expressions of naga's arena, one function for
+//! each root. Loops of the graph become loops; there is no other control flow. No source is
+//! concatenated: names and statements are data, and naga writes them. A *template module* is parsed
+//! from the WGSL files of a picture: calls to stubs that the scene does not need are dropped, with
+//! everything that only they reached. Then a function of the scene is *bound* to each remaining
+//! stub, and the module is validated.
+//!
+//! # Limits
+//!
+//! Constants and results are 32-bit floats; numbers beyond them are an [`Error`]. Operations on
+//! constants alone are refused, because the graph folds them. What the graph does not hold as a
+//! loop is unrolled, so drivers take long over thousands of primitives that are not alike.
 
 mod assemble;
 mod error;

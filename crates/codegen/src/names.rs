@@ -1,4 +1,4 @@
-//! What the parts of a module are called.
+//! Names of the parts of a module.
 
 use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
 use naga::{FastHashMap, Module, ShaderStage, TypeInner};
@@ -6,7 +6,8 @@ use naga::{FastHashMap, Module, ShaderStage, TypeInner};
 use crate::error::Error;
 use crate::reflection::ModuleParts;
 
-/// Letters, digits and `_`, no digit first, no `__`: what naga and WGSL both leave as it is.
+/// Checks a prefix: letters, digits and `_`, no digit first, no `__`. Both naga and WGSL leave such
+/// names unchanged.
 pub(crate) fn check_prefix(prefix: &str) -> Result<(), Error> {
     let plain = prefix.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     let digit_first = prefix.starts_with(|c: char| c.is_ascii_digit());
@@ -17,8 +18,8 @@ pub(crate) fn check_prefix(prefix: &str) -> Result<(), Error> {
     }
 }
 
-/// Calls functions after what they compute, and puts the prefix before all names that a text declares at
-/// its top level.
+/// Names functions after their roles, and puts the prefix before all names that the module
+/// declares.
 pub(crate) fn make_public(module: &mut Module, parts: &ModuleParts, prefix: &str) {
     for &(role, handle) in &parts.functions {
         module.functions.get_mut(handle).name = Some(role.name().to_owned());
@@ -53,7 +54,7 @@ pub(crate) fn make_public(module: &mut Module, parts: &ModuleParts, prefix: &str
 /// Names as naga's WGSL writer gives them: valid identifiers, no keywords, all different.
 pub(crate) type Names = FastHashMap<NameKey, String>;
 
-/// `march` has no other stages.
+/// The name of a stage. The files of `sdfc-march` have no other stages.
 pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
     if stage == ShaderStage::Vertex {
         "vertex"
@@ -64,7 +65,7 @@ pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
     }
 }
 
-/// Names as naga's WGSL writer gives them: sanitised, off WGSL's words, all different.
+/// Returns the names that naga's WGSL writer gives.
 pub(crate) fn final_names(module: &Module) -> Names {
     let mut names = Names::default();
     Namer::default().reset(

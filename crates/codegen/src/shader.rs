@@ -1,4 +1,4 @@
-//! A validated module and what can be written of it.
+//! Validated modules.
 
 use std::time::Duration;
 
@@ -14,16 +14,16 @@ use crate::target::{Code, Target};
 use crate::write::instructions::{FunctionCost, count};
 use crate::write::{self, validate};
 
-/// How names begin of what naga's writers add: conversions, and in HLSL constructors of arrays. Two texts in one file would both
-/// declare them.
+/// Prefixes of the functions that naga's writers add: conversions, and in HLSL constructors of
+/// arrays. Two sources in one file would both declare them.
 const WRITERS_OWN: [&str; 2] = ["naga_", "Constructarray"];
 
-/// A shader in a target's language, and what it offers by the names that it has there.
+/// A shader in a target's language, and its reflection with the names of that source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// Text or words.
+    /// Source or words.
     pub code: Code,
-    /// Functions, uniforms and their names.
+    /// Functions, buffers and their names.
     pub reflection: Reflection,
 }
 
@@ -49,23 +49,23 @@ impl Shader {
         Ok(Self { module, info, parts, features, validation: start.elapsed(), culling: None })
     }
 
-    /// The same, to be run after another.
+    /// Returns the same shader with a culling shader that must run before it.
     pub(crate) fn culled_by(self, culling: Option<Culling>) -> Self {
         Self { culling: culling.map(Box::new), ..self }
     }
 
-    /// What must run before it on each tile, with [`Features::culled`].
+    /// Takes the shader that must run before this one on each tile, if [`Features::culled`] is set.
     pub fn take_culling(&mut self) -> Option<Culling> {
         self.culling.take().map(|culling| *culling)
     }
 
-    /// The same, left where it is.
+    /// Returns the shader that [`Self::take_culling`] takes.
     pub fn culling(&self) -> Option<&Culling> {
         self.culling.as_deref()
     }
 
-    /// The same with another number for a constant of what runs before it: what tests break that by. `None` where it has no such
-    /// constant.
+    /// Replaces a constant of the culling shader. Tests break the shader by this; `None` if it has
+    /// no such constant.
     #[doc(hidden)]
     pub fn with_broken_culling(mut self, name: &str, number: u32) -> Option<Self> {
         let module = &mut self.culling.as_mut()?.shader.module;
@@ -76,28 +76,28 @@ impl Shader {
         Some(self)
     }
 
-    /// How long validation took.
+    /// The time that validation took, that of the culling shader included.
     pub fn validation_time(&self) -> Duration {
         let before = self.culling.as_ref().map(|culling| culling.shader.validation);
         self.validation + before.unwrap_or_default()
     }
 
-    /// The module, for `wgpu::ShaderSource::Naga`.
+    /// Returns the module, for `wgpu::ShaderSource::Naga`.
     pub fn into_module(self) -> Module {
         self.module
     }
 
-    /// The module.
+    /// Returns the module.
     pub fn module(&self) -> &Module {
         &self.module
     }
 
-    /// What the buffer of long lists is to hold; empty if there is none.
+    /// The contents of the buffer of long lists; empty if there is none.
     pub fn lists(&self) -> &[[f32; 4]] {
         self.parts.lists.as_ref().map_or(&[], |(_, contents)| contents)
     }
 
-    /// What of `march` was linked.
+    /// The optional parts that were linked.
     pub fn features(&self) -> Features {
         self.features
     }
@@ -107,17 +107,18 @@ impl Shader {
         reflect(&self.module, &self.parts)
     }
 
-    /// The shader in a target's language. A text begins with `comment`, which is one line (in GLSL its
-    /// second line, after the version).
+    /// Writes the shader in a target's language. A source begins with `comment`, which is one line
+    /// (in GLSL the second line, after the version).
     ///
-    /// GLSL holds one stage in a text. Of a module without entry points, GLSL has all functions and an
-    /// empty fragment stage; of one with several, the last. Its bindings keep their number and lose
-    /// their group, as do Metal's; in ES 3.00 they have none and go by [`crate::Uniform::block`].
+    /// GLSL holds one stage per source. For a module without entry points, GLSL has all functions
+    /// and an empty fragment stage; for one with several, the last. GLSL and Metal drop the groups
+    /// of bindings; ES 3.00 drops the bindings too, and its buffers go by
+    /// [`crate::Uniform::block`].
     ///
     /// # Errors
     ///
-    /// [`Error::Unsupported`] where the language cannot hold it, [`Error::BindingTooLarge`],
-    /// [`Error::Naga`] where naga's writer refuses the module.
+    /// [`Error::Unsupported`] if the language cannot express the module,
+    /// [`Error::BindingTooLarge`], and [`Error::Naga`] if naga's writer refuses it.
     pub fn write(&self, target: Target, comment: &str) -> Result<Written, Error> {
         let mut written = write::write(target, &self.module, &self.info, comment)?;
         if let Code::Text(text) = &mut written.code {
@@ -129,30 +130,31 @@ impl Shader {
         Ok(Written { code: written.code, reflection })
     }
 
-    /// The text in WGSL, without a comment.
+    /// Returns the source in WGSL, without a comment.
     ///
     /// # Errors
     ///
-    /// [`Error::Naga`] where naga's writer refuses the module.
+    /// [`Error::Naga`] if naga's writer refuses the module.
     pub fn wgsl(&self) -> Result<String, Error> {
         write::wgsl(&self.module, &self.info)
     }
 
-    /// The words of the module in SPIR-V 1.3 for Vulkan, with names. A module without an entry point
-    /// has the capability `Linkage`.
+    /// Returns the words of the module in SPIR-V 1.3 for Vulkan, with names. A module without an
+    /// entry point has the capability `Linkage`.
     ///
     /// # Errors
     ///
-    /// [`Error::Naga`] where naga's writer refuses the module.
+    /// [`Error::Naga`] if naga's writer refuses the module.
     pub fn spirv(&self) -> Result<Vec<u32>, Error> {
         write::spirv(&self.module, &self.info)
     }
 
-    /// What each function of the point costs in SPIR-V as naga writes it, before any optimiser.
+    /// Counts the instructions of each function for hosts, in SPIR-V as naga writes it, before any
+    /// optimiser.
     ///
     /// # Errors
     ///
-    /// [`Error::Naga`] where naga's writer refuses the module.
+    /// [`Error::Naga`] if naga's writer refuses the module.
     pub fn instructions(&self) -> Result<Vec<FunctionCost>, Error> {
         let words = self.spirv()?;
         let functions = self.parts.functions.iter().map(|&(role, handle)| {
@@ -162,19 +164,24 @@ impl Shader {
     }
 }
 
-/// A shader to run before a picture's, on the tiles that it is to draw.
+/// A shader that runs before a picture's, on the tiles that the picture draws next.
 ///
-/// Its entry points are `mark`, one invocation for each 32 rounds (x), tile of the level (y) and loop (z), to be run for each level from the
-/// highest down, and `list`, one for each tile (x), both in workgroups of 64 by 1. Those for cells are `least_of_groups` and
-/// `mark_groups`, one for each group of cells (x), 32 rounds (y) and loop (z), and `list_cells`, one for each cell (x). Its bindings are those
-/// of the picture, in place of the pixels storage arrays of words, at 4 `active_lists`, which the picture reads, at 5 `masks`, and at 7 `counters`, and
-/// at 6 the uniform `level`.
+/// Its entry points for tiles are `mark`, one invocation for each 32 iterations (x), tile of the
+/// level (y) and loop (z), to be run for each level from the highest down; and `list`, one for each
+/// tile (x). Both have workgroups of 64 by 1. Those for cells are `least_of_groups` and
+/// `mark_groups`, one for each group of cells (x), 32 iterations (y) and loop (z); and
+/// `list_cells`, one for each cell (x).
+///
+/// Its bindings are those of the picture; in place of the pixels it has storage arrays of words, at
+/// 4 `active_lists`, which the picture reads, at 5 `masks`, and at 7 `counters`, and at 6 the
+/// uniform `level`.
 #[derive(Debug)]
 pub struct Culling {
     /// The shader.
     pub shader: Shader,
     /// How many iterations each loop has.
     pub iterations: Vec<u32>,
-    /// Whether rays go by cells, and if so for each loop whether no round need be visited outside all cells.
+    /// For each loop, true if no iteration need be run outside all cells; `None` if rays do not use
+    /// cells.
     pub cells: Option<Vec<bool>>,
 }

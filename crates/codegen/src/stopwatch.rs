@@ -1,8 +1,8 @@
-//! A clock, where there is one.
+//! A clock that also compiles where there is none.
 
 use std::time::Duration;
 
-/// Measures how long something takes. In WebAssembly there is no clock, and nothing takes any time.
+/// Measures elapsed time. In WebAssembly there is no clock, and all times are 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch {
     #[cfg(not(target_family = "wasm"))]
@@ -10,7 +10,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Begins to measure.
+    /// Starts measuring.
     pub fn start() -> Self {
         Self {
             #[cfg(not(target_family = "wasm"))]
@@ -18,7 +18,7 @@ impl Stopwatch {
         }
     }
 
-    /// Time since then.
+    /// Time since the start.
     pub fn elapsed(self) -> Duration {
         #[cfg(not(target_family = "wasm"))]
         return self.start.elapsed();
@@ -26,7 +26,7 @@ impl Stopwatch {
         return Duration::ZERO;
     }
 
-    /// The same in milliseconds.
+    /// Time since the start, in milliseconds.
     pub fn milliseconds(self) -> f64 {
         self.elapsed().as_secs_f64() * 1e3
     }

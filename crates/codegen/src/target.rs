@@ -5,29 +5,29 @@ use crate::options::{Lists, Stage};
 /// A language that shaders are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// WebGPU's.
+    /// WebGPU's language.
     Wgsl,
-    /// GLSL 4.50, one stage in a text.
+    /// GLSL 4.50, one stage per source.
     Glsl,
-    /// GLSL ES 3.00, WebGL 2's, one stage in a text; it has no compute stage.
+    /// GLSL ES 3.00, the language of WebGL 2, one stage per source; it has no compute stage.
     GlslEs,
-    /// Shader model 5.1.
+    /// HLSL, shader model 5.1.
     Hlsl,
-    /// Metal 2.1.
+    /// Metal's language, version 2.1.
     Msl,
     /// SPIR-V 1.3 for Vulkan, with names.
     Spirv,
-    /// The one text of a shader on shadertoy.com, GLSL ES 3.00: a whole picture, see
+    /// The source of a shader on shadertoy.com, in GLSL ES 3.00: a whole picture, see
     /// [`crate::shadertoy_module`].
     Shadertoy,
 }
 
 impl Target {
-    /// All of them.
+    /// All targets.
     pub const ALL: [Self; 7] =
         [Self::Wgsl, Self::Glsl, Self::GlslEs, Self::Hlsl, Self::Msl, Self::Spirv, Self::Shadertoy];
 
-    /// What the command line calls it.
+    /// The target's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Wgsl => "wgsl",
@@ -40,7 +40,7 @@ impl Target {
         }
     }
 
-    /// Whether buffers are in groups.
+    /// Returns true if buffers belong to bind groups.
     pub fn has_groups(self) -> bool {
         match self {
             Self::Wgsl | Self::Hlsl | Self::Spirv => true,
@@ -48,7 +48,7 @@ impl Target {
         }
     }
 
-    /// Whether buffers are bound by numbers, not by names.
+    /// Returns true if buffers are bound by numbers, not by names.
     pub fn has_bindings(self) -> bool {
         match self {
             Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => true,
@@ -56,7 +56,7 @@ impl Target {
         }
     }
 
-    /// Where long lists are.
+    /// Where long lists are stored.
     pub fn lists(self) -> Lists {
         match self {
             Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => Lists::Buffer,
@@ -64,7 +64,7 @@ impl Target {
         }
     }
 
-    /// Whether there is a stage.
+    /// Returns true if the language has a stage.
     pub fn has_stage(self, stage: Stage) -> bool {
         match self {
             Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => true,
@@ -72,7 +72,7 @@ impl Target {
         }
     }
 
-    /// Whether the first row of what a fragment stage draws is the lowest.
+    /// Returns true if the first row that a fragment stage draws is the lowest.
     pub fn counts_rows_upwards(self) -> bool {
         match self {
             Self::Glsl | Self::GlslEs | Self::Shadertoy => true,
@@ -84,14 +84,14 @@ impl Target {
 /// A shader in a target's language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Code {
-    /// The text.
+    /// The source.
     Text(String),
     /// The words of SPIR-V.
     Words(Vec<u32>),
 }
 
 impl Code {
-    /// As a file holds it: UTF-8, or words of four bytes, the lowest first.
+    /// The contents of a file: UTF-8, or words of four bytes, least significant byte first.
     pub fn into_bytes(self) -> Vec<u8> {
         match self {
             Self::Text(text) => text.into_bytes(),

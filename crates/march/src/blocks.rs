@@ -46,13 +46,13 @@ pub struct LightBlock {
     pub pad: [f32; 2],
 }
 
-/// The uniform at binding 0 of group 0: camera, tile, limits and lights. Lengths are in scene units.
+/// The uniform at binding 0 of group 0: camera, tile, limits and lights. Lengths are in scene
+/// units.
 ///
-/// The ray through the centre of pixel (x, y), y downwards, has the direction
-/// `normalize(forward + aside)`, where `aside` is
-/// `(2 (x + 0.5) / width - 1) * right - (2 (y + 0.5) / height - 1) * up`. Parallel rays start at
-/// `eye + aside` instead and have the direction `forward`; then `right` and `up` are half the size of
-/// the picture at any distance.
+/// The ray through the centre of pixel (x, y), y downwards, has the direction `normalize(forward +
+/// aside)`, where `aside` is `(2 (x + 0.5) / width - 1) * right - (2 (y + 0.5) / height - 1) * up`.
+/// Parallel rays start at `eye + aside` instead and have the direction `forward`; then `right` and
+/// `up` are half the size of the picture at any distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct ViewBlock {

@@ -2,10 +2,10 @@
 //!
 //! A picture's shader is made of whole files, joined: the files that all pictures share, one ray
 //! method, and one way of shading ([`source`]). No file knows a scene. The functions that a scene
-//! supplies are stubs, listed in [`stubs`], whose bodies the linker replaces. The optional parts that
-//! a scene needs are [`Features`], one WGSL override each, on which the files branch; so a feature
-//! is written once, whatever it is combined with. The linker takes one side of each branch and drops
-//! the other.
+//! supplies are stubs, listed in [`stubs`], whose bodies the linker replaces. The optional parts
+//! that a scene needs are [`Features`], one WGSL override each, on which the files branch; so a
+//! feature is written once, whatever it is combined with. The linker takes one side of each branch
+//! and drops the other.
 //!
 //! ```
 //! use sdfc_march::{Features, Method, source};
@@ -17,14 +17,14 @@
 //! }
 //! ```
 //!
-//! A ray method is a file with `fn trace(ray: Ray) -> Trace` and
-//! `fn tolerance(ray: Ray, t: f32) -> f32` (see `ray.wgsl`), a variant of [`Method`] and a row of
-//! [`METHODS`]. The file calls `field` in one place, in a loop of at most `ray.steps` iterations, and
-//! passes each sample that it keeps to `record_sample`. A change of sign counts as a hit, so that a
-//! ray that has passed through a surface does not walk away from it.
+//! A ray method is a file with `fn trace(ray: Ray) -> Trace` and `fn tolerance(ray: Ray, t: f32) ->
+//! f32` (see `ray.wgsl`), a variant of [`Method`] and a row of [`METHODS`]. The file calls `field`
+//! in one place, in a loop of at most `ray.steps` iterations, and passes each sample that it keeps
+//! to `record_sample`. A change of sign counts as a hit, so that a ray that has passed through a
+//! surface does not walk away from it.
 //!
-//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel.wgsl` declare; their
-//! layout is that of WGSL.
+//! The blocks ([`ViewBlock`], [`PixelBlock`]) match what `view.wgsl` and `pixel.wgsl` declare;
+//! their layout is that of WGSL.
 
 mod blocks;
 mod features;

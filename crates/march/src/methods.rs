@@ -174,8 +174,8 @@ impl MethodParameter {
         }
     }
 
-    /// The value where a scene states none. That of [`Self::Epsilon`] holds for a camera at distance
-    /// 1 from its target, and scales with that distance.
+    /// The value where a scene states none. That of [`Self::Epsilon`] holds for a camera at
+    /// distance 1 from its target, and scales with that distance.
     pub fn default_value(self) -> f64 {
         match self {
             Self::Steps => 256.0,

@@ -116,8 +116,8 @@ pub fn source_with(
     files.join("\n")
 }
 
-/// Returns the source of a ray method alone, for a shader of the embedder's. Its entry point is there
-/// only to keep `trace` and `intersect`.
+/// Returns the source of a ray method alone, for a shader of the embedder's. Its entry point is
+/// there only to keep `trace` and `intersect`.
 pub fn ray_source(method: &MethodDefinition) -> String {
     let [field, _] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");

@@ -14,8 +14,8 @@ pub const ANALYTIC_HIT: &str = "analytic_hit";
 pub const ANALYTIC_DISTANCE: &str = "analytic_distance";
 /// `fn marched_distance(p: vec3f) -> f32`, the distance to the marched part of the scene.
 pub const MARCHED_DISTANCE: &str = "marched_distance";
-/// `fn clip_interval(origin: vec3f, direction: vec3f) -> vec2f`: where a ray enters and leaves a box
-/// around the marched part. Called if [`Features::clipped`](crate::Features::clipped) is set.
+/// `fn clip_interval(origin: vec3f, direction: vec3f) -> vec2f`: where a ray enters and leaves a
+/// box around the marched part. Called if [`Features::clipped`](crate::Features::clipped) is set.
 pub const CLIP_INTERVAL: &str = "clip_interval";
 /// `fn intersect_copies(origin: vec3f, direction: vec3f) -> vec2f`: where a ray first enters a copy
 /// that is sampled at its origin, and the distance from there within which nothing else is marched.
@@ -58,10 +58,10 @@ pub const RECORD_SAMPLE: &str = "record_sample";
 /// `fn record_slope(square: f32)`, which takes the squared length of each gradient. No scene
 /// supplies it; its calls are dropped if there is no ambient occlusion.
 pub const RECORD_SLOPE: &str = "record_slope";
-/// `fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f` and so on, one for each loop that can be
-/// culled, of [`culling_source`](crate::culling_source). `x`: lower bound on the distance to where
-/// the iteration can affect a ray. `y`: the iteration's operand minus the blend radius. `z`: the
-/// operand.
+/// `fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f` and so on, one for each loop that can
+/// be culled, of [`culling_source`](crate::culling_source). `x`: lower bound on the distance to
+/// where the iteration can affect a ray. `y`: the iteration's operand minus the blend radius. `z`:
+/// the operand.
 pub const CULLING_BOUNDS: [&str; 8] = [
     "culling_bounds_0",
     "culling_bounds_1",
@@ -82,5 +82,6 @@ pub const ITERATIONS_RUN: &str = "iterations_run";
 pub const ACTIVE_SPANS: &str = "active_spans";
 /// `fn select_lists(p: vec3f)`, which sets `active_spans` for a point.
 pub const SELECT_LISTS: &str = "select_lists";
-/// `var<private> inactive_distance: f32`, a lower bound on the distance to what the lists leave out.
+/// `var<private> inactive_distance: f32`, a lower bound on the distance to what the lists leave
+/// out.
 pub const INACTIVE_DISTANCE: &str = "inactive_distance";

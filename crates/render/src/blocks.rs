@@ -1,16 +1,16 @@
-//! The blocks of `sdfc-march` as bytes, written field by field in the order and with the offsets
-//! that WGSL gives them.
+//! The blocks of `sdfc-march` as bytes, written field by field in the order and with the offsets of
+//! WGSL.
 
 use sdfc_march::{LightBlock, PixelBlock, ViewBlock};
 
-/// Bytes of one [`PixelBlock`].
+/// Size of one [`PixelBlock`] in bytes.
 pub const PIXEL_BYTES: usize = size_of::<PixelBlock>();
-/// Bytes of one [`ViewBlock`].
+/// Size of one [`ViewBlock`] in bytes.
 pub const VIEW_BYTES: usize = size_of::<ViewBlock>();
-/// Bytes of one per-frame value.
+/// Size of one per-frame value in bytes.
 pub const UNIFORM_BYTES: usize = 16;
 
-/// Bytes in the order of the machine, which is the order of its GPU.
+/// A byte buffer in the machine's byte order, which is that of its GPU.
 #[derive(Default)]
 struct Bytes(Vec<u8>);
 
@@ -32,9 +32,9 @@ impl Bytes {
     }
 }
 
-/// The view block as the shader reads it.
+/// Returns the bytes of a view block as the shader reads them.
 pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
-    // Taken apart so that a new field of the block does not compile until it is written here.
+    // Destructured so that a new field of the block does not compile until it is written here.
     let ViewBlock {
         eye,
         pixel_radius,
@@ -79,14 +79,14 @@ pub fn view_bytes(block: &ViewBlock) -> Vec<u8> {
     bytes.0
 }
 
-/// Per-frame values, one `vec4f` each.
+/// Returns the bytes of per-frame values, one `vec4f` each.
 pub fn uniform_bytes(values: &[[f32; 4]]) -> Vec<u8> {
     let mut bytes = Bytes::default();
     bytes.floats(values.as_flattened());
     bytes.0
 }
 
-/// The pixel block in `PIXEL_BYTES` bytes; what is missing is read as 0.
+/// Reads a pixel block from `PIXEL_BYTES` bytes; missing bytes are read as 0.
 pub fn pixel_from_bytes(bytes: &[u8]) -> PixelBlock {
     let mut words = bytes.chunks_exact(4).map(|word| match word {
         &[a, b, c, d] => u32::from_ne_bytes([a, b, c, d]),

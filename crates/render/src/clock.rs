@@ -4,38 +4,38 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-/// What measured a time.
+/// The clock that measured a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Clock {
-    /// Timestamps that the GPU wrote.
+    /// Timestamps written by the GPU.
     Gpu,
-    /// The clock of the machine, waiting included.
+    /// The wall clock, waiting included.
     Wall,
 }
 
 /// Times of repeated frames, in milliseconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrameTimes {
-    /// The middle one; the mean of the middle two for an even number.
+    /// The median; for an even number of frames, the mean of the middle two.
     pub median: f64,
     /// The shortest.
     pub min: f64,
     /// The longest.
     pub max: f64,
-    /// How many frames.
+    /// The number of frames.
     pub n: usize,
-    /// What measured them.
+    /// The clock that measured them.
     pub clock: Clock,
 }
 
-/// Time since then by the wall clock, in milliseconds.
+/// The time since `start` by the wall clock, in milliseconds.
 pub fn milliseconds_since(start: Instant) -> f64 {
     start.elapsed().as_secs_f64() * 1e3
 }
 
 impl FrameTimes {
-    /// Of one time or more; `None` of none.
+    /// Summarises one time or more; `None` for none.
     pub fn of(times: &[f64], clock: Clock) -> Option<Self> {
         let mut sorted = times.to_vec();
         sorted.sort_by(f64::total_cmp);

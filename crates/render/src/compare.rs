@@ -1,37 +1,40 @@
-//! How far two pictures of the same view differ, apart from their edges.
+//! Measures how far two pictures of the same view differ, apart from their edges.
 //!
-//! At a silhouette or a crease one pixel's ray meets one surface in one picture and another in the
-//! other, by rounding alone; such pixels are counted, and left out of the differences. They are told by depth alone: where
-//! another material begins, or the normal turns, and the depth goes on evenly, pixels are compared as elsewhere.
+//! At a silhouette or a crease one pixel's ray may hit one surface in one picture and another in
+//! the other, by rounding alone. Such pixels are counted, and left out of the differences. They are
+//! found by depth alone: where the material or the normal changes while the depth is smooth, pixels
+//! are compared as elsewhere.
 
 use sdfc_march::PixelBlock;
 
 use crate::image::{HIT, Image, linear_to_srgb8};
 
-/// A depth that bends by more than so many pixel widths over three neighbouring pixels is an edge.
+/// A pixel is an edge if the depth bends by more than this many pixel widths over three
+/// neighbouring pixels.
 const EDGE_PIXEL_WIDTHS: f32 = 4.0;
 
 /// How far two pictures differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Pixels compared, edges left out.
+    /// The number of pixels compared, edges left out.
     pub compared: usize,
-    /// Pixels that are an edge in either picture.
+    /// The number of pixels that are an edge in either picture.
     pub edges: usize,
-    /// Pixels, edges left out, that are a hit in one picture only.
+    /// The number of pixels that are a hit in only one picture, edges left out.
     pub status: usize,
-    /// Largest difference of depth, in scene units, where both are hits; infinite where one is NaN.
+    /// The largest difference of depth, in scene units, of pixels that are hits in both; infinite
+    /// if a depth is NaN.
     pub depth: f32,
-    /// Largest difference of depth in parts of the depth.
+    /// The largest difference of depth as a fraction of the depth.
     pub relative_depth: f32,
-    /// Largest difference of a colour channel in sRGB steps of 1/255.
+    /// The largest difference of a colour channel, in sRGB steps of 1/255.
     pub color: u8,
-    /// Mean difference of the colour channels in sRGB steps of 1/255.
+    /// The mean difference of the colour channels, in sRGB steps of 1/255.
     pub mean_color: f32,
 }
 
-/// For each pixel whether it is an edge: within its 3x3 neighbours hits and misses meet, or the
-/// depth of hits along a line through it bends by more than four pixel widths.
+/// Returns, for each pixel, true if it is an edge: its 3x3 neighbours contain hits and misses, or
+/// the depth of hits along a line through it bends by more than four pixel widths.
 pub fn edges(image: &Image) -> Vec<bool> {
     let [width, height] = image.size();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -42,7 +45,8 @@ fn is_edge(image: &Image, x: u32, y: u32) -> bool {
     let neighbour =
         |dx: i32, dy: i32| image.pixel(x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
     let Some(center) = neighbour(0, 0) else { return false };
-    // Opposite neighbours, so that a slanted plane, whose depth changes evenly, is no edge.
+    // Opposite neighbours are compared, so that a slanted plane, whose depth changes evenly, has no
+    // edges.
     [(1, 0), (0, 1), (1, 1), (1, -1)].into_iter().any(|(dx, dy)| {
         let pair = [neighbour(dx, dy), neighbour(-dx, -dy)];
         pair.iter().flatten().any(|other| (other.status == HIT) != (center.status == HIT))
@@ -56,7 +60,7 @@ fn bends(image: &Image, before: &PixelBlock, center: &PixelBlock, after: &PixelB
     center.status == HIT && bend.abs() > EDGE_PIXEL_WIDTHS * pixel_width
 }
 
-/// How far two pictures of equal size differ; `None` if their sizes differ.
+/// Compares two pictures of equal size; `None` if their sizes differ.
 pub fn compare(a: &Image, b: &Image) -> Option<Difference> {
     if a.size() != b.size() {
         return None;

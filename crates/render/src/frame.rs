@@ -1,4 +1,4 @@
-//! What the renderers have in common: options in, progress out, a frame as the result.
+//! What the renderers share: options, progress, and the finished frame.
 
 use std::ops::ControlFlow;
 
@@ -11,26 +11,26 @@ use crate::clock::Clock;
 use crate::image::Image;
 use crate::tiles::TileSize;
 
-/// How a frame is drawn.
+/// Options for drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderOptions {
-    /// How large tiles are.
+    /// The size of tiles.
     pub tile_size: TileSize,
 }
 
-/// How far a frame is.
+/// The progress of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Pixels finished.
+    /// The number of finished pixels.
     pub done: u64,
-    /// Pixels in all.
+    /// The number of all pixels.
     pub total: u64,
 }
 
-/// Called after each tile; `ControlFlow::Break` cancels the frame.
+/// A callback after each tile; `ControlFlow::Break` cancels the frame.
 pub type OnProgress<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
-/// An [`OnProgress`] that never cancels.
+/// An [`OnProgress`] that ignores progress and never cancels.
 pub fn no_progress(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
@@ -40,18 +40,18 @@ pub fn no_progress(_: Progress) -> ControlFlow<()> {
 pub struct Frame {
     /// The picture.
     pub image: Image,
-    /// How long the tiles took, in milliseconds, added up.
+    /// The time that all tiles took together, in milliseconds.
     pub milliseconds: f64,
-    /// What measured that.
+    /// The clock that measured it.
     pub clock: Clock,
-    /// How many tiles it was drawn in.
+    /// The number of tiles that it was drawn in.
     pub tiles: u32,
-    /// How many operands of loops were evaluated before the rays, by a shader that counts them
+    /// The number of loop operands that were evaluated before the rays, if the shader counts them
     /// ([`instrumented_module`](sdfc_codegen::instrumented_module)).
     pub culling_evaluations: u64,
 }
 
-/// The values of a program's per-frame nodes, as its shader reads them.
+/// Returns the values of a program's per-frame nodes, as its shader reads them.
 pub fn uniform_values(program: &Program, frame: &FrameValues) -> Vec<[f32; 4]> {
     let values = evaluate_frame(&program.graph, &program.uniforms, frame);
     values.into_iter().map(|lanes| lanes.map(|lane| lane as f32)).collect()

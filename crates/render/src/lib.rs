@@ -1,10 +1,11 @@
-//! Headless rendering of sdfc shaders on wgpu, and on the CPU where there is no adapter.
+//! Headless rendering of sdfc shaders: on the GPU with wgpu, or on the CPU if there is none.
 //!
-//! A [`View`] is one frame's camera, lights and limits as numbers. A [`Pipeline`] draws it with a
-//! program's shader on a [`Gpu`], a [`CpuScene`] with the program itself; both cut the picture into
-//! tiles, report progress after each, and give a [`Frame`]: an [`Image`] of linear colours, depths
-//! and counts, and the time that it took. [`compare`] tells how far two images differ, [`Stats`] is
-//! what `render --stats` prints. Nothing here opens files, prints, or panics on what it is given.
+//! A [`View`] holds one frame's camera, lights and limits as numbers. A [`Pipeline`] draws it with
+//! a program's shader on a [`Gpu`]; a [`CpuScene`] draws it with the program itself. Both cut the
+//! picture into tiles, report progress after each, and return a [`Frame`]: an [`Image`] of linear
+//! colours, depths and counts, and the time that it took. [`compare`] measures how far two images
+//! differ; [`Stats`] is what `render --stats` prints. Nothing here opens files, prints, or panics
+//! on its input.
 //!
 //! ```
 //! use sdfc_graph::{Dim, Program, Unary, eval::FrameValues};
@@ -30,14 +31,18 @@
 //!
 //! # Features
 //!
-//! All are on by default: `gpu`, without which there is the CPU renderer alone and no wgpu; `files`: PNG, GIF and EXR; and
-//! `threads`, without which the CPU renderer works on the processor that calls it.
+//! All are on by default:
+//!
+//! - `gpu`: without it there is only the CPU renderer and no wgpu.
+//! - `files`: PNG, GIF and EXR.
+//! - `threads`: the CPU renderer uses all cores; without it, the calling thread.
 //!
 //! # Limits
 //!
-//! Pictures have up to 16,384 pixels a side and 2^26 in all, scenes up to 8 lights. The CPU renderer
-//! has some of the ray methods, [`CpuScene::METHODS`]. A device that is lost while it is waited for makes wgpu
-//! panic; that is caught and becomes [`RenderError::DeviceLost`], but the panic hook is run.
+//! Pictures have at most 16,384 pixels on a side and 2^26 in all, scenes at most 8 lights. The CPU
+//! renderer has some of the ray methods, [`CpuScene::METHODS`]. If a device is lost while it is
+//! waited for, wgpu panics; the panic is caught and becomes [`RenderError::DeviceLost`], but the
+//! panic hook runs.
 
 mod blocks;
 mod clock;

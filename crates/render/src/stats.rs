@@ -1,7 +1,7 @@
-//! The figures of one rendering, in the form of `render --stats`.
+//! The metrics of one rendering, as `render --stats` prints them.
 //!
-//! The keys are a promise to other tools: add some, rename none. A figure that cannot be had is null,
-//! and `why` of the object that holds it says the reason under the figure's key.
+//! The keys are stable: new ones may be added, none is renamed. A metric that is not available is
+//! null, and `why` of the object that contains it holds the reason under the metric's key.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::clock::FrameTimes;
 use crate::frame::Frame;
 use crate::image::{Image, PixelCounts};
 
-/// What an adapter says of itself.
+/// The description of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterInfo {
     /// Its name.
@@ -20,14 +20,14 @@ pub struct AdapterInfo {
     pub driver: String,
     /// `vulkan`, `metal` or `dx12`.
     pub backend: String,
-    /// Whether a CPU does its work.
+    /// True if it is a software adapter.
     pub software: bool,
 }
 
-/// Reasons by the key of the missing figure.
+/// Reasons for missing metrics, by their keys.
 pub type Why = BTreeMap<&'static str, String>;
 
-/// The figures of one rendering.
+/// The metrics of one rendering.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stats {
     /// Name of the adapter; null on the CPU.
@@ -40,26 +40,27 @@ pub struct Stats {
     pub method: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Time of one frame without compilation.
+    /// The time of one frame without compilation.
     pub frame_ms: FrameTimes,
-    /// Time of each stage of compilation.
+    /// The time of each stage of compilation.
     pub compile_ms: CompileTimes,
-    /// From reading the scene to the first finished picture, in milliseconds.
+    /// The time from reading the scene to the first finished picture, in milliseconds.
     pub first_picture_ms: Option<f64>,
-    /// Evaluations of the field, shadows included.
+    /// Evaluations of the field, shadow rays included.
     pub evals_per_pixel: EvaluationCounts,
-    /// Evaluations of leaves.
+    /// Evaluations of primitives.
     pub leaf_evals_per_pixel: LeafEvaluations,
     /// How the rays ended.
     pub pixels: PixelCounts,
-    /// Why figures of this object are null, and why the method is not what was asked for.
+    /// Why metrics of this object are null, and why the method is not the requested one.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub why: Why,
 }
 
 impl Stats {
-    /// Of a frame, drawn in the given times by an adapter, or on the CPU if there is none. What the
-    /// renderer does not know, `first_picture_ms` and leaves, is null until the caller says.
+    /// The metrics of a frame that was drawn in the given times by an adapter, or on the CPU
+    /// without one. The renderer does not know `first_picture_ms` and primitives; they are null
+    /// until the caller sets them.
     pub fn new(
         frame: &Frame,
         frame_ms: FrameTimes,
@@ -94,7 +95,7 @@ impl Stats {
         self.why.remove("first_picture_ms");
     }
 
-    /// Sets the leaf evaluations of a scene that evaluates all of so many leaves each time.
+    /// Sets the evaluations of primitives for a scene that evaluates all of its `leaves` each time.
     pub fn set_leaves(&mut self, leaves: usize) {
         self.leaf_evals_per_pixel = LeafEvaluations::of_all_leaves(self.evals_per_pixel, leaves);
     }
@@ -111,9 +112,10 @@ pub struct CompileTimes {
     pub lower: Option<f64>,
     /// Validating the module.
     pub validate: Option<f64>,
-    /// Creating the pipeline, and a first dispatch of one workgroup: software drivers compile there.
+    /// Creating the pipeline, and a first dispatch of one workgroup, in which software drivers
+    /// compile.
     pub pipeline: Option<f64>,
-    /// Why figures of this object are null.
+    /// Why metrics of this object are null.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub why: Why,
 }
@@ -123,14 +125,14 @@ pub struct CompileTimes {
 pub struct EvaluationCounts {
     /// Mean.
     pub mean: f64,
-    /// 99 of 100 pixels have at most so many.
+    /// The 99th percentile.
     pub p99: u32,
-    /// Most.
+    /// The maximum.
     pub max: u32,
 }
 
 impl EvaluationCounts {
-    /// Of a picture.
+    /// Counts the evaluations of a picture.
     pub fn of(image: &Image) -> Self {
         let mut counts: Vec<u32> = image.pixels().iter().map(|pixel| pixel.evaluations).collect();
         let sum: u64 = counts.iter().map(|count| u64::from(*count)).sum();
@@ -144,7 +146,7 @@ impl EvaluationCounts {
     }
 }
 
-/// Evaluations of leaves over the pixels of a picture.
+/// Evaluations of primitives over the pixels of a picture.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LeafEvaluations {
     /// Mean.
@@ -155,12 +157,12 @@ pub struct LeafEvaluations {
 }
 
 impl LeafEvaluations {
-    /// Where every evaluation of the field evaluates each of so many leaves.
+    /// For a scene in which each evaluation of the field evaluates all of its `leaves`.
     pub fn of_all_leaves(evaluations: EvaluationCounts, leaves: usize) -> Self {
         Self { mean: Some(evaluations.mean * leaves as f64), why: Why::new() }
     }
 
-    /// Where they were not counted.
+    /// The evaluations were not counted.
     pub fn unknown(why: &str) -> Self {
         Self { mean: None, why: Why::from([("mean", why.to_owned())]) }
     }

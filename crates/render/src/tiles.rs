@@ -1,4 +1,4 @@
-//! Cutting a picture into tiles whose size follows the time that they take.
+//! Cuts a picture into tiles whose size adapts to the time that they take.
 
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,12 +10,12 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// How many pixels it has.
+    /// The number of its pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// Column and row in the picture of its pixel at an index, row by row.
+    /// Column and row in the picture of the tile's pixel at an index, row by row.
     pub(crate) fn position(&self, index: usize) -> [u32; 2] {
         let columns = self.size[0].max(1) as usize;
         let [x, y] = [index % columns, index / columns].map(|offset| offset as u32);
@@ -23,45 +23,45 @@ impl Tile {
     }
 }
 
-/// How large tiles are.
+/// The size of tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TileSize {
-    /// Growing or shrinking towards so many milliseconds a tile, from small tiles on.
+    /// Starts with small tiles and adapts their size to a time per tile.
     Adaptive {
-        /// What one tile should take.
+        /// The time that one tile should take.
         milliseconds: f64,
     },
-    /// So many columns and rows, less at the right and lower border.
+    /// Tiles of this many columns and rows, fewer at the right and lower border.
     Fixed([u32; 2]),
 }
 
 impl Default for TileSize {
-    /// Far from the time after which drivers give a device up for lost (about 2 s), and long enough
-    /// that starting a tile costs little.
+    /// 60 ms a tile: far from the time after which drivers consider a device lost (about 2 s), and
+    /// long enough that starting a tile costs little.
     fn default() -> Self {
         Self::Adaptive { milliseconds: 60.0 }
     }
 }
 
-/// Pixels of the first adaptive tile: a third of a second at 5 ms a pixel, which a software adapter
-/// takes for thousands of leaves.
+/// Pixels of the first adaptive tile: a third of a second at 5 ms a pixel, as a software adapter
+/// takes for thousands of primitives.
 const FIRST_PIXELS: u32 = 64;
-/// Most rows of an adaptive tile: a band that starts in an empty sky keeps its height when it comes to
-/// something costly, where its tiles can still become narrow.
+/// The maximum rows of an adaptive tile: a band that starts in an empty sky keeps its height where
+/// it reaches something costly, but its tiles can still become narrow.
 const MAX_ROWS: u32 = 64;
 /// Columns and rows are multiples of this, a workgroup's side, except at the border.
 const STEP: u32 = 8;
-/// A tile has at most so many times the pixels of the one before.
+/// The maximum growth in pixels from one tile to the next.
 const GROWTH: f64 = 4.0;
-/// A tile has at least the pixels of the one before divided by this.
+/// The maximum shrinkage in pixels from one tile to the next.
 const SHRINKAGE: f64 = 16.0;
 
-/// Hands out the tiles of a picture: bands from the top, tiles in a band from the left.
+/// Iterates over the tiles of a picture: bands from the top, tiles in a band from the left.
 #[derive(Clone, Debug)]
 pub(crate) struct Tiler {
     picture: [u32; 2],
     tile_size: TileSize,
-    /// Pixels that an adaptive tile should have, and may have.
+    /// The target number of pixels of an adaptive tile, and its maximum.
     wanted: u32,
     most: u32,
     next: [u32; 2],
@@ -69,7 +69,7 @@ pub(crate) struct Tiler {
 }
 
 impl Tiler {
-    /// Of a picture, with at most so many pixels and so many columns or rows a tile.
+    /// Tiles of a picture with at most `most` pixels each, and as many columns or rows.
     pub(crate) fn new(picture: [u32; 2], tile_size: TileSize, most: u32) -> Self {
         let most = most.max(STEP * STEP);
         Self { picture, tile_size, wanted: FIRST_PIXELS.min(most), most, next: [0, 0], band: 0 }
@@ -109,7 +109,7 @@ impl Tiler {
         }
     }
 
-    /// Tells how long the last tile took.
+    /// Adapts the tile size to the time of the last tile, in milliseconds.
     pub(crate) fn took(&mut self, tile: Tile, elapsed: f64) {
         if let TileSize::Adaptive { milliseconds } = self.tile_size {
             let pixels = tile.pixels() as f64;
@@ -130,7 +130,7 @@ fn multiple(length: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Every tile of a picture, each said to take a time; checks that they cover it once.
+    /// Checks that the tiles cover the picture once, if each takes the given time; returns them.
     fn cover(
         picture: [u32; 2],
         size: TileSize,

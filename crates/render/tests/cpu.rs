@@ -243,7 +243,8 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
         if with.status != HIT || (point.y + 1.0).abs() > 1e-3 {
             continue;
         }
-        // Mirrored at the floor, from there to the nearest place on its line to the sphere's centre.
+        // Mirrored at the floor, from there to the nearest place on its line to the sphere's
+        // centre.
         let up = direction * glam::DVec3::new(1.0, -1.0, 1.0);
         let along = (center - point).dot(up);
         let apart = (point + up * along - center).length();
@@ -274,8 +275,8 @@ fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
     let sky = frame.image.pixel(0, 0).unwrap();
     assert_eq!((sky.status, sky.color), (MISS, [0.0, 0.0, 1.0, 1.0]));
 
-    // Facing the head light: half of it dielectric, half metal. At n = l = v = h the highlight is F D / 4
-    // with pi D = 1 / alpha^2, and 0.96 squared of the matt colour comes back.
+    // Facing the head light: half of it dielectric, half metal. At n = l = v = h the highlight is F
+    // D / 4 with pi D = 1 / alpha^2, and 0.96 squared of the matt colour comes back.
     let frame = draw(&common::painted_sphere(), [33, 33], "sphere", TileSize::default());
     let middle = frame.image.pixel(16, 16).unwrap();
     let peak = 0.25 / 0.3f64.powi(4);

@@ -89,8 +89,8 @@ fn gpu_and_cpu_agree() -> Outcome {
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
             assert!(close.color <= 1 && close.mean_color < 0.1, "{method}: {close:?}");
             assert!(close.compared > 3000, "{method}: {close:?}");
-            // Rounding ends a few rays a step sooner or later; it moves the cuts of `interval`, so that of its many
-            // stretches one more or less is looked at.
+            // Rounding ends a few rays a step sooner or later; it moves the cuts of `interval`, so
+            // that of its many stretches one more or less is looked at.
             let slack = |count: u32| if method == "interval" { 1 + count / 16 } else { 0 };
             let pairs = on_gpu.pixels().iter().zip(on_cpu.pixels());
             let differing = pairs.filter(|(one, other)| {

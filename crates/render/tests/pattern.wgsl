@@ -1,5 +1,5 @@
-// Every pixel tells where it is, what it was given, and which tile it came in: with the bindings of a
-// scene's shader, without a scene.
+// Every pixel tells where it is, what it was given, and which tile it came in: with the bindings of
+// a scene's shader, without a scene.
 
 struct Light {
     place: vec3f,

@@ -1,5 +1,5 @@
-//! Single values as an adapter computes them, bit by bit where they must be. Without an adapter every test here is
-//! reported as ignored, unless `SDFC_REQUIRE_GPU=1` is set.
+//! Single values as an adapter computes them, bit by bit where they must be. Without an adapter
+//! every test here is reported as ignored, unless `SDFC_REQUIRE_GPU=1` is set.
 
 mod common;
 
@@ -53,7 +53,8 @@ fn values(
         .collect())
 }
 
-/// Coordinates of cells: near 0 on both sides, at the ends of the words that they become, and beyond.
+/// Coordinates of cells: near 0 on both sides, at the ends of the words that they become, and
+/// beyond.
 fn cells() -> Vec<[f32; 4]> {
     let delicate = [
         0.0,

@@ -14,14 +14,14 @@ pub(crate) const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1
 /// Where long lists are bound.
 pub(crate) const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
 
-/// What fills a stub.
+/// A function of the scene that replaces a stub.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StubBinding {
-    /// What it is to those who embed it; none: nothing.
+    /// The function's role for embedders; `None` if it has none.
     pub role: Option<Role>,
     pub stub: &'static str,
     pub root: NodeId,
-    /// The points that it is a function of.
+    /// Names of its vector arguments.
     arguments: &'static [&'static str],
 }
 
@@ -34,7 +34,7 @@ impl StubBinding {
         Self { role: None, stub, root, arguments: &["origin", "direction"] }
     }
 
-    /// The stub, and what fills it where there is a root.
+    /// The stub, and its binding if there is a root.
     fn of_segment(
         role: Role,
         stub: &'static str,
@@ -54,7 +54,7 @@ impl StubBinding {
     }
 }
 
-/// What fills the stubs of `rays.wgsl` that are called.
+/// The bindings of the stubs of `analytic.wgsl` that are called.
 pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<StubBinding> {
     if !features.analytic && !features.clipped && !features.copies {
         return Vec::new();
@@ -73,7 +73,7 @@ pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<St
         .collect()
 }
 
-/// What a method wants to know of stretches of rays.
+/// The bounds along ray segments that a method asks for.
 pub(crate) fn segment_bindings(
     program: &Program,
     method: &MethodDefinition,

@@ -16,23 +16,23 @@ use crate::options::FieldOptions;
 use crate::reflection::{ModuleParts, Role};
 use crate::shader::Shader;
 
-/// The functions `<prefix>distance`, `<prefix>gradient` and `<prefix>material` of a program, without
-/// an entry point. The gradient has the distance in its fourth lane.
+/// Makes a module of the functions `<prefix>distance`, `<prefix>gradient` and `<prefix>material` of
+/// a program, without an entry point. The gradient has the distance in its fourth lane.
 ///
-/// Params, `time` and `frame`, as far as the functions use them, are members of one uniform
-/// structure ([`crate::Reflection::members`]); what follows from them is computed in the functions.
+/// Params, `time` and `frame`, if the functions use them, are members of one uniform structure
+/// ([`crate::Reflection::members`]); values that follow from them are computed in the functions.
 ///
 /// # Errors
 ///
-/// [`Error::BadPrefix`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program has no
-/// distance or lacks the gradient that the options ask for; others where its nodes cannot be lowered.
+/// [`Error::BadPrefix`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has no
+/// distance, or lacks the gradient that the options ask for; others if its nodes cannot be lowered.
 pub fn field_module(program: &Program, options: &FieldOptions) -> Result<Shader, Error> {
     functions(program, None, options)
 }
 
-/// As [`field_module`], with `<prefix>trace` and `<prefix>intersect` beside them: a ray method as a function of a
-/// ray, which yields where the ray met the surface, whether it did, and how often it evaluated the distance. The
-/// structures are those of `ray.wgsl` in `sdfc-march`.
+/// Makes the module of [`field_module`] with `<prefix>trace` and `<prefix>intersect` beside the
+/// functions: a ray method that returns where a ray hits the surface, whether it does, and how
+/// often it evaluated the distance. The structures are those of `ray.wgsl` in `sdfc-march`.
 ///
 /// # Errors
 ///
@@ -104,13 +104,14 @@ fn functions(
     Shader::new(module, parts, Features { materials: material.is_some(), ..features })
 }
 
-/// A derivative with what it is of behind it: a caller of one often wants both, and they share most of their work.
+/// A derivative with its value in the fourth lane: callers often need both, and they share most of
+/// their work.
 fn with_value(graph: &mut Graph, derivative: NodeId, value: NodeId) -> NodeId {
     let [x, y, z] = [0, 1, 2].map(|lane| graph.component(derivative, lane));
     graph.compose(&[x, y, z, value])
 }
 
-/// Replaces the stub of that name where a ray method calls it, else adds the function.
+/// Binds the function to the stub of that name if a ray method has it, else adds the function.
 fn bind_or_add(
     module: &mut Module,
     stub: &str,

@@ -14,12 +14,12 @@ use crate::reflection::{ModuleParts, Role};
 use crate::shader::Shader;
 use sdfc_march::Features;
 
-/// A picture's shader while the scene's parts are put into it.
+/// A picture's shader while the scene's functions are linked into it.
 pub(crate) struct PictureLinker<'p> {
     program: &'p Program,
     bindings: Vec<StubBinding>,
     pub(super) features: Features,
-    /// Positions in `Program::uniforms` of those that the scene's functions read.
+    /// Indices in `Program::uniforms` of the values that the scene's functions read.
     pub(super) used: Vec<usize>,
     pub(crate) module: Module,
     pub(super) inputs: Inputs,
@@ -27,8 +27,9 @@ pub(crate) struct PictureLinker<'p> {
 }
 
 impl<'p> PictureLinker<'p> {
-    /// The files of `march`, without calls to these functions and what else the scene has no need of. It may be `culled` if
-    /// what calls it runs the other shader first. Rays are `parallel` as the scene's camera says, if nothing else does.
+    /// Parses the template, without calls to `unused` functions and other parts that the scene does
+    /// not need. `culled` is true if the caller runs the culling shader first. `parallel` overrides
+    /// whether camera rays are parallel.
     pub(crate) fn new(
         program: &'p Program,
         form: Form,
@@ -64,7 +65,7 @@ impl<'p> PictureLinker<'p> {
         self.used.iter().map(|&slot| self.program.uniforms[slot]).collect()
     }
 
-    /// Lets `load_frame` compute what follows from raw inputs, into private variables.
+    /// Makes `load_frame` compute per-frame values from raw inputs, into private variables.
     pub(crate) fn compute_slots(&mut self, mut raw: Inputs) -> Result<(), Error> {
         let nodes = self.slot_nodes();
         raw.tables.declare(&mut self.module, self.program, &nodes)?;
@@ -81,7 +82,7 @@ impl<'p> PictureLinker<'p> {
         Ok(())
     }
 
-    /// Fills the stubs with the scene's functions.
+    /// Binds the scene's functions to the stubs.
     pub(crate) fn bind(&mut self) -> Result<(), Error> {
         self.parts.uniform = self.inputs.buffer;
         let mut roots: Vec<_> = self.bindings.iter().map(|binding| binding.root).collect();

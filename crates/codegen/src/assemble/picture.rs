@@ -18,27 +18,31 @@ use crate::options::{PictureOptions, Stage};
 use crate::reflection::ModuleParts;
 use crate::shader::Shader;
 
-/// The compute shader of a program's picture, entry point `main`, workgroups of 8x8 pixels.
+/// Makes the compute shader of a program's picture: entry point `main`, workgroups of 8x8 pixels.
 ///
-/// Group 0 has these bindings. 0: uniform `sdfc_march::ViewBlock`. 1: uniform array with one
-/// `vec4<f32>` for each of `Program::uniforms`, a value in its first lanes, a truth value as 0 or 1;
-/// absent where the functions use none of them ([`crate::Reflection::uniform`] is `None`). 2: storage
-/// array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row. 3: storage array of what
-/// [`Shader::lists`] gives; absent if that is empty.
+/// Group 0 has these bindings:
 ///
-/// Of shading, what the settings and the program need is linked and nothing else: [`Shader::features`] tells.
+/// - 0: uniform `sdfc_march::ViewBlock`.
+/// - 1: uniform array with one `vec4<f32>` for each of `Program::uniforms`: a value in its first
+///   lanes, a boolean as 0 or 1. It is absent if the functions use none
+///   ([`crate::Reflection::uniform`] is `None`).
+/// - 2: storage array of `sdfc_march::PixelBlock`, one for each pixel of the tile, row by row.
+/// - 3: storage array with the contents of [`Shader::lists`]; absent if that is empty.
+///
+/// Only the shading that the settings and the program need is linked; [`Shader::features`] returns
+/// it.
 ///
 /// # Errors
 ///
-/// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] where the program
-/// has no distance or no gradient; others where its nodes cannot be lowered.
+/// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has
+/// no distance or no gradient; others if its nodes cannot be lowered.
 pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
     let method = known_method(method_name)?;
     link_picture(program, Form::Compute, method, None)
 }
 
-/// As [`render_module`], for views from elsewhere than the scene's camera, by rays that are parallel or not whatever those of
-/// that camera are.
+/// Makes the same shader as [`render_module`] for another camera than the scene's, whose rays are
+/// parallel or not as the caller says.
 ///
 /// # Errors
 ///
@@ -52,8 +56,8 @@ pub fn render_module_with_camera(
     link_picture(program, Form::Compute, method, Some(parallel))
 }
 
-/// As [`render_module`], with the unit normals of what rays from the eye meet for colours, and no other rays: what
-/// the normals of pictures are measured by. The method may be one that is not in the table.
+/// Makes a shader whose pixels hold the position and unit normal of the hit in place of a colour,
+/// for measurements. Only camera rays are traced. The method may be one that is not in the table.
 ///
 /// # Errors
 ///
@@ -65,11 +69,11 @@ pub fn normals_module(program: &Program, method: &MethodDefinition) -> Result<Sh
     link_picture(&unlit, Form::Normals, method, None)
 }
 
-/// As [`render_module`], with the gradient by differences of a field that is the scene's distance or an
-/// interpreter, and without materials: what pictures have in common that are compared for speed.
+/// Makes a shader for benchmarks: without materials, with the gradient by differences of a field
+/// that is either the scene's distance or an interpreter.
 ///
-/// An interpreter reads its program from storage buffers at the bindings that [`FieldSource`] tells, and
-/// nothing at binding 1.
+/// An interpreter reads its program from storage buffers at the bindings that [`FieldSource`]
+/// states, and nothing at binding 1.
 ///
 /// # Errors
 ///
@@ -82,8 +86,9 @@ pub fn benchmark_module(
     link_benchmark(program, method_name, field, false)
 }
 
-/// As [`benchmark_module`] of the scene's distance, whose pixels tell as evaluations how many rounds of loops were visited, where these
-/// are listed; those for normals are among them.
+/// Makes the same shader as [`benchmark_module`] for the scene's distance, instrumented: if
+/// iterations of loops are culled, a pixel's `evaluations` counts the iterations that were run,
+/// those for normals included.
 ///
 /// # Errors
 ///
@@ -104,7 +109,7 @@ fn link_benchmark(
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
         FieldSource::Units | FieldSource::Tape => None,
     };
-    // All of the field is marched.
+    // The whole field is marched.
     let culled = field == FieldSource::Distance && is_culled(program, method);
     let instrumented = culled && instrumented;
     let features = Features { materials: false, culled, instrumented, ..features(program, false) };
@@ -128,13 +133,14 @@ fn link_benchmark(
     Ok(Shader::new(module, parts, features)?.culled_by(culling(program, features)?))
 }
 
-/// The shader of a program's picture, for an engine of someone else's: it needs no values but those of params,
-/// `time` and `frame`, in a structure as that of [`crate::field_module`]; what follows from them is computed once
-/// for each pixel.
+/// Makes the shader of a program's picture for another engine. It needs no values but params,
+/// `time` and `frame`, in a structure as that of [`crate::field_module`]; per-frame values that
+/// follow from them are computed once per pixel.
 ///
-/// Uniform `view` is a `sdfc_march::ViewBlock`. With [`Stage::Compute`] the entry point is `main`, and
-/// `pixels` a storage array as in [`render_module`]; with [`Stage::Fragment`] there are `vertex`, to be called for
-/// three vertices without buffers, and `fragment`, which gives a linear colour.
+/// Uniform `view` is a `sdfc_march::ViewBlock`. With [`Stage::Compute`] the entry point is `main`,
+/// and `pixels` is a storage array as in [`render_module`]. With [`Stage::Fragment`] there are
+/// `vertex`, to be drawn as three vertices without buffers, and `fragment`, which returns a linear
+/// colour.
 ///
 /// # Errors
 ///
@@ -169,7 +175,7 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
     picture.finish()
 }
 
-/// `parallel` is as of [`Picture::skeleton`].
+/// Links a picture. `parallel` overrides whether camera rays are parallel.
 fn link_picture(
     program: &Program,
     form: Form,

@@ -1,4 +1,4 @@
-//! A picture without buffers: what a host would bind is written into the shader.
+//! Pictures without buffers: the values that a host would bind are written into the shader.
 
 use naga::{
     Arena, ArraySize, Constant, Expression, Function, GlobalVariable, Handle, Literal, Module,
@@ -17,12 +17,13 @@ use crate::lower::inputs::{Inputs, Raw, input_name, raw_inputs};
 use crate::lower::{struct_function, types};
 use crate::shader::Shader;
 
-/// What `look` of `shadertoy.wgsl` sets.
+/// The members of the view that `set_view` of `shadertoy.wgsl` sets.
 const LOOKED: [&str; 5] = ["forward", "right", "up", "pixel_radius", "size"];
 
-/// The shader of a program's picture for [`crate::Target::Shadertoy`]: params are constants with their
-/// defaults, `time` and `frame` follow the clock, the camera is the scene's. All else of the view stands
-/// still; `view` holds the bytes of a `sdfc_march::ViewBlock` as a buffer would.
+/// Makes the shader of a program's picture for [`crate::Target::Shadertoy`]. Params are constants
+/// with their defaults, `time` and `frame` follow the site's clock, and the camera is the scene's.
+/// The rest of the view is constant: `view` holds the bytes of a `sdfc_march::ViewBlock`, as a
+/// buffer would.
 ///
 /// # Errors
 ///
@@ -55,13 +56,13 @@ pub fn shadertoy_module(
     picture.finish()
 }
 
-/// In the order of `Camera` of `shadertoy.wgsl`.
+/// The nodes of a camera, in the order of `Camera` in `shadertoy.wgsl`.
 fn camera_nodes(camera: &Camera) -> [NodeId; 4] {
     let Camera { eye, target, up, lens: Lens::Fov(lens) | Lens::Height(lens) } = *camera;
     [eye, target, up, lens]
 }
 
-/// Calls of `shadertoy.wgsl` that the program has no need of.
+/// The functions of `shadertoy.wgsl` that the program does not need.
 fn unused_loads(program: &Program) -> Vec<&'static str> {
     let mut nodes = program.uniforms.clone();
     nodes.extend(program.settings.camera.iter().flat_map(camera_nodes));
@@ -78,8 +79,8 @@ fn unused_loads(program: &Program) -> Vec<&'static str> {
     calls.into_iter().filter(|call| !call.1).map(|call| call.0).collect()
 }
 
-/// Where the raw inputs are: params are constants, declared before all others; `time` and `frame` are variables
-/// of the file.
+/// Declares the raw inputs: params are constants, declared before all others; `time` and `frame`
+/// are variables of the file.
 fn declare_raw(
     module: &mut Module,
     program: &Program,
@@ -132,13 +133,13 @@ fn declare_constant(
     module.constants.append(Constant { name: Some(name.to_owned()), ty, init }, Span::UNDEFINED)
 }
 
-/// Puts constants behind those that are there, and lets what reads them follow.
+/// Appends constants to the module's, and updates the expressions that read them.
 fn append_constants(module: &mut Module, others: Arena<Constant>) {
     let mut places = FxHashMap::default();
     for (old, constant) in others.iter() {
         places.insert(old, module.constants.append(constant.clone(), Span::UNDEFINED));
     }
-    // The expressions of the new ones are literals: none is taken for an old one.
+    // The new constants' expressions are literals, so none of them reads an old constant.
     let functions = module.functions.iter_mut().map(|(_, f)| &mut f.expressions);
     for expressions in functions.chain([&mut module.global_expressions]) {
         for (_, expression) in expressions.iter_mut() {
@@ -161,7 +162,7 @@ fn camera_of_scene(
     struct_function(program, inputs, &mut module.types, stubs::CAMERA, nodes, structure)
 }
 
-/// A camera where the view has it.
+/// The camera of the view.
 fn camera_of_view(module: &mut Module, view: &View<'_>) -> Result<Function, Error> {
     let structure = camera_type(module)?;
     let vector = types::value(&mut module.types, Type::Vec3);
@@ -187,7 +188,7 @@ fn camera_type(module: &Module) -> Result<Handle<naga::Type>, Error> {
     result.map(|result| result.ty).ok_or(Error::MissingRoot("camera"))
 }
 
-/// The variable `view` and the bytes of what is in it.
+/// The variable `view` and the bytes of its value.
 struct View<'b> {
     variable: Handle<GlobalVariable>,
     members: Vec<naga::StructMember>,
@@ -223,7 +224,8 @@ impl<'b> View<'b> {
         Ok([0, 4, 8].map(|lane| f32::from_ne_bytes(self.word(offset + lane))))
     }
 
-    /// Sets the members that the shader reads and `look` does not set. Elements that are all zero are unused.
+    /// The function that sets the members of the view that the shader reads, except those that
+    /// `set_view` sets. Elements of arrays that are all zero are unused.
     fn load_function(&self, module: &mut Module) -> Function {
         let read = members_used(module, self.variable);
         let mut body = Body::default();
@@ -237,8 +239,8 @@ impl<'b> View<'b> {
         body.finish(None)
     }
 
-    /// Sets a part of what `base` points to. A view holds no other types than these, and they nest as deep as
-    /// `march` writes them.
+    /// Sets a member of what `base` points to. A view contains no other types than these, and they
+    /// nest only as deep as `sdfc-march` declares them.
     fn store_member(
         &self,
         module: &mut Module,
@@ -286,7 +288,7 @@ impl<'b> View<'b> {
     }
 }
 
-/// Which members of a structure variable occur in functions.
+/// The members of a structure variable that occur in functions.
 fn members_used(module: &Module, variable: Handle<GlobalVariable>) -> FxHashSet<u32> {
     let mut used = FxHashSet::default();
     for (_, function) in module.functions.iter() {

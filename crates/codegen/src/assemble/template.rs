@@ -8,12 +8,13 @@ use sdfc_march::{Features, MethodDefinition, method, stubs};
 use crate::error::Error;
 use crate::link::template::parse_template;
 
-/// The ray method of that name.
+/// Returns the ray method of that name.
 pub(crate) fn known_method(name: &str) -> Result<&'static MethodDefinition, Error> {
     method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
 }
 
-/// Files of `march` without what these features and slots do not need, nor calls to `unused` functions.
+/// Parses files of `sdfc-march` without the parts that these features and uniform slots do not
+/// need, and without calls to `unused` functions.
 pub(crate) fn template(
     source: &str,
     features: Features,
@@ -26,7 +27,7 @@ pub(crate) fn template(
     parse_template(source, &features.overrides(), &unused)
 }
 
-/// What of a scene's rays is known before they are marched, for a method that asks for it.
+/// The features for the analytic intersection of rays, if the method asks for it.
 pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features {
     let Rays { first_hit: hits, analytic: _, marched, clip, copies } = program.rays;
     Features {
@@ -38,7 +39,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
     }
 }
 
-/// What a scene's picture needs beyond the least.
+/// The features that a scene's picture needs.
 pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
     let settings = &program.settings;
     let mut features = Features {
@@ -68,18 +69,18 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
     features
 }
 
-/// Whether rays from the eye visit the rounds of loops that can matter to them alone. Those of methods that look at stretches do
-/// not: what they know of a stretch holds all rounds.
+/// Returns true if camera rays run only the iterations of loops that can affect them. Methods that
+/// use bounds along ray segments do not: their bounds hold for all iterations.
 pub(super) fn is_culled(program: &Program, method: &MethodDefinition) -> bool {
     let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
     !program.cullable_loops.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
 }
 
-/// Positions in `Program::uniforms` of those that the roots read.
+/// Indices in `Program::uniforms` of the values that the roots read.
 pub(crate) fn used_slots(program: &Program, roots: Vec<NodeId>) -> Vec<usize> {
     let slots: FxHashSet<_> = program.uniforms.iter().copied().collect();
     let needed = reachable_where(&program.graph, &roots, |node| !slots.contains(&node));
-    // In ascending order, so that a search finds them.
+    // `needed` is ascending, so it can be searched.
     let is_needed = |node: &NodeId| needed.binary_search(node).is_ok();
     let positions = program.uniforms.iter().enumerate();
     positions.filter(|(_, node)| is_needed(node)).map(|(slot, _)| slot).collect()

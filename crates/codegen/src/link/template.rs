@@ -1,4 +1,4 @@
-//! From the text of `march` to a module whose stubs a scene can fill.
+//! Parses joined WGSL files to a module whose stubs a scene can replace.
 
 use naga::compact::{KeepUnused, compact};
 use naga::{Arena, Block, Expression, Function, GlobalVariable, Handle, Module, Statement};
@@ -6,8 +6,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::Error;
 
-/// Parses joined files, takes one side of each branch on an override, and drops the calls to functions of `unused`,
-/// with all that only they and the other sides reached. `overrides` has a value for each override of the files.
+/// Parses joined files to a template module. Takes one side of each branch on an override and drops
+/// the calls to the functions of `unused`, with everything that only they and the other sides
+/// reached. `overrides` has a value for each override of the files.
 pub(crate) fn parse_template(
     source: &str,
     overrides: &[(&str, bool)],
@@ -29,31 +30,32 @@ pub(crate) fn parse_template(
         choices.apply(&mut function.body, &conditions, &mut gone);
         forget(&gone, function);
     }
-    // `compact` keeps what is named; the overrides' conditions are gone, those that were taken too.
+    // `compact` keeps what is named; the conditions on overrides are gone, so the overrides may go.
     for (_, known) in module.overrides.iter_mut() {
         known.name = None;
     }
-    // The files are valid beside each other, as `compact` requires; a test joins each of them.
+    // Joined files are valid, as `compact` requires; a test joins each of them.
     compact(&mut module, KeepUnused::No);
     module.functions.iter_mut().for_each(|(_, function)| drop_unused_variables(function));
     drop_unused_constants(&mut module);
     Ok(module)
 }
 
-/// The function of that name.
+/// Returns the function of that name.
 pub(crate) fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
     let mut functions = module.functions.iter();
     functions.find(|(_, f)| f.name.as_deref() == Some(name)).map(|(handle, _)| handle)
 }
 
-/// The variable of that name.
+/// Returns the variable of that name.
 pub(crate) fn find_variable(module: &Module, name: &str) -> Option<Handle<GlobalVariable>> {
     let mut variables = module.global_variables.iter();
     variables.find(|(_, v)| v.name.as_deref() == Some(name)).map(|(handle, _)| handle)
 }
 
-/// Replaces a stub by a function of the same signature. A stub calls nothing, and what replaces it nothing but
-/// what stands before it in the files, so the arena keeps callees before callers.
+/// Binds a function to a stub: replaces the stub's body by that of a function with the same
+/// signature. A stub calls nothing, and its replacement only functions that precede it in the
+/// files, so the arena keeps callees before callers.
 pub(crate) fn bind(module: &mut Module, name: &str, replacement: Function) -> Result<(), Error> {
     let handle = find_function(module, name)
         .ok_or_else(|| Error::Naga(format!("the ray method has no `{name}`")))?;
@@ -63,9 +65,9 @@ pub(crate) fn bind(module: &mut Module, name: &str, replacement: Function) -> Re
     Ok(())
 }
 
-/// What is decided when a module is linked.
+/// The choices of a template.
 struct Choices {
-    /// Functions whose calls go.
+    /// Functions whose calls are dropped.
     dropped: FxHashSet<Handle<Function>>,
     values: FxHashMap<Handle<naga::Override>, bool>,
 }
@@ -80,8 +82,9 @@ impl Choices {
         expressions.collect()
     }
 
-    /// Removes the calls to functions without a result, and the sides of branches that are not taken, which are
-    /// added to `gone`. Blocks nest as deep as the files of `march` write them.
+    /// Removes calls to dropped functions without a result, and the sides of branches that are not
+    /// taken, which are added to `gone`. Blocks nest only as deep as the files of `sdfc-march`
+    /// write them.
     fn apply(
         &self,
         block: &mut Block,
@@ -108,7 +111,7 @@ impl Choices {
             } else if let Statement::Loop { body, .. } = &mut statement
                 && runs_once(body)
             {
-                // What continues a loop is not reached where it is left first.
+                // The continuing block is not reached if the loop is left first.
                 body.cull(body.len() - 1..);
                 append(&mut rest, std::mem::take(body));
             } else {
@@ -119,7 +122,8 @@ impl Choices {
     }
 }
 
-/// Takes the names of values that were computed in blocks: what has a name is kept, and must be computed.
+/// Removes the names of values that were computed in blocks: named values are kept, and would have
+/// to be computed.
 fn forget(gone: &[Block], function: &mut Function) {
     let mut todo: Vec<&Statement> = gone.iter().flat_map(|block| block.iter()).collect();
     while let Some(statement) = todo.pop() {
@@ -140,14 +144,14 @@ fn append(block: &mut Block, other: Block) {
     }
 }
 
-/// Whether a loop's body ends in `break`, and nowhere else ends a turn.
+/// Returns true if a loop's body ends in `break` and is left nowhere else.
 fn runs_once(body: &Block) -> bool {
     let leaves =
         |statement: &Statement| matches!(statement, Statement::Break | Statement::Continue);
     let Some((Statement::Break, before)) = body.split_last() else { return false };
     let mut todo: Vec<&Statement> = before.iter().collect();
     while let Some(statement) = todo.pop() {
-        // A loop within is left and continued by its own; in a switch, either may be meant.
+        // `break` and `continue` of an inner loop belong to it; in a switch, they may mean either.
         if leaves(statement) || matches!(statement, Statement::Switch { .. }) {
             return false;
         }
@@ -172,7 +176,7 @@ fn inner_blocks(statement: &mut Statement) -> Vec<&mut Block> {
     }
 }
 
-/// The statements of the blocks of a statement.
+/// The statements in the blocks of a statement.
 fn nested(statement: &Statement) -> Vec<&Statement> {
     if let Statement::Block(block) = statement {
         block.iter().collect()

@@ -1,4 +1,4 @@
-//! Hashes, in words.
+//! Hashes, computed in 32-bit words.
 
 use naga::{BinaryOperator, Expression, MathFunction, ScalarKind};
 use sdfc_graph::{Node, NodeId, Type};
@@ -9,8 +9,8 @@ use super::types;
 use crate::error::Error;
 
 impl Lowering<'_> {
-    /// The word of a hash, as `sdfc_graph::eval::hash` mixes it, kept for hashes that start from it; and its value, if
-    /// that is read.
+    /// Lowers a hash, mixed as in `sdfc_graph::eval::hash`. The word is kept for hashes that
+    /// continue from it; the result is its value as a float, if that is read.
     pub(super) fn hash(&mut self, id: NodeId, state: NodeId, x: NodeId) -> Result<Value, Error> {
         use BinaryOperator::{Add, ExclusiveOr, Multiply, ShiftRight};
         let ty = self.program.graph.ty(id);
@@ -36,7 +36,7 @@ impl Lowering<'_> {
         Ok(self.body.cast(word, ScalarKind::Float, Some(4)))
     }
 
-    /// What a hash starts from: another, or a constant.
+    /// The word that a hash continues from: another hash, or a constant.
     fn state_word(&mut self, state: NodeId) -> Result<Value, Error> {
         if let Some(&word) = self.words.get(&state) {
             return Ok(word);
@@ -57,8 +57,9 @@ impl Lowering<'_> {
         Ok(self.body.compute(Expression::Compose { ty, components: lanes }, &[]))
     }
 
-    /// The whole part as a word of two's complement, ends of the range where it lies beyond: there conversions are defined.
-    /// By moving bits about in floating point it would be quicker on some devices, and wrong on those that reorder sums.
+    /// The integer part as a two's complement word, clamped to the range in which conversions are
+    /// defined. Moving bits in floating point would be faster on some devices, and wrong on those
+    /// that reorder sums.
     fn signed_word(&mut self, ty: Type, x: Value) -> Value {
         let [least, most] = [-2_147_483_648.0, 2_147_483_520.0].map(|end| self.filled(ty, end));
         let whole = self.body.call1(MathFunction::Floor, x);
@@ -68,7 +69,7 @@ impl Lowering<'_> {
         self.body.cast(whole, ScalarKind::Uint, None)
     }
 
-    /// An operation on a word, or on each of a vector of words, and a constant.
+    /// Applies an operator to a word, or to each of a vector of words, and a constant.
     fn with_word(&mut self, ty: Type, op: BinaryOperator, left: Value, right: u32) -> Value {
         let value = self.body.word(right);
         let right = match types::vector_size(ty) {

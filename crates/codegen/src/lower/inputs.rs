@@ -16,18 +16,18 @@ use super::tables::Tables;
 use super::types;
 use crate::reflection::Member;
 
-/// Where a function finds what is known per frame.
+/// Where a function finds the per-frame values.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
-    /// The uniform buffer behind them.
+    /// The uniform buffer that holds them.
     pub(crate) buffer: Option<Handle<GlobalVariable>>,
     /// Where each raw input is.
     raw: FxHashMap<FrameInput, Raw>,
-    /// The private variable of each node whose value waits in one.
+    /// The private variable of each uniform slot's node.
     slots: FxHashMap<NodeId, Handle<GlobalVariable>>,
     /// Lists of constants.
     pub(crate) tables: Tables,
-    /// Which rounds of loops to visit; none: all.
+    /// The lists of iterations that loops run; `None` runs all.
     pub(crate) active_lists: Option<ActiveLists>,
 }
 
@@ -50,17 +50,17 @@ pub(crate) enum Raw {
 }
 
 impl Inputs {
-    /// Raw inputs alone.
+    /// Inputs with raw inputs alone.
     pub(crate) fn of_raw(raw: FxHashMap<FrameInput, Raw>) -> Self {
         Self { raw, ..Self::default() }
     }
 
-    /// The same inputs, these nodes from private variables.
+    /// The same inputs, with these nodes read from private variables.
     pub(crate) fn with_slots(self, slots: FxHashMap<NodeId, Handle<GlobalVariable>>) -> Self {
         Self { slots, ..self }
     }
 
-    /// Reads the input into a named value; `None` where it is not among these.
+    /// Reads the input into a named value; `None` if it is not among these.
     pub(crate) fn read_raw(
         &self,
         body: &mut Body,
@@ -91,19 +91,19 @@ impl Inputs {
         }
     }
 
-    /// Reads a node's private variable; `None` where it has none.
+    /// Reads a node's private variable; `None` if it has none.
     pub(crate) fn read_slot(&self, body: &mut Body, node: NodeId) -> Option<Handle<Expression>> {
         let pointer = body.declare(Expression::GlobalVariable(*self.slots.get(&node)?));
         Some(body.compute(Expression::Load { pointer }, &[]))
     }
 
-    /// Whether the node is an input that is a constant of the module.
+    /// Returns true if the node is an input that is a constant of the module.
     pub(crate) fn is_constant(&self, node: Node) -> bool {
         let Node::Frame(input, _) = node else { return false };
         matches!(self.raw.get(&input), Some(Raw::Constant(_)))
     }
 
-    /// Whether the node is computed outside the function.
+    /// Returns true if the node is computed outside the function.
     pub(crate) fn is_slot(&self, node: NodeId) -> bool {
         self.slots.contains_key(&node)
     }
@@ -124,7 +124,7 @@ pub(crate) fn raw_inputs(program: &Program, roots: &[NodeId]) -> Vec<(FrameInput
     inputs
 }
 
-/// What a scene calls an input.
+/// The name of an input in the scene.
 pub(crate) fn input_name(program: &Program, input: FrameInput) -> &str {
     match input {
         FrameInput::Param(index) => {
@@ -153,7 +153,7 @@ pub(crate) fn declare_members(
         offset = offset.next_multiple_of(alignment);
         structure_alignment = structure_alignment.max(alignment);
         let member_type = match ty {
-            // Truth values have no layout in buffers.
+            // Booleans have no layout in buffers.
             Type::Bool => types::add(&mut module.types, TypeInner::Scalar(Scalar::U32)),
             Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4 => {
                 types::value(&mut module.types, ty)
@@ -184,8 +184,8 @@ fn layout(ty: Type) -> (u32, u32) {
     }
 }
 
-/// Declares the slot buffer and a private variable for each slot in use, and the function body that
-/// copies one to the other. `used` are positions in `Program::uniforms`.
+/// Declares the buffer of uniform slots and a private variable for each slot in use, and makes the
+/// function body that copies one to the other. `used` are indices in `Program::uniforms`.
 pub(crate) fn declare_slots(
     module: &mut Module,
     program: &Program,
@@ -213,7 +213,7 @@ pub(crate) fn declare_slots(
     (inputs.with_slots(variables), Some(body.finish(None)))
 }
 
-/// The private variable in which a node's value waits.
+/// Declares the private variable of a per-frame node.
 pub(crate) fn declare_variable(
     module: &mut Module,
     program: &Program,
@@ -224,7 +224,7 @@ pub(crate) fn declare_variable(
     declare(module, &name, AddressSpace::Private, ty, None)
 }
 
-/// What a scene calls a value that is known per frame.
+/// The name of a per-frame value in the scene.
 pub(crate) fn frame_name(program: &Program, node: NodeId) -> &str {
     match (program.names.get(&node), program.graph.node(node)) {
         (Some(name), _) => name,

@@ -12,14 +12,14 @@ use super::lowering::{Lowering, hint};
 use super::types;
 use crate::error::Error;
 
-/// The rounds of a loop that are visited: where the first one's number stands, and the end of these.
+/// The listed iterations of a loop: the index of the first one's number, and the end index.
 struct Listed {
     first: Value,
     end: Value,
 }
 
 impl Lowering<'_> {
-    /// A part of the state after a loop. The loop is written where the first part is needed.
+    /// An element of the state after a loop. The loop is written where the first element is needed.
     pub(super) fn after_loop(&mut self, id: LoopId, position: u16) -> Result<Value, Error> {
         if !self.loops.contains_key(&id) {
             let results = self.repeat(id)?;
@@ -28,7 +28,7 @@ impl Lowering<'_> {
         Ok(self.loops[&id][usize::from(position)])
     }
 
-    /// What a variable of a body holds in the round at hand.
+    /// The value of a loop variable in the current iteration.
     pub(super) fn variable(&self, id: NodeId, depth: u8, place: LoopVar) -> Result<Value, Error> {
         let round = self.rounds.get(usize::from(depth)).and_then(Option::as_ref);
         let round = round.ok_or(Error::NotFlat(id))?;
@@ -40,7 +40,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Writes a loop. Its state is in variables, which each round reads first and sets last.
+    /// Writes a loop. Its state is in variables, which each iteration reads first and sets last.
     fn repeat(&mut self, id: LoopId) -> Result<Vec<Value>, Error> {
         let graph = &self.program.graph;
         let (repeated, body) = (graph.loop_at(id).clone(), graph.loop_body(id));
@@ -95,7 +95,7 @@ impl Lowering<'_> {
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
     }
 
-    /// The distance, or less where what was left out could be nearer.
+    /// The distance, or the lower bound on what the lists leave out if that is smaller.
     pub(super) fn with_left_out(&mut self, distance: Value) -> Value {
         let at = self.inputs.active_lists.as_ref().and_then(|lists| lists.by_point);
         let Some((_, free)) = at.filter(|_| self.leaves_out) else { return distance };
@@ -104,7 +104,8 @@ impl Lowering<'_> {
         self.body.call2(MathFunction::Min, distance, free)
     }
 
-    /// Where the rounds to visit are listed, if they are. Lists tell of places: a function of a whole ray visits all rounds.
+    /// Where the active iterations are listed, if they are. Lists depend on the point, so a
+    /// function of a whole ray runs all iterations.
     fn listed(&mut self, inert: Option<SkipCondition>) -> Option<Listed> {
         let is_of_a_place = self.arguments.len() == 1;
         let visits = self.inputs.active_lists.as_ref().filter(|_| is_of_a_place)?;
@@ -135,7 +136,7 @@ impl Lowering<'_> {
         Some(Listed { first, end })
     }
 
-    /// The number of the round that stands at a place of the list, and the same as a word.
+    /// Reads the iteration's number at an index of the list, as a float and as a word.
     fn listed_round(&mut self, index: Value) -> Option<(Value, Value)> {
         let base =
             self.body.declare(Expression::GlobalVariable(self.inputs.active_lists.as_ref()?.lists));
@@ -146,7 +147,7 @@ impl Lowering<'_> {
         Some((round, word))
     }
 
-    /// Variables that hold the start, and names for what is read from them.
+    /// Variables that hold the initial state, and names for the values read from them.
     fn state(&mut self, start: &[NodeId]) -> Result<Vec<(Value, &'static str)>, Error> {
         let mut state = Vec::with_capacity(start.len());
         for &part in start {
@@ -160,7 +161,7 @@ impl Lowering<'_> {
         Ok(state)
     }
 
-    /// What was computed in a body is out of reach after it.
+    /// Forgets the values that were computed in a loop's body, which are out of scope after it.
     fn forget<'b>(&mut self, nodes: impl Iterator<Item = &'b NodeId>) {
         for id in nodes {
             self.values.remove(*id);
@@ -177,7 +178,7 @@ impl Lowering<'_> {
         self.visit(needed.into_iter())
     }
 
-    /// The number of rounds, never more than the cap.
+    /// The number of iterations, at most `max`.
     fn limit(&mut self, cap: u32, count: Option<NodeId>) -> Result<Value, Error> {
         let cap = self.body.literal(cap as f32);
         let Some(count) = count else { return Ok(cap) };
@@ -210,7 +211,8 @@ impl Lowering<'_> {
         Ok(if list.first.is_some() { self.narrowed(value, ty) } else { value })
     }
 
-    /// The number of the round at hand as a word, if that is what a node is and it is at most `last`.
+    /// The current iteration's number as a word, if the node is that number and it is at most
+    /// `last`.
     fn word_of_round(&self, at: NodeId, last: u32) -> Option<Value> {
         let Node::Variable(depth, LoopVar::Index, _) = self.program.graph.node(at) else {
             return None;
@@ -219,7 +221,7 @@ impl Lowering<'_> {
         round.listed.filter(|&(_, cap)| cap <= last + 1).map(|(word, _)| word)
     }
 
-    /// The first lanes of four, as a value of a type.
+    /// The first of four lanes, as a value of a type.
     fn narrowed(&mut self, vector: Value, ty: Type) -> Value {
         let pattern = SwizzleComponent::XYZW;
         let cut = |size| Expression::Swizzle { size, vector, pattern };

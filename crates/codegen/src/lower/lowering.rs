@@ -16,7 +16,7 @@ use super::types;
 use super::uses::{Uses, is_component};
 use crate::error::Error;
 
-/// A function of several points, by level, that yields one node's value.
+/// Makes a function of several points, by level, that returns one node's value.
 pub(crate) fn function_of(
     program: &Program,
     inputs: &Inputs,
@@ -36,7 +36,8 @@ pub(crate) fn function_of(
     Ok(lowering.finish(name, value, result))
 }
 
-/// A function of the number of a loop's round and the point, of a node over the variables of a round.
+/// Makes a function of an iteration's number and the point, for a node over the variables of an
+/// iteration.
 pub(crate) fn function_of_iteration(
     program: &Program,
     inputs: &Inputs,
@@ -55,7 +56,7 @@ pub(crate) fn function_of_iteration(
     Ok(lowering.finish(name, value, result))
 }
 
-/// A function of the point that yields several nodes' values in a structure.
+/// Makes a function of the point that returns several nodes' values in a structure.
 pub(crate) fn struct_function(
     program: &Program,
     inputs: &Inputs,
@@ -73,7 +74,7 @@ pub(crate) fn struct_function(
     Ok(lowering.finish(name, value, structure))
 }
 
-/// A function without arguments that computes nodes and keeps each in a private variable.
+/// Makes a function without arguments that computes nodes and stores each in a private variable.
 pub(crate) fn store_function(
     program: &Program,
     inputs: &Inputs,
@@ -98,20 +99,20 @@ pub(super) struct Lowering<'a> {
     pub(super) types: &'a mut UniqueArena<naga::Type>,
     pub(super) uses: Uses,
     pub(super) body: Body,
-    /// The points that the function is of, by level.
+    /// Names of the points that the function takes, by level.
     pub(super) arguments: &'static [&'static str],
-    /// How many other arguments it has before them.
+    /// The number of other arguments before them.
     pub(super) first_point: u32,
-    /// Values of the nodes visited so far, but for constants.
+    /// Values of the nodes visited so far, except constants.
     pub(super) values: IdMap<Value>,
     pub(super) matrices: FxHashMap<[NodeId; 3], Value>,
-    /// Hashes as words.
+    /// The words of hashes.
     pub(super) words: FxHashMap<NodeId, Value>,
-    /// The states after the loops visited so far.
+    /// The final states of the loops visited so far.
     pub(super) loops: FxHashMap<LoopId, Vec<Value>>,
-    /// What the rounds at hand read, by the depth of their loops.
+    /// The variables of the current iterations, by the depth of their loops.
     pub(super) rounds: Vec<Option<Iteration>>,
-    /// Whether loops were written that do not visit all rounds, by a record for the place.
+    /// True if a loop was written that runs only listed iterations.
     pub(super) leaves_out: bool,
 }
 
@@ -166,7 +167,8 @@ impl<'a> Lowering<'a> {
         Ok(())
     }
 
-    /// Names a value as the program does, or where it is used often; not what is as short as a name.
+    /// Names a value as the program does, or if it is used more than once; but no value that is as
+    /// short as a name.
     pub(super) fn name(&mut self, id: NodeId, node: Node, value: Value) {
         if self.inputs.is_slot(id) {
             return self.body.name(value, frame_name(self.program, id));
@@ -238,8 +240,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Operations on constants alone are the graph's to fold: validators of WGSL evaluate such and
-    /// refuse those without a finite result.
+    /// Refuses operations on constants alone, which the graph folds: validators of WGSL evaluate
+    /// them and refuse those without a finite result.
     fn refuse_constants(&self, id: NodeId, arguments: &[NodeId]) -> Result<(), Error> {
         let constant = |&a: &NodeId| matches!(self.program.graph.node(a), Node::Const(_));
         if arguments.iter().all(constant) { Err(Error::NotFolded(id)) } else { Ok(()) }
@@ -338,7 +340,7 @@ impl<'a> Lowering<'a> {
     }
 }
 
-/// Name of a value that the program does not name.
+/// The name of a value that the program does not name.
 pub(super) fn hint(ty: Type) -> &'static str {
     match ty {
         Type::Bool => "b",

@@ -1,4 +1,4 @@
-//! One match for each group of operations.
+//! Operations, by the number of their arguments.
 
 use naga::{BinaryOperator, Expression, MathFunction, UnaryOperator};
 use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
@@ -9,7 +9,7 @@ use super::types;
 use super::uses::{Filling, Product, product};
 use crate::error::Error;
 
-/// Vectors shorter than its square root are not brought to full length by `Normalize`.
+/// The least squared length: `Normalize` does not bring shorter vectors to unit length.
 const LEAST_SQUARE: f32 = 1e-36;
 
 impl Lowering<'_> {
@@ -105,7 +105,7 @@ impl Lowering<'_> {
         Ok(self.body.binary(operator, a, b))
     }
 
-    /// A product; a vector filled by a scalar multiplies as that scalar.
+    /// A product; a vector with the same scalar in all lanes multiplies as that scalar.
     fn product(&mut self, a: NodeId, b: NodeId) -> Result<Value, Error> {
         let (left, right) = match product(&self.program.graph, a, b) {
             Product::Plain => (self.value(a)?, self.value(b)?),
@@ -184,7 +184,7 @@ impl Lowering<'_> {
         Ok(self.body.call3(fun, values))
     }
 
-    /// A number in every lane of a type.
+    /// A number in all lanes of a type.
     pub(super) fn filled(&mut self, ty: Type, number: f32) -> Value {
         let value = self.body.literal(number);
         match types::vector_size(ty) {
@@ -193,7 +193,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The order of two limits, as f32. Those that are not both constant are taken to ascend.
+    /// The order of two limits, as f32. Limits that are not both constant are assumed to ascend.
     fn limits(&self, low: NodeId, high: NodeId) -> Limits {
         let (Node::Const(low), Node::Const(high)) =
             (self.program.graph.node(low), self.program.graph.node(high))
@@ -214,8 +214,8 @@ impl Lowering<'_> {
     }
 }
 
-/// How the lanes of a lower limit compare to those of an upper one. WGSL refuses constant limits
-/// of `clamp` and `smoothstep` that are out of order.
+/// The order of the lanes of a lower and an upper limit. WGSL refuses constant limits of `clamp`
+/// and `smoothstep` that are out of order.
 enum Limits {
     Ascending,
     Equal,
@@ -223,7 +223,7 @@ enum Limits {
     Mixed,
 }
 
-/// Whether an operation takes arguments of a type.
+/// Returns true if an operation takes arguments of a type.
 fn takes(op: Binary, ty: Type) -> bool {
     match op {
         Binary::Add

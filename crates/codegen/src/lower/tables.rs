@@ -1,7 +1,8 @@
 //! Lists of constants that a program looks up.
 //!
-//! A shader may hold a list itself, as a constant, or read it from a buffer that holds all its long lists one after
-//! the other. Drivers take long over constants: `docs/benchmarks.md` has figures.
+//! A shader may hold a list itself, as a constant, or read it from a buffer that holds all its long
+//! lists one after the other. Drivers take long over constants; `docs/benchmarks.md` has
+//! measurements.
 
 use std::num::NonZeroU32;
 
@@ -16,34 +17,35 @@ use super::types;
 use crate::error::Error;
 use crate::options::{Lists, MAX_CONSTANT_LIST};
 
-/// Where a program's lists are.
+/// Where a program's lists are stored.
 #[derive(Debug, Default)]
 pub(crate) struct Tables {
     of: FxHashMap<TableId, List>,
-    /// Where the buffer is bound, and how long a list must at least be to be in it.
+    /// The binding of the buffer, and the minimum length of a list that is stored in it.
     binding: Option<(ResourceBinding, usize)>,
     buffer: Option<Handle<GlobalVariable>>,
     contents: Vec<[f32; 4]>,
 }
 
-/// Where a list is.
+/// Where a list is stored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct List {
     /// An array of the elements' type, or the buffer.
     pub(crate) variable: Handle<GlobalVariable>,
-    /// The position of its first element there, which fills up to four lanes, if that is the buffer.
+    /// The index of its first element in the buffer, which has four lanes per element; `None` if
+    /// the list is a variable of its own.
     pub(crate) first: Option<u32>,
-    /// The number of its last element.
+    /// The index of its last element.
     pub(crate) last: u32,
 }
 
 impl Tables {
-    /// All are to be in a storage buffer at this place.
+    /// Stores all lists in a storage buffer at this binding.
     pub(crate) fn in_buffer(binding: ResourceBinding) -> Self {
         Self { binding: Some((binding, 0)), ..Self::default() }
     }
 
-    /// The long ones are to be in a storage buffer at this place, or none.
+    /// Stores long lists in a storage buffer at this binding, or none.
     pub(crate) fn new(lists: Lists, binding: ResourceBinding) -> Self {
         match lists {
             Lists::Buffer => {
@@ -53,7 +55,7 @@ impl Tables {
         }
     }
 
-    /// Declares those that the roots look up, unless that was done.
+    /// Declares the lists that the roots look up, unless they are declared already.
     pub(crate) fn declare(
         &mut self,
         module: &mut Module,
@@ -68,7 +70,7 @@ impl Tables {
                 looked_up.push((id, node));
             }
         }
-        // Where there is a buffer anyway, short lists are in it too.
+        // If there is a buffer anyway, short lists are stored in it too.
         let length = |id| graph.table(id).elements.len();
         let is_long = |least| looked_up.iter().any(|&(id, _)| length(id) >= least);
         let binding = self.binding.filter(|&(_, least)| self.buffer.is_some() || is_long(least));
@@ -93,7 +95,7 @@ impl Tables {
         Ok(())
     }
 
-    /// Gives the buffer's type as many elements as it is to hold.
+    /// Sets the length of the buffer's type to that of its contents.
     fn resize_buffer(&self, module: &mut Module) {
         let size = u32::try_from(self.contents.len()).ok().and_then(NonZeroU32::new);
         let (Some(buffer), Some(size)) = (self.buffer, size) else { return };
@@ -107,7 +109,7 @@ impl Tables {
         self.of.get(&id).copied()
     }
 
-    /// The buffer and what it is to hold.
+    /// The buffer and its contents.
     pub(crate) fn into_buffer(self) -> Option<(Handle<GlobalVariable>, Vec<[f32; 4]>)> {
         Some((self.buffer?, self.contents))
     }

@@ -18,7 +18,7 @@ pub(crate) fn value(types: &mut UniqueArena<naga::Type>, ty: Type) -> Handle<nag
     add(types, inner)
 }
 
-/// A word for each number of a type.
+/// The type of words with a type's width.
 pub(crate) fn words(types: &mut UniqueArena<naga::Type>, ty: Type) -> Handle<naga::Type> {
     let inner = match vector_size(ty) {
         Some(size) => TypeInner::Vector { size, scalar: Scalar::U32 },

@@ -5,11 +5,11 @@ use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary};
 
 use super::inputs::Inputs;
 
-/// How often each node that the roots need is written in the text.
+/// How often each node that the roots need is written in the source.
 #[derive(Debug)]
 pub(crate) struct Uses {
     counts: IdMap<u32>,
-    /// What loops read from outside: written out there it would be computed in each round.
+    /// Nodes that loops read from outside. Without a name they would be computed in each iteration.
     kept: FxHashSet<NodeId>,
     order: Vec<NodeId>,
 }
@@ -25,10 +25,10 @@ impl Uses {
         for &root in roots {
             add(&mut counts, root, 1);
         }
-        // Users have greater ids, so a node's count is complete when it is met.
+        // Users have greater ids, so a node's count is complete when it is reached.
         for &id in order.iter().rev().filter(|&&id| !inputs.is_slot(id)) {
             let node = graph.node(id);
-            // A component is written out at each of its uses, and its vector with it.
+            // A component is repeated at each of its uses, and its vector with it.
             let times =
                 if is_component(&node) { counts.get(id).unwrap_or(1) } else { repeats(&node) };
             for (position, operand) in operands(graph, id).enumerate() {
@@ -48,23 +48,23 @@ impl Uses {
         self.counts.get(id).unwrap_or(0)
     }
 
-    /// Whether the roots need the node.
+    /// Returns true if the roots need the node.
     pub(crate) fn contains(&self, id: NodeId) -> bool {
         self.counts.get(id).is_some()
     }
 
-    /// Whether the node needs a name however seldom it is written.
+    /// Returns true if the node needs a name even if it is written once.
     pub(crate) fn is_kept(&self, id: NodeId) -> bool {
         self.kept.contains(&id)
     }
 
-    /// All nodes, operands before their uses; to be asked for once.
+    /// Takes the list of all nodes, operands before their uses. Call it once.
     pub(crate) fn take_order(&mut self) -> Vec<NodeId> {
         std::mem::take(&mut self.order)
     }
 }
 
-/// A component is as short as a name, so its vector gets one.
+/// A component is as short as a name, so its vector gets the name.
 fn keep(graph: &Graph, id: NodeId, kept: &mut FxHashSet<NodeId>) {
     if let Node::Swizzle(Type::Scalar, vector, _) = graph.node(id) {
         kept.insert(vector);
@@ -72,7 +72,7 @@ fn keep(graph: &Graph, id: NodeId, kept: &mut FxHashSet<NodeId>) {
     kept.insert(id);
 }
 
-/// What fills all lanes of a vector.
+/// The value in all lanes of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Filling {
     /// The node.
@@ -81,15 +81,15 @@ pub(crate) enum Filling {
     Number(f64),
 }
 
-/// The two factors of a product. At most one, filled by a scalar, stands for a vector: `v * s`
+/// The two factors of a product. At most one, a scalar in all lanes, stands for a vector: `v * s`
 /// needs no vector of `s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Product {
     /// Both are read as they are.
     Plain,
-    /// The left one is filled.
+    /// The left one is a scalar in all lanes.
     LeftFilled(Filling),
-    /// The right one is filled.
+    /// The right one is a scalar in all lanes.
     RightFilled(Filling),
 }
 
@@ -142,7 +142,7 @@ impl Filling {
     }
 }
 
-/// Whether the node is one component of a vector: `q.x` is as short as a name.
+/// Returns true if the node is one component of a vector: `q.x` is as short as a name.
 pub(crate) fn is_component(node: &Node) -> bool {
     matches!(node, Node::Swizzle(Type::Scalar, ..))
 }
@@ -181,7 +181,7 @@ fn needed(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Vec<NodeId> {
     seen.to_vec()
 }
 
-/// Whether a node reads its first argument as a word.
+/// Returns true if a node reads its first argument as a word.
 fn reads_word(node: &Node) -> bool {
     matches!(node, Node::Binary(Binary::Hash, ..))
 }

@@ -15,12 +15,12 @@ use crate::reflection::{
 use crate::target::Code;
 use crate::write::WrittenModule;
 
-/// Reads the names off the module, as WGSL has them.
+/// Describes a module with its names in WGSL.
 pub(crate) fn reflect(module: &Module, parts: &ModuleParts) -> Reflection {
     describe(module, parts, &final_names(module))
 }
 
-/// Reads the names off what a writer gave.
+/// Describes a module with the names that a writer gave.
 pub(crate) fn reflect_written(
     module: &Module,
     parts: &ModuleParts,
@@ -104,7 +104,7 @@ fn describe(module: &Module, parts: &ModuleParts, names: &Names) -> Reflection {
     reflection
 }
 
-/// The buffers that every host binds, and what they hold.
+/// The buffers that a host binds, and their roles.
 fn buffers<'a>(
     module: &'a Module,
     parts: &'a ModuleParts,
@@ -152,14 +152,15 @@ fn buffer(
     }
 }
 
-/// Bytes of a buffer that holds a value. A uniform block of GLSL, or a constant buffer of HLSL, ends at a multiple of 16,
-/// and what is bound may not be shorter.
+/// Bytes of a buffer that holds a value. A uniform block of GLSL, or a constant buffer of HLSL,
+/// ends at a multiple of 16 bytes, and the bound buffer may not be shorter.
 fn buffer_size(module: &Module, space: AddressSpace, ty: Handle<naga::Type>) -> u32 {
     let size = module.types[ty].inner.size(module.to_ctx());
     if space == AddressSpace::Uniform { size.next_multiple_of(16) } else { size }
 }
 
-/// The structures in a type, members first, each once. Types nest as deep as `march` writes them.
+/// Adds the structures in a type, each once; a structure follows those that it contains. Types nest
+/// only as deep as `sdfc-march` declares them.
 fn add_structures(module: &Module, ty: Handle<naga::Type>, found: &mut Vec<Handle<naga::Type>>) {
     if let TypeInner::Array { base, .. } = module.types[ty].inner {
         add_structures(module, base, found);
@@ -183,7 +184,8 @@ fn structure(module: &Module, names: &Names, ty: Handle<naga::Type>) -> Option<S
     Some(Structure { name: name(NameKey::Type(ty)), size: *span, members: members.collect() })
 }
 
-/// A type as WGSL calls it. Neither structures of `march` nor params hold others than these.
+/// The name of a type in WGSL. Neither the structures of `sdfc-march` nor params contain other
+/// types than these.
 fn type_name(module: &Module, names: &Names, ty: Handle<naga::Type>) -> String {
     let inner = &module.types[ty].inner;
     if let TypeInner::Scalar(scalar) = inner {

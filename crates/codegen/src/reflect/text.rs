@@ -1,7 +1,7 @@
-//! Names and heads in a written text.
+//! Names and declarations in a written source.
 //!
-//! Only naga's WGSL writer tells its names; what the others made of a name is read off their text, in
-//! which top-level declarations start a line.
+//! Only naga's WGSL writer reports its names. Those of the other writers are read off their source,
+//! in which top-level declarations start a line.
 
 use naga::Module;
 use naga::TypeInner;
@@ -10,7 +10,7 @@ use naga::proc::NameKey;
 use crate::names::{Names, final_names};
 use crate::target::Code;
 
-/// Names of functions, structures, members and variables as they are written.
+/// Returns the written names of functions, structures, members and variables.
 pub(super) fn written_names(module: &Module, code: &Code) -> Names {
     let mut names = final_names(module);
     match code {
@@ -20,7 +20,7 @@ pub(super) fn written_names(module: &Module, code: &Code) -> Names {
     names
 }
 
-/// SPIR-V tells names for people only, which are those of the module.
+/// SPIR-V has names for debugging only, which are those of the module.
 fn take_raw_names(module: &Module, names: &mut Names) {
     let mut take = |key: NameKey, name: &Option<String>| {
         if let Some(name) = name {
@@ -63,12 +63,12 @@ fn take_structures(module: &Module, text: &str, names: &mut Names) {
     }
 }
 
-/// As it is, and as naga writes it where the language has such a word itself.
+/// A name as it is, and as naga writes it if it is a keyword of the language.
 fn spellings(name: &str) -> [String; 2] {
     [name.to_owned(), format!("{name}_")]
 }
 
-/// Name and members of the structure of that name, without those that only fill gaps.
+/// Name and members of the structure of that name, without padding members.
 fn structure(text: &str, name: &str) -> Option<(String, Vec<String>)> {
     spellings(name).into_iter().find_map(|name| {
         let head = format!("struct {name} {{\n");
@@ -90,8 +90,8 @@ fn member(line: &str) -> Option<&str> {
     (!is_gap && !name.is_empty()).then_some(name)
 }
 
-/// Name and head of the function of that name in the text, on one line. Heads stand at the start of a line,
-/// calls do not.
+/// Name and declaration, on one line, of the function of that name. Declarations stand at the start
+/// of a line, calls do not.
 pub(super) fn declaration(text: &str, name: &str) -> Option<(String, String)> {
     spellings(name).into_iter().find_map(|name| {
         let call = format!(" {name}(");

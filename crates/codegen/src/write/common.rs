@@ -10,23 +10,23 @@ use crate::target::{Code, Target};
 /// What a writer returns.
 pub(crate) struct WrittenModule {
     pub(crate) code: Code,
-    /// Name of the block of each buffer, where the language has such names.
+    /// The name of each buffer's block, if the language has blocks.
     pub(crate) blocks: Vec<(Handle<GlobalVariable>, String)>,
-    /// The entry points, where they are not those of the module or are not named as there.
+    /// The entry points, if they differ from the module's or have other names.
     pub(crate) entries: Option<Vec<Entry>>,
 }
 
-/// A comment that ends where its line does, in every language: `\` at the end of a line continues it.
+/// A comment that ends with its line in every language: `\` at the end of a line continues it.
 pub(super) fn one_line(comment: &str) -> String {
     comment.chars().map(|c| if c.is_control() || c == '\\' { '?' } else { c }).collect()
 }
 
-/// Places of the buffers.
+/// The bindings of all buffers.
 pub(super) fn bindings(module: &Module) -> impl Iterator<Item = ResourceBinding> {
     module.global_variables.iter().filter_map(|(_, variable)| variable.binding)
 }
 
-/// Numbers that a target has 256 of.
+/// Converts a number of which a target has 256.
 pub(super) fn checked_u8(target: Target, number: u32) -> Result<u8, Error> {
     u8::try_from(number).map_err(|_| Error::BindingTooLarge { target, number })
 }

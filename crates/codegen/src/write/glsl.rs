@@ -15,7 +15,8 @@ use crate::names::{final_names, stage_name};
 use crate::reflection::Entry;
 use crate::target::{Code, Target};
 
-/// Without an entry point, all functions and an empty fragment stage; else the last entry point.
+/// Writes all functions and an empty fragment stage if there is no entry point, else the last entry
+/// point.
 pub(super) fn glsl(
     target: Target,
     version: back::glsl::Version,
@@ -35,7 +36,7 @@ pub(super) fn glsl(
     glsl_stage(target, version, back::glsl::WriterFlags::empty(), module, info, comment)
 }
 
-/// The last entry point.
+/// Writes the last entry point.
 fn glsl_stage(
     target: Target,
     version: back::glsl::Version,
@@ -67,15 +68,16 @@ fn glsl_stage(
     let mut blocks: Vec<_> = reflected.uniforms.into_iter().collect();
     blocks.sort_unstable();
     let blocks = rename_blocks(&mut text, module, entry.stage, blocks);
-    // Nothing may stand before the version.
+    // The version must come first.
     let (version, rest) = text.split_once('\n').unwrap_or((&text, ""));
     let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));
     let entry = Entry { stage: stage_name(entry.stage), name: "main".to_owned() };
     Ok(WrittenModule { code, blocks, entries: Some(vec![entry]) })
 }
 
-/// Between two whole files, what naga writes: constants, which the params begin, then structures, then functions,
-/// without the version, precisions and the empty stage.
+/// Writes a shader for shadertoy.com: between two whole files, the constants that naga writes,
+/// which begin with the params, then structures, then functions, without the version, precisions
+/// and the empty stage.
 pub(super) fn shadertoy(
     module: &Module,
     info: &ModuleInfo,
@@ -99,7 +101,7 @@ pub(super) fn shadertoy(
     Ok(WrittenModule { code, blocks: Vec::new(), entries: Some(Vec::new()) })
 }
 
-/// The text without what a variable begins with: `load_view` sets all that is read of the view.
+/// Removes the initial value of a variable: `load_view` sets everything that is read of the view.
 fn without_zeros(text: &str, variable: &str) -> String {
     let parts = text.split_once(&format!("{variable} = ")).and_then(|(before, rest)| {
         let (_, after) = rest.split_once(";\n")?;
@@ -108,8 +110,8 @@ fn without_zeros(text: &str, variable: &str) -> String {
     parts.unwrap_or_else(|| text.to_owned())
 }
 
-/// Calls buffers by the names of their variables, and their blocks after them. naga calls both after
-/// numbers, by which two texts in one file clash.
+/// Names buffers after their variables, and blocks after the buffers. naga numbers both, so that
+/// two sources in one file would clash.
 fn rename_blocks(
     text: &mut String,
     module: &Module,
@@ -117,7 +119,7 @@ fn rename_blocks(
     blocks: Vec<(Handle<GlobalVariable>, String)>,
 ) -> Vec<(Handle<GlobalVariable>, String)> {
     let names = final_names(module);
-    // What naga ends the names with: `vs`, `fs`, `cs`.
+    // naga's suffix of these names: `vs`, `fs`, `cs`.
     let suffix = format!("{}s", &stage_name(stage)[..1]);
     let rename = |(handle, block): (Handle<GlobalVariable>, String)| {
         let binding = module.global_variables[handle].binding;
@@ -133,8 +135,8 @@ fn rename_blocks(
     blocks.into_iter().map(rename).collect()
 }
 
-/// The module and a fragment stage that does nothing but load the buffers, so that they count as used:
-/// GLSL is written a stage at a time.
+/// Adds a fragment stage that only loads the buffers, so that they count as used: GLSL is written
+/// one stage at a time.
 fn with_empty_stage(module: &Module) -> Module {
     let mut module = module.clone();
     let mut function = Function::default();

@@ -8,7 +8,7 @@ use super::hlsl_lists::with_plain_lists;
 use crate::error::Error;
 use crate::target::Target;
 
-/// The text, and what entry points are called in it.
+/// Returns the source and the names of its entry points.
 pub(super) fn hlsl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<String>), Error> {
     let mut binding_map = back::hlsl::BindingMap::new();
     for binding in bindings(module) {

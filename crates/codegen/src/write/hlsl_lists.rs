@@ -1,9 +1,10 @@
 //! Constant lists in HLSL.
 //!
-//! naga's writer has a list made by a function that returns an array, `static float list[2] = Constructarray2_float_(1.0, 2.0);`.
-//! glslang and what is made with it refuse that, and two texts in one file would both declare the function.
+//! naga's writer initialises a list by a function that returns an array, `static float list[2] =
+//! Constructarray2_float_(1.0, 2.0);`. glslang and its users refuse that, and two sources in one
+//! file would both declare the function.
 
-/// The text with such lists as HLSL has them itself: `static const float list[2] = { 1.0, 2.0 };`.
+/// Rewrites such lists as HLSL initialisers: `static const float list[2] = { 1.0, 2.0 };`.
 pub(super) fn with_plain_lists(text: &str) -> String {
     let lines = text.split_inclusive('\n');
     let plain: String = lines.map(|line| plain(line).unwrap_or_else(|| line.to_owned())).collect();
@@ -16,7 +17,7 @@ fn plain(line: &str) -> Option<String> {
     Some(format!("static const {declared} = {{ {elements} }};\n"))
 }
 
-/// Without such functions as nothing calls, and the types that they return.
+/// Removes constructors that nothing calls, and the types that they return.
 fn without_uncalled(mut text: String) -> String {
     let mut from = 0;
     while let Some(found) = text[from..].find("typedef ") {
@@ -25,7 +26,7 @@ fn without_uncalled(mut text: String) -> String {
         let line = text[start..].lines().next().unwrap_or_default();
         let name = line.split_once(" ret_").and_then(|(_, rest)| rest.split_once('['));
         let Some((name, _)) = name else { continue };
-        // Once where it stands itself.
+        // The single match is the declaration.
         if text.matches(&format!(" {name}(")).count() == 1
             && let Some(length) = text[start..].find("\n}\n\n")
         {

@@ -16,19 +16,21 @@ const OP_FUNCTION_END: u32 = 56;
 const OP_LABEL: u32 = 248;
 const OP_BRANCH: u32 = 249;
 
-/// What one function costs.
+/// The cost of one function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FunctionCost {
     /// What the function computes.
     pub role: Role,
-    /// Its instructions, without those that only frame it (function, parameters, labels, branches, end).
+    /// The number of instructions, without those that only frame the function (function,
+    /// parameters, labels, branches, end).
     pub instructions: u32,
-    /// Those that compute: conversion, arithmetic, comparison, logic, selection, and GLSL.std.450. Composing and
-    /// taking apart vectors, loads and stores are not among them.
+    /// The number of instructions that compute: conversion, arithmetic, comparison, logic,
+    /// selection, and GLSL.std.450. Composing and taking apart vectors, loads and stores are not
+    /// counted.
     pub arithmetic: u32,
 }
 
-/// Counts in those functions, which must be written with their names.
+/// Counts the instructions of the given functions. The words must contain names.
 pub(crate) fn count(
     words: &[u32],
     functions: impl Iterator<Item = (Role, String)>,
@@ -61,20 +63,21 @@ pub(crate) fn count(
     functions.map(cost).collect()
 }
 
-/// `OpExtInst`; `OpConvertFToU` to `OpFConvert`; `OpSNegate` to `OpSMulExtended` (arithmetic, products of matrices and vectors);
-/// `OpAny` to `OpFUnordGreaterThanEqual` (logic, selection, comparison); `OpShiftRightLogical` to
-/// `OpBitCount`.
+/// Returns true for `OpExtInst`; `OpConvertFToU` to `OpFConvert`; `OpSNegate` to `OpSMulExtended`
+/// (arithmetic, products of matrices and vectors); `OpAny` to `OpFUnordGreaterThanEqual` (logic,
+/// selection, comparison); `OpShiftRightLogical` to `OpBitCount`.
 fn computes(opcode: u32) -> bool {
     matches!(opcode, OP_EXT_INST | 109..=115 | 126..=152 | 154..=191 | 194..=205)
 }
 
-/// A string literal: UTF-8, least significant byte first, ended by zero.
+/// Decodes a string literal: UTF-8, least significant byte first, ended by zero.
 fn text(words: &[u32]) -> String {
     let bytes = words.iter().flat_map(|word| word.to_le_bytes()).take_while(|&byte| byte != 0);
     String::from_utf8_lossy(&bytes.collect::<Vec<_>>()).into_owned()
 }
 
-/// Opcode and operands of each instruction. Ends at a length that is zero or beyond the words.
+/// Iterates over the opcode and operands of each instruction. Ends at a length that is zero or
+/// beyond the words.
 struct Instructions<'a>(&'a [u32]);
 
 impl<'a> Iterator for Instructions<'a> {

@@ -21,7 +21,7 @@ use glsl::{glsl, shadertoy};
 use hlsl::hlsl;
 use msl::msl;
 
-/// Writes a validated module; `comment` is one line for the head of a text.
+/// Writes a validated module; `comment` is one line for the start of a source.
 pub(crate) fn write(
     target: Target,
     module: &Module,
@@ -44,7 +44,7 @@ pub(crate) fn write(
     }
 }
 
-/// The module's entry points by other names.
+/// The module's entry points with other names.
 fn renamed(module: &Module, names: Vec<String>) -> Vec<Entry> {
     let entries = module.entry_points.iter().zip(names);
     entries.map(|(entry, name)| Entry { stage: stage_name(entry.stage), name }).collect()

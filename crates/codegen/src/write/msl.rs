@@ -7,7 +7,7 @@ use super::common::{bindings, checked_u8, refused};
 use crate::error::Error;
 use crate::target::Target;
 
-/// The text, and what entry points are called in it.
+/// Returns the source and the names of its entry points.
 pub(super) fn msl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<String>), Error> {
     let mut resources = back::msl::EntryPointResources::default();
     for binding in bindings(module) {

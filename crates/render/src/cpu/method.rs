@@ -5,9 +5,10 @@
 pub(crate) enum CpuMethod {
     /// Steps as long as the distance, up to an absolute tolerance.
     Sphere,
-    /// Steps to where balls of free space just meet, up to a quarter of a pixel, then secants; or closing in on a sign change.
+    /// Relaxed steps up to a fraction of a pixel, then secants; after a change of sign, false
+    /// position.
     Auto,
-    /// Stretches of the ray are proven free or cut, the nearer part first, down to a part of the pixel.
+    /// Ray segments are proven free or cut, the nearer part first, down to a fraction of a pixel.
     Interval,
 }
 
@@ -25,7 +26,7 @@ impl CpuMethod {
         found.map(|(_, method)| method)
     }
 
-    /// How many times the steps of the view a ray may take.
+    /// Factor of the view's step budget.
     pub(crate) fn step_budget_factor(self) -> u32 {
         match self {
             Self::Sphere | Self::Interval => 1,
@@ -33,7 +34,8 @@ impl CpuMethod {
         }
     }
 
-    /// How many evaluations a sample is; `interval` counts those of stretches, to whose ends its samples belong.
+    /// The number of evaluations that a sample counts; `interval` counts segments, and a sample is
+    /// part of the segment that it ends.
     pub(crate) fn evaluations_per_sample(self) -> u32 {
         match self {
             Self::Sphere | Self::Auto => 1,
@@ -41,7 +43,7 @@ impl CpuMethod {
         }
     }
 
-    /// Whether it asks what is known of rays before they are marched.
+    /// Returns true if it asks for the analytic pre-intersection.
     pub(crate) fn pre_intersects(self) -> bool {
         match self {
             Self::Sphere | Self::Interval => false,

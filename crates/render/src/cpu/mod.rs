@@ -1,9 +1,9 @@
-//! The CPU renderer: for machines without an adapter, and the check of the shader.
+//! The CPU renderer, for machines without a GPU and as a check of the shader.
 //!
-//! A second implementation of `sphere`, `auto` and `interval` and of the shading, on purpose: it shares the
-//! scene's formula with the shader and nothing else. It works in waves: all rays of a group of
-//! pixels from the eye, then normals and materials of all hits, then all rays to a lamp; and the
-//! same again for all rays from a mirror.
+//! It is a second implementation of `sphere`, `auto` and `interval` and of the shading, on purpose:
+//! it shares only the scene's formula with the shader. It works in waves: all camera rays of a
+//! group of pixels, then normals and materials of all hits, then all rays to a light; and the same
+//! again for all reflections.
 
 pub(crate) mod method;
 mod pre_intersection;
@@ -37,18 +37,18 @@ use wave::Wave;
 
 pub use ray::Real;
 
-/// Pixels that one thread takes at a time.
+/// The number of pixels that a thread takes at a time.
 const GROUP: usize = 512;
-/// Most pixels of a tile; threads wait for each other at its end.
+/// The maximum number of pixels of a tile; threads wait for each other at its end.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 
-/// A program made ready for the CPU.
+/// A program, compiled for the CPU.
 #[derive(Clone, Debug)]
 pub struct CpuScene {
     field: Tape,
-    /// What is known of rays, for methods that ask.
+    /// The analytic pre-intersection, for methods that ask for it.
     pre_intersection: Option<PreIntersectionTapes>,
-    /// Bounds of the field between two points, for the method that asks.
+    /// Bounds of the field on a segment, for the method that asks for them.
     range: Option<Tape>,
     gradient: Option<Tape>,
     material: Option<Tape>,
@@ -58,7 +58,7 @@ impl CpuScene {
     /// Names of the ray methods that it has.
     pub const METHODS: [&'static str; CpuMethod::NAMES.len()] = CpuMethod::NAMES;
 
-    /// Of a program.
+    /// Compiles a program.
     ///
     /// # Errors
     ///
@@ -82,7 +82,8 @@ impl CpuScene {
     /// # Errors
     ///
     /// [`RenderError::MethodNotOnCpu`], [`RenderError::Size`], [`RenderError::OutOfMemory`],
-    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient, or for `interval` no range.
+    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient, or
+    /// for `interval` no range.
     pub fn render(
         &self,
         view: &View,
@@ -94,7 +95,7 @@ impl CpuScene {
         self.render_in::<f32>(view, frame, method, options, progress)
     }
 
-    /// Draws a frame, marched in `T`: in f64, what a shader's picture is measured against.
+    /// Draws a frame, marched in `T`. Pictures of shaders are measured against those in f64.
     ///
     /// # Errors
     ///
@@ -114,7 +115,8 @@ impl CpuScene {
         self.draw(view, options, progress, &self.wave::<T>(view, frame, method, true))
     }
 
-    /// Depth, status and evaluations of the rays from the eye, without colours, marched in `T`.
+    /// Traces the camera rays alone, marched in `T`: depth, status and evaluations, without
+    /// colours.
     ///
     /// # Errors
     ///
@@ -194,12 +196,12 @@ impl CpuScene {
     }
 }
 
-/// Now; `None` where there is no clock, as in WebAssembly.
+/// The current time; `None` if there is no clock, as in WebAssembly.
 fn now() -> Option<Instant> {
     (!cfg!(target_family = "wasm")).then(Instant::now)
 }
 
-/// The pixels of a tile, drawn by all threads that there are.
+/// Draws the pixels of a tile on all threads.
 fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<PixelBlock> {
     let mut pixels = vec![PixelBlock::default(); tile.pixels()];
     let draw = |wave: &mut Wave<'_, T>, (group, pixels): (usize, &mut [PixelBlock])| {

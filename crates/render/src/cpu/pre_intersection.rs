@@ -1,25 +1,26 @@
-//! What is known of rays before they are marched: what they meet without steps, and where they pass the rest.
+//! The analytic pre-intersection of rays: where they hit the analytic part of the scene, and the
+//! interval in which the rest is marched.
 
 use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
 use sdfc_graph::{FAR, Program};
 
 use super::ray::{Batch, LANES, Ray, Real, packed};
 
-/// Functions of rays, made ready for the CPU.
+/// Functions of rays, compiled for the CPU.
 #[derive(Clone, Debug)]
 pub(super) struct PreIntersectionTapes {
-    /// First hits and ways through the box, as far as there are such, in this order.
+    /// First hits and intervals in the box, if there are such, in this order.
     asked: Tape,
     has_hits: bool,
     has_clip: bool,
-    /// The field of what is left to march; `None`: nothing is.
+    /// The field of the marched part; `None` if there is none.
     marched: Option<Tape>,
-    /// As of the program's rays.
+    /// The intersection of copies, as in the program's rays.
     copies: Option<Tape>,
 }
 
 impl PreIntersectionTapes {
-    /// `None` where nothing is known of rays.
+    /// `None` if the program has no analytic part and no box.
     pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
         let Program { graph, rays, distance, .. } = program;
         let marched = if rays.first_hit.is_some() { rays.marched } else { *distance };
@@ -45,7 +46,7 @@ impl PreIntersectionTapes {
     }
 }
 
-/// The same, for one frame.
+/// The same functions for one frame.
 #[derive(Clone)]
 pub(super) struct PreIntersectionBatch<'t, T> {
     asked: Batch<'t, T>,
@@ -55,38 +56,39 @@ pub(super) struct PreIntersectionBatch<'t, T> {
     pub(super) copies: Option<Batch<'t, T>>,
 }
 
-/// What is known of a ray.
+/// The pre-intersection of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PreIntersection<T> {
-    /// Where it meets something without steps; beyond all rays' ends where it does not.
+    /// The hit on the analytic part of the scene; beyond the end of any ray if there is none.
     met: T,
-    /// Where its march begins and ends: before it begins, if there is nothing to march.
+    /// The interval to march; empty (end before start) if there is nothing to march.
     pub(super) start: T,
     pub(super) end: T,
-    /// Evaluations that it took to know.
+    /// The number of evaluations that it took.
     pub(super) evaluations: u32,
 }
 
 impl<T: Real> PreIntersection<T> {
-    /// Nothing: the ray is marched from end to end.
+    /// Nothing is known: the ray is marched from end to end.
     pub(super) fn nothing(ray: &Ray<T>) -> Self {
         let (met, start) = (T::constant(FAR), T::constant(0.0));
         Self { met, start, end: ray.t_max, evaluations: 0 }
     }
 
-    /// Where the ray meets something within its length, if the march has met nothing.
+    /// The analytic hit, if it is within the ray's length and the march has hit nothing.
     pub(super) fn hit(&self, ray: &Ray<T>) -> Option<T> {
         (self.met <= ray.t_max).then_some(self.met)
     }
 
-    /// Whether there is something to march.
+    /// Returns true if there is something to march.
     pub(super) fn must_march(&self) -> bool {
         self.start <= self.end
     }
 }
 
 impl<T: Real> PreIntersectionBatch<'_, T> {
-    /// Of rays, in their order. Those that are records_clearance are marched through all there is, unless they end anyway.
+    /// Pre-intersects rays; the result has their order. Rays that record their clearance are
+    /// marched through the whole scene, unless they are blocked anyway.
     pub(super) fn look(
         &mut self,
         rays: &[Ray<T>],

@@ -4,13 +4,14 @@ use std::ops::{Add, Mul, Sub};
 
 use sdfc_graph::eval::{Evaluator, Number, Packet};
 
-/// Points evaluated together: enough that decoding an instruction costs little beside running it.
+/// The number of points evaluated together: enough that decoding an instruction costs little beside
+/// running it.
 pub(super) const LANES: usize = 8;
 
 /// An evaluator of [`LANES`] points at a time.
 pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;
 
-/// What rays are marched in: f32, as the shader does, or f64.
+/// The number type in which rays are marched: f32, as in the shader, or f64.
 pub trait Real:
     Number
     + PartialOrd
@@ -26,22 +27,22 @@ pub trait Real:
 impl Real for f32 {}
 impl Real for f64 {}
 
-/// A ray with the cone that its pixel sees.
+/// A ray with the cone that its pixel covers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray<T> {
     pub(super) origin: [T; 3],
-    /// Of unit length.
+    /// A unit vector.
     pub(super) direction: [T; 3],
     pub(super) t_max: T,
-    /// Radius of the cone at the origin, and its growth per length.
+    /// Radius of the cone at the origin, and its growth per unit of length.
     pub(super) radius: T,
     pub(super) spread: T,
-    /// How near to the surface a hit is, in widths of the cone there (`auto`).
+    /// Distance below which a point is a hit, in widths of the cone there (`auto`, `interval`).
     pub(super) tolerance: T,
 }
 
-/// Rounding of a point relative to its distance from the scene's origin: eight units in the last
-/// place of f32, also in f64, where the same tolerances are wanted.
+/// Rounding error of a point relative to its distance from the scene's origin: eight units in the
+/// last place of f32, also in f64, so that the tolerances are the same.
 const ROUNDING: f64 = 1e-6;
 
 impl<T: Real> Ray<T> {
@@ -49,12 +50,12 @@ impl<T: Real> Ray<T> {
         std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
     }
 
-    /// Radius of the cone.
+    /// Radius of the cone at t.
     pub(super) fn footprint(&self, t: T) -> T {
         self.radius + self.spread * t
     }
 
-    /// The ray from one of its places on.
+    /// The rest of the ray from t on.
     pub(super) fn advanced(&self, t: T) -> Self {
         let (origin, radius, t_max) = (self.at(t), self.footprint(t), self.t_max - t);
         Self { origin, radius, t_max, ..*self }
@@ -67,7 +68,7 @@ impl<T: Real> Ray<T> {
     }
 }
 
-/// Values of a tape at points, in their order: for each point one array of lanes per root.
+/// Evaluates a tape at points, in their order: for each point one array of lanes per root.
 pub(super) fn values_at<T: Real>(
     evaluator: &mut Batch<'_, T>,
     points: &[[T; 3]],

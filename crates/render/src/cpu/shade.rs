@@ -1,38 +1,38 @@
-//! Light on surfaces, in f64: what the shader's shading says, written a second time from the papers.
+//! Shading in f64: the shader's model, implemented a second time from the papers.
 //!
-//! Painted surfaces are an interface of microfacets over an evenly scattering layer. Angles are taken
-//! from the normal; `alpha` is the squared roughness.
+//! Surfaces with a material are an interface of microfacets over an evenly scattering layer. Angles
+//! are taken from the normal; `alpha` is the squared roughness.
 //!
 //! - Slopes of the facets: Trowbridge and Reitz 1975 (GGX).
 //! - Masking: Smith's, height-correlated, by the function Lambda of Heitz 2014.
 //! - Fresnel: Schlick 1994.
-//! - Light from everywhere: the fit of Karis 2014.
+//! - Ambient light: the fit of Karis 2014.
 
 use glam::DVec3;
 
 use super::surroundings::IncomingLight;
 
-/// Linear colour of what nothing paints.
+/// Linear colour of surfaces without a material.
 const DEFAULT_COLOR: DVec3 = DVec3::splat(0.8);
-/// Reflectance of a dielectric seen straight on.
+/// Reflectance of a dielectric at normal incidence.
 const DIELECTRIC: f64 = 0.04;
-/// The highlight of a smoother surface would be thinner than a pixel.
+/// The highlight of a smoother surface would be narrower than a pixel.
 const MIN_ROUGHNESS: f64 = 0.1;
-/// Cosines of directions along the surface, or below it where a normal is not quite right.
+/// Lower bound of cosines, for directions along the surface or, with an inexact normal, below it.
 const MIN_COSINE: f64 = 1e-4;
 
-/// Where a ray met something.
+/// The surface at a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Surface {
-    /// Unit vector outwards.
+    /// Outward unit normal.
     pub(super) normal: DVec3,
     /// Unit vector back along the ray.
     pub(super) toward_eye: DVec3,
-    /// What it is made of; `None` in a scene that paints nothing.
+    /// Its material; `None` in a scene without materials.
     pub(super) paint: Option<Paint>,
 }
 
-/// A material, its colour already mixed with that of unpainted surfaces.
+/// A material whose colour is already mixed with the default one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Paint {
     color: DVec3,
@@ -43,7 +43,7 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    /// From the fields of a material in the order of `MaterialField::ALL`.
+    /// Reads a material's fields in the order of `MaterialField::ALL`.
     pub(super) fn of_fields(fields: &[[f64; 4]]) -> Option<Self> {
         let [color, coverage, roughness, metallic, emission, occlusion] = *fields else {
             return None;
@@ -60,14 +60,14 @@ impl Paint {
 }
 
 impl Surface {
-    /// With the normal along the gradient; towards the eye where the field has no slope.
+    /// A surface with the normal along the gradient; towards the eye if the field has no slope.
     pub(super) fn new(gradient: DVec3, toward_eye: DVec3, paint: Option<Paint>) -> Self {
         let square = gradient.length_squared();
         let normal = if square > 0.0 { gradient / square.sqrt() } else { toward_eye };
         Self { normal, toward_eye, paint }
     }
 
-    /// What it gives off, and returns of the light from everywhere.
+    /// The light that the surface emits, and the ambient light that it reflects.
     pub(super) fn ambient(&self, ambient: DVec3) -> DVec3 {
         match self.paint {
             Some(paint) => {
@@ -78,7 +78,8 @@ impl Surface {
         }
     }
 
-    /// What it returns of a incoming's light: Lambert's law and, where painted, a highlight.
+    /// The light that the surface reflects from a light source: Lambert's law and, with a material,
+    /// a highlight.
     pub(super) fn lit(&self, incoming: &IncomingLight) -> DVec3 {
         let incidence = self.normal.dot(incoming.direction).max(0.0);
         if incidence == 0.0 {
@@ -91,21 +92,22 @@ impl Surface {
         incoming.color * incidence * reflectance
     }
 
-    /// Cosine between normal and eye.
+    /// Cosine between the normal and the direction to the eye.
     fn facing(&self) -> f64 {
         self.normal.dot(self.toward_eye).max(MIN_COSINE)
     }
 }
 
 impl Paint {
-    /// The metal's and the dielectric's answer, mixed.
+    /// The responses of the metal and of the dielectric, mixed.
     fn mixed(&self, answer: impl Fn(DVec3, DVec3) -> DVec3) -> DVec3 {
         let dielectric = answer(DVec3::splat(DIELECTRIC), self.color);
         let metal = answer(self.color, DVec3::ZERO);
         dielectric + (metal - dielectric) * self.metallic
     }
 
-    /// Pi times the bidirectional reflectance: what leaves towards the eye of light that comes from a direction.
+    /// Pi times the bidirectional reflectance: the fraction of light from a direction that leaves
+    /// towards the eye.
     fn reflectance(&self, surface: &Surface, toward_light: DVec3) -> DVec3 {
         let normal = surface.normal;
         let halfway = (toward_light + surface.toward_eye).normalize_or_zero();
@@ -120,7 +122,7 @@ impl Paint {
         })
     }
 
-    /// What leaves towards the eye of light that comes evenly from everywhere.
+    /// The fraction of uniform ambient light that leaves towards the eye.
     fn albedo_everywhere(&self, facing: f64) -> DVec3 {
         let [scale, bias] = karis(self.roughness, facing);
         let mirrored = |straight_on: f64| (straight_on * scale + bias).max(0.0);
@@ -128,7 +130,7 @@ impl Paint {
     }
 }
 
-/// Fresnel reflectance at an angle, from that straight on.
+/// Fresnel reflectance at an angle, from that at normal incidence.
 fn schlick(straight_on: f64, cosine: f64) -> f64 {
     straight_on + (1.0 - straight_on) * (1.0 - cosine).powi(5)
 }
@@ -139,7 +141,7 @@ fn density(alpha: f64, cosine: f64) -> f64 {
     square / (cosine * cosine * (square - 1.0) + 1.0).powi(2)
 }
 
-/// The part of facets that both incoming and eye see.
+/// The fraction of facets that both the light and the eye see.
 fn visible(alpha: f64, entering: f64, leaving: f64) -> f64 {
     let lambda = |cosine: f64| {
         let tangent_squared = (1.0 - cosine * cosine).max(0.0) / (cosine * cosine);
@@ -148,7 +150,8 @@ fn visible(alpha: f64, entering: f64, leaving: f64) -> f64 {
     1.0 / (1.0 + lambda(entering) + lambda(leaving))
 }
 
-/// Scale and bias of the straight-on reflectance that make the part mirrored of light from everywhere.
+/// Scale and bias of the reflectance at normal incidence that give the reflected fraction of
+/// ambient light.
 fn karis(roughness: f64, facing: f64) -> [f64; 2] {
     let narrow = 1.0 - roughness;
     let low = 0.0425 - 0.0275 * roughness;
@@ -187,8 +190,8 @@ mod tests {
         let fields = [color, one(1.0), one(1.0), one(0.0), [0.0, 0.0, 0.25, 0.0], one(0.5)];
         let paint = Paint::of_fields(&fields).unwrap();
         let surface = Surface::new(DVec3::Z, DVec3::Z, Some(paint));
-        // Facets face everywhere and hide nothing, so 0.04 / 4 is mirrored; 0.96 squared of the colour
-        // comes back through the interface; the light is 2.
+        // Facets face everywhere and hide nothing, so 0.04 / 4 is mirrored; 0.96 squared of the
+        // colour comes back through the interface; the light is 2.
         let expected = (color_vector(color) * 0.96 * 0.96 + 0.01) * 2.0;
         assert!((surface.lit(&incoming(DVec3::Z)) - expected).length() < 1e-12);
         // Occlusion halves the light from everywhere, not the emission.
@@ -224,8 +227,8 @@ mod tests {
         let middle = |i: usize| (i as f64 + 0.5) / STEPS as f64;
         let mut sum = 0.0;
         for (u, v) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (middle(i), middle(j)))) {
-            // Half the samples by facets (Walter et al. 2007), half by Lambert's law, each weighed by
-            // the sum of both densities.
+            // Half the samples by facets (Walter et al. 2007), half by Lambert's law, each weighed
+            // by the sum of both densities.
             let turn = |cosine: f64| {
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let (y, x) = (std::f64::consts::TAU * v).sin_cos();

@@ -1,18 +1,18 @@
-//! What is about a surface: lamps as it sees them, what lies behind it, and fog.
+//! The surroundings of a surface: lights as it sees them, the background, and fog.
 
 use glam::DVec3;
 
 use crate::view::{Background, View, ViewFog, ViewLight, ViewShadow, ViewSource};
 
-/// A incoming is never taken to be nearer than this.
+/// Lower bound of the distance to a light.
 const MIN_DISTANCE: f64 = 1e-6;
 
-/// A light as a point sees it.
+/// A light as seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct IncomingLight {
     /// Unit vector towards it.
     pub(super) direction: DVec3,
-    /// How far away it is; none for a sun.
+    /// Distance to it; `None` for a sun.
     pub(super) distance: Option<f64>,
     /// Linear colour of what arrives.
     pub(super) color: DVec3,
@@ -32,7 +32,7 @@ impl IncomingLight {
         }
     }
 
-    /// Light thins out with the square of the distance.
+    /// Light falls off with the square of the distance.
     fn at(position: DVec3, point: DVec3, color: DVec3) -> Self {
         let way = position - point;
         let distance = way.length().max(MIN_DISTANCE);
@@ -44,7 +44,8 @@ impl IncomingLight {
     }
 }
 
-/// The part of a light that a ray to it lets through, if it meets nothing and passes with this clearance.
+/// The fraction of a light that a ray towards it lets through, if the ray hits nothing and has this
+/// clearance.
 pub(super) fn unshaded(light: &ViewLight, clearance: f64) -> f64 {
     match light.shadow {
         ViewShadow::Off | ViewShadow::Hard => 1.0,
@@ -52,7 +53,7 @@ pub(super) fn unshaded(light: &ViewLight, clearance: f64) -> f64 {
     }
 }
 
-/// What is seen in a direction where nothing is met.
+/// The background in a direction.
 pub(super) fn behind(view: &View, direction: DVec3) -> DVec3 {
     match view.background {
         Background::Plain(color) => color,
@@ -62,7 +63,7 @@ pub(super) fn behind(view: &View, direction: DVec3) -> DVec3 {
     }
 }
 
-/// The part of a surface's light that comes through the fog, and the colour of the rest.
+/// The fraction of a surface's light that is left after the fog, and the colour of the fog.
 pub(super) fn through_fog(view: &View, direction: DVec3, t: f64) -> (f64, DVec3) {
     match view.fog {
         None => (1.0, DVec3::ZERO),
@@ -72,7 +73,7 @@ pub(super) fn through_fog(view: &View, direction: DVec3, t: f64) -> (f64, DVec3)
     }
 }
 
-/// From 0 to 1, flat at both ends.
+/// The smoothstep function: from 0 to 1, flat at both ends.
 fn fade(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)

@@ -10,30 +10,31 @@ use super::pre_intersection::PreIntersection;
 use super::ray::{Batch, LANES, Ray, Real, packed};
 use crate::image::{CAPPED, HIT, MISS};
 
-/// A hit of `auto` is nearer than this part of the tolerance.
+/// A sample of `auto` within this fraction of the tolerance is a hit.
 const HIT_FRACTION: f64 = 0.00390625;
-/// Weight of the last step's slope in the mean.
+/// Weight of the last step's slope in the running mean.
 const SLOPE_WEIGHT: f64 = 0.5;
-/// Steps of `auto` are at most so many distances.
+/// Upper bound of a step of `auto` in distances.
 const MAX_RELAXATION: f64 = 4.0;
-/// A secant of `auto` is at most the inverse of this times the distance, or that part of the tolerance.
+/// Bounds of a secant step of `auto`: the distance divided by this slope, or this fraction of the
+/// tolerance.
 const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
-/// What is left of the way at a hit is at most the inverse of this times the distance.
+/// Bound of the last secant, which places the hit: the distance divided by this slope.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
 
-/// What limits all rays of a picture.
+/// The limits of all rays of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits<T> {
     pub(super) method: CpuMethod,
     pub(super) epsilon: T,
     pub(super) steps: u32,
-    /// Whether it is wanted how narrowly rays pass what they do not meet.
+    /// True if rays record how narrowly they pass what they do not hit.
     pub(super) records_clearance: bool,
 }
 
 impl<T: Real> Limits<T> {
-    /// How near to the surface a hit is.
+    /// The distance from the surface below which a point is a hit.
     pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
         match self.method {
             CpuMethod::Sphere => self.epsilon,
@@ -52,45 +53,47 @@ pub(super) struct Trace<T> {
     /// One of `MISS`, `HIT`, `CAPPED`.
     pub(super) status: u32,
     pub(super) evaluations: u32,
-    /// Least ratio of the distance from the ray to the distance along it; infinite where it is not wanted.
+    /// The least ratio of the distance from the ray to the distance along it; infinite if it is not
+    /// recorded.
     pub(super) clearance: T,
 }
 
 impl<T: Real> Trace<T> {
-    /// Of a ray of which nothing is known.
+    /// The result of a ray that was not traced.
     fn lost() -> Self {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
         Self { t, status: MISS, evaluations: 0, clearance }
     }
 }
 
-/// A ray on its way.
+/// A ray while it is marched.
 #[derive(Clone, Copy)]
 struct Walk<T> {
     whole: Ray<T>,
     known: PreIntersection<T>,
-    /// The ray from where its march begins on; places are counted from there.
+    /// The ray from the start of its march; positions are counted from there.
     ray: Ray<T>,
-    /// Where the march ends.
+    /// The end of the march.
     end: T,
     t: T,
     evaluations: u32,
     clearance: T,
-    /// Last place, and the distance there.
+    /// The last position, and the distance there.
     before: (T, T),
-    /// Last place outside and first place inside, with the distances there (`auto`, `interval`).
+    /// The last position outside and the first one inside, with the distances there (`auto`,
+    /// `interval`).
     outside: Option<(T, T)>,
     inside: Option<(T, T)>,
-    /// From the last place outside to this one, and what the distance gains per length in the mean (`auto`).
+    /// The step from the last position outside, and the running mean of the field's slope (`auto`).
     stride: T,
     slope: T,
-    /// Whether the last place outside is nearer to a surface than the tolerance (`auto`).
+    /// True if the last position outside is nearer to a surface than the tolerance (`auto`).
     close: bool,
-    /// Length of the next stretch that is looked at (`interval`).
+    /// Length of the next segment to examine (`interval`).
     segment: T,
 }
 
-/// What a sample of the field decides.
+/// The decision after a sample of the field.
 enum Turn<T> {
     Onward(T),
     Hit(T),
@@ -122,7 +125,7 @@ impl<T: Real> Walk<T> {
         Trace { t, status, evaluations, clearance: self.clearance }
     }
 
-    /// How a ray ends that has met nothing on its march; a place that is no number stays one.
+    /// The result of a ray that has hit nothing on its march; a position that is NaN stays NaN.
     fn unmet(&self) -> Trace<T> {
         let t_max = self.whole.t_max;
         match self.known.hit(&self.whole) {
@@ -132,7 +135,7 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// Takes the distance at the current place: either the ray has ended, or it has moved.
+    /// Takes the distance at the current position: either the ray has ended, or it has moved.
     fn see(
         &mut self,
         distance: T,
@@ -156,11 +159,12 @@ impl<T: Real> Walk<T> {
             Turn::Hit(t) => return Some(self.ends(self.known.start + t, HIT)),
             Turn::Onward(t) => self.t = t,
         }
-        // A place that is no number ends the ray too.
+        // A position that is NaN ends the ray too.
         self.ended(self.inside.is_some() || self.t <= self.end, limits)
     }
 
-    /// What has become of a ray that has met nothing yet, if it is not `within` its way or has run out of steps.
+    /// The result of a ray that has hit nothing yet, if it is not `within` its interval or has run
+    /// out of steps.
     fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<T>> {
         if !within {
             Some(self.unmet())
@@ -173,8 +177,9 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// This place's distance and the last one's are radii of spheres; they meet in a circle about the ray, whose
-    /// radius is taken for the distance of what lies there, if it lies between. Spheres that do not meet tell nothing
+    /// Records the clearance of the ray. The distances here and at the last position are the radii
+    /// of spheres; they intersect in a circle around the ray, whose radius is taken for the
+    /// distance of what lies there, if it lies between. Spheres that do not intersect tell nothing
     /// of what is between them.
     fn pass(&mut self, here: T) {
         let ((last, before), zero) = (self.before, T::constant(0.0));
@@ -201,7 +206,7 @@ impl<T: Real> Walk<T> {
         let near = limits.tolerance(&self.ray, self.t);
         let (last, above) = self.outside.unwrap_or((self.t, zero));
         let hit = self.hit_within(near);
-        // Balls of free space that do not meet may have something between them; secants are short.
+        // Empty spheres that do not meet may have something between them; secants are short.
         let checked = self.inside.is_none() && !self.close;
         if checked && self.stride > above + distance.max(zero) + hit {
             (self.stride, self.slope) = (above, T::constant(-1.0));
@@ -222,7 +227,7 @@ impl<T: Real> Walk<T> {
             }
             return turn;
         }
-        // Only the distance is known to be free.
+        // Only the sphere of the distance is known to be empty.
         let (free, end) = (self.t + distance, self.end);
         let goes_on = free <= end;
         if !goes_on {
@@ -239,18 +244,19 @@ impl<T: Real> Walk<T> {
                 step
             }
         } else {
-            // Two balls beside a plane touch.
+            // Two spheres beside a plane touch.
             let apart = (T::constant(1.0) - self.slope)
                 .clamp(T::constant(2.0 / MAX_RELAXATION), T::constant(2.0));
             (T::constant(2.0) * distance).div(apart)
         };
         let step = if limits.records_clearance { step.min(distance) } else { step };
         self.stride = step.min(end - self.t);
-        // Rounded up the sum may be past the end, where the ray would be taken to have met nothing without a look.
+        // A sum that is rounded up may be past the end, where the ray would count as a miss without
+        // a sample.
         Turn::Onward((self.t + self.stride).min(end))
     }
 
-    /// How near to the surface a hit is, in terms of what is near.
+    /// The distance from the surface below which a sample is a hit.
     fn hit_within(&self, near: T) -> T {
         (T::constant(HIT_FRACTION) * near).max(self.ray.rounding(self.t))
     }
@@ -263,19 +269,20 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// The next place between one outside and one inside, once there are both.
+    /// The next position between one outside and one inside, once there are both.
     fn closing_in(&self, hit: T) -> Option<Turn<T>> {
         let ((last, above), (first, below)) = (self.outside?, self.inside?);
         if first - last < hit {
             return Some(Turn::Hit(first));
         }
-        // Where a line through both samples is zero, but within the middle 8 tenths.
+        // The zero of a line through both samples, but within the middle 8 tenths.
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
         Some(Turn::Onward(last + part * (first - last)))
     }
 }
 
-/// How far it is to the surface beside which the distance gains so much per length, but at least by a slope of `least`.
+/// The distance to the surface along the ray if the field falls by `-gain` per unit of length, with
+/// a slope of at least `least`.
 fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
     distance.div((T::constant(0.0) - gain).max(T::constant(least)))
 }

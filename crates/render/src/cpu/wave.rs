@@ -14,9 +14,10 @@ use crate::image::HIT;
 use crate::view::footprint::Footprint;
 use crate::view::{View, ViewLight, ViewOcclusion, ViewShadow};
 
-/// Places above a surface at which it is asked what takes its light.
+/// The number of samples above a surface for ambient occlusion.
 const OCCLUSION_SAMPLES: u32 = 5;
-/// Tolerance of a ray to a lamp, whose footprint is as wide as it starts above the surface.
+/// Tolerance of a shadow ray in widths of its footprint, which is as wide as the ray starts above
+/// the surface.
 const SHADOW_TOLERANCE: f64 = 0.25;
 /// What one thread needs to draw groups of pixels.
 #[derive(Clone)]
@@ -25,31 +26,31 @@ pub(super) struct Wave<'a, T> {
     pub(super) limits: Limits<T>,
     pub(super) field: Batch<'a, T>,
     pub(super) pre_intersection: Option<PreIntersectionBatch<'a, T>>,
-    /// Bounds of the field between two points.
+    /// Bounds of the field on a segment.
     pub(super) range: Option<Evaluator<'a, T>>,
-    /// `None`: depths only.
+    /// `None` if only depths are drawn.
     pub(super) gradient: Option<Batch<'a, T>>,
     pub(super) material: Option<Batch<'a, T>>,
 }
 
-/// A pixel in the making.
+/// A pixel while it is drawn.
 #[derive(Clone, Copy)]
 struct Shade {
     color: DVec3,
     evaluations: u32,
 }
 
-/// A ray along which the eye sees, from it or from a mirror.
+/// A camera ray or a reflection of one.
 #[derive(Clone, Copy)]
 struct Sight<T> {
-    /// Position in the group.
+    /// Index of the pixel in the group.
     pixel: usize,
     ray: Ray<T>,
-    /// What is seen along it counts by this factor.
+    /// Factor of the light along the ray.
     weight: f64,
 }
 
-/// Where a sight met something.
+/// The hit of a view ray.
 struct Meeting<T> {
     sight: Sight<T>,
     t: T,
@@ -92,7 +93,7 @@ impl<T: Real> Wave<'_, T> {
         traces
     }
 
-    /// Marches rays; those that are records_clearance through the whole field, so that it is known how narrowly they pass.
+    /// Traces rays; those that record their clearance are marched through the whole field.
     fn traces(&mut self, rays: &[Ray<T>], records_clearance: bool) -> Vec<Trace<T>> {
         let known = match &mut self.pre_intersection {
             Some(pre_intersection) => pre_intersection.look(rays, records_clearance),
@@ -111,7 +112,7 @@ impl<T: Real> Wave<'_, T> {
         trace(marched.unwrap_or(&mut self.field), self.range.as_mut(), &rays, &limits)
     }
 
-    /// Adds what lies behind where sights met nothing, and what lights what they met.
+    /// Adds the background for view rays that hit nothing, and the lights for the others.
     fn lit_meetings(
         &mut self,
         sights: &[Sight<T>],
@@ -136,8 +137,8 @@ impl<T: Real> Wave<'_, T> {
         meetings
     }
 
-    /// The parts of the light from everywhere that reach where sights met something: 1, less what the field lacks
-    /// of the height above it, the nearer the more.
+    /// The unoccluded fraction of ambient light at each hit: 1, less what the field falls behind
+    /// the height above the surface, the nearer the more.
     fn open_parts(&mut self, meetings: &[Meeting<T>], shades: &mut [Shade]) -> Vec<f64> {
         let mut open = vec![1.0; meetings.len()];
         let Some(ViewOcclusion { radius, strength }) = self.view.occlusion else { return open };
@@ -173,7 +174,7 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// Normals and materials where sights met something.
+    /// Normals and materials at the hits.
     fn meetings(&mut self, sights: &[Sight<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
         let Some(gradient) = &mut self.gradient else { return Vec::new() };
         let met = sights.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
@@ -193,13 +194,13 @@ impl<T: Real> Wave<'_, T> {
         hits.into_iter().enumerate().map(meeting).collect()
     }
 
-    /// Adds what a light lights, and the evaluations that it takes to know what shades it.
+    /// Adds the light of one light source, and the evaluations of its shadow rays.
     fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
         let lit = meetings.iter().map(|meeting| {
             let incoming = IncomingLight::seen_from(meeting.point(), light);
             (meeting, incoming, meeting.surface.lit(&incoming) * meeting.sight.weight)
         });
-        // A surface that returns nothing needs no ray to the incoming.
+        // A surface that reflects nothing needs no shadow ray.
         let casts = light.shadow != ViewShadow::Off;
         let (asked, sure): (Vec<_>, Vec<_>) =
             lit.partition(|(.., lit)| casts && lit.cmpgt(DVec3::ZERO).any());
@@ -219,13 +220,13 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// How far along the ray a hit may be off.
+    /// How far along the ray the hit may be off.
     fn near(&self, Meeting { sight, t, .. }: &Meeting<T>) -> T {
         self.limits.tolerance(&sight.ray, *t).max(sight.ray.rounding(*t))
     }
 
-    /// Where a ray starts that leaves the surface: so far above it, and a little before the hit, since
-    /// in a crease one surface's normal does not lead out of the other.
+    /// The origin of a secondary ray: above the surface, and a little before the hit, since in a
+    /// crease one surface's normal does not lead out of the other.
     fn lifted(&self, meeting: &Meeting<T>, lift: T) -> [T; 3] {
         let back = T::constant(0.25) * self.near(meeting);
         let point = meeting.sight.ray.at(meeting.t - back);
@@ -233,7 +234,7 @@ impl<T: Real> Wave<'_, T> {
         std::array::from_fn(|axis| point[axis] + lift * normal[axis])
     }
 
-    /// From a surface towards a incoming.
+    /// A ray from a surface towards a light.
     fn shadow_ray(&self, meeting: &Meeting<T>, incoming: &IncomingLight) -> Ray<T> {
         let half_pixel = meeting.sight.ray.footprint(meeting.t);
         let lift = (T::constant(3.0) * self.near(meeting)).max(half_pixel);
@@ -247,7 +248,7 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// From a surface to what it mirrors.
+    /// The reflection of a view ray.
     fn mirrored(&self, meeting: &Meeting<T>) -> Sight<T> {
         let Meeting { sight, t, surface, .. } = meeting;
         let inward = -surface.toward_eye;

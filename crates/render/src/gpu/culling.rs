@@ -1,5 +1,6 @@
-//! What runs before a picture's shader on each tile: which rounds of the scene's loops can matter to its rays. And what runs once before
-//! a frame where rays leave the tiles: which can matter in each cell of a grid.
+//! The shaders that find which iterations of the scene's loops can affect which rays: before each
+//! tile of a picture, those that can affect its camera rays; and once before a frame with secondary
+//! rays, those that can affect each cell of a grid.
 
 use glam::DVec3;
 
@@ -12,19 +13,20 @@ use super::resources::{WORKGROUP, buffer, compute_pipeline, entry, table};
 use crate::blocks::{UNIFORM_BYTES, VIEW_BYTES, uniform_bytes};
 use crate::error::RenderError;
 
-/// Most bytes of lists, and of masks, for the tiles that are drawn at once.
+/// The maximum size of the lists, and of the masks, of the tiles that are drawn at once, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
-/// Binding of the lists of constants, of the lists of iterations, and of the masks that these are made from.
+/// Bindings of the lists of constants, of the lists of iterations, and of the masks that these are
+/// made from.
 const TABLE: u32 = 3;
 pub(crate) const ACTIVE_LISTS: u32 = 4;
 const MASKS: u32 = 5;
 const LEVEL: u32 = 6;
 const COUNTERS: u32 = 7;
-/// A uniform is as large as a vector at least, for all backends.
+/// Size of the uniform `level`: at least a vector, for all backends.
 const LEVEL_BYTES: u64 = 16;
 /// Invocations of a workgroup.
 const LANES: u32 = 64;
-/// Both stages, made ready for a device.
+/// The culling shader, compiled for a device.
 #[derive(Clone, Debug)]
 pub(crate) struct Culling {
     mark: wgpu::ComputePipeline,
@@ -32,39 +34,39 @@ pub(crate) struct Culling {
     cells: Option<CellStages>,
     layout: wgpu::BindGroupLayout,
     table: wgpu::Buffer,
-    /// What tells the shader the level, lowest first.
+    /// The uniforms `level`, lowest level first.
     levels: Vec<wgpu::Buffer>,
-    /// Rounds of each loop.
+    /// The number of iterations of each loop.
     iterations: Vec<u32>,
 }
 
-/// The stages for cells, in their order.
+/// The stages for cells, in the order in which they run.
 #[derive(Clone, Debug)]
 struct CellStages {
     least_of_groups: wgpu::ComputePipeline,
     mark_groups: wgpu::ComputePipeline,
     list_cells: wgpu::ComputePipeline,
-    /// For each loop, whether no round need be visited outside all cells.
+    /// For each loop, true if no iteration need be run outside all cells.
     is_joined: Vec<bool>,
 }
 
-/// The buffers for so many tiles.
+/// The buffers for a number of tiles.
 #[derive(Debug)]
 pub(crate) struct ActiveBuffers {
     pub(crate) lists: wgpu::Buffer,
     pub(crate) counters: wgpu::Buffer,
     tiles: [u32; 2],
-    /// For each level.
+    /// One for each level.
     bind_groups: Vec<wgpu::BindGroup>,
 }
 
 impl ActiveBuffers {
-    /// Whether they do for so many columns and rows of tiles.
+    /// Returns true if the buffers are large enough for this many columns and rows of tiles.
     pub(crate) fn fit(&self, tiles: [u32; 2]) -> bool {
         lowest(self.tiles) >= lowest(tiles) && with_masks(self.tiles) >= with_masks(tiles)
     }
 
-    /// Nothing was evaluated yet.
+    /// Resets the number of evaluated operands.
     pub(crate) fn reset_count(&self, gpu: &Gpu) {
         gpu.queue.write_buffer(&self.counters, 4 * EVALUATED, &0_u32.to_ne_bytes());
     }
@@ -96,12 +98,13 @@ impl Culling {
         Self { mark, list, cells, layout, table, levels: levels.collect(), iterations }
     }
 
-    /// The same with other lists of constants.
+    /// The same shader with the lists of constants of another.
     pub(crate) fn with_lists_of(&self, gpu: &Gpu, shader: &sdfc_codegen::Shader) -> Self {
         Self { table: table(gpu, &uniform_bytes(shader.lists())), ..self.clone() }
     }
 
-    /// Room for so many columns and rows of tiles of a workgroup each, and for cells; to be opened before it is used.
+    /// Allocates buffers for this many columns and rows of tiles of a workgroup each, and for
+    /// cells. Call [`Self::open`] before they are used.
     pub(crate) fn allocate(
         &self,
         gpu: &Gpu,
@@ -145,7 +148,8 @@ impl Culling {
         ActiveBuffers { lists, counters, tiles, bind_groups }
     }
 
-    /// Writes what the stages begin with, for cells about a box of surfaces if there is one.
+    /// Writes the initial contents of the buffers, for cells around a box of surfaces if there is
+    /// one.
     pub(crate) fn open(&self, gpu: &Gpu, active: &ActiveBuffers, within: Option<[DVec3; 2]>) {
         let joined = self.cells.as_ref().map(|cells| &cells.is_joined[..]);
         let head = head(&self.iterations, joined, within);
@@ -154,7 +158,8 @@ impl Culling {
         gpu.queue.write_buffer(&active.counters, 0, &bytes_of(&counters));
     }
 
-    /// Finds what can matter in so many groups of cells; once, since it fills what was empty.
+    /// Lists what can affect the cells of this many groups. Run it once after [`Self::open`], since
+    /// it appends to the lists.
     pub(crate) fn run_cells(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -174,7 +179,7 @@ impl Culling {
         pass.dispatch_workgroups((groups * group(&self.iterations).pow(3)).div_ceil(LANES), 1, 1);
     }
 
-    /// Finds what can matter to so many columns and rows of tiles.
+    /// Lists what can affect this many columns and rows of tiles.
     pub(crate) fn run(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -195,7 +200,7 @@ impl Culling {
         pass.dispatch_workgroups((lowest(lowest_tiles) as u32).div_ceil(LANES), 1, 1);
     }
 
-    /// Most pixels of a tile of the picture for which there is room.
+    /// The maximum number of pixels of a picture's tile that the limits allow.
     pub(crate) fn max_pixels(&self, limits: &wgpu::Limits) -> u32 {
         let bytes = MAX_BYTES.min(limits.max_storage_buffer_binding_size);
         let first = first_record(&self.iterations, self.cells.is_some());
@@ -208,7 +213,7 @@ impl Culling {
     }
 }
 
-/// Refuses loops of so many iterations that the adapter has no room for what is listed of a single tile.
+/// Refuses loops with so many iterations that the adapter cannot hold the lists of a single tile.
 pub(crate) fn fits(gpu: &Gpu, iterations: &[u32], has_cells: bool) -> Result<(), RenderError> {
     let what = "lists of what can matter to a tile of the picture";
     let words = first_record(iterations, has_cells) + u64::from(stride(iterations));

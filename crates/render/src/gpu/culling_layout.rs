@@ -3,59 +3,68 @@
 
 use glam::DVec3;
 
-/// Most iterations of a loop that the lists of one tile of eight by eight pixels hold together; where more can matter, all are visited.
+/// Capacity of one tile's lists for a loop, all slices together; if more iterations can affect the
+/// tile, all are run.
 pub(super) const CAPACITY: u32 = 512;
-/// Most iterations that are scratch while the lists of a tile are made, and what is scratch of one: see `culling.wgsl`.
+/// Capacity of the scratch space while the lists of a tile are made, in iterations, and its words
+/// per iteration; see `culling.wgsl`.
 pub(super) const MAX_SCRATCH: u32 = 1024;
 pub(super) const SCRATCH_WORDS: u32 = 2;
-/// What a tile's record begins with, and for how many slices of its rays it has room, see `active_layout.wgsl`.
+/// Words at the start of a tile's record, and the number of slices that it has room for; see
+/// `active_layout.wgsl`.
 pub(super) const RECORD_HEAD: u32 = 3;
 pub(super) const MAX_SLICES: u32 = 16;
-/// Levels of tiles, each two by two of the one below, and the lowest a workgroup's pixels. All above the lowest have masks.
+/// Levels of tiles. A tile of one level covers two by two of the level below; those of the lowest
+/// level are workgroups. All levels above the lowest have masks.
 pub(super) const LEVELS: u32 = 5;
 pub(super) const WIDER: u32 = 2;
-/// Words of the counters before the least operands, and where it counts operands that were evaluated.
+/// Words of the counters before the least operands, and the index of the number of evaluated
+/// operands.
 pub(super) const COUNTERS_HEAD: usize = 2;
 pub(super) const EVALUATED: u64 = 1;
-/// Words before the record by which all iterations are visited, see `active_layout.wgsl`.
+/// Words before the entries that stand for all iterations; see `active_layout.wgsl`.
 pub(super) const HEAD: u32 = 7;
-/// Groups of cells, to an axis and in all.
+/// Groups of cells along an axis, and in all.
 pub(super) const GROUP_SIDE: u32 = 8;
 pub(super) const GROUPS: u32 = GROUP_SIDE * GROUP_SIDE * GROUP_SIDE;
-/// Cells of a group to an axis, where loops have fewer iterations than so many in all, and where they have more.
+/// Cells of a group along an axis, for loops with fewer than MANY_ITERATIONS in all, and for loops
+/// with more.
 pub(super) const GROUP: [u32; 2] = [2, 4];
 pub(super) const MANY_ITERATIONS: u32 = 4000;
-/// Words of what tells of the cells.
+/// Words of the description of the cells.
 pub(super) const ABOUT_CELLS: u32 = 19;
-/// Words of a cell's lists, in the mean.
+/// Mean capacity of a cell's lists, in words.
 pub(super) const CELL_WORDS: u32 = 64;
-/// Part of the longest side of the box of surfaces by which the cells reach beyond it: a ray that has left them is as far away from it.
+/// Fraction of the longest side of the box of surfaces by which the cells reach beyond it: a ray
+/// that has left them is at least that far away from it.
 pub(super) const BEYOND: f64 = 0.06;
-/// Part of the least side of a cell that is a step by what is known of the cell alone.
+/// Length of a step by the bound of a cell alone, as a fraction of the cell's shortest side.
 pub(super) const SHORTEST: f64 = 0.5;
-/// A step that nothing is.
+/// Longer than any step: no limit.
 pub(super) const FAR: f64 = 1e30;
-/// Part of the box's places by which it is made larger: more than rounding in f32 takes from it.
+/// Fraction of the box's coordinates by which it is enlarged: more than rounding in f32 takes from
+/// it.
 pub(super) const BOX_MARGIN: f64 = 1e-5;
-/// Rounds to a word.
+/// Iterations per word of a mask.
 pub(super) const WORD: u32 = 32;
 
 pub(super) fn lowest([columns, rows]: [u32; 2]) -> u64 {
     u64::from(columns) * u64::from(rows)
 }
 
-/// Tiles of each level above so many columns and rows of the lowest.
+/// The tiles of each level, for this many columns and rows of the lowest.
 pub(super) fn each_level(tiles: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
     (0..LEVELS).map(move |level| tiles.map(|count| count.div_ceil(WIDER.pow(level))))
 }
 
-/// How many tiles have masks.
+/// The number of tiles with masks.
 pub(super) fn with_masks(tiles: [u32; 2]) -> u64 {
     each_level(tiles).skip(1).map(lowest).sum()
 }
 
-/// What the lists begin with: the layout, what stands for a slice by which all iterations are visited and its lists; where rays go by cells,
-/// the same outside all of these, given for each loop whether no round need be visited there, and what tells of the cells.
+/// The first words of `active_lists`: the layout, and the entries and lists that stand for all
+/// iterations. If rays use cells, then the same entries for points outside all cells, where
+/// `joined` tells for each loop that no iteration need be run, and the description of the cells.
 pub(super) fn head(
     iterations: &[u32],
     joined: Option<&[bool]>,
@@ -92,7 +101,7 @@ pub(super) fn head(
     head
 }
 
-/// How many cells of a group there are to an axis.
+/// Cells of a group along an axis.
 pub(super) fn group(iterations: &[u32]) -> u32 {
     GROUP[usize::from(iterations.iter().sum::<u32>() >= MANY_ITERATIONS)]
 }
@@ -101,12 +110,12 @@ pub(super) fn cell_count(iterations: &[u32]) -> u32 {
     GROUPS * group(iterations).pow(3)
 }
 
-/// Where what tells of the cells stands, behind the record of what is outside all of them.
+/// Index of the description of the cells, which follows the record for points outside all of them.
 pub(super) fn about_cells(iterations: &[u32]) -> u32 {
     HEAD + 4 * iterations.len() as u32 + iterations.iter().sum::<u32>()
 }
 
-/// Where the first tile's record stands.
+/// Index of the first tile's record.
 pub(super) fn first_record(iterations: &[u32], has_cells: bool) -> u64 {
     let (loops, about) = (iterations.len() as u64, u64::from(about_cells(iterations)));
     if !has_cells {
@@ -116,7 +125,7 @@ pub(super) fn first_record(iterations: &[u32], has_cells: bool) -> u64 {
     about + u64::from(ABOUT_CELLS) + cell * u64::from(cell_count(iterations))
 }
 
-/// What the stages count from: nothing is filled, none was evaluated, no least operand known.
+/// The initial counters: nothing is filled, nothing was evaluated, no least operand is known.
 pub(super) fn counters(iterations: &[u32], has_cells: bool) -> Vec<u32> {
     let known = if has_cells { GROUPS as usize * iterations.len() } else { 0 };
     let mut counters = vec![0; COUNTERS_HEAD];
@@ -139,7 +148,7 @@ pub(super) fn mask_bytes(iterations: &[u32]) -> u64 {
     4 * iterations.len() as u64 * u64::from(max_words(iterations))
 }
 
-/// Most iterations that are scratch of a tile.
+/// Capacity of a tile's scratch space, in iterations.
 pub(super) fn max_scratch(iterations: &[u32]) -> u32 {
     iterations.iter().sum::<u32>().min(MAX_SCRATCH)
 }
@@ -148,13 +157,15 @@ pub(super) fn scratch_bytes(iterations: &[u32]) -> u64 {
     4 * u64::from(SCRATCH_WORDS * max_scratch(iterations))
 }
 
-/// Most bytes of masks and of what is scratch: in any case, and for each tile. Each level has half the tiles of the one below at most, or one.
+/// Upper bound on mask and scratch bytes: `[fixed, per tile]`. A level has at most half the tiles
+/// of the one below, or one.
 pub(super) fn tile_mask_bytes(iterations: &[u32]) -> [u64; 2] {
     let masks = mask_bytes(iterations);
     [u64::from(LEVELS) * masks, masks + scratch_bytes(iterations)]
 }
 
-/// The corner of the first cell and how many there are to a unit of length, then the corners of the box.
+/// The corner of the first cell and the number of cells per unit of length, then the corners of the
+/// box.
 pub(super) fn grid([lo, hi]: [DVec3; 2], to_axis: u32) -> [DVec3; 4] {
     let margin = DVec3::splat(BOX_MARGIN * lo.abs().max(hi.abs()).max_element().max(1e-20));
     let [lo, hi] = [lo - margin, hi + margin];
@@ -169,7 +180,7 @@ mod tests {
     use super::super::resources::WORKGROUP;
     use super::*;
 
-    /// What a constant of the shaders is.
+    /// The value of a constant of the shaders.
     fn constant(name: &str) -> u32 {
         let text = sdfc_march::culling_source();
         let stated = text.split_once(&format!("const {name}: u32 = ")).unwrap().1;

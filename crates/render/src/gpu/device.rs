@@ -1,4 +1,4 @@
-//! Finding an adapter, opening its device, and turning what wgpu reports into errors.
+//! Finds an adapter, opens its device, and turns wgpu's reports into errors.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
@@ -11,9 +11,9 @@ use crate::stats::AdapterInfo;
 
 /// An open device without a window.
 ///
-/// All errors of its calls come back as [`RenderError`]: those of the calling thread through error
-/// scopes, those that arrive otherwise (a lost device) through handlers that note them until the
-/// next call asks. A clone is the same device.
+/// All errors of its calls are returned as [`RenderError`]: those of the calling thread through
+/// error scopes; those that arrive otherwise (a lost device) through handlers that store them until
+/// the next call. A clone is the same device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     pub(crate) device: wgpu::Device,
@@ -23,7 +23,7 @@ pub struct Gpu {
     faults: Arc<Faults>,
 }
 
-/// Errors that came when nobody waited for them: the first of each kind.
+/// Errors that arrived outside a call: the first of each kind.
 #[derive(Debug, Default)]
 struct Faults {
     lost: Mutex<Option<String>>,
@@ -31,7 +31,7 @@ struct Faults {
 }
 
 impl Gpu {
-    /// Opens the adapter that the system prefers for heavy work; one that a CPU plays is accepted.
+    /// Opens the adapter that the system prefers for heavy work; a software adapter is accepted.
     ///
     /// # Errors
     ///
@@ -63,7 +63,7 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("sdfc"),
             required_features: wanted,
-            // Whole, because the defaults stop at smaller buffers than adapters have.
+            // All limits of the adapter, because the default buffer sizes are smaller.
             required_limits: limits,
             ..wgpu::DeviceDescriptor::default()
         };
@@ -80,12 +80,12 @@ impl Gpu {
         })
     }
 
-    /// What the adapter says of itself.
+    /// The description of the adapter.
     pub fn info(&self) -> &AdapterInfo {
         &self.info
     }
 
-    /// Whether the adapter can tell times of its own.
+    /// Returns true if the adapter can measure times.
     pub fn has_timestamps(&self) -> bool {
         self.timestamps
     }
@@ -127,13 +127,13 @@ impl Gpu {
         ];
         self.faults.check()?;
         let Some(error) = errors.into_iter().flatten().next() else { return Ok(value) };
-        // A device that is lost refuses what it is asked, and says why only when it is polled.
+        // A lost device refuses calls, and reports the reason only when it is polled.
         let _ = self.poll(wgpu::PollType::Poll);
         self.faults.check()?;
         Err(render_error(&error, what))
     }
 
-    /// Waits until the device has done all that was submitted, or the time is over.
+    /// Waits until the device has finished all submitted work, or until the timeout.
     pub(crate) fn wait(&self, patience: Option<Duration>) -> Result<(), RenderError> {
         let polled = self.poll(wgpu::PollType::Wait { submission_index: None, timeout: patience });
         self.faults.check()?;
@@ -147,8 +147,8 @@ impl Gpu {
         }
     }
 
-    /// `None` where wgpu panicked, as it does where the device is lost while it is waited for; nothing of
-    /// this crate is left half-changed by that, since results are read only after the wait.
+    /// `None` if wgpu panicked, as it does if the device is lost while it is waited for. That
+    /// leaves nothing of this crate half-changed, since results are read only after the wait.
     fn poll(&self, poll: wgpu::PollType) -> Option<Result<wgpu::PollStatus, wgpu::PollError>> {
         catch_unwind(AssertUnwindSafe(|| self.device.poll(poll))).ok()
     }
@@ -168,7 +168,7 @@ impl Faults {
     }
 
     fn check(&self) -> Result<(), RenderError> {
-        // A lost device stays lost; another error is told once.
+        // A lost device stays lost; another error is reported once.
         if let Some(message) = lock(&self.lost).as_ref() {
             return Err(RenderError::DeviceLost(message.clone()));
         }

@@ -1,4 +1,4 @@
-//! Drawing a frame on the GPU: one compute dispatch a tile, read back tile by tile.
+//! Draws a frame on the GPU: one compute dispatch per tile, read back tile by tile.
 
 use std::{borrow::Cow, sync::Mutex, time::Instant};
 
@@ -16,20 +16,21 @@ use crate::image::{Image, check_size};
 use crate::tiles::Tiler;
 use crate::view::View;
 
-/// Most pixels of a tile: 32 MiB to read back.
+/// The maximum number of pixels of a tile: 32 MiB to read back.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
-/// A shader made ready for a device.
+/// A picture shader, compiled for a device.
 #[derive(Debug)]
 pub struct Pipeline {
     kernel: Kernel,
     uniform_count: usize,
     milliseconds: f64,
-    /// Of the last frame, where the next one has a use for what they hold.
+    /// The buffers of the last frame, if the next one can use their contents.
     buffers: Mutex<Option<Buffers>>,
 }
 
 impl Pipeline {
-    /// Of a picture's shader, and the number of `Program::uniforms` that it was made for.
+    /// Compiles a picture's shader. `uniform_count` is the number of `Program::uniforms` that it
+    /// was made for.
     ///
     /// # Errors
     ///
@@ -42,12 +43,12 @@ impl Pipeline {
         Self::with_tables(gpu, shader, uniform_count, &[])
     }
 
-    /// Of a shader that reads storage buffers at bindings 3, 4, ... of group 0, with what they hold. Its own lists
-    /// are the first of them.
+    /// Compiles a shader that reads storage buffers with these contents at bindings 3, 4, ... of
+    /// group 0. The shader's own lists are the first of them.
     ///
     /// # Errors
     ///
-    /// As [`Pipeline::new`]; a table that is empty is refused by the device.
+    /// As [`Pipeline::new`]; the device refuses an empty table.
     pub fn with_tables(
         gpu: &Gpu,
         mut shader: sdfc_codegen::Shader,
@@ -61,7 +62,7 @@ impl Pipeline {
         Self::of_source(gpu, source, uniform_count, &tables, culling)
     }
 
-    /// Of a shader written in WGSL, with the bindings of `sdfc-march`: in group 0, at 0 a uniform
+    /// Compiles a shader in WGSL that has the bindings of `sdfc-march`: in group 0, at 0 a uniform
     /// `ViewBlock`, at 1 a uniform array of `uniform_count` `vec4f` (absent if that is 0), at 2 the
     /// storage for the tile's `PixelBlock`s. The entry point is `main`, in workgroups of 8x8.
     ///
@@ -114,12 +115,12 @@ impl Pipeline {
         Ok(ready)
     }
 
-    /// The same pipeline with the lists of another shader, whose text is the same: nothing is compiled. Tables that were
-    /// handed in stay.
+    /// Returns the same pipeline with the lists of another shader whose source is the same; nothing
+    /// is compiled. Tables that the caller passed stay.
     ///
     /// # Errors
     ///
-    /// [`RenderError`] if the device has no room for them.
+    /// [`RenderError`] if the device cannot hold them.
     pub fn with_lists_of(&self, shader: &sdfc_codegen::Shader) -> Result<Self, RenderError> {
         let gpu = &self.kernel.gpu;
         let lists = Some(shader.lists()).filter(|lists| !lists.is_empty()).map(uniform_bytes);
@@ -140,22 +141,22 @@ impl Pipeline {
         })
     }
 
-    /// Time to create the pipeline and to run a first workgroup of it, in milliseconds.
+    /// The time to create the pipeline and to run a first workgroup of it, in milliseconds.
     pub fn milliseconds(&self) -> f64 {
         self.milliseconds
     }
 
-    /// Whether its rays visit only those parts of the scene that can matter to them.
+    /// Returns true if its rays run only those iterations of loops that can affect them.
     pub fn leaves_out(&self) -> bool {
         self.kernel.culling.is_some()
     }
 
-    /// The device that it was made for.
+    /// The device that it was compiled for.
     pub fn gpu(&self) -> &Gpu {
         &self.kernel.gpu
     }
 
-    /// Draws a frame. `uniforms` are what [`uniform_values`](crate::uniform_values) gives.
+    /// Draws a frame. `uniforms` are those that [`uniform_values`](crate::uniform_values) returns.
     ///
     /// # Errors
     ///
@@ -199,7 +200,7 @@ impl Pipeline {
         Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
     }
 
-    /// Those of the last frame, unless another is being drawn with them.
+    /// Takes the buffers of the last frame, unless another frame is being drawn with them.
     fn kept_buffers(&self) -> Option<Buffers> {
         self.buffers.lock().ok()?.take()
     }
@@ -210,7 +211,8 @@ impl Pipeline {
         }
     }
 
-    /// What fits the limits of the adapter: a buffer, a binding, the workgroups of a row of tiles.
+    /// The maximum number of pixels of a tile by the limits of the adapter: a buffer, a binding,
+    /// the workgroups of a row of tiles.
     fn max_tile_pixels(&self) -> u32 {
         let limits = self.kernel.gpu.device.limits();
         let bytes = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
@@ -226,7 +228,7 @@ impl Pipeline {
         run.allocate(WORKGROUP * WORKGROUP, [1, 1])?;
         let empty = vec![0; VIEW_BYTES];
         run.submit(&empty, [1, 1], 1, 0)?;
-        // Compiling thousands of leaves can take a software driver many minutes.
+        // No timeout: compiling thousands of primitives can take a software driver many minutes.
         self.kernel.gpu.wait(None)
     }
 }
@@ -244,7 +246,7 @@ fn bind_group_layout(
     }
     entries.push(entry(2, wgpu::BufferBindingType::Storage { read_only: false }, PIXEL_BYTES));
     let table = wgpu::BufferBindingType::Storage { read_only: true };
-    // The device compares what the shader reads with what is bound.
+    // The device compares the buffer's size with what the shader reads.
     entries.extend((FIRST_TABLE..).take(table_count).map(|binding| entry(binding, table, 0)));
     entries.extend(is_culled.then(|| entry(culling::ACTIVE_LISTS, table, 0)));
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {

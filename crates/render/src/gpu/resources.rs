@@ -9,7 +9,7 @@ pub(crate) const WORKGROUP: u32 = 8;
 /// Binding of the first table.
 pub(crate) const FIRST_TABLE: u32 = 3;
 
-/// A buffer of at least so many bytes in a layout.
+/// The layout of a buffer of at least this many bytes.
 pub(crate) fn entry(
     binding: u32,
     kind: wgpu::BufferBindingType,
@@ -27,7 +27,7 @@ pub(crate) fn entry(
     }
 }
 
-/// The stage of a module that an entry point is.
+/// The compute pipeline of a module's entry point.
 pub(crate) fn compute_pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,

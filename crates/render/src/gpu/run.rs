@@ -1,4 +1,4 @@
-//! The buffers of frames, and what is handed in to draw one.
+//! The buffers of a frame, and the commands that draw it.
 
 use std::{sync::mpsc, time::Duration};
 
@@ -17,20 +17,21 @@ use crate::image::Image;
 use crate::tiles::Tile;
 use crate::view::View;
 
-/// A tile that takes longer is given up.
+/// Timeout for a tile.
 const TIMEOUT: Duration = Duration::from_secs(300);
-/// Bytes of the two timestamps about a pass, and of what follows them: how many operands were evaluated before.
+/// Size in bytes of the two timestamps around a pass, and of the number of operands evaluated
+/// before it, which follows them.
 const TIMESTAMP_BYTES: u64 = 16;
 const COUNT_BYTES: u64 = 4;
-/// What is read back beside the pixels.
+/// Bytes that are read back in addition to the pixels.
 pub(crate) const BESIDE_PIXELS: u64 = TIMESTAMP_BYTES + COUNT_BYTES;
 
-/// What the lists of cells follow from, beside the shader.
+/// The values that the lists of cells depend on, apart from the shader.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Moment {
-    /// What is known per frame.
+    /// The per-frame values.
     pub(crate) uniforms: Vec<[f32; 4]>,
-    /// The box that cells are about.
+    /// The box that the cells enclose.
     pub(crate) within: Option<[DVec3; 2]>,
 }
 
@@ -43,7 +44,7 @@ pub(crate) struct Buffers {
     /// Both grow with the tiles.
     pixels: Option<PixelBuffers>,
     active: Option<ActiveBuffers>,
-    /// The moment of which there are lists of cells; none: they are still to be made.
+    /// The moment for which the cells are listed; `None` if they are not.
     listed: Option<Moment>,
 }
 
@@ -52,7 +53,7 @@ pub(crate) struct Run<'a> {
     kernel: &'a Kernel,
     moment: Moment,
     buffers: Buffers,
-    /// How many operands were evaluated before the rays, where they are counted.
+    /// The number of operands evaluated before the rays, if they are counted.
     culling_evaluations: u32,
 }
 
@@ -89,7 +90,7 @@ impl Buffers {
 }
 
 impl<'a> Run<'a> {
-    /// Goes on with the buffers of another frame of the pipeline, if there are such.
+    /// Starts a frame with the buffers of another frame of the pipeline, if there are any.
     pub(crate) fn new(
         kernel: &'a Kernel,
         buffers: Option<Buffers>,
@@ -116,7 +117,8 @@ impl<'a> Run<'a> {
         u64::from(self.culling_evaluations)
     }
 
-    /// Makes the buffers large enough for so many pixels in so many columns and rows of workgroups.
+    /// Makes the buffers large enough for this many pixels in this many columns and rows of
+    /// workgroups.
     pub(crate) fn allocate(&mut self, pixels: u32, groups: [u32; 2]) -> Result<(), RenderError> {
         use wgpu::BufferUsages as Usage;
         let gpu = &self.kernel.gpu;
@@ -165,7 +167,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// How many groups of cells are to be looked at: none where the lists are those of the moment.
+    /// The number of groups of cells to list: none if the lists are those of the moment.
     fn cells_to_list(&self) -> Result<u32, RenderError> {
         let Kernel { gpu, culling: Some(culling), .. } = self.kernel else { return Ok(0) };
         let Some(active) = &self.buffers.active else { return Ok(0) };
@@ -177,7 +179,7 @@ impl<'a> Run<'a> {
         Ok(within.map_or(0, |_| culling_layout::GROUPS))
     }
 
-    /// Draws a tile into the image; its time in milliseconds where the adapter tells one.
+    /// Draws a tile into the image. Returns its time in milliseconds if the adapter measures times.
     pub(crate) fn draw(
         &mut self,
         view: &View,
@@ -193,7 +195,7 @@ impl<'a> Run<'a> {
         self.read(tile, image)
     }
 
-    /// Hands in workgroups, what comes before them, and the copying of the pixels that they make.
+    /// Submits workgroups, the culling before them, and the copy of the pixels that they write.
     pub(crate) fn submit(
         &self,
         view: &[u8],
@@ -248,7 +250,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Reads the pixels of a tile, and its time.
+    /// Reads back the pixels of a tile, and its time.
     fn read(&mut self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
         let Some(buffers) = &self.buffers.pixels else { return Ok(None) };
         let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
@@ -256,7 +258,7 @@ impl<'a> Run<'a> {
         let (sender, receiver) = mpsc::channel();
         self.kernel.gpu.scoped("reading a tile", || {
             slice.map_async(wgpu::MapMode::Read, move |result| {
-                // The receiver waits below; it is gone only where the wait itself failed.
+                // The receiver waits below; it is gone only if the wait itself failed.
                 let _ = sender.send(result);
             });
         })?;

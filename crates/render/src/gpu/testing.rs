@@ -1,6 +1,6 @@
-//! For tests that need an adapter.
+//! Support for tests that need an adapter.
 //!
-//! Such tests stand in a target without the standard harness, so that on a machine without an
+//! Such tests belong in a target without the standard harness, so that on a machine without an
 //! adapter they are reported as ignored, never as passed:
 //!
 //! ```no_run
@@ -16,10 +16,11 @@
 //! libtest_mimic::run(&Arguments::from_args(), vec![draws.with_ignored_flag(ignored)]).exit();
 //! ```
 //!
-//! With `SDFC_REQUIRE_GPU=1` in the environment they run everywhere, and fail where
+//! With `SDFC_REQUIRE_GPU=1` in the environment they run everywhere, and fail if
 //! [`Gpu::new`](crate::Gpu::new) does.
 //!
-//! A device can be lost on purpose: [`lose`] does it, and [`LOSE_DEVICE`] makes a program of a debug build do it.
+//! A device can be lost on purpose: [`lose`] does it, and [`LOSE_DEVICE`] makes a program of a
+//! debug build do it.
 
 use std::sync::{
     OnceLock,
@@ -29,10 +30,10 @@ use std::sync::{
 use super::device::Gpu;
 use crate::error::RenderError;
 
-/// The environment variable that makes tests fail, not be ignored, where there is no adapter.
+/// The environment variable that makes tests fail instead of being ignored if there is no adapter.
 pub const REQUIRE_GPU: &str = "SDFC_REQUIRE_GPU";
 
-/// Whether tests that need an adapter are to be ignored: there is none, and none is required.
+/// Returns true if tests that need an adapter are ignored: there is none, and none is required.
 pub fn without_gpu() -> bool {
     static WITHOUT: OnceLock<bool> = OnceLock::new();
     *WITHOUT.get_or_init(|| {
@@ -49,16 +50,16 @@ pub fn with_storage(bytes: u64) -> Result<Gpu, RenderError> {
     Gpu::with_limits(|limits| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..limits })
 }
 
-/// The environment variable that makes a build with debug assertions lose its device, as if the adapter had been
-/// unplugged: once it has drawn so many tiles.
+/// The environment variable that makes a build with debug assertions lose its device, as if the
+/// adapter had been unplugged, after this many tiles.
 pub const LOSE_DEVICE: &str = "SDFC_LOSE_DEVICE_AFTER";
 
-/// Makes a device lost.
+/// Loses the device.
 pub fn lose(gpu: &Gpu) {
     gpu.device.destroy();
 }
 
-/// Called before each tile: makes the device lost if [`LOSE_DEVICE`] asks for it there.
+/// Called before each tile: loses the device if [`LOSE_DEVICE`] asks for it.
 pub(crate) fn lose_if_asked(gpu: &Gpu) {
     static TILES: AtomicU32 = AtomicU32::new(0);
     if cfg!(debug_assertions)

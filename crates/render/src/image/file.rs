@@ -13,11 +13,11 @@ use super::{HIT, Image};
 use crate::error::RenderError;
 
 impl Image {
-    /// The picture as a PNG file, sRGB, without alpha.
+    /// Encodes the picture as a PNG file, sRGB, without alpha.
     ///
     /// # Errors
     ///
-    /// [`RenderError::OutOfMemory`] where the encoder fails, which it does for no other reason.
+    /// [`RenderError::OutOfMemory`] if the encoder fails, which it does for no other reason.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         let [width, height] = self.size;
         let mut file = Cursor::new(Vec::new());
@@ -27,7 +27,8 @@ impl Image {
         Ok(file.into_inner())
     }
 
-    /// The picture as an OpenEXR file: channels `R`, `G`, `B` in f32, linear light, not clamped.
+    /// Encodes the picture as an OpenEXR file: channels `R`, `G`, `B` in f32, linear light, not
+    /// clamped.
     ///
     /// # Errors
     ///
@@ -41,9 +42,9 @@ impl Image {
         exr_file(|file| layer.write().non_parallel().to_buffered(file))
     }
 
-    /// The depths as an OpenEXR file: one channel `Z` in f32, the distance from the eye to the surface
-    /// along the pixel's ray (not along the camera's axis) in scene units; infinite where no surface was
-    /// met.
+    /// Encodes the depths as an OpenEXR file: one channel `Z` in f32, the distance from the eye to
+    /// the surface along the pixel's ray (not along the camera's axis) in scene units; infinite for
+    /// a ray that hit nothing.
     ///
     /// # Errors
     ///
@@ -76,13 +77,14 @@ fn exr_file(
     Ok(file.into_inner())
 }
 
-/// A GIF file in the making, that repeats without end. Each frame has 256 colours of its own.
+/// An animated GIF while its frames are added; it repeats without end. Each frame has its own 256
+/// colours.
 pub struct Animation<'a> {
     encoder: GifEncoder<&'a mut Vec<u8>>,
 }
 
 impl<'a> Animation<'a> {
-    /// Without frames; the file is whole when this is dropped.
+    /// Starts an animation without frames. The file is complete when this value is dropped.
     ///
     /// # Errors
     ///
@@ -93,7 +95,8 @@ impl<'a> Animation<'a> {
         Ok(Self { encoder })
     }
 
-    /// Adds a frame that is shown for so many hundredths of a second; few viewers keep to less than 2.
+    /// Adds a frame that is shown for a number of hundredths of a second; few viewers show one for
+    /// less than 2.
     ///
     /// # Errors
     ///

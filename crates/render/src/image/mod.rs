@@ -1,4 +1,4 @@
-//! A finished picture in linear light, with what the rays met.
+//! A finished picture in linear light, with how each ray ended.
 
 #[cfg(feature = "files")]
 mod file;
@@ -14,9 +14,9 @@ use crate::view::footprint::Footprint;
 pub use file::Animation;
 pub use samples::sample_offsets;
 
-/// [`PixelBlock::status`] of a ray that met nothing.
+/// [`PixelBlock::status`] of a ray that hit nothing.
 pub const MISS: u32 = 0;
-/// [`PixelBlock::status`] of a ray that met a surface.
+/// [`PixelBlock::status`] of a ray that hit a surface.
 pub const HIT: u32 = 1;
 /// [`PixelBlock::status`] of a ray that ran out of steps.
 pub const CAPPED: u32 = 2;
@@ -32,11 +32,11 @@ pub struct Image {
 /// How the rays of a picture ended. The four add up to its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PixelCounts {
-    /// Met a surface.
+    /// The ray hit a surface.
     pub hit: u64,
-    /// Met nothing.
+    /// The ray hit nothing.
     pub miss: u64,
-    /// Ran out of steps.
+    /// The ray ran out of steps.
     pub capped: u64,
     /// Depth or colour is not a finite number, however the ray ended.
     pub nan: u64,
@@ -79,14 +79,14 @@ impl Image {
         &mut self.pixels
     }
 
-    /// The pixel in a column and a row, if there is one.
+    /// The pixel in a column and a row; `None` outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> Option<&PixelBlock> {
         let [width, height] = self.size;
         let index = y as usize * width as usize + x as usize;
         (x < width && y < height).then(|| self.pixels.get(index)).flatten()
     }
 
-    /// Puts the pixels of a tile, row by row, in their places.
+    /// Writes the pixels of a tile, row by row.
     pub(crate) fn put(&mut self, tile: Tile, mut pixels: impl Iterator<Item = PixelBlock>) {
         let [x, y] = tile.origin.map(|first| first as usize);
         let [columns, rows] = tile.size.map(|side| side as usize);
@@ -132,7 +132,7 @@ pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
     if sides && area { Ok(()) } else { Err(RenderError::Size(size)) }
 }
 
-/// Whether colour and depth of a pixel are numbers.
+/// Returns true if colour and depth of a pixel are finite numbers.
 pub fn is_finite(pixel: &PixelBlock) -> bool {
     pixel.depth.is_finite() && pixel.color.iter().all(|channel| channel.is_finite())
 }

@@ -1,22 +1,23 @@
-//! Several rays for each pixel, averaged.
+//! Several samples per pixel, averaged.
 
 use super::Image;
 use crate::error::RenderError;
 use crate::limits::MAX_SAMPLES;
 
-/// The golden ratio less 1: of all numbers the one whose multiples, modulo 1, stay furthest apart.
+/// The golden ratio minus 1: the number whose multiples, modulo 1, stay farthest apart.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Where in a pixel so many rays pass: in pixels to the right of its centre and below it. One passes
-/// through the centre; of several no two share a row or a column, so that edges along either have as
-/// many shades as there are rays. Their mean is the centre, and the first is the nearest to it.
+/// Returns the positions of `count` samples in a pixel, in pixels to the right of its centre and
+/// below it. One sample is at the centre; of several no two share a row or a column, so that edges
+/// along either have as many shades as there are samples. Their mean is the centre, and the first
+/// is the nearest to it.
 ///
-/// The places are a lattice, `((i + 1/2) / n, i * golden)` modulo 1: the same at every pixel, in every
-/// frame, on every device.
+/// The positions are a lattice, `((i + 1/2) / n, i * golden)` modulo 1: the same at every pixel, in
+/// every frame, on every device.
 ///
 /// # Errors
 ///
-/// [`RenderError::Samples`] for none and for more than [`MAX_SAMPLES`].
+/// [`RenderError::Samples`] for 0 and for more than [`MAX_SAMPLES`].
 pub fn sample_offsets(count: u32) -> Result<Vec<[f64; 2]>, RenderError> {
     if !(1..=MAX_SAMPLES).contains(&count) {
         return Err(RenderError::Samples(count));
@@ -38,8 +39,8 @@ fn length([x, y]: &[f64; 2]) -> f64 {
 }
 
 impl Image {
-    /// Adds the colours and evaluations of another picture of the same size; depths and how rays ended
-    /// stay. A sum of `n` pictures is [divided](Self::divide) by `n` to be their mean in linear light.
+    /// Adds the colours and evaluations of another picture of the same size; depths and statuses
+    /// stay. The sum of `n` pictures [divided](Self::divide) by `n` is their mean in linear light.
     pub fn add(&mut self, other: &Image) {
         for (pixel, more) in self.pixels.iter_mut().zip(&other.pixels) {
             for (channel, more) in pixel.color.iter_mut().zip(more.color) {

@@ -6,12 +6,12 @@ use sdfc_graph::{Fog, NodeId, Occlusion, Settings, Sky};
 use super::error::ViewError;
 use super::values::{finite, fraction, positive};
 
-/// What is seen where nothing is met, in linear colours.
+/// The background in linear colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
     /// One colour.
     Plain(DVec3),
-    /// Colours by direction.
+    /// A sky, whose colour depends on the direction.
     Sky {
         /// Straight up.
         zenith: DVec3,
@@ -20,21 +20,21 @@ pub enum Background {
     },
 }
 
-/// What is far away fades.
+/// Fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewFog {
-    /// What is left of a surface's light after a length t is `exp(-density * t)`.
+    /// Density: a fraction `exp(-density * t)` of a surface's light is left after a length t.
     pub density: f64,
-    /// Linear colour that it fades to; none: what lies behind.
+    /// Linear colour of the fog; `None` takes that of the background.
     pub color: Option<DVec3>,
 }
 
-/// How much of the light from everywhere reaches a surface.
+/// Ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewOcclusion {
-    /// What is farther away takes no light.
+    /// Distance up to which surfaces occlude ambient light.
     pub radius: f64,
-    /// By what part light is taken, 0..1.
+    /// Strength, 0..1.
     pub strength: f64,
 }
 

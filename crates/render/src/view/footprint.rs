@@ -1,16 +1,16 @@
 //! The width of a pixel along its ray.
 
-/// Half the width that a pixel sees.
+/// The footprint of a camera ray: half the width of its pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
-    /// Where rays start.
+    /// At the ray's origin.
     pub radius: f64,
-    /// What it gains per length.
+    /// Growth per unit of length.
     pub spread: f64,
 }
 
 impl Footprint {
-    /// At a distance from where rays start.
+    /// The footprint at a distance from the ray's origin.
     pub fn at(self, t: f64) -> f64 {
         self.radius + self.spread * t
     }

@@ -7,7 +7,7 @@ use sdfc_march::{LightBlock, MAX_LIGHTS, POINT, SHADOW_HARD, SHADOW_OFF, SHADOW_
 use super::error::ViewError;
 use super::values::{finite, positive};
 
-/// A spot light's light falls off over this outer part of its angle.
+/// The outer fraction of a spot light's angle over which its light falls off.
 const RIM: f64 = 0.15;
 
 /// A light.
@@ -15,9 +15,9 @@ const RIM: f64 = 0.15;
 pub struct ViewLight {
     /// Where its light comes from.
     pub source: ViewSource,
-    /// Linear colour times strength: of a sun anywhere, of others at distance 1.
+    /// Linear colour times strength; for a light with a position, as received at distance 1.
     pub color: DVec3,
-    /// What shadow it throws.
+    /// The shadow that it casts.
     pub shadow: ViewShadow,
 }
 
@@ -30,24 +30,25 @@ pub enum ViewSource {
     Point(DVec3),
     /// From a position, in a cone.
     Spot {
-        /// Where it stands.
+        /// The position.
         position: DVec3,
         /// Unit vector along the middle of the cone.
         axis: DVec3,
-        /// Cosines of angles from the axis: all light within the first, none outside the second.
+        /// Cosines of two angles from the axis: full light within the first, none outside the
+        /// second.
         rim: [f64; 2],
     },
 }
 
-/// What shadow a light throws.
+/// The shadow that a light casts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ViewShadow {
     /// None.
     #[default]
     Off,
-    /// One without an edge.
+    /// A shadow with a sharp edge.
     Hard,
-    /// One whose edge fades over the inverse of this number.
+    /// A shadow with a penumbra: its edge fades over the inverse of this number.
     Soft(f64),
 }
 

@@ -8,12 +8,12 @@ use super::error::ViewError;
 use super::pose::Pose;
 use super::values::{Bounds, stated};
 
-/// Length of a ray in distances from eye to target, where neither scene nor bounds limit it.
+/// Length of a ray in distances from eye to target, if neither scene nor bounds limit it.
 const DEFAULT_DISTANCE: f64 = 200.0;
-/// A ray that is limited by the bounds goes past them by so much, for the rounding of the bounds.
+/// Factor by which a ray limited by the bounds goes past them, for the rounding of the bounds.
 const DISTANCE_MARGIN: f64 = 1.01;
 
-/// How far and how finely rays go.
+/// The length and precision of rays.
 pub(super) struct Limits {
     pub(super) t_max: f64,
     pub(super) epsilon: f64,
@@ -44,8 +44,8 @@ impl Limits {
     }
 }
 
-/// As far as the bounds' farthest corner, and from end to end of them for rays to a lamp, if they
-/// are finite and not empty.
+/// The distance to the farthest corner of the bounds, or their diagonal if that is longer, for
+/// shadow rays, if they are finite and not empty.
 fn derived_distance(eye: DVec3, reach: f64, bounds: Option<Bounds>) -> f64 {
     let farthest = bounds.map(|[lo, hi]| {
         let (lo, hi) = (DVec3::from(lo), DVec3::from(hi));

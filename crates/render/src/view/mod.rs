@@ -1,7 +1,7 @@
-//! The camera, the lights and the limits of one frame as numbers: what rays need to know.
+//! The camera, the lights and the limits of one frame, as the numbers that rays need.
 //!
-//! Right-handed, y up, z towards the viewer. Lengths are in scene units, angles in radians,
-//! colours linear.
+//! Right-handed, y up, z towards the viewer. Lengths are in scene units, angles in radians, colours
+//! linear.
 
 mod background;
 mod error;
@@ -36,51 +36,53 @@ pub use values::Bounds;
 pub struct View {
     /// Size of the picture in pixels.
     pub size: [u32; 2],
-    /// Where rays start, or the middle of where parallel ones do; as all places counted from the program's origin.
+    /// Origin of the camera rays, or the middle of the origins of parallel ones. Like all positions
+    /// here, it is relative to the program's origin.
     pub eye: DVec3,
-    /// Whether the rays of the pixels are parallel.
+    /// True if the camera rays are parallel.
     pub parallel: bool,
-    /// Half the width of the picture, at distance 1 unless rays are parallel.
+    /// Half the width of the picture: at distance 1, or at any distance if rays are parallel.
     pub right: DVec3,
-    /// Half the height of the picture, at distance 1 unless rays are parallel.
+    /// Half the height of the picture: at distance 1, or at any distance if rays are parallel.
     pub up: DVec3,
-    /// Through the middle of the picture, at distance 1 from the eye along the camera's axis: a unit
-    /// vector unless [`Self::shifted`].
+    /// The vector from the eye through the middle of the picture, at distance 1 along the camera's
+    /// axis: a unit vector unless [`Self::shifted`].
     pub forward: DVec3,
-    /// Rays end here.
+    /// Length of the rays.
     pub t_max: f64,
-    /// A hit is nearer than this (`fixed`, `sphere`).
+    /// Absolute distance below which a point is a hit (`fixed`, `sphere`).
     pub epsilon: f64,
-    /// A hit is nearer than this, in widths of a pixel there (all other methods).
+    /// Distance below which a point is a hit, as a multiple of the pixel's width there (all other
+    /// methods).
     pub tolerance: f64,
-    /// At most so many steps a ray.
+    /// The step budget of a ray.
     pub steps: u32,
     /// The lights, at most [`MAX_LIGHTS`].
     pub lights: Vec<ViewLight>,
-    /// Linear colour of light from everywhere.
+    /// Linear colour of the ambient light.
     pub ambient: DVec3,
-    /// What is seen where nothing is met.
+    /// The background.
     pub background: Background,
-    /// What is far away fades.
+    /// The fog.
     pub fog: Option<ViewFog>,
-    /// Light from everywhere does not reach everything.
+    /// The ambient occlusion.
     pub occlusion: Option<ViewOcclusion>,
-    /// A ray from the eye is mirrored at most so often, at most [`MAX_REFLECTIONS`] times.
+    /// The number of reflections of a camera ray, at most [`MAX_REFLECTIONS`].
     pub reflections: u32,
-    /// What is seen in a mirror counts by this factor, 0..1, once more for each mirror.
+    /// Factor of the light from each reflection, 0..1.
     pub reflection_strength: f64,
-    /// A box around all surfaces that loops with lists of rounds are part of, if that is known.
+    /// A box around all surfaces of loops with active lists, if one is known.
     pub within: Option<[DVec3; 2]>,
 }
 
 impl View {
-    /// The view of one frame of a program. `bounds` of what is drawn limit the rays, and place the
-    /// camera where the scene has none: it sees the box from the right, above and in front, an
-    /// unlimited side taken as long as the longest limited one.
+    /// The view of one frame of a program. `bounds` of the visible shapes limit the rays, and place
+    /// the camera if the scene has none: it sees the box from the right, above and in front, where
+    /// an unlimited side counts as long as the longest limited one.
     ///
     /// # Errors
     ///
-    /// [`ViewError`] where a setting's values make no picture.
+    /// [`ViewError`] if a setting's values make no picture.
     pub fn new(
         program: &Program,
         frame: &FrameValues,
@@ -91,11 +93,11 @@ impl View {
         Self::from_pose(program, frame, bounds, size, &pose)
     }
 
-    /// As [`Self::new`], seen from where one says, whatever camera the scene has.
+    /// As [`Self::new`], seen from `pose` whatever the scene's camera is.
     ///
     /// # Errors
     ///
-    /// [`ViewError`] where another setting's values make no picture.
+    /// [`ViewError`] if another setting's values make no picture.
     pub fn from_pose(
         program: &Program,
         frame: &FrameValues,
@@ -113,7 +115,7 @@ impl View {
         Ok(Self { within, ..view }.about(DVec3::from(program.origin)))
     }
 
-    /// The view with places counted from another.
+    /// The view with positions relative to `origin`.
     fn about(mut self, origin: DVec3) -> Self {
         self.eye -= origin;
         self.within = self.within.map(|corners| corners.map(|corner| corner - origin));
@@ -128,7 +130,7 @@ impl View {
         self
     }
 
-    /// `value` gives the lanes of the settings' nodes.
+    /// `value` returns the lanes of the settings' nodes.
     fn of_settings(
         settings: &Settings,
         value: &dyn Fn(NodeId) -> [f64; 4],
@@ -196,7 +198,8 @@ impl View {
         }
     }
 
-    /// The view whose rays pass so many pixels to the right of the centres of pixels and below them.
+    /// The view whose rays pass `x` pixels to the right of the pixels' centres and `y` pixels below
+    /// them.
     pub fn shifted(&self, [x, y]: [f64; 2]) -> Self {
         let [columns, rows] = self.size.map(|side| f64::from(side.max(1)));
         let aside = self.right * (2.0 * x / columns) - self.up * (2.0 * y / rows);
@@ -207,7 +210,7 @@ impl View {
         }
     }
 
-    /// Where the ray through the centre of a pixel starts, and its unit direction; rows count downwards.
+    /// Origin and unit direction of the ray through the centre of a pixel; rows count downwards.
     pub fn ray(&self, x: u32, y: u32) -> [DVec3; 2] {
         let place = |index: u32, side: u32| 2.0 * (f64::from(index) + 0.5) / f64::from(side) - 1.0;
         let [width, height] = self.size;
@@ -272,7 +275,7 @@ impl View {
     }
 }
 
-/// What a program says of [`View::within`] at a frame.
+/// The box of [`View::within`] at a frame.
 fn within(program: &Program, frame: &FrameValues) -> Option<[DVec3; 2]> {
     let corners = evaluate_frame(&program.graph, &program.loop_bounds?, frame);
     let corner = |place: usize| {

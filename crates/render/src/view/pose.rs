@@ -1,4 +1,4 @@
-//! Where the camera stands: as the scene says, or fitted to the bounds.
+//! The pose of the camera: the scene's, or fitted to the bounds.
 
 use glam::DVec3;
 use sdfc_graph::{
@@ -9,35 +9,36 @@ use sdfc_graph::{
 use super::error::ViewError;
 use super::values::{Bounds, finite, positive, value_of};
 
-/// Vertical field of view of a camera that is fitted to the bounds.
+/// Vertical field of view of a fitted camera.
 const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
-/// From the middle of the bounds towards a fitted camera: from the right, above and in front.
+/// Direction from the middle of the bounds towards a fitted camera: from the right, above and in
+/// front.
 const FITTED_DIRECTION: DVec3 = DVec3::new(0.5, 0.45, 1.0);
-/// A fitted camera stands so much farther than where the sphere about the bounds just fits.
+/// Factor of the distance at which the sphere around the bounds just fits.
 const FITTED_MARGIN: f64 = 1.05;
 
-/// Where the camera stands and how it looks.
+/// The position and direction of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Where rays start.
+    /// Origin of the rays.
     pub eye: DVec3,
-    /// What is in the middle of the picture.
+    /// The point in the middle of the picture.
     pub target: DVec3,
     /// Upward direction, of any length.
     pub up: DVec3,
-    /// Whether rays are parallel.
+    /// True if rays are parallel.
     pub parallel: bool,
-    /// Half the height of the picture, at distance 1 unless rays are parallel.
+    /// Half the height of the picture: at distance 1, or at any distance if rays are parallel.
     pub half_height: f64,
 }
 
 impl Pose {
-    /// The scene's camera at a frame; without one, fitted to the bounds for a picture so many times as wide
-    /// as high.
+    /// The scene's camera at a frame; without one, a camera fitted to the bounds for a picture
+    /// whose width is `aspect` times its height.
     ///
     /// # Errors
     ///
-    /// [`ViewError`] where the camera's values make no picture.
+    /// [`ViewError`] if the camera's values make no picture.
     pub fn new(
         program: &Program,
         frame: &FrameValues,
@@ -62,7 +63,7 @@ impl Pose {
         }
     }
 
-    /// As the scene states it.
+    /// The camera that the scene states.
     fn of_camera(camera: &Camera, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<Self, ViewError> {
         let eye = finite(value(camera.eye), "the camera's eye")?;
         let target = finite(value(camera.target), "the camera's target")?;
@@ -80,12 +81,12 @@ impl Pose {
         Ok(Self { eye, target, up, parallel, half_height })
     }
 
-    /// Seeing the whole of the bounds from the right, above and in front; an unlimited side is taken as long
-    /// as the longest limited one.
+    /// A camera that sees the whole of the bounds from the right, above and in front; an unlimited
+    /// side counts as long as the longest limited one.
     pub fn fitted(bounds: Option<Bounds>, aspect: f64) -> Self {
         let [lo, hi] = limited(bounds);
         let target = (lo + hi) / 2.0;
-        // The narrower side decides; a flat or single-point box still wants some distance.
+        // The narrower side decides; a flat or single-point box still needs some distance.
         let narrower = FITTED_FOV.min(2.0 * ((FITTED_FOV / 2.0).tan() * aspect).atan());
         let radius = ((hi - lo).length() / 2.0).max(1e-3);
         let distance = FITTED_MARGIN * radius / (narrower / 2.0).sin();
@@ -97,8 +98,8 @@ impl Pose {
     /// Unit vectors to the right, upwards and into the picture.
     pub fn basis(&self) -> [DVec3; 3] {
         let forward = (self.target - self.eye).normalize_or(DVec3::NEG_Z);
-        // Looking along `up`: then what lies behind is at the bottom, as on a map; z points at the
-        // viewer of a scene, so it is at the bottom of a view from above.
+        // If the camera looks along `up`, what lies behind is at the bottom, as on a map. As z
+        // points at the viewer of a scene, it is at the bottom of a view from above.
         let stand_in = if forward.z.abs() > 0.9 { DVec3::Y } else { DVec3::NEG_Z * -forward.y };
         let up = self.up.normalize_or_zero();
         let right = match forward.cross(up) {
@@ -109,8 +110,8 @@ impl Pose {
     }
 }
 
-/// The box with each unlimited side replaced: centred on 0 where both ends are open, else on its
-/// one end, and as long as the longest limited side (2 if there is none).
+/// The box with each unlimited side replaced: centred on 0 if both ends are open, else on its one
+/// end, and as long as the longest limited side (2 if there is none).
 fn limited(bounds: Option<Bounds>) -> [DVec3; 2] {
     let [lo, hi] = bounds.unwrap_or([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]]);
     let sides = [0, 1, 2].map(|axis| hi[axis] - lo[axis]);

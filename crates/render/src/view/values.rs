@@ -8,12 +8,12 @@ use super::error::ViewError;
 /// Lowest and highest corner of a box, in scene units; infinite where it is not limited.
 pub type Bounds = [[f64; 3]; 2];
 
-/// How many times as wide as high.
+/// Width divided by height.
 pub(super) fn aspect([width, height]: [u32; 2]) -> f64 {
     f64::from(width.max(1)) / f64::from(height.max(1))
 }
 
-/// The lanes of one of the settings' nodes.
+/// The value of one of the settings' nodes.
 pub(super) fn value_of(nodes: &[NodeId], values: &[[f64; 4]], id: NodeId) -> [f64; 4] {
     let found = nodes.iter().position(|node| *node == id);
     found.and_then(|index| values.get(index)).copied().unwrap_or([f64::NAN; 4])

@@ -1,4 +1,5 @@
-//! Copies met in closed form, as `auto` does in the shader: those that are sampled at a place, as far from there as there are no others.
+//! Analytic intersection of copies, as `auto` does it in the shader: at each position those that
+//! are sampled there, as far as there are no others.
 
 use sdfc_graph::eval::Packet;
 
@@ -7,7 +8,7 @@ use crate::cpu::pre_intersection::PreIntersection;
 use crate::cpu::ray::{Batch, LANES, Ray, Real, packed};
 use crate::image::HIT;
 
-/// Takes all rays to their ends; the result has their order.
+/// Traces all rays to their ends; the result has their order.
 pub(crate) fn trace_among_copies<T: Real>(
     copies: &mut Batch<'_, T>,
     rays: &[(Ray<T>, PreIntersection<T>)],
@@ -46,7 +47,8 @@ pub(crate) fn trace_among_copies<T: Real>(
 }
 
 impl<T: Real> Walk<T> {
-    /// Takes where the ray meets what is sampled here and how far that is all there is, from here.
+    /// Moves by the result for the current position: where the ray hits a copy that is sampled
+    /// here, and how far there are no other copies.
     fn step_over(&mut self, [met, reach]: [T; 2], limits: &Limits<T>) -> Option<Trace<T>> {
         self.evaluations += 1;
         let [met, reach] = [met, reach].map(|way| self.t + way);

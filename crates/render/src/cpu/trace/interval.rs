@@ -1,20 +1,21 @@
-//! `interval` on the CPU, as in the shader.
+//! The method `interval` on the CPU, as in the shader.
 
 use sdfc_graph::eval::Evaluator;
 
 use super::{Limits, Turn, Walk};
 use crate::cpu::ray::Real;
 
-/// Of what is not free this part at most is looked at next, and this part at least.
+/// Bounds on the fraction of a segment that is examined next.
 const MAX_FRACTION: f64 = 0.9;
 const MIN_FRACTION: f64 = 0.0625;
-/// No segment is cut shorter than this part of the tolerance; nor, of a ray that has spent its steps, than so many of it.
+/// The shortest segment, as a fraction of the tolerance. It grows up to COARSEST tolerances as a
+/// ray spends its steps.
 const FINEST: f64 = 0.0625;
 const COARSEST: f64 = 4.0;
 
 impl<T: Real> Walk<T> {
-    /// The place up to which the ray is free, or which is too near to tell; or, of a ray that is inside, the next
-    /// place on the way back to the surface.
+    /// Returns the position up to which the ray is free, or which is too near to tell; after a
+    /// change of sign, the next position of false position.
     pub(super) fn interval(
         &mut self,
         distance: T,
@@ -54,7 +55,7 @@ impl<T: Real> Walk<T> {
             if least > zero || self.segment <= finest {
                 break;
             }
-            // As far as the field would stay above 0 if it fell evenly to its least value.
+            // As far as the field would stay positive if it fell linearly to its lower bound.
             let fall = (above - least).max(T::constant(1e-30));
             let part = (T::constant(MAX_FRACTION) * above).div(fall);
             let part = part.clamp(T::constant(MIN_FRACTION), T::constant(MAX_FRACTION));
