@@ -122,7 +122,7 @@ fn blocks_have_the_layout_of_the_shader() {
 }
 
 #[test]
-fn params_are_reflected_with_their_places() {
+fn params_are_reflected_with_their_offsets() {
     let mut graph = Graph::new();
     let types = [Type::Scalar, Type::Vec3, Type::Bool, Type::Vec2, Type::Vec4, Type::Scalar];
     let mut distance = common::floor(&mut graph, 0.5);
@@ -162,7 +162,7 @@ fn params_are_reflected_with_their_places() {
 }
 
 #[test]
-fn names_that_wgsl_does_not_take_are_changed() {
+fn names_that_wgsl_does_not_allow_are_changed() {
     for name in ["loop", "distance", "p", "_", "", "2d", "a__b", "é", "x y", "sdf_distance", "q1"]
     {
         let mut scene = blend();

@@ -36,7 +36,7 @@ fn a_blend_with_a_param() {
 }
 
 #[test]
-fn a_painted_sphere() {
+fn a_sphere_with_a_material() {
     insta::assert_snapshot!(field(&painted()));
 }
 
@@ -70,7 +70,7 @@ fn a_material_links_its_shading() {
 }
 
 #[test]
-fn a_mirror_links_the_mirrored_ray_and_no_shadow() {
+fn a_mirror_links_the_reflected_ray_and_no_shadow() {
     let shader = render_module(&mirrored(sphere()), "auto").expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
@@ -104,7 +104,7 @@ const FUNCTIONS: [Target; 6] =
 
 /// The painted sphere with a param, and what the reflection says of it.
 #[test]
-fn a_small_scene_in_every_text() {
+fn a_small_scene_in_every_language() {
     let options = FieldOptions { binding: 3, ..FieldOptions::default() };
     let shader = field_module(&blend(), &options).expect("lowers");
     for target in FUNCTIONS {
@@ -120,7 +120,7 @@ fn a_small_scene_in_every_text() {
 
 /// The ray method as a function beside those of the scene.
 #[test]
-fn a_march_in_every_text() {
+fn a_march_in_every_language() {
     let options = FieldOptions { gradient: false, ..FieldOptions::default() };
     let shader = march_module(&blend(), "auto", &options).expect("links");
     for target in FUNCTIONS {
@@ -171,7 +171,7 @@ fn long_lists_are_in_a_buffer_where_the_language_has_such_buffers() {
 }
 
 #[test]
-fn the_fragment_form_binds_view_and_params_from_where_it_is_told() {
+fn the_fragment_form_uses_the_given_group_and_binding() {
     let options = PictureOptions {
         method: "sphere".to_owned(),
         stage: Stage::Fragment,
@@ -190,7 +190,7 @@ fn the_fragment_form_binds_view_and_params_from_where_it_is_told() {
 }
 
 #[test]
-fn a_whole_text_for_shadertoy() {
+fn a_picture_for_shadertoy() {
     let view = vec![0; size_of::<ViewBlock>()];
     let shader = shadertoy_module(&blend(), "sphere", &view).expect("links");
     let written = shader.write(Target::Shadertoy, "a").expect("is written");
@@ -203,7 +203,7 @@ fn a_whole_text_for_shadertoy() {
 
 /// Words that are free in WGSL and taken in one of the others.
 #[test]
-fn params_are_reported_by_the_names_of_each_text() {
+fn params_are_reflected_with_the_names_of_each_language() {
     for word in ["loop", "float4", "half", "vec2", "gl_x", "double", "thread", "_group", "a__b"] {
         let mut scene = blend();
         scene.params[0].name = word.to_owned();
@@ -223,7 +223,7 @@ fn params_are_reported_by_the_names_of_each_text() {
 }
 
 #[test]
-fn names_that_a_language_has_itself_are_reported_as_they_are_written() {
+fn keywords_of_a_language_are_reflected_as_they_are_written() {
     let options = FieldOptions { prefix: String::new(), ..FieldOptions::default() };
     let shader = field_module(&sphere(), &options).expect("lowers");
     let written = shader.write(Target::Glsl, "").expect("is written");

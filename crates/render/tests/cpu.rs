@@ -76,7 +76,7 @@ fn tiles_of_any_size_give_the_same_picture() {
 }
 
 #[test]
-fn a_lamp_overhead_throws_the_spheres_shadow_on_the_floor() {
+fn a_light_overhead_casts_the_spheres_shadow_on_the_floor() {
     let frame = draw(&common::sphere_above_floor(), [96, 64], "auto", TileSize::default());
     let view = common::view(&common::sphere_above_floor(), [96, 64]);
     let (mut lit, mut shadowed) = (0, 0);
@@ -143,7 +143,7 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
 }
 
 #[test]
-fn light_of_a_lamp_thins_out_with_the_square_of_the_distance() {
+fn a_point_light_falls_off_with_the_square_of_the_distance() {
     let place = glam::DVec3::new(3.0, 0.5, 1.0);
     let (mut lit, mut shadowed) = (0, 0);
     for (point, _, color) in floor_pixels(&common::lamp(place.to_array(), 4.0, Shadow::Hard)) {

@@ -33,7 +33,10 @@ fn main() {
         Trial::test("a_param_moves_the_surface", a_param_moves_the_surface),
         Trial::test("fields_that_are_no_numbers_are_counted", not_a_number_is_counted),
         Trial::test("a_lost_device_is_an_error_and_stays_one", a_lost_device_stays_lost),
-        Trial::test("progress_is_told_and_stops_the_frame", progress_is_told_and_stops_the_frame),
+        Trial::test(
+            "progress_is_reported_and_can_cancel_the_frame",
+            progress_is_reported_and_can_cancel_the_frame,
+        ),
     ];
     let trials = trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
     libtest_mimic::run(&arguments, trials).exit();
@@ -266,7 +269,7 @@ fn a_lost_device_stays_lost() -> Outcome {
     Ok(())
 }
 
-fn progress_is_told_and_stops_the_frame() -> Outcome {
+fn progress_is_reported_and_can_cancel_the_frame() -> Outcome {
     let gpu = Gpu::new()?;
     let view = common::view(&common::sphere(), [64, 64]);
     let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;

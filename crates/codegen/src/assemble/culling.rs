@@ -18,9 +18,9 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     if !features.culled {
         return Ok(None);
     }
-    let visits: Vec<&CullableLoop> =
+    let loops: Vec<&CullableLoop> =
         program.cullable_loops.iter().take(stubs::CULLING_BOUNDS.len()).collect();
-    let roots: Vec<_> = visits.iter().map(|visit| visit.culling_bounds).collect();
+    let roots: Vec<_> = loops.iter().map(|looped| looped.culling_bounds).collect();
     let used = used_slots(program, roots.clone());
     let mut module = template(&culling_source(), features, &used, &[])?;
     let (mut inputs, load_frame) = declare_slots(&mut module, program, &used, SLOTS);
@@ -35,7 +35,7 @@ pub(crate) fn culling(program: &Program, features: Features) -> Result<Option<Cu
     }
     let parts = ModuleParts { lists: inputs.tables.into_buffer(), ..ModuleParts::default() };
     let shader = Shader::new(module, parts, features)?;
-    let iterations = visits.iter().map(|visit| visit.iterations).collect();
-    let is_joined = || visits.iter().map(|visit| visit.is_union_operand).collect();
+    let iterations = loops.iter().map(|looped| looped.iterations).collect();
+    let is_joined = || loops.iter().map(|looped| looped.is_union_operand).collect();
     Ok(Some(Culling { shader, iterations, cells: features.culls_by_cell().then(is_joined) }))
 }

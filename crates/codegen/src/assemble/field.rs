@@ -87,8 +87,8 @@ fn functions(
     let mut parts = ModuleParts { members, uniform, prefix, ..Default::default() };
     for binding in bindings {
         let function = binding.function(program, &inputs, &mut module.types)?;
-        let place = bind_or_add(&mut module, binding.stub, function)?;
-        parts.functions.extend(binding.role.map(|role| (role, place)));
+        let handle = bind_or_add(&mut module, binding.stub, function)?;
+        parts.functions.extend(binding.role.map(|role| (role, handle)));
     }
     if let Some(fields) = material {
         let structure = material_type(&mut module);

@@ -92,8 +92,8 @@ impl<'p> PictureLinker<'p> {
         for binding in &self.bindings {
             let function = binding.function(self.program, inputs, &mut module.types)?;
             bind(module, binding.stub, function)?;
-            let place = find_function(module, binding.stub);
-            self.parts.functions.extend(binding.role.zip(place));
+            let function = find_function(module, binding.stub);
+            self.parts.functions.extend(binding.role.zip(function));
         }
         let Some(fields) = self.program.material else { return Ok(()) };
         let stub = stubs::MATERIAL;

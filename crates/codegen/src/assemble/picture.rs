@@ -154,19 +154,19 @@ pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Sha
         Stage::Fragment => Form::Fragment,
     };
     let mut picture = PictureLinker::new(program, form, method, None, &[], false)?;
-    let place = |offset| ResourceBinding {
+    let binding_at = |offset| ResourceBinding {
         group: options.group,
         binding: options.binding.saturating_add(offset),
     };
     for (_, variable) in picture.module.global_variables.iter_mut() {
         if let Some(binding) = &mut variable.binding {
-            *binding = place(binding.binding);
+            *binding = binding_at(binding.binding);
         }
     }
     let raw = raw_inputs(program, &picture.slot_nodes());
     let (mut inputs, members) =
-        declare_members(&mut picture.module, program, &raw, place(SLOTS.binding));
-    inputs.tables = Tables::new(options.lists, place(LISTS.binding));
+        declare_members(&mut picture.module, program, &raw, binding_at(SLOTS.binding));
+    inputs.tables = Tables::new(options.lists, binding_at(LISTS.binding));
     picture.parts.members = members;
     picture.parts.prefix.clone_from(&options.prefix);
     picture.compute_slots(inputs)?;

@@ -18,7 +18,7 @@ use crate::lower::{struct_function, types};
 use crate::shader::Shader;
 
 /// The members of the view that `set_view` of `shadertoy.wgsl` sets.
-const LOOKED: [&str; 5] = ["forward", "right", "up", "pixel_radius", "size"];
+const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "size"];
 
 /// Makes the shader of a program's picture for [`crate::Target::Shadertoy`]. Params are constants
 /// with their defaults, `time` and `frame` follow the site's clock, and the camera is the scene's.
@@ -135,18 +135,18 @@ fn declare_constant(
 
 /// Appends constants to the module's, and updates the expressions that read them.
 fn append_constants(module: &mut Module, others: Arena<Constant>) {
-    let mut places = FxHashMap::default();
+    let mut moved = FxHashMap::default();
     for (old, constant) in others.iter() {
-        places.insert(old, module.constants.append(constant.clone(), Span::UNDEFINED));
+        moved.insert(old, module.constants.append(constant.clone(), Span::UNDEFINED));
     }
     // The new constants' expressions are literals, so none of them reads an old constant.
     let functions = module.functions.iter_mut().map(|(_, f)| &mut f.expressions);
     for expressions in functions.chain([&mut module.global_expressions]) {
         for (_, expression) in expressions.iter_mut() {
             if let Expression::Constant(constant) = expression
-                && let Some(&place) = places.get(constant)
+                && let Some(&new) = moved.get(constant)
             {
-                *constant = place;
+                *constant = new;
             }
         }
     }
@@ -231,8 +231,8 @@ impl<'b> View<'b> {
         let mut body = Body::default();
         let base = body.declare(Expression::GlobalVariable(self.variable));
         for (member, index) in self.members.iter().zip(0..) {
-            let looked = LOOKED.iter().any(|name| member.name.as_deref() == Some(*name));
-            if read.contains(&index) && !looked {
+            let is_set = SET_BY_CAMERA.iter().any(|name| member.name.as_deref() == Some(*name));
+            if read.contains(&index) && !is_set {
                 self.store_member(module, &mut body, base, index, member.ty, member.offset);
             }
         }

@@ -26,11 +26,11 @@ pub(crate) fn parse_template(
     let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
     for function in module.functions.iter_mut().map(|(_, function)| function).chain(entries) {
         let conditions = choices.conditions(function);
-        let mut gone = Vec::new();
-        choices.apply(&mut function.body, &conditions, &mut gone);
-        forget(&gone, function);
+        let mut removed = Vec::new();
+        choices.apply(&mut function.body, &conditions, &mut removed);
+        unname(&removed, function);
     }
-    // `compact` keeps what is named; the conditions on overrides are gone, so the overrides may go.
+    // `compact` keeps what is named; the conditions on overrides are removed, so the overrides may go.
     for (_, known) in module.overrides.iter_mut() {
         known.name = None;
     }
@@ -83,13 +83,13 @@ impl Choices {
     }
 
     /// Removes calls to dropped functions without a result, and the sides of branches that are not
-    /// taken, which are added to `gone`. Blocks nest only as deep as the files of `sdfc-march`
+    /// taken, which are added to `removed`. Blocks nest only as deep as the files of `sdfc-march`
     /// write them.
     fn apply(
         &self,
         block: &mut Block,
         conditions: &FxHashMap<Handle<Expression>, bool>,
-        gone: &mut Vec<Block>,
+        removed: &mut Vec<Block>,
     ) {
         let mut rest = Block::new();
         for (mut statement, span) in std::mem::take(block).span_into_iter() {
@@ -99,7 +99,7 @@ impl Choices {
                 continue;
             }
             for inner in inner_blocks(&mut statement) {
-                self.apply(inner, conditions, gone);
+                self.apply(inner, conditions, removed);
             }
             if let Statement::If { condition, accept, reject } = &mut statement
                 && let Some(&value) = conditions.get(condition)
@@ -107,7 +107,7 @@ impl Choices {
                 let [accept, reject] = [accept, reject].map(std::mem::take);
                 let (taken, other) = if value { (accept, reject) } else { (reject, accept) };
                 append(&mut rest, taken);
-                gone.push(other);
+                removed.push(other);
             } else if let Statement::Loop { body, .. } = &mut statement
                 && runs_once(body)
             {
@@ -124,8 +124,8 @@ impl Choices {
 
 /// Removes the names of values that were computed in blocks: named values are kept, and would have
 /// to be computed.
-fn forget(gone: &[Block], function: &mut Function) {
-    let mut todo: Vec<&Statement> = gone.iter().flat_map(|block| block.iter()).collect();
+fn unname(removed: &[Block], function: &mut Function) {
+    let mut todo: Vec<&Statement> = removed.iter().flat_map(|block| block.iter()).collect();
     while let Some(statement) = todo.pop() {
         if let Statement::Emit(range) = statement {
             for value in range.clone() {
@@ -194,13 +194,13 @@ fn nested(statement: &Statement) -> Vec<&Statement> {
 /// `compact` keeps all local variables.
 fn drop_unused_variables(function: &mut Function) {
     let mut variables = Arena::new();
-    let mut places = FxHashMap::default();
+    let mut moved = FxHashMap::default();
     for (_, expression) in function.expressions.iter_mut() {
         if let Expression::LocalVariable(old) = expression {
             let span = function.local_variables.get_span(*old);
             let variable = &function.local_variables[*old];
-            let place = places.entry(*old);
-            *old = *place.or_insert_with(|| variables.append(variable.clone(), span));
+            let new = moved.entry(*old);
+            *old = *new.or_insert_with(|| variables.append(variable.clone(), span));
         }
     }
     function.local_variables = variables;

@@ -31,7 +31,7 @@ impl ActiveLists {
         let counter = find_variable(module, stubs::ITERATIONS_RUN);
         let inactive = find_variable(module, stubs::INACTIVE_DISTANCE);
         let by_point = find_function(module, stubs::SELECT_LISTS).zip(inactive);
-        let loops = program.cullable_loops.iter().map(|visit| visit.skip).zip(0..);
+        let loops = program.cullable_loops.iter().map(|looped| looped.skip).zip(0..);
         let loops = loops.take(stubs::CULLING_BOUNDS.len()).collect();
         Some(Self { lists, spans, counter, by_point, loops })
     }

@@ -14,10 +14,10 @@ impl Lowering<'_> {
     pub(super) fn hash(&mut self, id: NodeId, state: NodeId, x: NodeId) -> Result<Value, Error> {
         use BinaryOperator::{Add, ExclusiveOr, Multiply, ShiftRight};
         let ty = self.program.graph.ty(id);
-        let place = self.value(x)?;
-        let place = self.signed_word(ty, place);
+        let x = self.value(x)?;
+        let x = self.signed_word(ty, x);
         let state = self.state_word(state)?;
-        let word = self.body.binary(Add, state, place);
+        let word = self.body.binary(Add, state, x);
         let product = self.with_word(ty, Multiply, word, 747_796_405);
         let state = self.with_word(ty, Add, product, 2_891_336_453);
         let top = self.with_word(ty, ShiftRight, state, 28);
@@ -61,7 +61,7 @@ impl Lowering<'_> {
     /// defined. Moving bits in floating point would be faster on some devices, and wrong on those
     /// that reorder sums.
     fn signed_word(&mut self, ty: Type, x: Value) -> Value {
-        let [least, most] = [-2_147_483_648.0, 2_147_483_520.0].map(|end| self.filled(ty, end));
+        let [least, most] = [-2_147_483_648.0, 2_147_483_520.0].map(|end| self.splat(ty, end));
         let whole = self.body.call1(MathFunction::Floor, x);
         let raised = self.body.call2(MathFunction::Max, whole, least);
         let whole = self.body.call2(MathFunction::Min, raised, most);

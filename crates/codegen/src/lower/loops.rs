@@ -29,13 +29,18 @@ impl Lowering<'_> {
     }
 
     /// The value of a loop variable in the current iteration.
-    pub(super) fn variable(&self, id: NodeId, depth: u8, place: LoopVar) -> Result<Value, Error> {
-        let round = self.rounds.get(usize::from(depth)).and_then(Option::as_ref);
-        let round = round.ok_or(Error::NotFlat(id))?;
-        match place {
-            LoopVar::Index => Ok(round.number),
+    pub(super) fn variable(
+        &self,
+        id: NodeId,
+        depth: u8,
+        variable: LoopVar,
+    ) -> Result<Value, Error> {
+        let iteration = self.iterations.get(usize::from(depth)).and_then(Option::as_ref);
+        let iteration = iteration.ok_or(Error::NotFlat(id))?;
+        match variable {
+            LoopVar::Index => Ok(iteration.number),
             LoopVar::State(position) => {
-                round.state.get(usize::from(position)).copied().ok_or(Error::NotFlat(id))
+                iteration.state.get(usize::from(position)).copied().ok_or(Error::NotFlat(id))
             }
         }
     }
@@ -43,20 +48,20 @@ impl Lowering<'_> {
     /// Writes a loop. Its state is in variables, which each iteration reads first and sets last.
     fn repeat(&mut self, id: LoopId) -> Result<Vec<Value>, Error> {
         let graph = &self.program.graph;
-        let (repeated, body) = (graph.loop_at(id).clone(), graph.loop_body(id));
-        let listed = self.listed(repeated.skip);
+        let (looped, body) = (graph.loop_at(id).clone(), graph.loop_body(id));
+        let listed = self.listed(looped.skip);
         let (first, limit, ty, name) = match &listed {
             Some(listed) => {
                 (listed.first, listed.end, types::words(self.types, Type::Scalar), "at")
             }
             None => {
-                let limit = self.limit(repeated.max_iterations, repeated.count)?;
+                let limit = self.limit(looped.max_iterations, looped.count)?;
                 (self.body.literal(0.0), limit, types::value(self.types, Type::Scalar), "i")
             }
         };
-        let counter = self.body.variable("round", ty);
+        let counter = self.body.variable("iteration", ty);
         self.body.store(counter, first);
-        let state = self.state(&repeated.init)?;
+        let state = self.state(&looped.init)?;
 
         self.body.open_loop();
         let matrices = self.matrices.clone();
@@ -64,22 +69,22 @@ impl Lowering<'_> {
         let past = self.body.binary(BinaryOperator::GreaterEqual, counted, limit);
         self.body.break_if(past);
         let is_listed = listed.is_some();
-        let visited = listed.and_then(|_| self.listed_round(counted));
-        let number = visited.map_or(counted, |(number, _)| number);
-        let listed = visited.map(|(_, word)| (word, repeated.max_iterations));
+        let listed = listed.and_then(|_| self.listed_iteration(counted));
+        let number = listed.map_or(counted, |(number, _)| number);
+        let listed = listed.map(|(_, word)| (word, looped.max_iterations));
         let read = state.iter().map(|&(variable, name)| self.body.load(variable, name)).collect();
-        let depth = usize::from(repeated.depth);
-        self.rounds.resize_with(self.rounds.len().max(depth + 1), || None);
-        self.rounds[depth] = Some(Iteration { number, listed, state: read });
+        let depth = usize::from(looped.depth);
+        self.iterations.resize_with(self.iterations.len().max(depth + 1), || None);
+        self.iterations[depth] = Some(Iteration { number, listed, state: read });
         self.visit_needed(&body.condition)?;
-        if let Some(go_on) = repeated.condition {
-            let go_on = self.value(go_on)?;
-            let not = Expression::Unary { op: UnaryOperator::LogicalNot, expr: go_on };
-            let ends = self.body.compute(not, &[go_on]);
+        if let Some(condition) = looped.condition {
+            let condition = self.value(condition)?;
+            let not = Expression::Unary { op: UnaryOperator::LogicalNot, expr: condition };
+            let ends = self.body.compute(not, &[condition]);
             self.body.break_if(ends);
         }
         self.visit_needed(&body.step)?;
-        let next = repeated.step.iter().map(|&part| self.value(part));
+        let next = looped.step.iter().map(|&part| self.value(part));
         let next: Vec<Value> = next.collect::<Result<_, _>>()?;
         for (&(variable, _), next) in state.iter().zip(next) {
             self.body.store(variable, next);
@@ -89,16 +94,16 @@ impl Lowering<'_> {
         self.body.store(counter, following);
         self.body.close_loop();
 
-        self.rounds[depth] = None;
+        self.iterations[depth] = None;
         self.matrices = matrices;
         self.forget(body.condition.iter().chain(&body.step));
         Ok(state.into_iter().map(|(variable, name)| self.body.load(variable, name)).collect())
     }
 
     /// The distance, or the lower bound on what the lists leave out if that is smaller.
-    pub(super) fn with_left_out(&mut self, distance: Value) -> Value {
+    pub(super) fn with_inactive_distance(&mut self, distance: Value) -> Value {
         let at = self.inputs.active_lists.as_ref().and_then(|lists| lists.by_point);
-        let Some((_, free)) = at.filter(|_| self.leaves_out) else { return distance };
+        let Some((_, free)) = at.filter(|_| self.uses_lists) else { return distance };
         let pointer = self.body.declare(Expression::GlobalVariable(free));
         let free = self.body.load(pointer, "free");
         self.body.call2(MathFunction::Min, distance, free)
@@ -106,27 +111,27 @@ impl Lowering<'_> {
 
     /// Where the active iterations are listed, if they are. Lists depend on the point, so a
     /// function of a whole ray runs all iterations.
-    fn listed(&mut self, inert: Option<SkipCondition>) -> Option<Listed> {
-        let is_of_a_place = self.arguments.len() == 1;
-        let visits = self.inputs.active_lists.as_ref().filter(|_| is_of_a_place)?;
-        let (spans, number, visited) = (visits.spans, visits.index_of(inert)?, visits.counter);
-        let is_first = !self.leaves_out;
-        self.leaves_out = true;
-        if let Some((function, _)) = visits.by_point.filter(|_| is_first) {
+    fn listed(&mut self, skip: Option<SkipCondition>) -> Option<Listed> {
+        let takes_one_point = self.arguments.len() == 1;
+        let lists = self.inputs.active_lists.as_ref().filter(|_| takes_one_point)?;
+        let (spans, number, listed) = (lists.spans, lists.index_of(skip)?, lists.counter);
+        let is_first = !self.uses_lists;
+        self.uses_lists = true;
+        if let Some((function, _)) = lists.by_point.filter(|_| is_first) {
             let point = self.body.declare(Expression::FunctionArgument(self.first_point));
             let (arguments, result) = (vec![point], None);
             self.body.push(Statement::Call { function, arguments, result });
         }
         let base = self.body.declare(Expression::GlobalVariable(spans));
-        let own = Expression::AccessIndex { base, index: number };
-        let pointer = self.body.compute(own, &[base]);
+        let element = Expression::AccessIndex { base, index: number };
+        let pointer = self.body.compute(element, &[base]);
         let span = self.body.load(pointer, "span");
         let part = |body: &mut Body, index| {
             body.compute(Expression::AccessIndex { base: span, index }, &[span])
         };
         let (count, first) = (part(&mut self.body, 0), part(&mut self.body, 1));
-        if let Some(visited) = visited {
-            let pointer = self.body.declare(Expression::GlobalVariable(visited));
+        if let Some(listed) = listed {
+            let pointer = self.body.declare(Expression::GlobalVariable(listed));
             let before = self.body.load(pointer, "before");
             let after = self.body.binary(BinaryOperator::Add, before, count);
             self.body.store(pointer, after);
@@ -137,14 +142,14 @@ impl Lowering<'_> {
     }
 
     /// Reads the iteration's number at an index of the list, as a float and as a word.
-    fn listed_round(&mut self, index: Value) -> Option<(Value, Value)> {
+    fn listed_iteration(&mut self, index: Value) -> Option<(Value, Value)> {
         let base =
             self.body.declare(Expression::GlobalVariable(self.inputs.active_lists.as_ref()?.lists));
         let pointer = self.body.compute(Expression::Access { base, index }, &[base, index]);
-        let word = self.body.load(pointer, "visited");
-        let round = self.body.cast(word, ScalarKind::Float, Some(4));
-        self.body.name(round, "round");
-        Some((round, word))
+        let word = self.body.load(pointer, "listed");
+        let iteration = self.body.cast(word, ScalarKind::Float, Some(4));
+        self.body.name(iteration, "iteration");
+        Some((iteration, word))
     }
 
     /// Variables that hold the initial state, and names for the values read from them.
@@ -184,21 +189,21 @@ impl Lowering<'_> {
         let Some(count) = count else { return Ok(cap) };
         let count = self.value(count)?;
         let limit = self.body.call2(MathFunction::Min, count, cap);
-        self.body.name(limit, "rounds");
+        self.body.name(limit, "iterations");
         Ok(limit)
     }
 
     /// An element of a list.
     pub(super) fn element(&mut self, id: TableId, at: NodeId, ty: Type) -> Result<Value, Error> {
         let list = self.inputs.tables.get(id).ok_or(Error::NotFlat(at))?;
-        let mut index = match self.word_of_round(at, list.last) {
+        let mut index = match self.word_of_iteration(at, list.last) {
             Some(word) => word,
             None => {
                 let at = self.value(at)?;
-                let (nought, last) = (self.body.literal(0.0), self.body.literal(list.last as f32));
-                let raised = self.body.call2(MathFunction::Max, at, nought);
-                let place = self.body.call2(MathFunction::Min, raised, last);
-                self.body.cast(place, ScalarKind::Uint, Some(4))
+                let (zero, last) = (self.body.literal(0.0), self.body.literal(list.last as f32));
+                let raised = self.body.call2(MathFunction::Max, at, zero);
+                let clamped = self.body.call2(MathFunction::Min, raised, last);
+                self.body.cast(clamped, ScalarKind::Uint, Some(4))
             }
         };
         if let Some(first @ 1..) = list.first {
@@ -213,12 +218,12 @@ impl Lowering<'_> {
 
     /// The current iteration's number as a word, if the node is that number and it is at most
     /// `last`.
-    fn word_of_round(&self, at: NodeId, last: u32) -> Option<Value> {
+    fn word_of_iteration(&self, at: NodeId, last: u32) -> Option<Value> {
         let Node::Variable(depth, LoopVar::Index, _) = self.program.graph.node(at) else {
             return None;
         };
-        let round = self.rounds.get(usize::from(depth))?.as_ref()?;
-        round.listed.filter(|&(_, cap)| cap <= last + 1).map(|(word, _)| word)
+        let iteration = self.iterations.get(usize::from(depth))?.as_ref()?;
+        iteration.listed.filter(|&(_, cap)| cap <= last + 1).map(|(word, _)| word)
     }
 
     /// The first of four lanes, as a value of a type.
@@ -229,8 +234,8 @@ impl Lowering<'_> {
         match ty {
             Type::Bool => {
                 let number = self.body.compute(first, &[vector]);
-                let nought = self.body.literal(0.0);
-                self.body.binary(BinaryOperator::NotEqual, number, nought)
+                let zero = self.body.literal(0.0);
+                self.body.binary(BinaryOperator::NotEqual, number, zero)
             }
             Type::Scalar => self.body.compute(first, &[vector]),
             Type::Vec2 => self.body.compute(cut(VectorSize::Bi), &[vector]),

@@ -30,7 +30,7 @@ pub(crate) fn function_of(
     lowering.visit_all()?;
     let mut value = lowering.value(root)?;
     if program.graph.ty(root) == Type::Scalar {
-        value = lowering.with_left_out(value);
+        value = lowering.with_inactive_distance(value);
     }
     let result = types::value(lowering.types, program.graph.ty(root));
     Ok(lowering.finish(name, value, result))
@@ -48,7 +48,7 @@ pub(crate) fn function_of_iteration(
     let mut lowering = Lowering::new(program, inputs, types, &[root]);
     lowering.first_point = 1;
     let number = lowering.body.declare(Expression::FunctionArgument(0));
-    lowering.rounds = vec![Some(Iteration::of_number(number))];
+    lowering.iterations = vec![Some(Iteration::of_number(number))];
     let order = lowering.uses.take_order();
     lowering.visit(order.into_iter())?;
     let value = lowering.value(root)?;
@@ -79,12 +79,12 @@ pub(crate) fn store_function(
     program: &Program,
     inputs: &Inputs,
     types: &mut UniqueArena<naga::Type>,
-    kept: &[(NodeId, Handle<GlobalVariable>)],
+    stored: &[(NodeId, Handle<GlobalVariable>)],
 ) -> Result<Function, Error> {
-    let roots: Vec<_> = kept.iter().map(|&(node, _)| node).collect();
+    let roots: Vec<_> = stored.iter().map(|&(node, _)| node).collect();
     let mut lowering = Lowering::new(program, inputs, types, &roots);
     lowering.visit_all()?;
-    for &(node, variable) in kept {
+    for &(node, variable) in stored {
         let value = lowering.value(node)?;
         let pointer = lowering.body.declare(Expression::GlobalVariable(variable));
         lowering.body.push(Statement::Store { pointer, value });
@@ -111,9 +111,9 @@ pub(super) struct Lowering<'a> {
     /// The final states of the loops visited so far.
     pub(super) loops: FxHashMap<LoopId, Vec<Value>>,
     /// The variables of the current iterations, by the depth of their loops.
-    pub(super) rounds: Vec<Option<Iteration>>,
+    pub(super) iterations: Vec<Option<Iteration>>,
     /// True if a loop was written that runs only listed iterations.
-    pub(super) leaves_out: bool,
+    pub(super) uses_lists: bool,
 }
 
 impl<'a> Lowering<'a> {
@@ -124,7 +124,7 @@ impl<'a> Lowering<'a> {
         roots: &[NodeId],
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
-        let (body, values, matrices, words, loops, rounds, leaves_out) = Default::default();
+        let (body, values, matrices, words, loops, iterations, uses_lists) = Default::default();
         let arguments = &["p"];
         Self {
             program,
@@ -138,8 +138,8 @@ impl<'a> Lowering<'a> {
             matrices,
             words,
             loops,
-            rounds,
-            leaves_out,
+            iterations,
+            uses_lists,
         }
     }
 
@@ -234,7 +234,7 @@ impl<'a> Lowering<'a> {
             }
             Node::Swizzle(ty, a, lanes) => self.swizzle(id, ty, a, lanes),
             Node::Transform(columns, v) => self.transform(id, columns, v),
-            Node::Variable(depth, place, _) => self.variable(id, depth, place),
+            Node::Variable(depth, variable, _) => self.variable(id, depth, variable),
             Node::Loop(repeated, position, _) => self.after_loop(repeated, position),
             Node::Element(table, at, ty) => self.element(table, at, ty),
         }

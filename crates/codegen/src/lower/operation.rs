@@ -6,11 +6,11 @@ use sdfc_graph::{Binary, Node, NodeId, Ternary, Type, Unary};
 use super::body::Value;
 use super::lowering::Lowering;
 use super::types;
-use super::uses::{Filling, Product, product};
+use super::uses::{Product, Uniform, product};
 use crate::error::Error;
 
 /// The least squared length: `Normalize` does not bring shorter vectors to unit length.
-const LEAST_SQUARE: f32 = 1e-36;
+const MIN_SQUARE: f32 = 1e-36;
 
 impl Lowering<'_> {
     pub(super) fn unary(&mut self, id: NodeId, op: Unary, a: NodeId) -> Result<Value, Error> {
@@ -59,7 +59,7 @@ impl Lowering<'_> {
     /// `v * inverseSqrt(max(dot(v, v), least))`: WGSL's own `normalize` is undefined at 0.
     fn normalized(&mut self, v: Value) -> Value {
         let square = self.body.call2(MathFunction::Dot, v, v);
-        let least = self.body.literal(LEAST_SQUARE);
+        let least = self.body.literal(MIN_SQUARE);
         let square = self.body.call2(MathFunction::Max, square, least);
         let factor = self.body.call1(MathFunction::InverseSqrt, square);
         self.body.binary(BinaryOperator::Multiply, v, factor)
@@ -109,16 +109,16 @@ impl Lowering<'_> {
     fn product(&mut self, a: NodeId, b: NodeId) -> Result<Value, Error> {
         let (left, right) = match product(&self.program.graph, a, b) {
             Product::Plain => (self.value(a)?, self.value(b)?),
-            Product::LeftFilled(filling) => (self.filling(a, filling)?, self.value(b)?),
-            Product::RightFilled(filling) => (self.value(a)?, self.filling(b, filling)?),
+            Product::LeftUniform(uniform) => (self.uniform(a, uniform)?, self.value(b)?),
+            Product::RightUniform(uniform) => (self.value(a)?, self.uniform(b, uniform)?),
         };
         Ok(self.body.binary(BinaryOperator::Multiply, left, right))
     }
 
-    fn filling(&mut self, id: NodeId, filling: Filling) -> Result<Value, Error> {
-        match filling {
-            Filling::Node(scalar) => self.value(scalar),
-            Filling::Number(number) => self.number(id, number),
+    fn uniform(&mut self, id: NodeId, uniform: Uniform) -> Result<Value, Error> {
+        match uniform {
+            Uniform::Node(scalar) => self.value(scalar),
+            Uniform::Number(number) => self.number(id, number),
         }
     }
 
@@ -171,7 +171,7 @@ impl Lowering<'_> {
                 }
                 Limits::Descending => {
                     let rising = self.call3(MathFunction::SmoothStep, [b, a, c])?;
-                    let one = self.filled(third, 1.0);
+                    let one = self.splat(third, 1.0);
                     Ok(self.body.binary(BinaryOperator::Subtract, one, rising))
                 }
                 Limits::Mixed => Err(Error::MixedLimits(id)),
@@ -185,7 +185,7 @@ impl Lowering<'_> {
     }
 
     /// A number in all lanes of a type.
-    pub(super) fn filled(&mut self, ty: Type, number: f32) -> Value {
+    pub(super) fn splat(&mut self, ty: Type, number: f32) -> Value {
         let value = self.body.literal(number);
         match types::vector_size(ty) {
             None => value,

@@ -74,7 +74,7 @@ fn keep(graph: &Graph, id: NodeId, kept: &mut FxHashSet<NodeId>) {
 
 /// The value in all lanes of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Filling {
+pub(crate) enum Uniform {
     /// The node.
     Node(NodeId),
     /// The number.
@@ -88,9 +88,9 @@ pub(crate) enum Product {
     /// Both are read as they are.
     Plain,
     /// The left one is a scalar in all lanes.
-    LeftFilled(Filling),
+    LeftUniform(Uniform),
     /// The right one is a scalar in all lanes.
-    RightFilled(Filling),
+    RightUniform(Uniform),
 }
 
 /// How the lowering writes the product of two nodes of one type.
@@ -98,21 +98,21 @@ pub(crate) fn product(graph: &Graph, left: NodeId, right: NodeId) -> Product {
     if graph.ty(left).width() == 1 {
         return Product::Plain;
     }
-    match (filling(graph, left), filling(graph, right)) {
-        (_, Some(right)) => Product::RightFilled(right),
-        (Some(left), None) => Product::LeftFilled(left),
+    match (uniform(graph, left), uniform(graph, right)) {
+        (_, Some(right)) => Product::RightUniform(right),
+        (Some(left), None) => Product::LeftUniform(left),
         (None, None) => Product::Plain,
     }
 }
 
-fn filling(graph: &Graph, id: NodeId) -> Option<Filling> {
+fn uniform(graph: &Graph, id: NodeId) -> Option<Uniform> {
     let node = graph.node(id);
     if let Node::Splat(_, scalar) = node {
-        return Some(Filling::Node(scalar));
+        return Some(Uniform::Node(scalar));
     }
     let Node::Const(constant) = node else { return None };
     let lanes = &constant.lanes()[..constant.ty().width()];
-    lanes.iter().all(|lane| *lane == lanes[0]).then_some(Filling::Number(lanes[0]))
+    lanes.iter().all(|lane| *lane == lanes[0]).then_some(Uniform::Number(lanes[0]))
 }
 
 /// The nodes that the lowering of a node reads.
@@ -128,12 +128,12 @@ fn operands(graph: &Graph, id: NodeId) -> impl Iterator<Item = NodeId> {
 fn factors(graph: &Graph, left: NodeId, right: NodeId) -> [Option<NodeId>; 2] {
     match product(graph, left, right) {
         Product::Plain => [Some(left), Some(right)],
-        Product::LeftFilled(filling) => [filling.node(), Some(right)],
-        Product::RightFilled(filling) => [Some(left), filling.node()],
+        Product::LeftUniform(uniform) => [uniform.node(), Some(right)],
+        Product::RightUniform(uniform) => [Some(left), uniform.node()],
     }
 }
 
-impl Filling {
+impl Uniform {
     fn node(self) -> Option<NodeId> {
         match self {
             Self::Node(node) => Some(node),

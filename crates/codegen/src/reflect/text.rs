@@ -71,8 +71,8 @@ fn spellings(name: &str) -> [String; 2] {
 /// Name and members of the structure of that name, without padding members.
 fn structure(text: &str, name: &str) -> Option<(String, Vec<String>)> {
     spellings(name).into_iter().find_map(|name| {
-        let head = format!("struct {name} {{\n");
-        let start = text.find(&head)? + head.len();
+        let declaration = format!("struct {name} {{\n");
+        let start = text.find(&declaration)? + declaration.len();
         let lines = text[start..].lines().take_while(|line| !line.starts_with('}'));
         let members = lines.filter_map(member).map(str::to_owned).collect();
         Some((name, members))
@@ -95,15 +95,16 @@ fn member(line: &str) -> Option<&str> {
 pub(super) fn declaration(text: &str, name: &str) -> Option<(String, String)> {
     spellings(name).into_iter().find_map(|name| {
         let call = format!(" {name}(");
-        let mut places = text.match_indices(&call).map(|(place, _)| place);
-        places.find_map(|place| {
-            let start = text[..place].rfind('\n').map_or(0, |end| end + 1);
+        let mut starts = text.match_indices(&call).map(|(position, _)| position);
+        starts.find_map(|position| {
+            let start = text[..position].rfind('\n').map_or(0, |end| end + 1);
             let rest = &text[start..];
-            let head = &rest[..rest.find('{')?];
-            let is_head = !head.starts_with(char::is_whitespace) && !head.contains([';', '=']);
-            let words: Vec<_> = head.split_whitespace().collect();
+            let declaration = &rest[..rest.find('{')?];
+            let is_declaration =
+                !declaration.starts_with(char::is_whitespace) && !declaration.contains([';', '=']);
+            let words: Vec<_> = declaration.split_whitespace().collect();
             let signature = words.join(" ").replace("( ", "(").replace(" )", ")");
-            is_head.then(|| (name.clone(), signature))
+            is_declaration.then(|| (name.clone(), signature))
         })
     })
 }

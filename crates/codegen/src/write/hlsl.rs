@@ -13,9 +13,9 @@ pub(super) fn hlsl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<St
     let mut binding_map = back::hlsl::BindingMap::new();
     for binding in bindings(module) {
         let space = checked_u8(Target::Hlsl, binding.group)?;
-        let place =
+        let target =
             back::hlsl::BindTarget { space, register: binding.binding, ..Default::default() };
-        binding_map.insert(binding, place);
+        binding_map.insert(binding, target);
     }
     let options = back::hlsl::Options {
         shader_model: back::hlsl::ShaderModel::V5_1,

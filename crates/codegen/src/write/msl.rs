@@ -12,8 +12,8 @@ pub(super) fn msl(module: &Module, info: &ModuleInfo) -> Result<(String, Vec<Str
     let mut resources = back::msl::EntryPointResources::default();
     for binding in bindings(module) {
         let buffer = Some(checked_u8(Target::Msl, binding.binding)?);
-        let place = back::msl::BindTarget { buffer, mutable: true, ..Default::default() };
-        resources.resources.insert(binding, place);
+        let target = back::msl::BindTarget { buffer, mutable: true, ..Default::default() };
+        resources.resources.insert(binding, target);
     }
     let last = bindings(module).map(|binding| binding.binding).max().unwrap_or(0);
     resources.sizes_buffer = Some(checked_u8(Target::Msl, last.saturating_add(1))?);

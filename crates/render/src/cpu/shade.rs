@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unpainted_surface_follows_lamberts_law() {
+    fn a_surface_without_a_material_follows_lamberts_law() {
         let surface = Surface::new(DVec3::Y * 3.0, DVec3::Z, None);
         assert_eq!(surface.normal, DVec3::Y);
         let slanted = DVec3::new(0.0, 0.5, 0.75f64.sqrt());
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rough_material_seen_and_lit_straight_on() {
+    fn a_rough_material_seen_and_lit_at_normal_incidence() {
         let one = |value: f64| [value, 0.0, 0.0, 0.0];
         let color = [1.0, 0.5, 0.0, 0.0];
         let fields = [color, one(1.0), one(1.0), one(0.0), [0.0, 0.0, 0.25, 0.0], one(0.5)];
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn fresnel_is_the_given_value_straight_on_and_all_along_the_surface() {
+    fn fresnel_is_the_given_value_at_normal_incidence_and_1_along_the_surface() {
         assert_eq!(schlick(0.04, 1.0), 0.04);
         assert_eq!(schlick(0.04, 0.0), 1.0);
         assert!(schlick(0.04, 0.4) > schlick(0.04, 0.5));
@@ -254,33 +254,33 @@ mod tests {
             for facing in [0.05, 0.2, 0.5, 0.8, 1.0] {
                 let [metal, plastic, black] = [(1.0, 1.0), (1.0, 0.0), (0.0, 0.0)]
                     .map(|(color, metallic)| furnace(&paint(color, roughness, metallic), facing));
-                let place = format!("roughness {roughness}, cosine {facing}");
-                assert!(metal <= 1.005 && plastic <= 1.005, "{place}: {metal}, {plastic}");
-                assert!(black < plastic && black > 0.0, "{place}: {black}");
+                let case = format!("roughness {roughness}, cosine {facing}");
+                assert!(metal <= 1.005 && plastic <= 1.005, "{case}: {metal}, {plastic}");
+                assert!(black < plastic && black > 0.0, "{case}: {black}");
                 // A perfect mirror of facets loses only what is caught between them.
-                assert!(roughness > 0.3 || metal > 0.9, "{place}: {metal}");
+                assert!(roughness > 0.3 || metal > 0.9, "{case}: {metal}");
             }
         }
     }
 
     #[test]
-    fn light_from_everywhere_is_the_sum_of_light_from_each_direction() {
+    fn ambient_light_is_the_sum_of_light_from_each_direction() {
         for roughness in [0.1, 0.3, 0.5, 0.7, 1.0] {
             for facing in [0.3, 0.6, 1.0] {
                 for (color, metallic) in [(1.0, 1.0), (0.5, 1.0), (0.8, 0.0), (0.0, 0.0)] {
                     let paint = paint(color, roughness, metallic);
                     let summed = furnace(&paint, facing);
                     let fitted = paint.albedo_everywhere(facing).x;
-                    let place = format!("{color} {metallic} {roughness} {facing}");
-                    assert!((summed - fitted).abs() < 0.2, "{place}: {summed}, {fitted}");
-                    assert!(fitted <= 1.0, "{place}: {fitted}");
+                    let case = format!("{color} {metallic} {roughness} {facing}");
+                    assert!((summed - fitted).abs() < 0.2, "{case}: {summed}, {fitted}");
+                    assert!(fitted <= 1.0, "{case}: {fitted}");
                 }
             }
         }
     }
 
     #[test]
-    fn half_covered_paint_lies_between_its_colour_and_unpainted() {
+    fn a_half_covering_colour_lies_between_itself_and_the_default() {
         let one = |value: f64| [value, 0.0, 0.0, 0.0];
         let fields = [[0.0; 4], one(0.5), one(1.0), one(0.0), [0.0; 4], one(1.0)];
         let paint = Paint::of_fields(&fields).unwrap();

@@ -26,8 +26,8 @@ impl IncomingLight {
             ViewSource::Spot { position, axis, rim: [inner, outer] } => {
                 let incoming = Self::at(position, point, light.color);
                 let cosine = -axis.dot(incoming.direction);
-                let share = fade((cosine - outer) / (inner - outer));
-                Self { color: incoming.color * share, ..incoming }
+                let fraction = fade((cosine - outer) / (inner - outer));
+                Self { color: incoming.color * fraction, ..incoming }
             }
         }
     }
@@ -46,7 +46,7 @@ impl IncomingLight {
 
 /// The fraction of a light that a ray towards it lets through, if the ray hits nothing and has this
 /// clearance.
-pub(super) fn unshaded(light: &ViewLight, clearance: f64) -> f64 {
+pub(super) fn light_visibility(light: &ViewLight, clearance: f64) -> f64 {
     match light.shadow {
         ViewShadow::Off | ViewShadow::Hard => 1.0,
         ViewShadow::Soft(sharpness) => fade(sharpness * clearance),
@@ -54,7 +54,7 @@ pub(super) fn unshaded(light: &ViewLight, clearance: f64) -> f64 {
 }
 
 /// The background in a direction.
-pub(super) fn behind(view: &View, direction: DVec3) -> DVec3 {
+pub(super) fn background_color(view: &View, direction: DVec3) -> DVec3 {
     match view.background {
         Background::Plain(color) => color,
         Background::Sky { zenith, horizon } => {
@@ -68,7 +68,7 @@ pub(super) fn through_fog(view: &View, direction: DVec3, t: f64) -> (f64, DVec3)
     match view.fog {
         None => (1.0, DVec3::ZERO),
         Some(ViewFog { density, color }) => {
-            ((-density * t).exp(), color.unwrap_or_else(|| behind(view, direction)))
+            ((-density * t).exp(), color.unwrap_or_else(|| background_color(view, direction)))
         }
     }
 }

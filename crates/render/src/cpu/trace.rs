@@ -60,7 +60,7 @@ pub(super) struct Trace<T> {
 
 impl<T: Real> Trace<T> {
     /// The result of a ray that was not traced.
-    fn lost() -> Self {
+    fn untraced() -> Self {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
         Self { t, status: MISS, evaluations: 0, clearance }
     }
@@ -94,8 +94,8 @@ struct Walk<T> {
 }
 
 /// The decision after a sample of the field.
-enum Turn<T> {
-    Onward(T),
+enum Next<T> {
+    At(T),
     Hit(T),
 }
 
@@ -120,23 +120,23 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn ends(&self, t: T, status: u32) -> Trace<T> {
+    fn result(&self, t: T, status: u32) -> Trace<T> {
         let evaluations = self.evaluations + self.known.evaluations;
         Trace { t, status, evaluations, clearance: self.clearance }
     }
 
     /// The result of a ray that has hit nothing on its march; a position that is NaN stays NaN.
-    fn unmet(&self) -> Trace<T> {
+    fn without_hit(&self) -> Trace<T> {
         let t_max = self.whole.t_max;
         match self.known.hit(&self.whole) {
-            Some(met) if self.t > self.end => self.ends(met, HIT),
-            Some(_) | None if self.t <= t_max => self.ends(t_max, MISS),
-            Some(_) | None => self.ends(self.t, MISS),
+            Some(met) if self.t > self.end => self.result(met, HIT),
+            Some(_) | None if self.t <= t_max => self.result(t_max, MISS),
+            Some(_) | None => self.result(self.t, MISS),
         }
     }
 
     /// Takes the distance at the current position: either the ray has ended, or it has moved.
-    fn see(
+    fn take_sample(
         &mut self,
         distance: T,
         limits: &Limits<T>,
@@ -144,20 +144,20 @@ impl<T: Real> Walk<T> {
     ) -> Option<Trace<T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
-            self.pass(distance);
+            self.record_clearance(distance);
         }
-        let turn = match limits.method {
-            CpuMethod::Sphere if distance < limits.epsilon => Turn::Hit(self.t),
-            CpuMethod::Sphere => Turn::Onward(self.t + distance),
+        let next = match limits.method {
+            CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
+            CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
             CpuMethod::Interval => match range {
                 Some(range) => self.interval(distance, limits, range),
-                None => return Some(self.ends(self.known.start + self.t, CAPPED)),
+                None => return Some(self.result(self.known.start + self.t, CAPPED)),
             },
         };
-        match turn {
-            Turn::Hit(t) => return Some(self.ends(self.known.start + t, HIT)),
-            Turn::Onward(t) => self.t = t,
+        match next {
+            Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),
+            Next::At(t) => self.t = t,
         }
         // A position that is NaN ends the ray too.
         self.ended(self.inside.is_some() || self.t <= self.end, limits)
@@ -167,11 +167,11 @@ impl<T: Real> Walk<T> {
     /// out of steps.
     fn ended(&self, within: bool, limits: &Limits<T>) -> Option<Trace<T>> {
         if !within {
-            Some(self.unmet())
+            Some(self.without_hit())
         } else if self.evaluations
             >= limits.method.step_budget_factor().saturating_mul(limits.steps)
         {
-            Some(self.ends(self.known.start + self.t, CAPPED))
+            Some(self.result(self.known.start + self.t, CAPPED))
         } else {
             None
         }
@@ -181,7 +181,7 @@ impl<T: Real> Walk<T> {
     /// of spheres; they intersect in a circle around the ray, whose radius is taken for the
     /// distance of what lies there, if it lies between. Spheres that do not intersect tell nothing
     /// of what is between them.
-    fn pass(&mut self, here: T) {
+    fn record_clearance(&mut self, here: T) {
         let ((last, before), zero) = (self.before, T::constant(0.0));
         self.before = (self.t, here);
         let step = self.t - last;
@@ -198,10 +198,10 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    fn auto(&mut self, distance: T, limits: &Limits<T>) -> Turn<T> {
+    fn auto(&mut self, distance: T, limits: &Limits<T>) -> Next<T> {
         let zero = T::constant(0.0);
         if self.evaluations == 1 && distance < zero {
-            return Turn::Hit(self.t);
+            return Next::Hit(self.t);
         }
         let near = limits.tolerance(&self.ray, self.t);
         let (last, above) = self.outside.unwrap_or((self.t, zero));
@@ -210,7 +210,7 @@ impl<T: Real> Walk<T> {
         let checked = self.inside.is_none() && !self.close;
         if checked && self.stride > above + distance.max(zero) + hit {
             (self.stride, self.slope) = (above, T::constant(-1.0));
-            return Turn::Onward(last + above);
+            return Next::At(last + above);
         }
         let gain = if self.stride > zero {
             (distance - above).div(self.stride)
@@ -218,20 +218,20 @@ impl<T: Real> Walk<T> {
             T::constant(-1.0)
         };
         if distance.abs() < hit {
-            return Turn::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
+            return Next::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
         }
-        self.keep(distance);
-        if let Some(turn) = self.closing_in(hit) {
-            if let (Turn::Onward(t), Some((last, _))) = (&turn, self.outside) {
+        self.record(distance);
+        if let Some(next) = self.false_position(hit) {
+            if let (Next::At(t), Some((last, _))) = (&next, self.outside) {
                 self.stride = *t - last;
             }
-            return turn;
+            return next;
         }
         // Only the sphere of the distance is known to be empty.
         let (free, end) = (self.t + distance, self.end);
         let goes_on = free <= end;
         if !goes_on {
-            return Turn::Onward(free);
+            return Next::At(free);
         }
         self.slope = self.slope + T::constant(SLOPE_WEIGHT) * (gain - self.slope);
         self.close = distance < near;
@@ -253,7 +253,7 @@ impl<T: Real> Walk<T> {
         self.stride = step.min(end - self.t);
         // A sum that is rounded up may be past the end, where the ray would count as a miss without
         // a sample.
-        Turn::Onward((self.t + self.stride).min(end))
+        Next::At((self.t + self.stride).min(end))
     }
 
     /// The distance from the surface below which a sample is a hit.
@@ -261,7 +261,7 @@ impl<T: Real> Walk<T> {
         (T::constant(HIT_FRACTION) * near).max(self.ray.rounding(self.t))
     }
 
-    fn keep(&mut self, distance: T) {
+    fn record(&mut self, distance: T) {
         if distance < T::constant(0.0) {
             self.inside = Some((self.t, distance));
         } else {
@@ -270,14 +270,14 @@ impl<T: Real> Walk<T> {
     }
 
     /// The next position between one outside and one inside, once there are both.
-    fn closing_in(&self, hit: T) -> Option<Turn<T>> {
+    fn false_position(&self, hit: T) -> Option<Next<T>> {
         let ((last, above), (first, below)) = (self.outside?, self.inside?);
         if first - last < hit {
-            return Some(Turn::Hit(first));
+            return Some(Next::Hit(first));
         }
         // The zero of a line through both samples, but within the middle 8 tenths.
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
-        Some(Turn::Onward(last + part * (first - last)))
+        Some(Next::At(last + part * (first - last)))
     }
 }
 
@@ -294,11 +294,11 @@ pub(super) fn trace<T: Real>(
     rays: &[(Ray<T>, PreIntersection<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
-    let mut traces = vec![Trace::lost(); rays.len()];
+    let mut traces = vec![Trace::untraced(); rays.len()];
     let walks = rays.iter().map(|&(ray, known)| Walk::new(ray, known)).enumerate();
     let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.known.must_march());
     for (index, walk) in ended {
-        traces[index] = walk.unmet();
+        traces[index] = walk.without_hit();
     }
     let mut waiting = onward.into_iter();
     let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());
@@ -312,7 +312,7 @@ pub(super) fn trace<T: Real>(
         let Packet(distances) = field.scalar(packed(&points));
         for (lane, distance) in lanes.iter_mut().zip(distances) {
             let Some((index, walk)) = lane else { continue };
-            if let Some(ended) = walk.see(distance, limits, range.as_deref_mut()) {
+            if let Some(ended) = walk.take_sample(distance, limits, range.as_deref_mut()) {
                 traces[*index] = ended;
                 *lane = waiting.next();
             }

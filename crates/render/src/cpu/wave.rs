@@ -7,7 +7,7 @@ use sdfc_march::PixelBlock;
 use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
 use super::ray::{Batch, Ray, Real, values_at};
 use super::shade::{Paint, Surface};
-use super::surroundings::{IncomingLight, behind, through_fog, unshaded};
+use super::surroundings::{IncomingLight, background_color, light_visibility, through_fog};
 use super::trace::copies::trace_among_copies;
 use super::trace::{Limits, Trace, trace};
 use crate::image::HIT;
@@ -42,7 +42,7 @@ struct Shade {
 
 /// A camera ray or a reflection of one.
 #[derive(Clone, Copy)]
-struct Sight<T> {
+struct ViewRay<T> {
     /// Index of the pixel in the group.
     pixel: usize,
     ray: Ray<T>,
@@ -51,44 +51,48 @@ struct Sight<T> {
 }
 
 /// The hit of a view ray.
-struct Meeting<T> {
-    sight: Sight<T>,
+struct SurfaceHit<T> {
+    view_ray: ViewRay<T>,
     t: T,
     surface: Surface,
     /// Length of the gradient there.
     slope: f64,
 }
 
-impl<T: Real> Meeting<T> {
+impl<T: Real> SurfaceHit<T> {
     fn point(&self) -> DVec3 {
-        vector(self.sight.ray.at(self.t))
+        vector(self.view_ray.ray.at(self.t))
     }
 }
 
 impl<T: Real> Wave<'_, T> {
     pub(super) fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
-        let mut sights: Vec<Sight<T>> = positions
+        let mut view_rays: Vec<ViewRay<T>> = positions
             .iter()
             .enumerate()
-            .map(|(pixel, position)| Sight { pixel, ray: self.camera_ray(*position), weight: 1.0 })
+            .map(|(pixel, position)| ViewRay {
+                pixel,
+                ray: self.camera_ray(*position),
+                weight: 1.0,
+            })
             .collect();
         let mut shades = vec![Shade { color: DVec3::ZERO, evaluations: 0 }; positions.len()];
-        let seen = self.traced(&sights, &mut shades);
-        let mut meetings = self.lit_meetings(&sights, &seen, &mut shades);
+        let primary = self.traced(&view_rays, &mut shades);
+        let mut hits = self.lit_hits(&view_rays, &primary, &mut shades);
         for _ in 0..self.view.reflections {
-            sights = meetings.iter().map(|meeting| self.mirrored(meeting)).collect();
-            let traces = self.traced(&sights, &mut shades);
-            meetings = self.lit_meetings(&sights, &traces, &mut shades);
+            view_rays = hits.iter().map(|hit| self.reflected(hit)).collect();
+            let traces = self.traced(&view_rays, &mut shades);
+            hits = self.lit_hits(&view_rays, &traces, &mut shades);
         }
-        let pixels = seen.iter().zip(shades);
+        let pixels = primary.iter().zip(shades);
         pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
     }
 
-    fn traced(&mut self, sights: &[Sight<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
-        let rays: Vec<Ray<T>> = sights.iter().map(|sight| sight.ray).collect();
+    fn traced(&mut self, view_rays: &[ViewRay<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
+        let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
         let traces = self.traces(&rays, false);
-        for (sight, trace) in sights.iter().zip(&traces) {
-            shades[sight.pixel].evaluations += trace.evaluations;
+        for (view_ray, trace) in view_rays.iter().zip(&traces) {
+            shades[view_ray.pixel].evaluations += trace.evaluations;
         }
         traces
     }
@@ -113,48 +117,49 @@ impl<T: Real> Wave<'_, T> {
     }
 
     /// Adds the background for view rays that hit nothing, and the lights for the others.
-    fn lit_meetings(
+    fn lit_hits(
         &mut self,
-        sights: &[Sight<T>],
+        view_rays: &[ViewRay<T>],
         traces: &[Trace<T>],
         shades: &mut [Shade],
-    ) -> Vec<Meeting<T>> {
-        for (sight, _) in sights.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
-            let seen = behind(self.view, vector(sight.ray.direction));
-            shades[sight.pixel].color += seen * sight.weight;
+    ) -> Vec<SurfaceHit<T>> {
+        for (view_ray, _) in view_rays.iter().zip(traces).filter(|(_, trace)| trace.status != HIT) {
+            let background = background_color(self.view, vector(view_ray.ray.direction));
+            shades[view_ray.pixel].color += background * view_ray.weight;
         }
-        let mut meetings = self.meetings(sights, traces);
-        let open = self.open_parts(&meetings, shades);
-        for (Meeting { sight, t, surface, .. }, open) in meetings.iter_mut().zip(open) {
+        let mut hits = self.hits(view_rays, traces);
+        let open = self.unoccluded_fractions(&hits, shades);
+        for (SurfaceHit { view_ray, t, surface, .. }, open) in hits.iter_mut().zip(open) {
             let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
-            let own = surface.ambient(self.view.ambient * open);
-            shades[sight.pixel].color += (own * clear + haze * (1.0 - clear)) * sight.weight;
-            sight.weight *= clear;
+            let reflected = surface.ambient(self.view.ambient * open);
+            shades[view_ray.pixel].color +=
+                (reflected * clear + haze * (1.0 - clear)) * view_ray.weight;
+            view_ray.weight *= clear;
         }
         for light in &self.view.lights {
-            self.light(light, &meetings, shades);
+            self.light(light, &hits, shades);
         }
-        meetings
+        hits
     }
 
-    /// The unoccluded fraction of ambient light at each hit: 1, less what the field falls behind
+    /// The unoccluded fraction of ambient light at each hit: 1, less what the field falls below
     /// the height above the surface, the nearer the more.
-    fn open_parts(&mut self, meetings: &[Meeting<T>], shades: &mut [Shade]) -> Vec<f64> {
-        let mut open = vec![1.0; meetings.len()];
+    fn unoccluded_fractions(&mut self, hits: &[SurfaceHit<T>], shades: &mut [Shade]) -> Vec<f64> {
+        let mut open = vec![1.0; hits.len()];
         let Some(ViewOcclusion { radius, strength }) = self.view.occlusion else { return open };
         let weight = |sample: u32| 0.5f64.powi(sample as i32);
-        let all: f64 = (1..=OCCLUSION_SAMPLES).map(weight).sum();
+        let total: f64 = (1..=OCCLUSION_SAMPLES).map(weight).sum();
         for sample in 1..=OCCLUSION_SAMPLES {
             let height = radius * f64::from(sample) / f64::from(OCCLUSION_SAMPLES);
-            let above = |meeting: &Meeting<T>| meeting.point() + meeting.surface.normal * height;
+            let above = |hit: &SurfaceHit<T>| hit.point() + hit.surface.normal * height;
             let points: Vec<[T; 3]> =
-                meetings.iter().map(|meeting| above(meeting).to_array().map(T::constant)).collect();
+                hits.iter().map(|hit| above(hit).to_array().map(T::constant)).collect();
             let values = values_at(&mut self.field, &points);
-            for ((open, meeting), value) in open.iter_mut().zip(meetings).zip(values) {
-                let distance = value.first().map_or(f64::NAN, |lanes| lanes[0]) / meeting.slope;
-                let closed = (1.0 - distance / height).clamp(0.0, 1.0);
-                *open -= strength * closed * weight(sample) / all;
-                shades[meeting.sight.pixel].evaluations += 1;
+            for ((open, hit), value) in open.iter_mut().zip(hits).zip(values) {
+                let distance = value.first().map_or(f64::NAN, |lanes| lanes[0]) / hit.slope;
+                let occluded = (1.0 - distance / height).clamp(0.0, 1.0);
+                *open -= strength * occluded * weight(sample) / total;
+                shades[hit.view_ray.pixel].evaluations += 1;
             }
         }
         open
@@ -175,71 +180,72 @@ impl<T: Real> Wave<'_, T> {
     }
 
     /// Normals and materials at the hits.
-    fn meetings(&mut self, sights: &[Sight<T>], traces: &[Trace<T>]) -> Vec<Meeting<T>> {
+    fn hits(&mut self, view_rays: &[ViewRay<T>], traces: &[Trace<T>]) -> Vec<SurfaceHit<T>> {
         let Some(gradient) = &mut self.gradient else { return Vec::new() };
-        let met = sights.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
-        let hits: Vec<(Sight<T>, T)> = met.map(|(sight, trace)| (*sight, trace.t)).collect();
-        let points: Vec<[T; 3]> = hits.iter().map(|(sight, t)| sight.ray.at(*t)).collect();
+        let met = view_rays.iter().zip(traces).filter(|(_, trace)| trace.status == HIT);
+        let hits: Vec<(ViewRay<T>, T)> =
+            met.map(|(view_ray, trace)| (*view_ray, trace.t)).collect();
+        let points: Vec<[T; 3]> = hits.iter().map(|(view_ray, t)| view_ray.ray.at(*t)).collect();
         let gradients = values_at(gradient, &points);
         let materials = self.material.as_mut().map(|material| values_at(material, &points));
-        let meeting = |(index, (sight, t)): (usize, (Sight<T>, T))| {
+        let hit = |(index, (view_ray, t)): (usize, (ViewRay<T>, T))| {
             let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
             let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
-            let toward_eye = -vector(sight.ray.direction);
+            let toward_eye = -vector(view_ray.ray.direction);
             let gradient = DVec3::new(x, y, z);
             let surface = Surface::new(gradient, toward_eye, paint);
             let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
-            Meeting { sight, t, surface, slope }
+            SurfaceHit { view_ray, t, surface, slope }
         };
-        hits.into_iter().enumerate().map(meeting).collect()
+        hits.into_iter().enumerate().map(hit).collect()
     }
 
     /// Adds the light of one light source, and the evaluations of its shadow rays.
-    fn light(&mut self, light: &ViewLight, meetings: &[Meeting<T>], shades: &mut [Shade]) {
-        let lit = meetings.iter().map(|meeting| {
-            let incoming = IncomingLight::seen_from(meeting.point(), light);
-            (meeting, incoming, meeting.surface.lit(&incoming) * meeting.sight.weight)
+    fn light(&mut self, light: &ViewLight, hits: &[SurfaceHit<T>], shades: &mut [Shade]) {
+        let lit = hits.iter().map(|hit| {
+            let incoming = IncomingLight::seen_from(hit.point(), light);
+            (hit, incoming, hit.surface.lit(&incoming) * hit.view_ray.weight)
         });
         // A surface that reflects nothing needs no shadow ray.
         let casts = light.shadow != ViewShadow::Off;
         let (asked, sure): (Vec<_>, Vec<_>) =
             lit.partition(|(.., lit)| casts && lit.cmpgt(DVec3::ZERO).any());
-        for (meeting, _, lit) in sure {
-            shades[meeting.sight.pixel].color += lit;
+        for (hit, _, lit) in sure {
+            shades[hit.view_ray.pixel].color += lit;
         }
         let rays: Vec<Ray<T>> =
-            asked.iter().map(|(meeting, incoming, _)| self.shadow_ray(meeting, incoming)).collect();
+            asked.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
         let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
         let traces = self.traces(&rays, records_clearance);
-        for ((meeting, _, lit), trace) in asked.into_iter().zip(traces) {
-            let shade = &mut shades[meeting.sight.pixel];
+        for ((hit, _, lit), trace) in asked.into_iter().zip(traces) {
+            let shade = &mut shades[hit.view_ray.pixel];
             shade.evaluations += trace.evaluations;
             if trace.status != HIT {
-                shade.color += lit * unshaded(light, trace.clearance.into());
+                shade.color += lit * light_visibility(light, trace.clearance.into());
             }
         }
     }
 
     /// How far along the ray the hit may be off.
-    fn near(&self, Meeting { sight, t, .. }: &Meeting<T>) -> T {
-        self.limits.tolerance(&sight.ray, *t).max(sight.ray.rounding(*t))
+    fn near(&self, SurfaceHit { view_ray, t, .. }: &SurfaceHit<T>) -> T {
+        self.limits.tolerance(&view_ray.ray, *t).max(view_ray.ray.rounding(*t))
     }
 
     /// The origin of a secondary ray: above the surface, and a little before the hit, since in a
     /// crease one surface's normal does not lead out of the other.
-    fn lifted(&self, meeting: &Meeting<T>, lift: T) -> [T; 3] {
-        let back = T::constant(0.25) * self.near(meeting);
-        let point = meeting.sight.ray.at(meeting.t - back);
-        let normal = meeting.surface.normal.to_array().map(T::constant);
+    fn lifted(&self, hit: &SurfaceHit<T>, lift: T) -> [T; 3] {
+        let back = T::constant(0.25) * self.near(hit);
+        let point = hit.view_ray.ray.at(hit.t - back);
+        let normal = hit.surface.normal.to_array().map(T::constant);
         std::array::from_fn(|axis| point[axis] + lift * normal[axis])
     }
 
     /// A ray from a surface towards a light.
-    fn shadow_ray(&self, meeting: &Meeting<T>, incoming: &IncomingLight) -> Ray<T> {
-        let half_pixel = meeting.sight.ray.footprint(meeting.t);
-        let lift = (T::constant(3.0) * self.near(meeting)).max(half_pixel);
+    fn shadow_ray(&self, hit: &SurfaceHit<T>, incoming: &IncomingLight) -> Ray<T> {
+        let half_pixel = hit.view_ray.ray.footprint(hit.t);
+        let lift = (T::constant(3.0) * self.near(hit)).max(half_pixel);
         Ray {
-            origin: self.lifted(meeting, lift),
+            origin: self.lifted(hit, lift),
             direction: incoming.direction.to_array().map(T::constant),
             t_max: T::constant(incoming.distance.unwrap_or(self.view.t_max)),
             radius: T::constant(0.5) * lift,
@@ -249,20 +255,20 @@ impl<T: Real> Wave<'_, T> {
     }
 
     /// The reflection of a view ray.
-    fn mirrored(&self, meeting: &Meeting<T>) -> Sight<T> {
-        let Meeting { sight, t, surface, .. } = meeting;
+    fn reflected(&self, hit: &SurfaceHit<T>) -> ViewRay<T> {
+        let SurfaceHit { view_ray, t, surface, .. } = hit;
         let inward = -surface.toward_eye;
         let direction = inward - 2.0 * inward.dot(surface.normal) * surface.normal;
         let ray = Ray {
-            origin: self.lifted(meeting, T::constant(1.5) * self.near(meeting)),
+            origin: self.lifted(hit, T::constant(1.5) * self.near(hit)),
             direction: direction.to_array().map(T::constant),
             t_max: T::constant(self.view.t_max),
-            radius: sight.ray.footprint(*t),
-            spread: sight.ray.spread,
-            tolerance: sight.ray.tolerance,
+            radius: view_ray.ray.footprint(*t),
+            spread: view_ray.ray.spread,
+            tolerance: view_ray.ray.tolerance,
         };
-        let weight = sight.weight * self.view.reflection_strength;
-        Sight { pixel: sight.pixel, ray, weight }
+        let weight = view_ray.weight * self.view.reflection_strength;
+        ViewRay { pixel: view_ray.pixel, ray, weight }
     }
 
     fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {

@@ -131,8 +131,8 @@ impl Pipeline {
                 culling.map(|(culling, made)| culling.with_lists_of(gpu, &made.shader)),
             )
         })?;
-        let kept = self.kernel.tables.iter().skip(usize::from(lists.is_some())).cloned();
-        let tables = lists.into_iter().chain(kept).collect();
+        let stored = self.kernel.tables.iter().skip(usize::from(lists.is_some())).cloned();
+        let tables = lists.into_iter().chain(stored).collect();
         Ok(Self {
             kernel: Kernel { tables, culling, ..self.kernel.clone() },
             uniform_count: self.uniform_count,
@@ -177,7 +177,7 @@ impl Pipeline {
         let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
         let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
         let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
-        let mut run = Run::new(&self.kernel, self.kept_buffers(), moment)?;
+        let mut run = Run::new(&self.kernel, self.take_buffers(), moment)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
@@ -195,19 +195,19 @@ impl Pipeline {
         }
         let culling_evaluations = run.culling_evaluations();
         if self.kernel.culling.is_some() {
-            self.keep(run.into_buffers());
+            self.store_buffers(run.into_buffers());
         }
         Ok(Frame { image, milliseconds, clock, tiles, culling_evaluations })
     }
 
     /// Takes the buffers of the last frame, unless another frame is being drawn with them.
-    fn kept_buffers(&self) -> Option<Buffers> {
+    fn take_buffers(&self) -> Option<Buffers> {
         self.buffers.lock().ok()?.take()
     }
 
-    fn keep(&self, buffers: Buffers) {
-        if let Ok(mut kept) = self.buffers.lock() {
-            *kept = Some(buffers);
+    fn store_buffers(&self, buffers: Buffers) {
+        if let Ok(mut stored) = self.buffers.lock() {
+            *stored = Some(buffers);
         }
     }
 

@@ -91,9 +91,9 @@ impl Image {
         let [x, y] = tile.origin.map(|first| first as usize);
         let [columns, rows] = tile.size.map(|side| side as usize);
         for row in self.pixels.chunks_exact_mut(self.size[0] as usize).skip(y).take(rows) {
-            let places = row.iter_mut().skip(x).take(columns);
+            let columns = row.iter_mut().skip(x).take(columns);
             // The row decides how many pixels are taken.
-            places.for_each(|place| *place = pixels.next().unwrap_or_default());
+            columns.for_each(|pixel| *pixel = pixels.next().unwrap_or_default());
         }
     }
 

@@ -27,11 +27,11 @@ pub fn sample_offsets(count: u32) -> Result<Vec<[f64; 2]>, RenderError> {
         let index = f64::from(index);
         [(index + 0.5) / total - 0.5, (index * GOLDEN).fract() - 0.5]
     };
-    let mut places: Vec<[f64; 2]> = (0..count).map(lattice).collect();
-    let mean = places.iter().map(|place| place[1]).sum::<f64>() / total;
-    places.iter_mut().for_each(|place| place[1] -= mean);
-    places.sort_by(|a, b| length(a).total_cmp(&length(b)));
-    Ok(places)
+    let mut offsets: Vec<[f64; 2]> = (0..count).map(lattice).collect();
+    let mean = offsets.iter().map(|offset| offset[1]).sum::<f64>() / total;
+    offsets.iter_mut().for_each(|offset| offset[1] -= mean);
+    offsets.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    Ok(offsets)
 }
 
 fn length([x, y]: &[f64; 2]) -> f64 {
@@ -76,17 +76,17 @@ mod tests {
     #[test]
     fn places_are_spread_about_the_centre() {
         for count in [2, 3, 4, 8, 16, 64, MAX_SAMPLES] {
-            let places = sample_offsets(count).unwrap();
+            let offsets = sample_offsets(count).unwrap();
             for axis in 0..2 {
-                let mut along: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+                let mut along: Vec<f64> = offsets.iter().map(|offset| offset[axis]).collect();
                 let mean = along.iter().sum::<f64>() / f64::from(count);
                 assert!(mean.abs() < 1e-9, "{count}: {mean}");
                 along.sort_by(f64::total_cmp);
                 let apart = along.windows(2).all(|pair| pair[1] - pair[0] > 0.3 / f64::from(count));
                 assert!(apart, "{count}: {along:?}");
-                assert!(along.iter().all(|place| place.abs() < 0.75), "{count}: {along:?}");
+                assert!(along.iter().all(|offset| offset.abs() < 0.75), "{count}: {along:?}");
             }
-            assert!(places.iter().all(|place| length(place) >= length(&places[0])));
+            assert!(offsets.iter().all(|offset| length(offset) >= length(&offsets[0])));
         }
     }
 

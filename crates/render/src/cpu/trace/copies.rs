@@ -14,14 +14,14 @@ pub(crate) fn trace_among_copies<T: Real>(
     rays: &[(Ray<T>, PreIntersection<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
-    let mut traces = vec![Trace::lost(); rays.len()];
+    let mut traces = vec![Trace::untraced(); rays.len()];
     for (group, traces) in rays.chunks(LANES).zip(traces.chunks_mut(LANES)) {
         let mut walks: Vec<Option<Walk<T>>> = Vec::with_capacity(LANES);
         for (&(ray, known), trace) in group.iter().zip(traces.iter_mut()) {
             let walk = Walk::new(ray, known);
             let must_march = walk.known.must_march();
             if !must_march {
-                *trace = walk.unmet();
+                *trace = walk.without_hit();
             }
             walks.push(must_march.then_some(walk));
         }
@@ -34,11 +34,11 @@ pub(crate) fn trace_among_copies<T: Real>(
             }
             let sampled = copies.eval_ray(packed(&ends[0]), packed(&ends[1]));
             let [Packet(met), Packet(reach), ..] = sampled[0];
-            for (lane, place) in walks.iter_mut().enumerate() {
-                let Some(walk) = place else { continue };
+            for (lane, slot) in walks.iter_mut().enumerate() {
+                let Some(walk) = slot else { continue };
                 if let Some(ended) = walk.step_over([met[lane], reach[lane]], limits) {
                     traces[lane] = ended;
-                    *place = None;
+                    *slot = None;
                 }
             }
         }
@@ -53,7 +53,7 @@ impl<T: Real> Walk<T> {
         self.evaluations += 1;
         let [met, reach] = [met, reach].map(|way| self.t + way);
         if met <= reach && met <= self.end {
-            return Some(self.ends(self.known.start + met, HIT));
+            return Some(self.result(self.known.start + met, HIT));
         }
         let within = reach <= self.end;
         let rounding = self.ray.rounding(self.t);

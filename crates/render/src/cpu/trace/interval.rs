@@ -2,7 +2,7 @@
 
 use sdfc_graph::eval::Evaluator;
 
-use super::{Limits, Turn, Walk};
+use super::{Limits, Next, Walk};
 use crate::cpu::ray::Real;
 
 /// Bounds on the fraction of a segment that is examined next.
@@ -21,22 +21,22 @@ impl<T: Real> Walk<T> {
         distance: T,
         limits: &Limits<T>,
         range: &mut Evaluator<'_, T>,
-    ) -> Turn<T> {
+    ) -> Next<T> {
         let zero = T::constant(0.0);
         let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
         if self.evaluations == 0 && distance < hit {
             self.evaluations = 1;
-            return Turn::Hit(self.t);
+            return Next::Hit(self.t);
         }
-        self.keep(distance);
+        self.record(distance);
         self.evaluations += u32::from(self.inside.is_some());
         let (last, above) = self.outside.unwrap_or((zero, zero));
         let near = limits.tolerance(&self.ray, last);
-        if let Some(turn) = self.closing_in(self.hit_within(near)) {
-            return turn;
+        if let Some(next) = self.false_position(self.hit_within(near)) {
+            return next;
         }
         if self.t >= self.ray.t_max {
-            return Turn::Onward(self.ray.t_max + self.ray.t_max);
+            return Next::At(self.ray.t_max + self.ray.t_max);
         }
         let rounding = self.ray.rounding(self.t);
         self.segment = self.segment.max(above.max(rounding));
@@ -63,6 +63,6 @@ impl<T: Real> Walk<T> {
             shortened = true;
         }
         self.segment = if shortened { zero } else { self.segment + self.segment };
-        Turn::Onward(end)
+        Next::At(end)
     }
 }
