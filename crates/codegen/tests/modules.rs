@@ -1,4 +1,4 @@
-//! Whole modules: each links, validates, is accepted by readers; errors are values.
+//! Whole modules: each links, validates and is accepted by readers; errors are values.
 
 #![allow(clippy::expect_used)]
 
@@ -139,7 +139,7 @@ fn params_are_reflected_with_their_offsets() {
         distance = graph.add(distance, part);
     }
     let mut scene = program(graph, distance);
-    // The last takes a name that WGSL keeps for itself.
+    // The last has a name that is reserved in WGSL.
     for name in ["a", "b", "c", "d", "e", "loop"] {
         scene.params.push(number_param(name, 0.0));
     }
@@ -155,7 +155,7 @@ fn params_are_reflected_with_their_offsets() {
     assert_eq!((uniform.group, uniform.binding, uniform.size), (2, 3, 80));
     assert_eq!(uniform.structure.as_deref(), Some("sdf_Params"));
     assert_eq!(uniform.variable, "sdf_params");
-    // The reader lays the structure out by WGSL's rules: it must come to the same.
+    // The reader lays the structure out by WGSL's rules, which must give the same.
     let text = shader.wgsl().expect("is written");
     let read = naga::front::wgsl::parse_str(&text).expect("is WGSL");
     assert_eq!(layout(&read, "sdf_Params"), (vec![0, 16, 28, 32, 48, 64], 80));
@@ -183,7 +183,7 @@ fn instructions_are_counted() {
     let shader = field_module(&sphere(), &FieldOptions::default()).expect("lowers");
     let costs = shader.instructions().expect("is written");
     assert_eq!((costs[0].role, costs[0].instructions, costs[0].arithmetic), (Role::Distance, 4, 3));
-    // The distance beside it: one subtraction more, and four lanes put together.
+    // The distance with it: one more subtraction, and a vector of four lanes.
     assert_eq!(
         (costs[1].role, costs[1].instructions, costs[1].arithmetic),
         (Role::Gradient, 11, 6)
@@ -255,7 +255,7 @@ fn what_cannot_be_lowered_is_an_error() {
         assert!(matches!(error, Some(Error::NotFinite { .. })), "{value}: {error:?}");
     }
 
-    // Without a slot a picture has nowhere to take a per-frame input from.
+    // Without a uniform slot a picture cannot read a per-frame input.
     let mut unbound = blend();
     unbound.uniforms.clear();
     assert!(matches!(render_module(&unbound, "auto"), Err(Error::UnboundInput(_))));

@@ -1,4 +1,4 @@
-//! Each operation on each type that it takes: validates, is written, and reads as expected.
+//! Each operation on each type that it takes validates, is written, and reads as expected.
 
 #![allow(clippy::expect_used)]
 
@@ -54,7 +54,7 @@ const ARITHMETIC: [Binary; 11] = [
     Binary::Hash,
 ];
 
-/// A value of a type that depends on the point; each seed gives another.
+/// A value of a type that depends on the point, different for each seed.
 fn value(graph: &mut Graph, ty: Type, seed: u8) -> NodeId {
     let p = common::point(graph);
     let lanes = [seed, seed + 1, seed + 2].map(|lane| graph.component(p, lane % 3));
@@ -70,7 +70,7 @@ fn value(graph: &mut Graph, ty: Type, seed: u8) -> NodeId {
     }
 }
 
-/// A scalar that needs all of a value.
+/// A scalar that depends on all lanes of a value.
 fn measured(graph: &mut Graph, value: NodeId) -> NodeId {
     match graph.ty(value) {
         Type::Bool => {
@@ -79,7 +79,7 @@ fn measured(graph: &mut Graph, value: NodeId) -> NodeId {
         }
         Type::Scalar => value,
         ty @ (Type::Vec2 | Type::Vec3 | Type::Vec4) => {
-            // What the graph does not see through.
+            // A condition that the graph cannot fold.
             let least = graph.constant(ty, &[0.1, 0.2, 0.3, 0.4]);
             let raised = graph.max(value, least);
             graph.length(raised)
@@ -87,7 +87,7 @@ fn measured(graph: &mut Graph, value: NodeId) -> NodeId {
     }
 }
 
-/// Lowers, validates, writes, parses and validates again, and yields the distance's statements.
+/// Lowers, validates, writes, parses and validates again; returns the statements of the distance.
 fn written(build: impl FnOnce(&mut Graph) -> NodeId) -> Result<String, Error> {
     let mut graph = Graph::new();
     let result = build(&mut graph);

@@ -1,4 +1,4 @@
-//! What is written, for small programs.
+//! The written sources of small programs.
 
 #![allow(clippy::expect_used, clippy::panic)]
 
@@ -17,7 +17,7 @@ fn field(program: &Program) -> String {
     field_module(program, &options).expect("lowers").wgsl().expect("is written")
 }
 
-/// Declarations alone: what is linked, not how it is written.
+/// The declarations alone, which show what is linked.
 fn outline(shader: &Shader) -> String {
     let text = shader.wgsl().expect("is written");
     let heads = ["fn ", "struct ", "const ", "var", "@group"];
@@ -89,7 +89,7 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();
         let differences = usize::from(method.gradient.is_some());
         assert_eq!((calls("field"), calls("trace")), (1 + differences, 1), "{}", method.name);
-        // What a method does not ask of stretches is not there.
+        // Bounds along segments that a method does not use are not linked.
         for stub in [stubs::RANGE, stubs::SLOPE_RANGE] {
             let asked = usize::from(method.calls(stub));
             let (written, called) = (text.matches(&format!("fn {stub}(")).count(), calls(stub));
@@ -98,11 +98,11 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
     }
 }
 
-/// Targets whose texts need no picture.
+/// Targets that can hold functions without a picture.
 const FUNCTIONS: [Target; 6] =
     [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl, Target::Spirv];
 
-/// The painted sphere with a param, and what the reflection says of it.
+/// The reflection of the sphere with a material and a param.
 #[test]
 fn a_small_scene_in_every_language() {
     let options = FieldOptions { binding: 3, ..FieldOptions::default() };
@@ -134,7 +134,7 @@ fn a_march_in_every_language() {
     }
 }
 
-/// A radius out of so many, by the height of the point.
+/// A radius from a list of this many, selected by the height of the point.
 fn looked_up(count: usize) -> Program {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
@@ -201,7 +201,7 @@ fn a_picture_for_shadertoy() {
     assert!(matches!(short, Err(Error::ViewBytes { .. })));
 }
 
-/// Words that are free in WGSL and taken in one of the others.
+/// Names that are allowed in WGSL and keywords in another language.
 #[test]
 fn params_are_reflected_with_the_names_of_each_language() {
     for word in ["loop", "float4", "half", "vec2", "gl_x", "double", "thread", "_group", "a__b"] {

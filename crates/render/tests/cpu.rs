@@ -1,4 +1,4 @@
-//! The CPU renderer against closed forms, and f32 against f64.
+//! The CPU renderer compared with exact solutions, and f32 with f64.
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
 mod common;
@@ -103,7 +103,7 @@ fn a_light_overhead_casts_the_spheres_shadow_on_the_floor() {
     assert!(lit > 500 && shadowed > 100, "{lit} lit, {shadowed} in shadow");
 }
 
-/// The floor's pixels: where they are, and their colour.
+/// The floor's pixels: their positions and colours.
 fn floor_pixels(program: &Program) -> Vec<(glam::DVec3, f64, [f32; 4])> {
     let view = common::view(program, [96, 64]);
     let frame = draw(program, [96, 64], "auto", TileSize::default());
@@ -128,7 +128,7 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
     let (mut fading, mut dark, mut off) = (0, 0, 0.0f64);
     for (point, _, color) in floor_pixels(&common::soft_shadow(sharpness)) {
         let away = point.x.hypot(point.z);
-        // The ray goes straight up past the sphere, whose centre is 1.5 above the floor.
+        // The ray leads straight up past the sphere, whose centre is 1.5 above the floor.
         let ratio = |t: f64| (away.hypot(1.5 - t) - 1.0) / t;
         let clearance = (1..4000).map(|i| ratio(f64::from(i) * 1e-3)).fold(f64::INFINITY, f64::min);
         let light = fade(sharpness * clearance);
@@ -138,7 +138,7 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
         off = off.max((f64::from(color[0]) - expected).abs());
     }
     assert!(fading > 200 && dark > 100, "{fading} between, {dark} in shadow");
-    // The places of a ray are not so close that the nearest is among them.
+    // The samples of a ray are too far apart to contain the nearest point.
     assert!(off < 0.06, "off by {off}");
 }
 
@@ -148,7 +148,7 @@ fn a_point_light_falls_off_with_the_square_of_the_distance() {
     let (mut lit, mut shadowed) = (0, 0);
     for (point, _, color) in floor_pixels(&common::lamp(place.to_array(), 4.0, Shadow::Hard)) {
         let way = place - point;
-        // How far the sphere's centre is from the ray, if it lies along it.
+        // The distance of the sphere's centre from the ray, if it lies beside it.
         let center = glam::DVec3::new(0.0, 0.5, 0.0) - point;
         let along = center.dot(way.normalize());
         let aside = (center - way.normalize() * along).length();
@@ -178,7 +178,7 @@ fn fog_turns_what_is_far_into_the_sky_behind_it() {
     let with = floor_pixels(&program);
     assert!(with.len() > 500 && with.len() == without.len());
     for ((point, depth, color), (_, _, clear)) in with.iter().zip(without) {
-        // All of the floor is seen downwards, where the sky has the horizon's colour.
+        // The whole floor is seen from above, where the sky has the horizon's colour.
         assert!(point.y < eye.y);
         let left = (-density * depth).exp() as f32;
         for channel in 0..3 {
@@ -217,7 +217,7 @@ fn the_floor_is_dark_under_the_sphere_and_open_away_from_it() {
 fn parallel_rays_see_the_sphere_as_a_disc_of_its_size() {
     let program = common::parallel(4.0);
     let frame = draw(&program, [80, 80], "auto", TileSize::default());
-    // 20 pixels for each unit.
+    // 20 pixels per unit.
     let disc = std::f64::consts::PI * 400.0;
     let hits = frame.image.counts().hit as f64;
     assert!((hits - disc).abs() < 0.02 * disc, "{hits} pixels of {disc}");
@@ -243,7 +243,7 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
         if with.status != HIT || (point.y + 1.0).abs() > 1e-3 {
             continue;
         }
-        // Mirrored at the floor, from there to the nearest place on its line to the sphere's
+        // Reflected at the floor, from there to the nearest point on its line to the sphere's
         // centre.
         let up = direction * glam::DVec3::new(1.0, -1.0, 1.0);
         let along = (center - point).dot(up);
@@ -251,7 +251,7 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
         let added = std::array::from_fn::<f64, 3, _>(|channel| {
             f64::from(with.color[channel] - without.color[channel])
         });
-        // The mirrored ray starts off the floor by part of a pixel.
+        // The reflected ray starts a fraction of a pixel above the floor.
         let expected = if apart > 1.08 || along < 0.0 {
             skies += 1;
             [0.0, 0.0, 0.5]
@@ -275,8 +275,8 @@ fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
     let sky = frame.image.pixel(0, 0).unwrap();
     assert_eq!((sky.status, sky.color), (MISS, [0.0, 0.0, 1.0, 1.0]));
 
-    // Facing the head light: half of it dielectric, half metal. At n = l = v = h the highlight is F
-    // D / 4 with pi D = 1 / alpha^2, and 0.96 squared of the matt colour comes back.
+    // Facing the headlight: half of it dielectric, half metal. At n = l = v = h the highlight is F
+    // D / 4 with pi D = 1 / alpha^2, and 0.96 squared of the diffuse colour comes back.
     let frame = draw(&common::painted_sphere(), [33, 33], "sphere", TileSize::default());
     let middle = frame.image.pixel(16, 16).unwrap();
     let peak = 0.25 / 0.3f64.powi(4);

@@ -47,7 +47,7 @@ fn pattern(gpu: &Gpu, view: &View, tile_size: TileSize) -> Result<Frame, RenderE
     Pipeline::from_wgsl(gpu, PATTERN, 2)?.render(view, &VALUES, &options, &mut no_progress)
 }
 
-/// A frame of a program by its own shader.
+/// A frame of a program, drawn by its own shader.
 fn draw(
     gpu: &Gpu,
     program: &Program,
@@ -92,8 +92,8 @@ fn gpu_and_cpu_agree() -> Outcome {
             assert!(close.depth < 1e-3 && close.status == 0, "{method}: {close:?}");
             assert!(close.color <= 1 && close.mean_color < 0.1, "{method}: {close:?}");
             assert!(close.compared > 3000, "{method}: {close:?}");
-            // Rounding ends a few rays a step sooner or later; it moves the cuts of `interval`, so
-            // that of its many stretches one more or less is looked at.
+            // Rounding ends a few rays a step earlier or later; it moves the cuts of `interval`, so
+            // that one more or one less of its many segments is examined.
             let slack = |count: u32| if method == "interval" { 1 + count / 16 } else { 0 };
             let pairs = on_gpu.pixels().iter().zip(on_cpu.pixels());
             let differing = pairs.filter(|(one, other)| {
@@ -109,7 +109,7 @@ fn gpu_and_cpu_agree() -> Outcome {
     Ok(())
 }
 
-/// Steps of another length meet other places of a ray, from which its shadow is estimated.
+/// Steps of another length sample other positions of a ray, from which its shadow is estimated.
 fn soft_shadows_are_the_same() -> Outcome {
     let gpu = Gpu::new()?;
     let program = common::soft_shadow(4.0).with_segment_bounds(true, true);
@@ -123,7 +123,7 @@ fn soft_shadows_are_the_same() -> Outcome {
         assert!(close.mean_color < 0.5, "{what}: {close:?}");
         Ok::<_, Failed>(())
     };
-    // Neither of these meets what the others do.
+    // Neither of these finds what the others do.
     let walks = |name: &str| !["fixed", "practical"].contains(&name);
     for method in METHODS.iter().filter(|method| walks(method.name)) {
         is_same(&picture(method.name)?, method.name)?;
@@ -198,7 +198,7 @@ fn an_adaptive_frame_grows_its_tiles() -> Outcome {
     let gpu = Gpu::new()?;
     let view = common::view(&common::sphere(), [1024, 512]);
     let adaptive = pattern(&gpu, &view, TileSize::Adaptive { milliseconds: 1e6 })?;
-    // 64 pixels, then four times as many each, as far as a band of 64 rows goes.
+    // 64 pixels, then four times as many each, until a band of 64 rows is full.
     assert!(adaptive.tiles < 40, "{} tiles", adaptive.tiles);
     let timid = pattern(&gpu, &view, TileSize::Adaptive { milliseconds: 1e-9 })?;
     assert!(timid.tiles > 1000, "{} tiles", timid.tiles);
@@ -230,7 +230,7 @@ fn a_bad_shader_is_an_error() -> Outcome {
     assert!(matches!(no_wgsl, Some(RenderError::Validation(_))), "{no_wgsl:?}");
     let no_entry = Pipeline::from_wgsl(&gpu, "fn other() {}", 0).err();
     assert!(matches!(no_entry, Some(RenderError::Validation(_))), "{no_entry:?}");
-    // The pattern reads binding 1, which the layout of a scene without values lacks.
+    // The pattern reads binding 1, which the layout of a scene without per-frame values lacks.
     let no_values = Pipeline::from_wgsl(&gpu, PATTERN, 0).err();
     assert!(matches!(no_values, Some(RenderError::Validation(_))), "{no_values:?}");
     Ok(())

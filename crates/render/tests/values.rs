@@ -1,4 +1,4 @@
-//! Single values as an adapter computes them, bit by bit where they must be. Without an adapter
+//! Single values as an adapter computes them, bit-exact where they must be. Without an adapter
 //! every test here is reported as ignored, unless `SDFC_REQUIRE_GPU=1` is set.
 
 mod common;
@@ -12,7 +12,7 @@ use sdfc_render::{Gpu, Pipeline, RenderOptions, TileSize, no_progress, testing};
 type Outcome = Result<(), Failed>;
 
 const READ_BACK: &str = include_str!("values.wgsl");
-/// As many as `values.wgsl` has room for.
+/// The capacity of `values.wgsl`.
 const POINTS: usize = 256;
 
 fn main() {
@@ -23,7 +23,7 @@ fn main() {
     libtest_mimic::run(&arguments, trials).exit();
 }
 
-/// A function of the point, at the points: on the adapter, and on the CPU in f32 and f64.
+/// Evaluates a function at points: on the adapter, and on the CPU in f32 and f64.
 fn values(
     points: &[[f32; 4]],
     build: impl FnOnce(&mut Graph, NodeId) -> NodeId,
@@ -53,8 +53,7 @@ fn values(
         .collect())
 }
 
-/// Coordinates of cells: near 0 on both sides, at the ends of the words that they become, and
-/// beyond.
+/// Coordinates of cells: near 0 on both sides, at the ends of the range of words, and beyond.
 fn cells() -> Vec<[f32; 4]> {
     let delicate = [
         0.0,
@@ -95,7 +94,7 @@ fn hashes_have_the_same_bits() -> Outcome {
     let vector = values(&cells(), |graph, p| {
         let starts = graph.constant(Type::Vec3, &[0.0, 10_368_889.0, 4_370_562.0]);
         let hashed = graph.binary(Binary::Hash, starts, p);
-        // Sums of 24 bits would round: the last lane is chosen by the point.
+        // Sums of 24-bit numbers would round, so the point selects the last lane.
         let [x, y, z] = [0, 1, 2].map(|lane| graph.component(hashed, lane));
         let (place, limit) = (graph.component(p, 1), graph.number(0.0));
         let left = graph.lt(place, limit);

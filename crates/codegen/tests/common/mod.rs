@@ -24,7 +24,7 @@ pub fn ball(graph: &mut Graph, centre: [f64; 3], radius: f64) -> NodeId {
     graph.sub(length, radius)
 }
 
-/// The exact box of these half extents about the origin.
+/// The exact box of these half extents around the origin.
 pub fn block(graph: &mut Graph, half: [f64; 3]) -> NodeId {
     let p = point(graph);
     let (half, zero) = (graph.constant(Type::Vec3, &half), graph.number(0.0));
@@ -73,8 +73,8 @@ pub fn sphere() -> Program {
     program(graph, distance)
 }
 
-/// A sphere and a box smoothly joined, over a plane. The smoothness is the param `k`, its quarter a
-/// value known per frame.
+/// A smooth union of a sphere and a box, over a plane. The smoothness is the param `k`; a quarter
+/// of it is a per-frame value.
 pub fn blend() -> Program {
     let mut graph = Graph::new();
     let k = graph.frame_input(FrameInput::Param(0), Type::Scalar);
@@ -126,7 +126,7 @@ pub fn painted() -> Program {
     program
 }
 
-/// A box twisted about y by an angle of `rate` for each unit of height, divided by a constant.
+/// A box twisted around y by an angle of `rate` per unit of height, divided by a constant.
 pub fn twisted() -> Program {
     let mut graph = Graph::new();
     let p = point(&mut graph);
@@ -149,7 +149,7 @@ pub fn twisted() -> Program {
     program(graph, distance)
 }
 
-/// A left-deep chain of spheres, smoothly joined.
+/// A left-deep chain of smooth unions of spheres.
 pub fn chain(leaves: usize) -> Program {
     let mut graph = Graph::new();
     let k = graph.number(0.1);
@@ -186,7 +186,7 @@ pub fn lit(mut program: Program, shadow: Shadow) -> Program {
     program
 }
 
-/// How many features a picture can have beside its material.
+/// The number of features that a picture can have besides its material.
 pub const FEATURES: usize = 8;
 
 /// The program with the features whose bits are set.
@@ -237,7 +237,7 @@ pub fn check(text: &str) {
         .unwrap_or_else(|error| panic!("{}\n{text}", error.emit_to_string(text)));
 }
 
-/// Has `spirv-val` of SPIRV-Tools look at the words, where it is installed.
+/// Validates the words with `spirv-val` of SPIRV-Tools, if it is installed.
 pub fn check_spirv(words: &[u32], environment: &str) {
     let child = Command::new("spirv-val")
         .args(["--target-env", environment, "-"])

@@ -1,4 +1,4 @@
-//! Small programs built by hand, and the views that the tests look at them through.
+//! Small programs built by hand, and the views of the tests.
 #![allow(dead_code, reason = "each test target uses some of them")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot be set up fails")]
 
@@ -8,7 +8,7 @@ use sdfc_graph::{
 };
 use sdfc_render::{Bounds, View};
 
-/// Distance and gradient in a growing graph.
+/// Distance and gradient in a graph under construction.
 struct Field {
     distance: NodeId,
     gradient: NodeId,
@@ -41,7 +41,7 @@ fn program(build: impl FnOnce(&mut Graph) -> Field) -> Program {
     program
 }
 
-/// A program of which only the distance is asked.
+/// A program with a distance only.
 pub fn program_of(build: impl FnOnce(&mut Graph, NodeId) -> NodeId) -> Program {
     let mut program = Program::default();
     let p = point(&mut program.graph);
@@ -49,14 +49,14 @@ pub fn program_of(build: impl FnOnce(&mut Graph, NodeId) -> NodeId) -> Program {
     program
 }
 
-/// A unit sphere about the origin, seen from [0, 0, 5] with 40 degrees.
+/// A unit sphere around the origin, seen from [0, 0, 5] with 40 degrees.
 pub fn sphere() -> Program {
     let mut program = program(|graph| sphere_field(graph, [0.0; 3], 1.0));
     look_from(&mut program, [0.0, 0.0, 5.0]);
     program
 }
 
-/// A unit sphere above a floor at -1, a lamp overhead that casts shadows, some ambient light.
+/// A unit sphere above a floor at -1, a light overhead that casts shadows, some ambient light.
 pub fn sphere_above_floor() -> Program {
     let mut program = program(|graph| {
         let (sphere, floor) = (sphere_field(graph, [0.0, 0.5, 0.0], 1.0), floor_field(graph, -1.0));
@@ -79,7 +79,7 @@ pub fn sphere_above_floor() -> Program {
     program
 }
 
-/// The same, every surface a mirror of half the light.
+/// The same scene, every surface a mirror of half the light.
 pub fn mirrors() -> Program {
     let mut program = sphere_above_floor();
     let strength = program.graph.number(0.5);
@@ -87,7 +87,7 @@ pub fn mirrors() -> Program {
     program
 }
 
-/// The same light, its shadow's edge soft.
+/// The same scene with a soft shadow.
 pub fn soft_shadow(sharpness: f64) -> Program {
     let mut program = sphere_above_floor();
     let sharpness = program.graph.number(sharpness);
@@ -97,7 +97,7 @@ pub fn soft_shadow(sharpness: f64) -> Program {
     program
 }
 
-/// The sphere and the floor under a lamp at a place.
+/// The sphere and the floor under a point light.
 pub fn lamp(place: [f64; 3], strength: f64, shadow: Shadow) -> Program {
     let mut program = sphere_above_floor();
     let graph = &mut program.graph;
@@ -118,7 +118,7 @@ pub fn foggy(density: f64) -> Program {
     program
 }
 
-/// The sphere and the floor without a lamp's light, the distance written twice as large.
+/// The sphere and the floor without the light, the distance written twice as large.
 pub fn occluded(radius: f64) -> Program {
     let mut program = sphere_above_floor();
     let graph = &mut program.graph;
@@ -132,7 +132,7 @@ pub fn occluded(radius: f64) -> Program {
     program
 }
 
-/// The unit sphere by parallel rays, in a picture of this height.
+/// The unit sphere seen by parallel rays, in a picture of this height.
 pub fn parallel(height: f64) -> Program {
     let mut program = sphere();
     let height = program.graph.number(height);
@@ -142,7 +142,7 @@ pub fn parallel(height: f64) -> Program {
     program
 }
 
-/// The unit sphere, painted red, half mirroring.
+/// The unit sphere with a red material, half reflecting.
 pub fn painted_sphere() -> Program {
     let mut program = sphere();
     let graph = &mut program.graph;
@@ -153,7 +153,7 @@ pub fn painted_sphere() -> Program {
     program
 }
 
-/// The unit sphere, its distance overestimated, so that rays step through the surface.
+/// The unit sphere with an overestimated distance, so that rays step through the surface.
 pub fn steep_sphere() -> Program {
     let mut program = sphere();
     let factor = program.graph.number(1.2);
@@ -161,7 +161,7 @@ pub fn steep_sphere() -> Program {
     program
 }
 
-/// A sphere whose radius is a param: 1, or what the frame says.
+/// A sphere whose radius is a param, 1 by default.
 pub fn sphere_of_param() -> Program {
     let mut program = sphere();
     let graph = &mut program.graph;
@@ -182,7 +182,7 @@ pub fn sphere_of_param() -> Program {
     program
 }
 
-/// The unit sphere, not a number where x is negative.
+/// The unit sphere, whose distance is NaN where x is negative.
 pub fn half_undefined() -> Program {
     let mut program = sphere();
     let graph = &mut program.graph;
@@ -212,7 +212,7 @@ pub fn view(program: &Program, size: [u32; 2]) -> View {
     View::new(program, &FrameValues::default(), None, size).unwrap()
 }
 
-/// Distance from [0, 0, 5] to the unit sphere along a ray; `None` if it passes by.
+/// Distance from [0, 0, 5] to the unit sphere along a ray; `None` if it misses.
 pub fn depth_of_sphere(view: &View, x: u32, y: u32) -> Option<f64> {
     let [_, direction] = view.ray(x, y);
     let along = -view.eye.dot(direction);
