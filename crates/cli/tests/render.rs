@@ -179,19 +179,19 @@ fn numbers_move_where_asked_for() {
 /// Of a scene that wants another method the processor draws what it can, unless it was asked for just that.
 #[test]
 fn without_an_adapter_auto_stands_in_for_methods_that_the_processor_lacks() {
-    let folder = folder(&[("a.sdf", "sphere(0.8)\nmarch(method: \"relaxed\")\n")]);
+    let folder = folder(&[("a.sdf", "sphere(0.8)\nmarch(method: \"segment\")\n")]);
     // The loaders of Vulkan find no driver; elsewhere there may be an adapter, which has the method.
     let hidden = [("VK_DRIVER_FILES", "/nowhere"), ("VK_ICD_FILENAMES", "/nowhere")];
     let output = run_in(folder.path(), "render a.sdf -o a.png --size 24x16", b"", &hidden);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     if cfg!(target_os = "linux") {
         assert!(
-            said(&output).contains("has no method `relaxed`, `auto` is used instead"),
+            said(&output).contains("has no method `segment`, `auto` is used instead"),
             "{}",
             said(&output)
         );
     }
-    let both = run(&folder, "render a.sdf -o b.png --size 24x16 --backend cpu --march relaxed");
+    let both = run(&folder, "render a.sdf -o b.png --size 24x16 --backend cpu --march segment");
     assert_eq!(both.status.code(), Some(2), "{}", said(&both));
     assert!(said(&both).contains("it has `auto`, `sphere`, `interval`"), "{}", said(&both));
     assert_eq!(names(folder.path()), ["a.png", "a.sdf"]);

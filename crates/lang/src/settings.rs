@@ -4,17 +4,7 @@ use crate::hir::{SettingKind, Type};
 
 /// The ray methods that `march(method: ...)` can name, the default first. These are the methods of
 /// `sdfc-march`, except those that exist only for comparison.
-pub const RAY_METHODS: [&str; 9] = [
-    "auto",
-    "fixed",
-    "sphere",
-    "sphere-cone",
-    "relaxed",
-    "accelerated",
-    "auto-relaxed",
-    "segment",
-    "interval",
-];
+pub const RAY_METHODS: [&str; 5] = ["auto", "fixed", "sphere", "segment", "interval"];
 
 /// One parameter of a setting.
 #[derive(Clone, Debug)]

@@ -237,7 +237,7 @@ fn every_widget_has_a_hover_text() {
     fixture.harness.key_press(Key::Escape);
     for (list, entry) in [
         ("The view: what the picture shows (V for the next).", "Overshoot"),
-        ("The ray method: how the surface is found along each ray.", "auto-relaxed"),
+        ("The ray method: how the surface is found along each ray.", "segment"),
     ] {
         fixture.harness.get_by_role_and_label(Role::ComboBox, list).click();
         fixture.harness.run_steps(3);

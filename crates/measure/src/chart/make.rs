@@ -179,19 +179,19 @@ fn methods(names: &[String]) -> Result<Vec<&'static MethodDefinition>, Error> {
 #[cfg(test)]
 mod tests {
     use sdfc_lang::settings::RAY_METHODS;
+    use sdfc_march::Method;
 
     use super::*;
 
     /// The language cannot ask the crate that has the methods.
     #[test]
-    fn a_scene_may_name_every_method_but_the_practical() {
-        let known: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
-        let named: Vec<&str> = RAY_METHODS.into_iter().chain(["practical"]).collect();
-        assert_eq!(named, known);
+    fn a_scene_may_name_the_methods_that_are_for_users() {
+        let for_users: Vec<&str> = Method::for_users().map(Method::name).collect();
+        assert_eq!(for_users, RAY_METHODS);
     }
 
     #[test]
-    fn a_chart_shows_every_knob_at_its_default_too() {
+    fn a_chart_shows_every_parameter_at_its_default_too() {
         for method in METHODS {
             assert!(method.chart_factors.contains(&1.0), "{}", method.name);
         }

@@ -1,7 +1,7 @@
 //! The bar above the picture: scene menu, view, ray method, and buttons that open panels.
 
 use eframe::egui::{self, RichText, Ui};
-use sdfc_march::{METHODS, MethodParameter};
+use sdfc_march::{Method, MethodParameter};
 
 use super::number_widget::number_drag;
 use super::open_panels::OpenPanels;
@@ -110,10 +110,11 @@ fn methods(ui: &mut Ui, session: &mut Session, wide: bool) {
         {
             session.update_build(|build| build.method = None);
         }
-        for method in METHODS {
-            let is_chosen = chosen.as_deref() == Some(method.name);
-            if ui.selectable_label(is_chosen, method.name).on_hover_text(method.summary).clicked() {
-                session.update_build(|build| build.method = Some(method.name.to_owned()));
+        for method in Method::for_users() {
+            let (name, summary) = (method.name(), method.summary());
+            let is_chosen = chosen.as_deref() == Some(name);
+            if ui.selectable_label(is_chosen, name).on_hover_text(summary).clicked() {
+                session.update_build(|build| build.method = Some(name.to_owned()));
             }
         }
     });
