@@ -53,7 +53,7 @@ const TERMS: &[Term] = &[
     word("painted", "has a material"),
     word("unpainted", "default material"),
     word("told", "reported"),
-    word("no_progress", "no_progress, NoTrace"),
+    word("unwatched", "no_progress, NoTrace"),
     word("yardstick", "hand-written baseline"),
     name("Excess", "ClampResidual"),
     name("Inert", "SkipCondition"),

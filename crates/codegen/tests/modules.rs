@@ -7,8 +7,8 @@ mod common;
 use std::mem::{offset_of, size_of};
 
 use common::{
-    FEATURES, blend, chain, featured, lit, mirrored, number_param, painted, program, sphere,
-    twisted,
+    FEATURES, blend, chain, featured, lit, mirrored, number_param, program, sphere, twisted,
+    with_material,
 };
 use sdfc_codegen::{
     Error, FieldOptions, Lists, PictureOptions, Role, Stage, field_module, march_module,
@@ -19,11 +19,11 @@ use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
 
 fn scenes() -> Vec<Program> {
     let mut scenes = Vec::new();
-    for build in [sphere, blend, painted, twisted] {
+    for build in [sphere, blend, with_material, twisted] {
         scenes.push(build());
         scenes.push(lit(build(), Shadow::Hard));
     }
-    let mut both = lit(painted(), Shadow::Hard);
+    let mut both = lit(with_material(), Shadow::Hard);
     let k = both.graph.frame_input(FrameInput::Time, Type::Scalar);
     both.distance = both.distance.map(|distance| both.graph.add(distance, k));
     both.uniforms = vec![k];
@@ -64,7 +64,7 @@ fn any_two_features_and_all_but_one_link_together() {
     let bits = (0..FEATURES as u32).map(|bit| 1 << bit);
     let pairs = bits.clone().flat_map(|one| bits.clone().map(move |other| one | other));
     for chosen in pairs.chain(bits.clone().map(|one| all & !one)).chain([none, all]) {
-        let shader = render_module(&featured(painted(), chosen), "auto").expect("links");
+        let shader = render_module(&featured(with_material(), chosen), "auto").expect("links");
         common::check(&shader.wgsl().expect("is written"));
         common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
         assert!(shader.module().overrides.is_empty());

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{FEATURES, blend, featured, lit, mirrored, painted, program, sphere, twisted};
+use common::{FEATURES, blend, featured, lit, mirrored, program, sphere, twisted, with_material};
 use sdfc_codegen::{
     BufferRole, Code, Error, FieldOptions, Lists, MAX_CONSTANT_LIST, PictureOptions, Shader, Stage,
     Target, field_module, march_module, picture_module, render_module, shadertoy_module,
@@ -37,7 +37,7 @@ fn a_blend_with_a_param() {
 
 #[test]
 fn a_sphere_with_a_material() {
-    insta::assert_snapshot!(field(&painted()));
+    insta::assert_snapshot!(field(&with_material()));
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn a_shadow_links_the_shadow_ray_alone() {
 
 #[test]
 fn a_material_links_its_shading() {
-    let shader = render_module(&painted(), "fixed").expect("links");
+    let shader = render_module(&with_material(), "fixed").expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
 
@@ -77,12 +77,11 @@ fn a_mirror_links_the_reflected_ray_and_no_shadow() {
 
 #[test]
 fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
-    let shadowed = mirrored(lit(painted(), Shadow::Hard));
+    let shadowed = mirrored(lit(with_material(), Shadow::Hard));
     let unoccluded = (1 << FEATURES) - 1 - (1 << 5);
-    for (method, all) in METHODS
-        .into_iter()
-        .flat_map(|method| [(method, shadowed.clone()), (method, featured(painted(), unoccluded))])
-    {
+    for (method, all) in METHODS.into_iter().flat_map(|method| {
+        [(method, shadowed.clone()), (method, featured(with_material(), unoccluded))]
+    }) {
         let all = all.with_segment_bounds(true, true);
         let shader = render_module(&all, method.name).expect("links");
         let text = shader.wgsl().expect("is written");

@@ -146,7 +146,8 @@ fn a_soft_shadow_fades_as_the_clearance_says() {
 fn a_point_light_falls_off_with_the_square_of_the_distance() {
     let place = glam::DVec3::new(3.0, 0.5, 1.0);
     let (mut lit, mut shadowed) = (0, 0);
-    for (point, _, color) in floor_pixels(&common::lamp(place.to_array(), 4.0, Shadow::Hard)) {
+    for (point, _, color) in floor_pixels(&common::point_light(place.to_array(), 4.0, Shadow::Hard))
+    {
         let way = place - point;
         // The distance of the sphere's centre from the ray, if it lies beside it.
         let center = glam::DVec3::new(0.0, 0.5, 0.0) - point;
@@ -259,7 +260,7 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
             spheres += 1;
             let met = point + up * (along - (1.0 - apart * apart).sqrt());
             let light = (met - center).y.max(0.0);
-            [1.0, 0.5, 0.25].map(|lamp| 0.5 * 0.8 * (0.1 + lamp * light))
+            [1.0, 0.5, 0.25].map(|channel| 0.5 * 0.8 * (0.1 + channel * light))
         } else {
             continue;
         };
@@ -277,7 +278,7 @@ fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
 
     // Facing the headlight: half of it dielectric, half metal. At n = l = v = h the highlight is F
     // D / 4 with pi D = 1 / alpha^2, and 0.96 squared of the diffuse colour comes back.
-    let frame = draw(&common::painted_sphere(), [33, 33], "sphere", TileSize::default());
+    let frame = draw(&common::sphere_with_material(), [33, 33], "sphere", TileSize::default());
     let middle = frame.image.pixel(16, 16).unwrap();
     let peak = 0.25 / 0.3f64.powi(4);
     let expected = [0.8, 0.1].map(|c| c * 0.5 * 0.96 * 0.96 + (0.04 + c) / 2.0 * peak);

@@ -70,12 +70,12 @@ fn gpu_and_cpu_agree() -> Outcome {
     for program in [
         common::sphere(),
         common::sphere_above_floor(),
-        common::painted_sphere(),
+        common::sphere_with_material(),
         common::steep_sphere(),
         common::mirrors(),
         common::soft_shadow(4.0),
         // At the edge of a hard shadow rounding decides.
-        common::lamp([3.0, 0.5, 1.0], 4.0, Shadow::Off),
+        common::point_light([3.0, 0.5, 1.0], 4.0, Shadow::Off),
         common::foggy(0.2),
         common::occluded(1.0),
         common::parallel(4.0),

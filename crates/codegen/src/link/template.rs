@@ -30,7 +30,7 @@ pub(crate) fn parse_template(
         choices.apply(&mut function.body, &conditions, &mut removed);
         unname(&removed, function);
     }
-    // `compact` keeps what is named; the conditions on overrides are removed, so the overrides may go.
+    // `compact` keeps what is named; the conditions on overrides are gone, so these may go.
     for (_, known) in module.overrides.iter_mut() {
         known.name = None;
     }

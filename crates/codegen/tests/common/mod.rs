@@ -107,7 +107,7 @@ pub fn number_param(name: &str, default: f64) -> Param {
 }
 
 /// A sphere, red above and white below.
-pub fn painted() -> Program {
+pub fn with_material() -> Program {
     let mut program = sphere();
     let graph = &mut program.graph;
     let p = point(graph);

@@ -98,10 +98,10 @@ pub fn soft_shadow(sharpness: f64) -> Program {
 }
 
 /// The sphere and the floor under a point light.
-pub fn lamp(place: [f64; 3], strength: f64, shadow: Shadow) -> Program {
+pub fn point_light(position: [f64; 3], strength: f64, shadow: Shadow) -> Program {
     let mut program = sphere_above_floor();
     let graph = &mut program.graph;
-    let source = LightSource::Point { position: graph.constant(Type::Vec3, &place) };
+    let source = LightSource::Point { position: graph.constant(Type::Vec3, &position) };
     let color = graph.constant(Type::Vec3, &[strength; 3]);
     program.settings.lights = vec![Light { source, color, shadow }];
     program
@@ -143,7 +143,7 @@ pub fn parallel(height: f64) -> Program {
 }
 
 /// The unit sphere with a red material, half reflecting.
-pub fn painted_sphere() -> Program {
+pub fn sphere_with_material() -> Program {
     let mut program = sphere();
     let graph = &mut program.graph;
     let red = graph.constant(Type::Vec3, &[0.8, 0.1, 0.1]);
