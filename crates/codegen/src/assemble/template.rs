@@ -72,8 +72,8 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
 /// Returns true if camera rays run only the iterations of loops that can affect them. Methods that
 /// use bounds along ray segments do not: their bounds hold for all iterations.
 pub(super) fn is_culled(program: &Program, method: &MethodDefinition) -> bool {
-    let stretches = [stubs::RANGE, stubs::SLOPE_RANGE];
-    !program.cullable_loops.is_empty() && !stretches.into_iter().any(|stub| method.calls(stub))
+    let segment_bounds = [stubs::RANGE, stubs::SLOPE_RANGE];
+    !program.cullable_loops.is_empty() && !segment_bounds.into_iter().any(|stub| method.calls(stub))
 }
 
 /// Indices in `Program::uniforms` of the values that the roots read.

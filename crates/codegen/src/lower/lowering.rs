@@ -178,7 +178,7 @@ impl<'a> Lowering<'a> {
         }
         if let Some(name) = self.program.names.get(&id) {
             self.body.name(value, name);
-        } else if (self.uses.of(id) > 1 || self.uses.is_kept(id)) && !is_component(&node) {
+        } else if (self.uses.of(id) > 1 || self.uses.is_named(id)) && !is_component(&node) {
             self.body.name(value, hint(self.program.graph.ty(id)));
         }
     }

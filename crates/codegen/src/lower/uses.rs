@@ -10,7 +10,7 @@ use super::inputs::Inputs;
 pub(crate) struct Uses {
     counts: IdMap<u32>,
     /// Nodes that loops read from outside. Without a name they would be computed in each iteration.
-    kept: FxHashSet<NodeId>,
+    named: FxHashSet<NodeId>,
     order: Vec<NodeId>,
 }
 
@@ -18,7 +18,7 @@ impl Uses {
     /// Counts from the roots down. Nodes computed outside the shader need no operands.
     pub(crate) fn count(graph: &Graph, roots: &[NodeId], inputs: &Inputs) -> Self {
         let order = needed(graph, roots, inputs);
-        let (mut counts, mut kept) = (IdMap::default(), FxHashSet::default());
+        let (mut counts, mut named) = (IdMap::default(), FxHashSet::default());
         let add = |counts: &mut IdMap<u32>, id, times| {
             *counts.entry(id).get_or_insert_default() += times;
         };
@@ -36,11 +36,11 @@ impl Uses {
                     position == 0 && reads_word(&node) && reads_word(&graph.node(operand));
                 add(&mut counts, operand, if as_word { 0 } else { times });
                 if graph.loops_around(id) & !graph.loops_around(operand) != 0 {
-                    keep(graph, operand, &mut kept);
+                    name(graph, operand, &mut named);
                 }
             }
         }
-        Self { counts, kept, order }
+        Self { counts, named, order }
     }
 
     /// How often the node is written.
@@ -54,8 +54,8 @@ impl Uses {
     }
 
     /// Returns true if the node needs a name even if it is written once.
-    pub(crate) fn is_kept(&self, id: NodeId) -> bool {
-        self.kept.contains(&id)
+    pub(crate) fn is_named(&self, id: NodeId) -> bool {
+        self.named.contains(&id)
     }
 
     /// Takes the list of all nodes, operands before their uses. Call it once.
@@ -65,11 +65,11 @@ impl Uses {
 }
 
 /// A component is as short as a name, so its vector gets the name.
-fn keep(graph: &Graph, id: NodeId, kept: &mut FxHashSet<NodeId>) {
+fn name(graph: &Graph, id: NodeId, named: &mut FxHashSet<NodeId>) {
     if let Node::Swizzle(Type::Scalar, vector, _) = graph.node(id) {
-        kept.insert(vector);
+        named.insert(vector);
     }
-    kept.insert(id);
+    named.insert(id);
 }
 
 /// The value in all lanes of a vector.

@@ -29,10 +29,10 @@ fn trace(ray: Ray) -> Trace {
         record_sample(next, distance);
         // Beside a plane the distance r falls by a constant slope s along the ray; the sphere that
         // touches this one has the radius r (1 - s) / (1 + s).
-        var ahead = 0.0;
+        var next_radius = 0.0;
         if stride > 0.0 {
             let slope = (radius - distance) / stride;
-            ahead = TRUST * distance * max(1.0 - slope, 0.0) / max(1.0 + slope, MIN_APPROACH);
+            next_radius = TRUST * distance * max(1.0 - slope, 0.0) / max(1.0 + slope, MIN_APPROACH);
         }
         t = next;
         radius = distance;
@@ -42,7 +42,7 @@ fn trace(ray: Ray) -> Trace {
         if !(t + distance <= ray.t_max) {
             return Trace(t + distance, MISS, step + 1u);
         }
-        stride = min(limited_step(distance + ahead, distance), ray.t_max - t);
+        stride = min(limited_step(distance + next_radius, distance), ray.t_max - t);
     }
     return Trace(t, CAPPED, ray.steps);
 }

@@ -10,7 +10,7 @@ use super::ray::{Batch, LANES, Ray, Real, packed};
 #[derive(Clone, Debug)]
 pub(super) struct PreIntersectionTapes {
     /// First hits and intervals in the box, if there are such, in this order.
-    asked: Tape,
+    hits_and_clips: Tape,
     has_hits: bool,
     has_clip: bool,
     /// The field of the marched part; `None` if there is none.
@@ -24,20 +24,20 @@ impl PreIntersectionTapes {
     pub(super) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
         let Program { graph, rays, distance, .. } = program;
         let marched = if rays.first_hit.is_some() { rays.marched } else { *distance };
-        let asked: Vec<_> = rays.first_hit.into_iter().chain(rays.clip).collect();
-        if asked.is_empty() && rays.copies.is_none() {
+        let roots: Vec<_> = rays.first_hit.into_iter().chain(rays.clip).collect();
+        if roots.is_empty() && rays.copies.is_none() {
             return Ok(None);
         }
         let copies = rays.copies.map(|copies| Tape::for_rays(graph, &[copies])).transpose()?;
         let (has_hits, has_clip) = (rays.first_hit.is_some(), rays.clip.is_some());
-        let asked = Tape::for_rays(graph, &asked)?;
+        let hits_and_clips = Tape::for_rays(graph, &roots)?;
         let marched = marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
-        Ok(Some(Self { asked, has_hits, has_clip, marched, copies }))
+        Ok(Some(Self { hits_and_clips, has_hits, has_clip, marched, copies }))
     }
 
     pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> PreIntersectionBatch<'_, T> {
         PreIntersectionBatch {
-            asked: self.asked.prepare::<Packet<T, LANES>>(frame),
+            hits_and_clips: self.hits_and_clips.prepare::<Packet<T, LANES>>(frame),
             has_hits: self.has_hits,
             has_clip: self.has_clip,
             marched: self.marched.as_ref().map(|tape| tape.prepare(frame)),
@@ -49,7 +49,7 @@ impl PreIntersectionTapes {
 /// The same functions for one frame.
 #[derive(Clone)]
 pub(super) struct PreIntersectionBatch<'t, T> {
-    asked: Batch<'t, T>,
+    hits_and_clips: Batch<'t, T>,
     has_hits: bool,
     has_clip: bool,
     pub(super) marched: Option<Batch<'t, T>>,
@@ -101,10 +101,10 @@ impl<T: Real> PreIntersectionBatch<'_, T> {
                 ends[0][lane] = ray.origin;
                 ends[1][lane] = ray.direction;
             }
-            let asked = self.asked.eval_ray(packed(&ends[0]), packed(&ends[1])).to_vec();
+            let results = self.hits_and_clips.eval_ray(packed(&ends[0]), packed(&ends[1])).to_vec();
             for (lane, ray) in group.iter().enumerate() {
                 let of = |root: usize, part: usize| {
-                    let Packet(lanes) = asked[root][part];
+                    let Packet(lanes) = results[root][part];
                     lanes[lane]
                 };
                 let met = self.has_hits.then(|| of(0, 0));

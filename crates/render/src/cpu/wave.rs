@@ -208,16 +208,16 @@ impl<T: Real> Wave<'_, T> {
         });
         // A surface that reflects nothing needs no shadow ray.
         let casts = light.shadow != ViewShadow::Off;
-        let (asked, sure): (Vec<_>, Vec<_>) =
+        let (shadowed, lit_anyway): (Vec<_>, Vec<_>) =
             lit.partition(|(.., lit)| casts && lit.cmpgt(DVec3::ZERO).any());
-        for (hit, _, lit) in sure {
+        for (hit, _, lit) in lit_anyway {
             shades[hit.view_ray.pixel].color += lit;
         }
         let rays: Vec<Ray<T>> =
-            asked.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
+            shadowed.iter().map(|(hit, incoming, _)| self.shadow_ray(hit, incoming)).collect();
         let records_clearance = matches!(light.shadow, ViewShadow::Soft(_));
         let traces = self.traces(&rays, records_clearance);
-        for ((hit, _, lit), trace) in asked.into_iter().zip(traces) {
+        for ((hit, _, lit), trace) in shadowed.into_iter().zip(traces) {
             let shade = &mut shades[hit.view_ray.pixel];
             shade.evaluations += trace.evaluations;
             if trace.status != HIT {

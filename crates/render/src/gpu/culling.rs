@@ -205,8 +205,8 @@ impl Culling {
         let bytes = MAX_BYTES.min(limits.max_storage_buffer_binding_size);
         let first = first_record(&self.iterations, self.cells.is_some());
         let listed = bytes.saturating_sub(4 * first) / (4 * u64::from(stride(&self.iterations)));
-        let [ahead, each] = tile_mask_bytes(&self.iterations);
-        let marked = bytes.saturating_sub(ahead) / each;
+        let [fixed, each] = tile_mask_bytes(&self.iterations);
+        let marked = bytes.saturating_sub(fixed) / each;
         let most = u64::from(limits.max_compute_workgroups_per_dimension);
         let tiles = listed.min(marked).min(most);
         tiles as u32 * WORKGROUP * WORKGROUP
