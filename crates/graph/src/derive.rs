@@ -17,139 +17,23 @@
 //! | a loop's iteration count | 0 |
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
+mod live;
 mod loops;
 mod rules;
+mod sweep;
+mod terms;
 
-pub(crate) use rules::TINY;
+pub(crate) use self::sweep::TINY;
+pub use self::sweep::adjoints;
 
 use crate::graph::Graph;
-use crate::ids::{IdMap, IdSet};
-use crate::node::{Binary, NodeId, Type};
-use crate::walk::computed_where;
-
-/// Derivatives of a scalar root with respect to nodes: for each of `wrt`, a node of its type.
-///
-/// The nodes of `wrt` count as independent of each other: no derivative is passed through one to
-/// the next. Samples that are not in `wrt` count as constants.
-///
-/// ```
-/// use sdfc_graph::eval::{FrameValues, evaluate_frame};
-/// use sdfc_graph::{FrameInput, Graph, Type, adjoints};
-///
-/// let mut graph = Graph::new();
-/// let a = graph.frame_input(FrameInput::Param(0), Type::Scalar);
-/// let b = graph.frame_input(FrameInput::Param(1), Type::Scalar);
-/// let product = graph.mul(a, b);
-/// let slopes = adjoints(&mut graph, product, &[a, b]);
-///
-/// let params = vec![[2.0; 4], [3.0; 4]];
-/// let values = evaluate_frame(&graph, &slopes, &FrameValues { params, ..FrameValues::default() });
-/// assert_eq!([values[0][0], values[1][0]], [3.0, 2.0]);
-/// ```
-pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> {
-    let inputs: IdSet = wrt.iter().copied().collect();
-    let order = computed_where(graph, &[root], |id| !inputs.contains(id));
-    let live = live_nodes(graph, &order, &inputs);
-    let mut sweep = Sweep { graph, live, adjoints: IdMap::default() };
-    let one = sweep.graph.number(1.0);
-    sweep.accumulate(root, one);
-    for &id in order.iter().rev().filter(|&&id| !inputs.contains(id)) {
-        if let Some(adjoint) = sweep.take(id) {
-            sweep.propagate(id, adjoint);
-        }
-    }
-    wrt.iter().map(|&id| sweep.total(id)).collect()
-}
+use crate::node::NodeId;
 
 /// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
 pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
-    let found = adjoints(graph, root, &[point]);
+    let found = sweep::adjoints(graph, root, &[point]);
     match loops::merged(graph, &found)[..] {
         [gradient] => gradient,
-        _ => zero(graph, graph.ty(point)),
-    }
-}
-
-/// The nodes whose value depends on one of the inputs.
-fn live_nodes(graph: &Graph, order: &[NodeId], inputs: &IdSet) -> IdSet {
-    let mut live = IdSet::default();
-    for &id in order {
-        let is_live = inputs.contains(id)
-            || (rules::passes_derivatives(graph, id)
-                && graph.inputs(id).into_iter().any(|input| live.contains(input)));
-        if is_live {
-            live.insert(id);
-        }
-    }
-    live
-}
-
-pub(crate) fn zero(graph: &mut Graph, ty: Type) -> NodeId {
-    graph.constant(ty, &[0.0; 4])
-}
-
-/// The contributions that a node has received so far. Contributions to single components are stored
-/// separately, so that their sum needs no vectors of zeros.
-#[derive(Clone, Copy, Default)]
-struct Adjoint {
-    whole: Option<NodeId>,
-    lanes: [Option<NodeId>; 4],
-}
-
-struct Sweep<'a> {
-    graph: &'a mut Graph,
-    live: IdSet,
-    adjoints: IdMap<Adjoint>,
-}
-
-impl Sweep<'_> {
-    /// Adds to a node's adjoint. `contribution` has the node's type.
-    fn accumulate(&mut self, id: NodeId, contribution: NodeId) {
-        if !self.live.contains(id) || self.is_zero(contribution) {
-            return;
-        }
-        let whole = self.adjoints.get(id).and_then(|adjoint| adjoint.whole);
-        let sum = whole.map_or(contribution, |whole| self.graph.add(whole, contribution));
-        self.adjoints.entry(id).get_or_insert_default().whole = Some(sum);
-    }
-
-    /// Adds to the adjoint of one component.
-    fn accumulate_lane(&mut self, id: NodeId, lane: u8, contribution: NodeId) {
-        if self.graph.ty(id).width() == 1 {
-            return self.accumulate(id, contribution);
-        }
-        if !self.live.contains(id) || self.is_zero(contribution) {
-            return;
-        }
-        let lane = usize::from(lane);
-        let before = self.adjoints.get(id).and_then(|adjoint| adjoint.lanes[lane]);
-        let sum = before.map_or(contribution, |before| self.graph.add(before, contribution));
-        self.adjoints.entry(id).get_or_insert_default().lanes[lane] = Some(sum);
-    }
-
-    fn is_zero(&self, id: NodeId) -> bool {
-        self.graph.as_splat_number(id) == Some(0.0)
-    }
-
-    /// The sum of a node's contributions, which are taken out; `None` if there are none.
-    fn take(&mut self, id: NodeId) -> Option<NodeId> {
-        let Adjoint { whole, lanes } = self.adjoints.entry(id).take()?;
-        if lanes == [None; 4] {
-            return whole;
-        }
-        let zero_lane = self.graph.number(0.0);
-        let width = self.graph.ty(id).width();
-        let parts = lanes.map(|lane| lane.unwrap_or(zero_lane));
-        let composed = self.graph.compose(&parts[..width]);
-        Some(whole.map_or(composed, |whole| self.graph.binary(Binary::Add, whole, composed)))
-    }
-
-    fn total(&mut self, id: NodeId) -> NodeId {
-        let adjoint = self.adjoints.get(id);
-        let total = self.take(id);
-        if let Some(adjoint) = adjoint {
-            self.adjoints.insert(id, adjoint);
-        }
-        total.unwrap_or_else(|| zero(self.graph, self.graph.ty(id)))
+        _ => sweep::zero(graph, graph.ty(point)),
     }
 }

@@ -8,7 +8,7 @@
 //! carries as many extra numbers as the state has lanes times c has lanes. As a rule c is one
 //! point, so a loop over one to four numbers costs two to four times as much with its derivatives.
 
-use super::{Sweep, adjoints, zero};
+use super::sweep::{Sweep, adjoints, zero};
 use crate::graph::Graph;
 use crate::ids::{IdMap, IdSet};
 use crate::loops::Loop;

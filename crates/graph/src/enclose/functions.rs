@@ -54,10 +54,10 @@ impl Encloser<'_> {
             Unary::Sin => self.per_lane([x], |s, [x]| s.sine_wave(op, x, FRAC_PI_2, -FRAC_PI_2)),
             Unary::Cos => self.per_lane([x], |s, [x]| s.sine_wave(op, x, 0.0, PI)),
             Unary::Tan => self.per_lane([x], |s, [x]| s.tangent(x)),
-            Unary::Asin => self.inverse_sine_or_cosine(op, x),
+            Unary::Asin => self.inverse_sine(op, x),
             Unary::Acos => {
                 let x = self.negative(x);
-                let rest = self.inverse_sine_or_cosine(Unary::Asin, x);
+                let rest = self.inverse_sine(Unary::Asin, x);
                 let quarter = self.entire(self.ty(x)).lo;
                 let quarter = self.number_like(quarter, FRAC_PI_2);
                 self.sum(Values::Constant(quarter), rest)
@@ -225,7 +225,7 @@ impl Encloser<'_> {
         self.select(Interval::new(same, same), result, entire)
     }
 
-    fn inverse_sine_or_cosine(&mut self, op: Unary, x: Values) -> Values {
+    fn inverse_sine(&mut self, op: Unary, x: Values) -> Values {
         let x = self.interval(x);
         let x = self.clamp(x, -1.0, 1.0);
         let result = self.monotone(op, x);

@@ -356,7 +356,7 @@ impl Encloser<'_> {
     fn angle_slope(&mut self, y: BoundedValue, x: BoundedValue) -> Option<Values> {
         let (dy, dx) = (self.slope(y), self.slope(x));
         Some(self.per_lane([y.value, x.value, dy, dx], |s, [y, x, dy, dx]| {
-            let above = s.angular_momentum(y, x, dy, dx);
+            let above = s.wedge(y, x, dy, dx);
             let vector = s.compose(&[x, y]);
             let square = s.square_of_length(vector);
             let slope = s.quotient(above, square);
@@ -368,7 +368,7 @@ impl Encloser<'_> {
     }
 
     /// `x y' - y x'`, which is constant for an affine point.
-    fn angular_momentum(&mut self, y: Values, x: Values, dy: Values, dx: Values) -> Values {
+    fn wedge(&mut self, y: Values, x: Values, dy: Values, dx: Values) -> Values {
         let (first, second) = (self.product(x, dy), self.product(y, dx));
         let difference = self.difference(first, second);
         let Values::Affine(Affine { ends, magnitude: size }) = difference else {
