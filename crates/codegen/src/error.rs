@@ -54,7 +54,7 @@ pub enum Error {
     Unsupported {
         /// The target.
         target: Target,
-        /// What it lacks.
+        /// The missing feature.
         what: &'static str,
     },
     /// A bind group or binding is greater than the target allows.
@@ -68,9 +68,9 @@ pub enum Error {
     /// The number of bytes of a view is not what the shader reads.
     #[error("the view has {found} bytes, not the {expected} that the shader reads")]
     ViewBytes {
-        /// How many the shader reads.
+        /// The number that the shader reads.
         expected: usize,
-        /// How many there are.
+        /// The actual number.
         found: usize,
     },
     /// The shader does not validate, or a writer refused it; contains naga's message.

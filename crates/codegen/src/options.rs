@@ -1,4 +1,4 @@
-//! What a caller chooses about a shader for another engine.
+//! Options of shaders for other engines.
 
 /// The stages of a picture's shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -26,7 +26,7 @@ impl Stage {
 /// The largest number of elements of a list that is a constant in a shader for another engine.
 pub const MAX_CONSTANT_LIST: usize = 64;
 
-/// Where the lists of a shader for another engine are stored.
+/// The storage of the lists of a shader for another engine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Lists {
     /// If one has more than [`MAX_CONSTANT_LIST`] elements all are in a storage buffer, one after
@@ -37,7 +37,7 @@ pub enum Lists {
     Constants,
 }
 
-/// What the functions of a scene hold and how they are named.
+/// Options for the functions of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
     /// Start of every name.
@@ -50,7 +50,7 @@ pub struct FieldOptions {
     pub group: u32,
     /// Its binding in the group; lists have the next one.
     pub binding: u32,
-    /// Where long lists are stored.
+    /// The storage of long lists.
     pub lists: Lists,
 }
 
@@ -78,6 +78,6 @@ pub struct PictureOptions {
     pub group: u32,
     /// Binding of the view; params have the next one, then pixels, then lists.
     pub binding: u32,
-    /// Where long lists are stored.
+    /// The storage of long lists.
     pub lists: Lists,
 }

@@ -3,7 +3,7 @@
 use naga::{GlobalVariable, Handle};
 use sdfc_graph::{FrameInput, Type};
 
-/// What a function of a shader computes.
+/// The role of a function of a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// The signed distance at a point.
@@ -41,7 +41,7 @@ impl Role {
 /// A function of a point or a ray that a host may call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FunctionInfo {
-    /// What it computes.
+    /// Its role.
     pub role: Role,
     /// Its name in the written source.
     pub name: String,
@@ -82,7 +82,7 @@ pub struct Uniform {
     pub block: Option<String>,
 }
 
-/// What a buffer holds.
+/// The contents of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BufferRole {
     /// Camera, limits and lights.
@@ -98,7 +98,7 @@ pub enum BufferRole {
 /// A buffer that the host binds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Buffer {
-    /// What it holds.
+    /// Its contents.
     pub role: BufferRole,
     /// Name of the variable.
     pub variable: String,
@@ -147,7 +147,7 @@ pub struct Entry {
     pub name: String,
 }
 
-/// What a shader offers to a host. Names are those of the written source.
+/// The interface of a shader for a host. Names are those of the written source.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reflection {
     /// Functions that a host may call.
@@ -166,7 +166,7 @@ pub struct Reflection {
     pub entries: Vec<Entry>,
 }
 
-/// What is known of a module before its names are final.
+/// The parts of a module that the reflection lists, before its names are final.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ModuleParts {
     /// The functions for hosts.

@@ -179,7 +179,7 @@ impl Shader {
 pub struct Culling {
     /// The shader.
     pub shader: Shader,
-    /// How many iterations each loop has.
+    /// The number of iterations of each loop.
     pub iterations: Vec<u32>,
     /// For each loop, true if no iteration need be run outside all cells; `None` if rays do not use
     /// cells.

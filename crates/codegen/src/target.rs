@@ -56,7 +56,7 @@ impl Target {
         }
     }
 
-    /// Where long lists are stored.
+    /// The storage of long lists.
     pub fn lists(self) -> Lists {
         match self {
             Self::Wgsl | Self::Glsl | Self::Hlsl | Self::Msl | Self::Spirv => Lists::Buffer,

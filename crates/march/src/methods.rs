@@ -47,7 +47,7 @@ impl Method {
         Self::all().filter(|method| method.definition().audience == Audience::Users)
     }
 
-    /// What scenes and the command line call the method.
+    /// The method's name in scenes and on the command line.
     pub fn name(self) -> &'static str {
         self.definition().name
     }
@@ -107,7 +107,7 @@ pub enum Audience {
 pub struct MethodDefinition {
     /// The method that the row describes.
     pub method: Method,
-    /// What scenes and the command line call it.
+    /// Its name in scenes and on the command line.
     pub name: &'static str,
     /// One sentence that says what it is for.
     pub summary: &'static str,
@@ -156,7 +156,7 @@ pub enum MethodParameter {
 }
 
 impl MethodParameter {
-    /// What a scene's `march(...)` calls it.
+    /// Its name in a scene's `march(...)`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Steps => "steps",

@@ -3,7 +3,7 @@
 use crate::features::Features;
 use crate::methods::MethodDefinition;
 
-/// Where a picture's distance and gradient come from.
+/// The source of a picture's distance and gradient.
 ///
 /// Benchmarks compare pictures that differ in this alone: all but [`FieldSource::Scene`] take the
 /// gradient by the same four evaluations of the field. A method's own gradient replaces any.

@@ -13,7 +13,7 @@ use crate::image::{HIT, Image, linear_to_srgb8};
 /// neighbouring pixels.
 const EDGE_PIXEL_WIDTHS: f32 = 4.0;
 
-/// How far two pictures differ.
+/// The difference of two pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
     /// The number of pixels compared, edges left out.

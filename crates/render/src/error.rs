@@ -39,9 +39,9 @@ pub enum RenderError {
     /// The scene has more per-frame values than a uniform buffer of this adapter holds.
     #[error("the scene has {count} per-frame values, this adapter's uniform buffers hold {limit}")]
     Uniforms {
-        /// How many the scene has.
+        /// The number that the scene has.
         count: usize,
-        /// How many fit.
+        /// The number that fits.
         limit: usize,
     },
     /// The scene exceeds a limit of this adapter.
@@ -50,9 +50,9 @@ pub enum RenderError {
          one scene, or draw on the CPU (`--backend cpu`)"
     )]
     Limit {
-        /// What needs it.
+        /// The thing that needs it.
         what: &'static str,
-        /// How much is needed: bytes of a buffer, or workgroups.
+        /// The amount needed: bytes of a buffer, or workgroups.
         needed: u64,
         /// The limit's name in WebGPU.
         name: &'static str,
@@ -62,9 +62,9 @@ pub enum RenderError {
     /// The number of per-frame values is not that which the shader was compiled for.
     #[error("{given} per-frame values for a shader that reads {expected}")]
     UniformCount {
-        /// How many were passed.
+        /// The number that was passed.
         given: usize,
-        /// How many the shader reads.
+        /// The number that the shader reads.
         expected: usize,
     },
     /// The scene draws nothing.

@@ -1,4 +1,4 @@
-//! What the renderers share: options, progress, and the finished frame.
+//! Options, progress and the finished frame, which all renderers share.
 
 use std::ops::ControlFlow;
 

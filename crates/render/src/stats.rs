@@ -50,7 +50,7 @@ pub struct Stats {
     pub evals_per_pixel: EvaluationCounts,
     /// Evaluations of primitives.
     pub leaf_evals_per_pixel: LeafEvaluations,
-    /// How the rays ended.
+    /// The numbers of rays by how they ended.
     pub pixels: PixelCounts,
     /// Why metrics of this object are null, and why the method is not the requested one.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

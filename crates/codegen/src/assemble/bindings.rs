@@ -9,9 +9,9 @@ use crate::lower::function_of;
 use crate::lower::inputs::Inputs;
 use crate::reflection::Role;
 
-/// Where the uniform slots are bound.
+/// The binding of the uniform slots.
 pub(crate) const SLOTS: ResourceBinding = ResourceBinding { group: 0, binding: 1 };
-/// Where long lists are bound.
+/// The binding of long lists.
 pub(crate) const LISTS: ResourceBinding = ResourceBinding { group: 0, binding: 3 };
 
 /// A function of the scene that replaces a stub.

@@ -7,7 +7,7 @@ use sdfc_march::stubs;
 
 use crate::link::template::{find_function, find_variable};
 
-/// Where a scene's functions find which iterations of their loops to run.
+/// The locations of the lists of iterations that a scene's functions run.
 #[derive(Debug)]
 pub(crate) struct ActiveLists {
     /// The buffer of the lists.

@@ -1,4 +1,4 @@
-//! What functions read besides the point: uniforms, raw or computed per frame, and lists.
+//! The inputs of functions besides the point: uniforms, raw or computed per frame, and lists.
 
 use std::num::NonZeroU32;
 
@@ -16,12 +16,12 @@ use super::tables::Tables;
 use super::types;
 use crate::reflection::Member;
 
-/// Where a function finds the per-frame values.
+/// The locations of the per-frame values that a function reads.
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
     /// The uniform buffer that holds them.
     pub(crate) buffer: Option<Handle<GlobalVariable>>,
-    /// Where each raw input is.
+    /// The location of each raw input.
     raw: FxHashMap<FrameInput, Raw>,
     /// The private variable of each uniform slot's node.
     slots: FxHashMap<NodeId, Handle<GlobalVariable>>,
@@ -31,7 +31,7 @@ pub(crate) struct Inputs {
     pub(crate) active_lists: Option<ActiveLists>,
 }
 
-/// Where a raw input is.
+/// The location of a raw input.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Raw {
     /// A member of a uniform structure.

@@ -17,7 +17,7 @@ use super::types;
 use crate::error::Error;
 use crate::options::{Lists, MAX_CONSTANT_LIST};
 
-/// Where a program's lists are stored.
+/// The storage of a program's lists.
 #[derive(Debug, Default)]
 pub(crate) struct Tables {
     of: FxHashMap<TableId, List>,
@@ -27,7 +27,7 @@ pub(crate) struct Tables {
     contents: Vec<[f32; 4]>,
 }
 
-/// Where a list is stored.
+/// The storage of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct List {
     /// An array of the elements' type, or the buffer.
@@ -104,7 +104,7 @@ impl Tables {
         module.global_variables[buffer].ty = types::add(&mut module.types, array);
     }
 
-    /// Where a list is.
+    /// The storage of a list.
     pub(crate) fn get(&self, id: TableId) -> Option<List> {
         self.of.get(&id).copied()
     }

@@ -5,7 +5,7 @@ use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary};
 
 use super::inputs::Inputs;
 
-/// How often each node that the roots need is written in the source.
+/// The number of times that each node the roots need is written in the source.
 #[derive(Debug)]
 pub(crate) struct Uses {
     counts: IdMap<u32>,
@@ -43,7 +43,7 @@ impl Uses {
         Self { counts, named, order }
     }
 
-    /// How often the node is written.
+    /// The number of times that the node is written.
     pub(crate) fn of(&self, id: NodeId) -> u32 {
         self.counts.get(id).unwrap_or(0)
     }
@@ -93,7 +93,7 @@ pub(crate) enum Product {
     RightUniform(Uniform),
 }
 
-/// How the lowering writes the product of two nodes of one type.
+/// Returns the form in which the product of two nodes of one type is written.
 pub(crate) fn product(graph: &Graph, left: NodeId, right: NodeId) -> Product {
     if graph.ty(left).width() == 1 {
         return Product::Plain;
@@ -147,7 +147,7 @@ pub(crate) fn is_component(node: &Node) -> bool {
     matches!(node, Node::Swizzle(Type::Scalar, ..))
 }
 
-/// How often the lowering of a node writes its operands.
+/// The number of times that the lowering of a node writes each operand.
 fn repeats(node: &Node) -> u32 {
     match node {
         Node::Unary(Unary::Normalize, _) | Node::Binary(Binary::Rem, ..) => 2,

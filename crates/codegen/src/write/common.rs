@@ -1,4 +1,4 @@
-//! What all writers share.
+//! Items that all writers share.
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{GlobalVariable, Handle, Module, ResourceBinding};
@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::reflection::Entry;
 use crate::target::{Code, Target};
 
-/// What a writer returns.
+/// The result of a writer.
 pub(crate) struct WrittenModule {
     pub(crate) code: Code,
     /// The name of each buffer's block, if the language has blocks.

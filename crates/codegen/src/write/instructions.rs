@@ -19,7 +19,7 @@ const OP_BRANCH: u32 = 249;
 /// The cost of one function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FunctionCost {
-    /// What the function computes.
+    /// The function's role.
     pub role: Role,
     /// The number of instructions, without those that only frame the function (function,
     /// parameters, labels, branches, end).

@@ -1,7 +1,7 @@
 // The colour of a pixel. The camera ray, its reflections and the shadow rays share one call of
 // `trace`: drivers inline the field wherever it is called, and their compile time grows with that.
 
-// Where a camera ray or a reflection has ended.
+// The end of a camera ray or a reflection.
 struct SurfaceHit {
     trace: Trace,
     // The surface, if something was hit.

@@ -50,7 +50,7 @@ fn footprint_tolerance(ray: Ray, t: f32) -> f32 {
     return max(2.0 * ray.tolerance * footprint(ray, t), rounding(ray, t));
 }
 
-// How far rounding alone may move a point of the ray.
+// The largest error of a point of the ray by rounding alone.
 fn rounding(ray: Ray, t: f32) -> f32 {
     return ROUNDING * (length(ray.origin) + t);
 }

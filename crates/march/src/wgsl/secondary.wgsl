@@ -4,7 +4,7 @@
 // the surface.
 const SHADOW_TOLERANCE: f32 = 0.25;
 
-// How far the hit may be from the surface.
+// The maximum distance of the hit from the surface.
 fn nearness(ray: Ray, t: f32) -> f32 {
     return max(tolerance(ray, t), rounding(ray, t));
 }

@@ -1,4 +1,4 @@
-// What both ways of shading share.
+// Shared by both ways of shading.
 
 // Linear colour of surfaces without a material.
 const DEFAULT_COLOR = vec3f(0.8);

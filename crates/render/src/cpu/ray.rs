@@ -61,7 +61,7 @@ impl<T: Real> Ray<T> {
         Self { origin, radius, t_max, ..*self }
     }
 
-    /// How far rounding may move a point of the ray.
+    /// The largest error of a point of the ray by rounding.
     pub(super) fn rounding(&self, t: T) -> T {
         let [x, y, z] = self.origin;
         T::constant(ROUNDING) * ((x * x + y * y + z * z).sqrt() + t)

@@ -46,7 +46,7 @@ impl<T: Real> Limits<T> {
     }
 }
 
-/// How a ray ended.
+/// The result of a traced ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trace<T> {
     pub(super) t: T,

@@ -19,7 +19,7 @@ const OCCLUSION_SAMPLES: u32 = 5;
 /// Tolerance of a shadow ray in widths of its footprint, which is as wide as the ray starts above
 /// the surface.
 const SHADOW_TOLERANCE: f64 = 0.25;
-/// What one thread needs to draw groups of pixels.
+/// The state of one thread that draws groups of pixels.
 #[derive(Clone)]
 pub(super) struct Wave<'a, T> {
     pub(super) view: &'a View,
@@ -226,7 +226,7 @@ impl<T: Real> Wave<'_, T> {
         }
     }
 
-    /// How far along the ray the hit may be off.
+    /// The largest error of the hit along the ray.
     fn near(&self, SurfaceHit { view_ray, t, .. }: &SurfaceHit<T>) -> T {
         self.limits.tolerance(&view_ray.ray, *t).max(view_ray.ray.rounding(*t))
     }

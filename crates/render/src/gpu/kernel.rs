@@ -1,4 +1,4 @@
-//! What a pipeline's frames are drawn with.
+//! The device objects that frames are drawn with.
 
 use super::culling::Culling;
 use super::device::Gpu;

@@ -112,7 +112,7 @@ impl<'a> Run<'a> {
         self.buffers
     }
 
-    /// How many operands were evaluated before the rays, where they are counted.
+    /// The number of operands evaluated before the rays, if they are counted.
     pub(crate) fn culling_evaluations(&self) -> u64 {
         u64::from(self.culling_evaluations)
     }

@@ -29,7 +29,7 @@ pub struct Image {
     pixels: Vec<PixelBlock>,
 }
 
-/// How the rays of a picture ended. The four add up to its pixels.
+/// The numbers of rays of a picture by how they ended. The four add up to its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PixelCounts {
     /// The ray hit a surface.
@@ -97,7 +97,7 @@ impl Image {
         }
     }
 
-    /// How the rays ended.
+    /// The numbers of rays by how they ended.
     pub fn counts(&self) -> PixelCounts {
         let mut counts = PixelCounts::default();
         for pixel in &self.pixels {

@@ -13,7 +13,7 @@ const RIM: f64 = 0.15;
 /// A light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewLight {
-    /// Where its light comes from.
+    /// The source of the light.
     pub source: ViewSource,
     /// Linear colour times strength; for a light with a position, as received at distance 1.
     pub color: DVec3,
@@ -21,7 +21,7 @@ pub struct ViewLight {
     pub shadow: ViewShadow,
 }
 
-/// Where a light comes from.
+/// The source of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewSource {
     /// From infinitely far away: a unit vector towards it.
