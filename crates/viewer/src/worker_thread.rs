@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::latest_channel::LatestChannel;
 
-/// How long dropping a worker waits for the message that it is handling.
+/// The longest time that dropping a worker waits for the current message.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(3);
 /// Stack size in bytes. The compiler bounds the depth of its recursion; this is enough for it.
 const STACK_BYTES: usize = 16 << 20;

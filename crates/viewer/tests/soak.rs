@@ -18,13 +18,13 @@ use sdfc_viewer::views::mode::ViewMode;
 /// Long enough for a busy machine and a software GPU; reached only if the test fails.
 const TIMEOUT: Duration = Duration::from_secs(300);
 const SIZE: [u32; 2] = [64, 48];
-/// How many edits are made if `SDFC_SOAK` is not set.
+/// The number of edits if `SDFC_SOAK` is not set.
 const DEFAULT_EDITS: usize = 240;
 /// Edits between two measurements. Every second batch is faster than it can be compiled.
 const BATCH: usize = 40;
-/// How much memory may grow from the first half to the end, in MiB: allocators keep freed memory.
+/// Allowed growth of memory from the first half to the end, in MiB: allocators keep freed memory.
 const MEMORY_SLACK: u64 = 48;
-/// How many threads and files may be open for a moment.
+/// The number of threads and files that may be open for a moment.
 const TRANSIENT: u64 = 8;
 
 const BROKEN: [&str; 8] = [
@@ -81,7 +81,7 @@ fn many_edits_leak_no_memory_threads_or_files() {
     assert!(end.memory <= most(|resources| resources.memory) + MEMORY_SLACK, "memory: {samples:?}");
 }
 
-/// What the process uses; all 0 if the system does not say.
+/// Resources of the process; all 0 if the system does not say.
 #[derive(Clone, Copy, Debug, Default)]
 struct Resources {
     /// Resident memory in MiB.

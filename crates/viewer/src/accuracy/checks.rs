@@ -1,4 +1,4 @@
-//! Accuracy checks of the shown picture: what was requested, and the last result.
+//! Accuracy checks of the shown picture: the last job and its result.
 
 use std::sync::mpsc::{Receiver, channel};
 

@@ -1,4 +1,4 @@
-//! What is compared with the oracle, and the result.
+//! Comparison jobs and their results.
 
 use std::sync::Arc;
 
@@ -87,11 +87,11 @@ impl MethodResult {
 /// The result of a comparison, so far.
 #[derive(Clone, Debug)]
 pub struct ComparisonResult {
-    /// What was compared.
+    /// The job.
     pub job: Arc<ComparisonJob>,
     /// Width and height that were compared.
     pub size: [u32; 2],
-    /// How many rays hit, miss, pass an edge or are undecided, by the oracle.
+    /// The oracle's counts of rays that hit, miss, pass an edge or are undecided.
     pub counts: Counts,
     /// The result of the shown picture.
     pub shown: MethodResult,

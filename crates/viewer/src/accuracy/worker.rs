@@ -27,7 +27,7 @@ use crate::worker_thread::WorkerThread;
 /// Progress is stored as a whole number from 0 to this.
 const PROGRESS_STEPS: u32 = 1000;
 
-/// What the accuracy worker reports.
+/// A report of the accuracy worker.
 #[derive(Debug)]
 pub enum AccuracyEvent {
     /// A result, which may be extended by the next.
@@ -105,7 +105,7 @@ struct CachedComparison {
     refused: Vec<String>,
 }
 
-/// What the thread keeps between jobs.
+/// The thread's state between jobs.
 struct ComparisonRunner {
     jobs: Arc<LatestChannel<Option<ComparisonJob>>>,
     progress: Arc<SharedProgress>,

@@ -1,4 +1,4 @@
-//! What a panel asks the window to do.
+//! Requests of a panel to the window.
 
 /// Something that only the window can do.
 pub enum Action {

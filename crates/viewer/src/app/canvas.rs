@@ -15,7 +15,7 @@ use crate::render::picture::Picture;
 use crate::render::pixel_info::PixelInfo;
 use crate::session::Session;
 
-/// How long after the last turn of the wheel the camera counts as moving.
+/// The time after the last turn of the wheel for which the camera counts as moving.
 const WHEEL_REST: Duration = Duration::from_millis(160);
 /// Flying speed, in distances to the pivot per second.
 const FLY_SPEED: f64 = 0.8;
@@ -95,7 +95,7 @@ fn color_image(picture: &Picture) -> ColorImage {
     ColorImage::from_rgba_premultiplied(size, &picture.rgba)
 }
 
-/// What is being done until there is a picture.
+/// A text about the current step, until there is a picture.
 fn waiting(ui: &Ui, rect: Rect, session: &Session) {
     if session.diagnostics.errors() > 0 {
         return;
@@ -179,7 +179,7 @@ fn fractions(rect: Rect, at: Pos2) -> [f64; 2] {
     [f64::from(fractions.x).clamp(0.0, 1.0), f64::from(fractions.y).clamp(0.0, 1.0)]
 }
 
-/// Shows what is known about the pixel under the pointer, in the lower left corner.
+/// Shows point, normal, depth and field of the pixel under the pointer, in the lower left corner.
 fn pixel_info(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
     let pointer = response.hover_pos();
     let info = pointer.and_then(|at| session.pixel_info(fractions(rect, at)));

@@ -4,7 +4,7 @@ use eframe::egui::{self, Context, ViewportCommand};
 
 use crate::session::Session;
 
-/// Whether the question is shown.
+/// The state of the question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CloseDialog {
     /// The window stays open.

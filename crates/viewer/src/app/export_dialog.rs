@@ -11,10 +11,10 @@ use super::theme;
 use crate::export::exporter::ExportJob;
 use crate::session::Session;
 
-/// How long each frame of an animation is shown, in hundredths of a second.
+/// The duration of each frame of an animation, in hundredths of a second.
 const HUNDREDTHS: u32 = 4;
 
-/// What is exported.
+/// The kind of file that is exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ExportKind {
     Picture,
@@ -40,7 +40,7 @@ impl ExportKind {
     ];
 }
 
-/// The dialog, with what was chosen last.
+/// The dialog, with the last choices.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
     kind: ExportKind,

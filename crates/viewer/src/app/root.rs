@@ -19,7 +19,7 @@ use super::{
 use crate::session::Session;
 use crate::settings::Settings;
 
-/// How long a message stays in the status line.
+/// The time that a message stays in the status line.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
 
 /// The application, which can move from one window to another.

@@ -13,7 +13,7 @@ const MAX_IN_FOLDER: usize = 60;
 /// The most recent scenes that are listed.
 const MAX_RECENT: usize = 15;
 
-/// What was chosen.
+/// The user's choice.
 pub enum Choice {
     /// Open this scene.
     Open(PathBuf),

@@ -82,7 +82,7 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
     refinement(ui, session, picture);
 }
 
-/// How fine the picture is, if it is not finished.
+/// The resolution or the samples of the picture, if it is not finished.
 fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
     let text = if picture.divisor > 1 {
         let more = match (session.refine, picture.request.moving) {

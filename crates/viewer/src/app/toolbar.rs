@@ -14,7 +14,7 @@ use crate::views::mode::ViewMode;
 /// Below this width in points the names of view, method and tolerance are left out.
 const WIDE: f32 = 900.0;
 
-/// Shows the bar; returns what was chosen in the scene menu.
+/// Shows the bar; returns the choice of the scene menu.
 pub fn show(
     ui: &mut Ui,
     session: &mut Session,
@@ -66,7 +66,7 @@ fn tolerance(ui: &mut Ui, session: &mut Session, wide: bool) {
     }
 }
 
-/// Errors of the scene, or what the compile worker is doing.
+/// The number of errors, or the compile worker's current step.
 fn compile_state(ui: &mut Ui, session: &Session) {
     let errors = session.diagnostics.errors();
     if errors > 0 {

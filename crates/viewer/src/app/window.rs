@@ -16,7 +16,7 @@ use super::root::{App, title};
 use super::window_events::{WindowEvents, wgpu_options};
 use crate::settings::{self, Settings};
 
-/// What shows the window, in the order of preference. OpenGL serves without Vulkan, Metal and
+/// The renderers of the window, in the order of preference. OpenGL serves without Vulkan, Metal and
 /// DirectX 12.
 const RENDERERS: [eframe::Renderer; 2] = [eframe::Renderer::Wgpu, eframe::Renderer::Glow];
 /// After this many device losses the next renderer is tried.
@@ -129,7 +129,7 @@ fn run_window(
     eframe::run_native("sdfc-view", options, create)
 }
 
-/// What eframe runs: the app in one window.
+/// The eframe app of one window.
 struct WindowApp {
     app: SharedApp,
     events: Arc<WindowEvents>,

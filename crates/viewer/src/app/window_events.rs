@@ -1,4 +1,4 @@
-//! What happens to a window's device and surface, noticed on any thread.
+//! Errors of a window's device and surface, recorded on any thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -8,9 +8,9 @@ use eframe::egui::Context;
 use eframe::egui_wgpu::{RenderState, SurfaceErrorAction, WgpuConfiguration};
 use eframe::wgpu::{CurrentSurfaceTexture, PollType};
 
-/// How long to wait before drawing again on a surface that could not be drawn on.
+/// The delay before drawing again on a surface that could not be drawn on.
 const RETRY_DELAY: Duration = Duration::from_millis(100);
-/// How long to wait for the device to finish its work.
+/// The longest wait for the device to finish its work.
 const DEVICE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The events of one window.

@@ -1,4 +1,4 @@
-//! Builds models: reads a scene's files, compiles them, prepares what draws them.
+//! Builds models: reads a scene's files, compiles them, and prepares the pipeline.
 //!
 //! A source with errors gives diagnostics and keeps the last good scene; a request that only
 //! changes how that scene is drawn is still carried out. The scene's numbers are compiled as
@@ -26,7 +26,7 @@ use crate::scene::shapes::ShapeIndex;
 /// A scene with at most this many nodes is never rerolled, so that its numbers stay live, even if
 /// loops would draw faster. See `docs/scale.md`.
 const MAX_UNROLLED_NODES: usize = 2000;
-/// How many sources in a row may be skipped because a newer request waits when their pipeline
+/// The most sources in a row that may be skipped because a newer request waits when their pipeline
 /// would be made.
 const MAX_SKIPPED: u32 = 3;
 
@@ -60,7 +60,7 @@ struct SceneContent {
     id: u64,
 }
 
-/// Builds models for the compile worker and keeps what the next build can reuse.
+/// Builds models for the compile worker, and keeps the results that the next build can reuse.
 pub struct ModelBuilder<R> {
     requests: Arc<LatestChannel<BuildRequest>>,
     report: R,
@@ -313,7 +313,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         }
     }
 
-    /// Prepares what draws the scene; `None` if a newer request makes it pointless.
+    /// Prepares the scene for drawing; `None` if a newer request makes it pointless.
     fn engine(
         &mut self,
         request: &BuildRequest,

@@ -20,7 +20,7 @@ pub struct ShownDiagnostic {
     pub code: &'static str,
     /// True for an error, false for a warning.
     pub is_error: bool,
-    /// What is wrong.
+    /// The message.
     pub message: String,
     /// Name of the file, as the scene calls it.
     pub file: String,

@@ -1,4 +1,4 @@
-//! Prepares what draws a scene: pipelines on two GPU devices, or the CPU renderer.
+//! Prepares a scene for drawing: pipelines on two GPU devices, or the CPU renderer.
 //!
 //! The running pipeline is reused if a scene gives the same shader. New pipelines are made on the
 //! device that is not drawing, because a device that compiles a pipeline may delay other work
@@ -15,15 +15,15 @@ use sdfc_render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
 
 use crate::scene::model::{BuildTimes, Engine};
 
-/// What draws a scene.
+/// A scene that is ready to be drawn.
 pub struct PreparedEngine {
     /// The pipeline or the CPU renderer.
     pub engine: Engine,
     /// The ray method that is used.
     pub method: String,
-    /// The program with what the method adds to it; `None` if that is the scene's own program.
+    /// The program with the method's additions; `None` if the method adds nothing.
     pub method_program: Option<Program>,
-    /// What differs from the request, and why.
+    /// A note for the user if the request could not be followed, with the reason.
     pub note: Option<String>,
 }
 
@@ -39,7 +39,7 @@ impl PreparedEngine {
     }
 }
 
-/// The pipeline that draws, and what it was made from.
+/// The pipeline that draws, and the sources and lists that it was made from.
 struct RunningPipeline {
     sources: ShaderSources,
     lists: ShaderLists,
@@ -80,7 +80,7 @@ pub struct Engines {
     devices: [Option<Gpu>; 2],
     /// Index of the device that the running pipeline is on.
     drawing_device: usize,
-    /// How many pipelines have been made.
+    /// The number of pipelines made so far.
     pub pipelines: u64,
 }
 

@@ -13,11 +13,11 @@ use notify::{Config, Event, EventKind, PollWatcher, RecommendedWatcher, Recursiv
 
 use crate::latest_channel::LatestChannel;
 
-/// How long the folder must be quiet before a change that may be the first of several is reported.
+/// The quiet time after which a change that may be the first of several is reported.
 const QUIET_PERIOD: Duration = Duration::from_millis(4);
 /// A change is reported after this many quiet periods at the latest, however busy the folder is.
 const MAX_WAITS: u32 = 10;
-/// How often files are compared on a system without change notifications.
+/// The interval of comparing files on a system without change notifications.
 const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Watches folders until it is dropped.

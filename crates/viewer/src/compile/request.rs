@@ -1,4 +1,4 @@
-//! What the compile worker is asked for, and what it reports.
+//! The requests to the compile worker, and its reports.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub struct BuildRequest {
     pub parallel: Option<bool>,
     /// True if the CPU draws even though there may be a GPU.
     pub on_cpu: bool,
-    /// How many times new devices were opened because one was lost.
+    /// The number of times that new devices were opened because one was lost.
     pub device_generation: u32,
 }
 
@@ -38,7 +38,7 @@ impl BuildRequest {
     }
 }
 
-/// What the compile worker reports.
+/// A report of the compile worker.
 #[derive(Debug)]
 pub enum CompileEvent {
     /// The file cannot be read; why.

@@ -1,4 +1,4 @@
-//! What can be exported, and how each file is made.
+//! The kinds of files that can be exported, and how each is made.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -29,11 +29,11 @@ pub enum ExportJob {
         model: Arc<Model>,
         /// The file; its extension selects the format.
         path: PathBuf,
-        /// How the picture is drawn.
+        /// Size, method and samples of the picture.
         options: Box<PictureOptions>,
         /// Param values and time of each frame.
         frames: Vec<FrameValues>,
-        /// How long each frame is shown, in hundredths of a second.
+        /// The duration of each frame, in hundredths of a second.
         hundredths: u32,
     },
     /// A shader.

@@ -1,4 +1,4 @@
-//! Drawing the picture on a thread, and what one of its pixels shows.
+//! The thread that draws the picture, and information about single pixels.
 
 pub mod picture;
 pub mod pixel_info;

@@ -1,4 +1,4 @@
-//! What the render worker is asked for, and what it reports.
+//! The requests to the render worker, and its reports.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::views::legend::Legend;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
-/// What is to be drawn.
+/// A request for a picture.
 #[derive(Clone, Debug)]
 pub struct RenderRequest {
     /// The scene.
@@ -65,7 +65,7 @@ pub struct Picture {
     pub view: View,
     /// Red, green, blue, alpha of each pixel in sRGB.
     pub rgba: Vec<u8>,
-    /// What the colours mean.
+    /// The meaning of the colours.
     pub legend: Legend,
     /// The requested width and height are divided by this.
     pub divisor: u32,
@@ -81,11 +81,11 @@ pub struct Picture {
     pub latency: f64,
     /// Evaluations of the field per pixel.
     pub evaluations: EvaluationCounts,
-    /// How the rays ended.
+    /// Counts of rays by their status.
     pub counts: PixelCounts,
 }
 
-/// What the render worker reports.
+/// A report of the render worker.
 #[derive(Debug)]
 pub enum RenderEvent {
     /// A picture, which a finer one may follow.

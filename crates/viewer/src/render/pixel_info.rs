@@ -1,14 +1,14 @@
-//! What the picture and the field say about one pixel.
+//! Information about one pixel of a picture.
 
 use glam::DVec3;
 use sdfc_render::HIT;
 
 use crate::render::picture::Picture;
 
-/// What is known about one pixel of a picture.
+/// Information about one pixel of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelInfo {
-    /// How the pixel's ray ended: [`HIT`] or another status of the renderer.
+    /// The status of the pixel's ray: [`HIT`] or another of the renderer's.
     pub status: u32,
     /// The length of the ray in scene units.
     pub depth: f64,

@@ -25,7 +25,7 @@ use crate::views::input::ViewInput;
 use crate::views::mode::ViewMode;
 use crate::worker_thread::WorkerThread;
 
-/// How many milliseconds a pass may take while the camera moves.
+/// The longest time of a pass while the camera moves, in milliseconds.
 pub const PASS_BUDGET_MS: f64 = 30.0;
 /// After this long a newer request interrupts a first pass.
 const FIRST_PASS_LIMIT: Duration = Duration::from_millis(300);
@@ -35,7 +35,7 @@ const TILE_MS: f64 = 16.0;
 const MAX_DIVISOR: u32 = 8;
 /// The divisor of a scene's first pass, when its cost is not known yet.
 const FIRST_DIVISOR: u32 = 4;
-/// How many milliseconds may be spent on more samples per pixel. Edges are smooth long before.
+/// The longest time spent on more samples per pixel, in milliseconds. Edges are smooth long before.
 const SAMPLING_LIMIT_MS: f64 = 20_000.0;
 
 /// A handle to the render worker; dropping it ends the thread.
@@ -90,7 +90,7 @@ struct DrawnImage {
     divisor: u32,
 }
 
-/// What the thread keeps between requests.
+/// The thread's state between requests.
 struct RenderState<R> {
     requests: Arc<LatestChannel<RenderRequest>>,
     report: R,

@@ -1,4 +1,4 @@
-//! What the field of a part of the scene guarantees about the distance.
+//! The guarantees of a part's field about the distance.
 
 use std::collections::HashSet;
 
@@ -6,7 +6,7 @@ use sdfc::Scene;
 use sdfc_analyze::Promise;
 use sdfc_graph::ShapeId;
 
-/// What a field guarantees outside its shape, from best to worst.
+/// The guarantee of a field outside its shape, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DistanceQuality {
     /// The field is the exact distance.

@@ -7,7 +7,7 @@ use sdfc_render::linear_to_srgb8;
 
 use crate::scene::field_probe::in_parallel;
 
-/// A material, rounded to what the eye can tell apart: colours to 8-bit sRGB, the rest to
+/// A material, rounded so that equal values look equal: colours to 8-bit sRGB, the rest to
 /// hundredths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Material {

@@ -1,4 +1,4 @@
-//! The compiled scene and what the window asks of it: files, params, shapes, materials, the field.
+//! The compiled scene: its files, params, shapes, materials and field.
 
 pub mod distance_quality;
 pub mod document;

@@ -1,4 +1,4 @@
-//! A compiled scene together with what draws it.
+//! A compiled scene together with the pipeline or CPU renderer that draws it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use sdfc_render::{CpuScene, Pipeline};
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;
 
-/// What draws a scene.
+/// The pipeline or CPU renderer that draws a scene.
 #[derive(Clone, Debug)]
 pub enum Engine {
     /// A pipeline on a GPU; scenes that differ only in their numbers share one.
@@ -22,7 +22,7 @@ pub enum Engine {
     Cpu(Arc<CpuScene>),
 }
 
-/// How long each step from reading to being ready took, in milliseconds.
+/// The duration of each step from reading to being ready, in milliseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildTimes {
     /// Parsing, checking and elaboration.
@@ -42,13 +42,13 @@ pub struct Model {
     pub scene: Arc<Scene>,
     /// Its source.
     pub source: String,
-    /// What draws it.
+    /// The pipeline or CPU renderer that draws it.
     pub engine: Engine,
     /// The ray method that is used.
     pub method: String,
     /// True for an orthographic camera.
     pub parallel: bool,
-    /// The program with what the method adds to it; `None` if that is the scene's own program.
+    /// The program with the method's additions; `None` if the method adds nothing.
     pub method_program: Option<Program>,
     /// Its field, evaluated on the CPU.
     pub field: Arc<FieldProbe>,
@@ -58,9 +58,9 @@ pub struct Model {
     pub animated: bool,
     /// When its source was read.
     pub read_at: Instant,
-    /// How long each step of the build took.
+    /// The duration of each step of the build.
     pub build_times: BuildTimes,
-    /// How many pipelines have been made so far.
+    /// The number of pipelines made so far.
     pub pipelines: u64,
     /// A number that no other model has; later models have greater ones.
     pub serial: u64,
@@ -69,7 +69,7 @@ pub struct Model {
     /// The [device generation](crate::compile::request::BuildRequest::device_generation) that it
     /// was made for.
     pub device_generation: u32,
-    /// What differs from the request, and why.
+    /// A note for the user if the request could not be followed, with the reason.
     pub note: Option<String>,
 }
 

@@ -57,7 +57,7 @@ impl ParamValues {
         self.literals.get(&literal.span).copied().unwrap_or(literal.value)
     }
 
-    /// How many live literals have been changed.
+    /// The number of changed live literals.
     pub fn changed_literals(&self) -> usize {
         self.literals.len()
     }

@@ -15,7 +15,8 @@ use sdfc_graph::{Dim, Expander, Graph, MaterialField, MaterialRule, NodeId, Shap
 
 use crate::scene::field_probe::in_parallel;
 
-/// How many digits one material holds: the lanes of all its fields except coverage, which is 1.
+/// The number of digits that one material holds: the lanes of all its fields except coverage, which
+/// is 1.
 const DIGITS: u32 = 9;
 
 /// Maps points of the surface to the shapes of a list.
@@ -29,7 +30,7 @@ pub struct ShapeClassifier {
 
 impl ShapeClassifier {
     /// Classifies by leaves: shapes written in the scene that contain no other shape written there.
-    /// Where the scene writes none, shapes without children. The inside of a library shape is not
+    /// If the scene writes none, shapes without children. The inside of a library shape is not
     /// looked at.
     pub fn leaves(scene: &Scene) -> Self {
         let graph = &scene.graph().graph;
@@ -187,7 +188,7 @@ fn number(fields: &[[f64; 4]]) -> usize {
     lanes.enumerate().map(|(digit, lane)| usize::from(*lane >= 0.5) << digit).sum()
 }
 
-/// How many digits a material field holds.
+/// The number of digits that a material field holds.
 fn width(field: MaterialField) -> usize {
     if field == MaterialField::Coverage { 0 } else { field.ty().width() }
 }

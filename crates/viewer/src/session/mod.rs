@@ -82,7 +82,7 @@ pub struct Session {
     pub building: bool,
     /// The last picture.
     pub picture: Option<Box<Picture>>,
-    /// How many pictures have been received.
+    /// The number of pictures received.
     pub picture_count: u64,
     /// Messages for the status line; the window takes them out.
     pub messages: Vec<String>,
@@ -91,7 +91,7 @@ pub struct Session {
     last_request: Option<RenderRequest>,
     /// Width and height of the last request in pixels.
     size: [u32; 2],
-    /// How many devices were lost since the last picture.
+    /// The number of devices lost since the last picture.
     device_losses: u32,
 }
 
@@ -160,7 +160,7 @@ impl Session {
         &self.build.path
     }
 
-    /// How the scene is built.
+    /// The current build request.
     pub fn build(&self) -> &BuildRequest {
         &self.build
     }

@@ -1,4 +1,4 @@
-//! What the field guarantees about the distance.
+//! The field's guarantees about the distance.
 
 use sdfc_graph::ShapeId;
 
@@ -8,7 +8,7 @@ use crate::views::input::ViewInput;
 use crate::views::legend::Legend;
 use crate::views::view::View;
 
-/// What the field guarantees about the distance.
+/// The field's guarantees about the distance.
 pub const VIEW: View = View {
     name: "Distance quality",
     help: "What the field of each part guarantees outside it: the exact distance, a lower bound, \

@@ -1,4 +1,4 @@
-//! What a view is computed from, and helpers that several views use.
+//! The input of a view, and helpers that several views use.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::views::slice_plane::SlicePlane;
 /// The most lines of a legend.
 const MAX_KEYS: usize = 12;
 
-/// What a view is computed from: a rendered image, and the scene that it shows.
+/// The input of a view: a rendered image, and the scene that it shows.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewInput<'a> {
     /// Linear colours, averaged over the samples of each pixel.

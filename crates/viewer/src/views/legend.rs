@@ -1,13 +1,13 @@
-//! What the colours of a view mean.
+//! The legend of a view, and its colour scales.
 
-/// What the colours of a view mean.
+/// The meaning of a view's colours.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Legend {
     /// No legend is shown.
     None,
     /// A scale from one number to another.
     Scale {
-        /// What is measured, with its unit.
+        /// The measured quantity, with its unit.
         label: &'static str,
         /// The numbers at both ends.
         ends: [f64; 2],

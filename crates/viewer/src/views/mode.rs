@@ -8,7 +8,7 @@ use crate::views::{
     overshoot, shaded, shapes, slice,
 };
 
-/// What the picture shows.
+/// A view of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ViewMode {
     /// Light and materials.
@@ -30,7 +30,7 @@ pub enum ViewMode {
     Shapes,
     /// Colours without light.
     Materials,
-    /// What the field guarantees about the distance.
+    /// The field's guarantees about the distance.
     DistanceQuality,
     /// The field on a plane.
     Slice,
@@ -63,7 +63,7 @@ impl ViewMode {
         self.view().name
     }
 
-    /// What the view shows, as hover text.
+    /// The hover text: the quantity that the view shows, and its unit.
     pub fn help(self) -> &'static str {
         self.view().help
     }

@@ -7,7 +7,7 @@ use crate::views::input::ViewInput;
 use crate::views::legend::{Legend, mix};
 use crate::views::view::View;
 
-/// How far from the surface a ray may stop, in pixel widths.
+/// The greatest distance from the surface at which a ray may stop, in pixel widths.
 const TOLERANCE: f64 = 0.25;
 
 /// Rays that went through a surface.

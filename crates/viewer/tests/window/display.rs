@@ -44,7 +44,7 @@ pub fn is_green(picture: &RgbImage, [x, y]: [u32; 2]) -> bool {
     red([g, r, b])
 }
 
-/// How many pixels of an area differ by more than antialiasing explains.
+/// The number of pixels of an area that differ by more than antialiasing explains.
 pub fn differ(a: &RgbImage, b: &RgbImage, [columns, rows]: [std::ops::Range<u32>; 2]) -> usize {
     let pixels = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
     let far = |(x, y): &(u32, u32)| {
