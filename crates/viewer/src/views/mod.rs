@@ -8,6 +8,7 @@ mod depth;
 mod distance_quality;
 mod evaluations;
 mod gradient_length;
+mod grid;
 pub mod input;
 pub mod legend;
 mod materials;

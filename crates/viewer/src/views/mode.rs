@@ -4,7 +4,7 @@ use crate::views::input::ViewInput;
 use crate::views::legend::Legend;
 use crate::views::view::View;
 use crate::views::{
-    depth, distance_quality, evaluations, gradient_length, materials, normals, out_of_steps,
+    depth, distance_quality, evaluations, gradient_length, grid, materials, normals, out_of_steps,
     overshoot, shaded, shapes, slice,
 };
 
@@ -34,11 +34,13 @@ pub enum ViewMode {
     DistanceQuality,
     /// The field on a plane.
     Slice,
+    /// Lines of equal coordinates.
+    Grid,
 }
 
 impl ViewMode {
     /// All views in the order of the menu.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Shaded,
         Self::Normals,
         Self::Depth,
@@ -50,6 +52,7 @@ impl ViewMode {
         Self::Materials,
         Self::DistanceQuality,
         Self::Slice,
+        Self::Grid,
     ];
 
     /// The next view of the menu; after the last one, the first.
@@ -86,6 +89,7 @@ impl ViewMode {
             Self::Materials => &materials::VIEW,
             Self::DistanceQuality => &distance_quality::VIEW,
             Self::Slice => &slice::VIEW,
+            Self::Grid => &grid::VIEW,
         }
     }
 }
