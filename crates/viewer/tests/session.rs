@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         ("a_changed_number_in_a_rerolled_scene_makes_no_pipeline", many),
         ("a_broken_scene_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_antialiased", refined),
-        ("all_views_are_painted_from_one_image", views),
+        ("all_views_are_computed_from_one_image", views),
         ("all_methods_draw_as_the_command_line_does", methods),
         ("the_projection_can_differ_from_the_scenes_camera", parallel),
         ("lost_devices_are_opened_again", lost),

@@ -39,11 +39,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn the_nearest_pixel_is_the_lightest() {
-        let (colors, legend) = painted(BALL, ViewMode::Depth, |_| {});
+        let (colors, legend) = view_of(BALL, ViewMode::Depth, |_| {});
         assert!(colors[MIDDLE][0] > 240);
         let Legend::Scale { ends: [near, far], .. } = legend else { panic!("{legend:?}") };
         assert!((near - 4.0).abs() < 0.05 && far > 4.2 && far < 5.0, "{near} {far}");

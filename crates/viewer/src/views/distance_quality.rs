@@ -36,11 +36,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{TWO_SHAPES, painted};
+    use crate::views::test_images::{TWO_SHAPES, view_of};
 
     #[test]
     fn a_sphere_is_exact_and_a_twist_is_scaled() {
-        let (_, legend) = painted(TWO_SHAPES, ViewMode::DistanceQuality, |_| {});
+        let (_, legend) = view_of(TWO_SHAPES, ViewMode::DistanceQuality, |_| {});
         let Legend::Keys(mut keys) = legend else { panic!("{legend:?}") };
         keys.sort();
         let keys: Vec<_> = keys.iter().map(|(color, label)| (*color, label.as_str())).collect();

@@ -30,11 +30,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, painted};
+    use crate::views::test_images::{BALL, view_of};
 
     #[test]
     fn the_scale_ends_at_the_99th_percentile() {
-        let (colors, legend) = painted(BALL, ViewMode::Evaluations, |image| {
+        let (colors, legend) = view_of(BALL, ViewMode::Evaluations, |image| {
             for (index, pixel) in image.pixels_mut().iter_mut().enumerate() {
                 pixel.evaluations = (index % 101) as u32;
             }

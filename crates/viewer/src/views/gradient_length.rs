@@ -30,11 +30,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn the_gradient_of_a_distance_has_length_1() {
-        let (colors, _) = painted(BALL, ViewMode::GradientLength, |_| {});
+        let (colors, _) = view_of(BALL, ViewMode::GradientLength, |_| {});
         assert_eq!(colors[MIDDLE], Ramp::Diverging.color(0.5));
     }
 }

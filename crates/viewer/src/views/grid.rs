@@ -75,12 +75,12 @@ fn spacing(input: &ViewInput<'_>) -> f64 {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn lines_are_at_multiples_of_the_spacing() {
-        let (shaded, _) = painted(BALL, ViewMode::Shaded, |_| {});
-        let (colors, legend) = painted(BALL, ViewMode::Grid, |_| {});
+        let (shaded, _) = view_of(BALL, ViewMode::Shaded, |_| {});
+        let (colors, legend) = view_of(BALL, ViewMode::Grid, |_| {});
         let Legend::Keys(keys) = legend else { panic!("{legend:?}") };
         // The picture is 3 units high at the surface.
         assert_eq!(keys[0].1, "x every 0.5 units");

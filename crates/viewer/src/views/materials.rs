@@ -37,12 +37,12 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use crate::views::legend::Legend;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn a_surface_has_its_colour_without_light() {
         let scene = BALL.replace("sphere(1)", "sphere(1).color(#d94f30)");
-        let (colors, legend) = painted(&scene, ViewMode::Materials, |_| {});
+        let (colors, legend) = view_of(&scene, ViewMode::Materials, |_| {});
         assert_eq!(colors[MIDDLE], [0xd9, 0x4f, 0x30]);
         let Legend::Keys(keys) = legend else { panic!("{legend:?}") };
         assert_eq!(keys, [([0xd9, 0x4f, 0x30], "#d94f30, roughness 0.5".to_owned())]);

@@ -32,11 +32,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn the_normal_in_the_middle_of_a_ball_points_at_the_camera() {
-        let (colors, _) = painted(BALL, ViewMode::Normals, |_| {});
+        let (colors, _) = view_of(BALL, ViewMode::Normals, |_| {});
         let [red, green, blue] = colors[MIDDLE];
         assert!(red.abs_diff(128) < 12 && green.abs_diff(128) < 12 && blue > 250, "{red} {green}");
         assert_eq!(colors[0], BACKGROUND);

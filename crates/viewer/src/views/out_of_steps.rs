@@ -37,11 +37,11 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, painted};
+    use crate::views::test_images::{BALL, view_of};
 
     #[test]
     fn capped_and_non_finite_pixels_are_marked_and_counted() {
-        let (colors, legend) = painted(BALL, ViewMode::OutOfSteps, |image| {
+        let (colors, legend) = view_of(BALL, ViewMode::OutOfSteps, |image| {
             image.pixels_mut()[0].status = CAPPED;
             image.pixels_mut()[1].color[1] = f32::NAN;
         });

@@ -48,13 +48,13 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
 mod tests {
     use super::*;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn rays_that_stop_inside_or_in_front_are_marked() {
-        let (colors, _) = painted(BALL, ViewMode::Overshoot, |_| {});
+        let (colors, _) = view_of(BALL, ViewMode::Overshoot, |_| {});
         assert!(!colors.contains(&ALARM) && !colors.contains(&NOTICE));
-        let (colors, _) = painted(BALL, ViewMode::Overshoot, |image| {
+        let (colors, _) = view_of(BALL, ViewMode::Overshoot, |image| {
             image.pixels_mut()[MIDDLE].depth += 0.5;
             image.pixels_mut()[MIDDLE + 1].depth -= 0.5;
         });

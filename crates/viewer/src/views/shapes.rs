@@ -36,11 +36,11 @@ mod tests {
     use super::*;
     use crate::views::colors::BACKGROUND;
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{LEFT, RIGHT, TWO_SHAPES, painted};
+    use crate::views::test_images::{LEFT, RIGHT, TWO_SHAPES, view_of};
 
     #[test]
     fn each_shape_has_a_colour_and_a_legend_line() {
-        let (colors, legend) = painted(TWO_SHAPES, ViewMode::Shapes, |_| {});
+        let (colors, legend) = view_of(TWO_SHAPES, ViewMode::Shapes, |_| {});
         assert!(colors[LEFT] != colors[RIGHT] && colors[0] == BACKGROUND);
         let Legend::Keys(keys) = legend else { panic!("{legend:?}") };
         assert_eq!(keys.len(), 2);

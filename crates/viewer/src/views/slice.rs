@@ -71,12 +71,12 @@ fn isolines(field: Dual, spacing: f64, pixel: f64) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use crate::views::mode::ViewMode;
-    use crate::views::test_images::{BALL, MIDDLE, painted};
+    use crate::views::test_images::{BALL, MIDDLE, view_of};
 
     #[test]
     fn the_slice_is_orange_inside_and_blue_outside() {
         // The front half of the ball hides the plane through its middle, so the hits are removed.
-        let (colors, _) = painted(BALL, ViewMode::Slice, |image| {
+        let (colors, _) = view_of(BALL, ViewMode::Slice, |image| {
             image.pixels_mut().iter_mut().for_each(|pixel| pixel.status = 0);
         });
         let [red, _, blue] = colors[MIDDLE];

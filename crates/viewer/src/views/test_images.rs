@@ -25,8 +25,8 @@ pub const LEFT: usize = 12 * 32 + 9;
 pub const RIGHT: usize = 12 * 32 + 22;
 
 /// The colours of a view of a scene, and their legend. `change` may alter the rendered image before
-/// the view is painted.
-pub fn painted(
+/// the view is applied.
+pub fn view_of(
     source: &str,
     mode: ViewMode,
     change: impl Fn(&mut Image),
