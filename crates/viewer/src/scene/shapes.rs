@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn more_shapes_than_one_material_can_number_are_told_apart() {
+    fn more_shapes_than_one_material_can_number_are_distinguished() {
         let mut text = String::new();
         for index in 0..600 {
             text += &format!("sphere(0.2{index:03}).translate(x: {index})\n");
