@@ -17,7 +17,6 @@ use std::collections::BTreeSet;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::FrameValues;
-use sdfc_march::method;
 use sdfc_measure::{Metrics, OracleOptions, Sampler, compare, oracle, truth};
 use sdfc_render::{Gpu, testing};
 
@@ -83,7 +82,7 @@ fn is_drawn_right(mutant: &Mutant) -> Result<(), Failed> {
         // The analysis promises nothing, so no picture can break a promise.
         return Ok(());
     }
-    let method = method(&mutant.method).ok_or("no such method")?;
+    let method: sdfc::Method = mutant.method.parse()?;
     let frame = FrameValues::defaults(scene.params());
     let view = scene.view(&frame, SIZE)?;
     let truth = truth(&scene, &view, &frame, OracleOptions::default())?;

@@ -81,8 +81,8 @@ fn check_case(
     let views = views(case, &scene, size)?;
     let (gpu, oracle) = (Gpu::new()?, oracle(&scene)?);
     let mut row = Vec::new();
-    for method in sdfc_march::METHODS {
-        let sampler = Sampler::new(&scene, &gpu, &method)?;
+    for method in sdfc::Method::all() {
+        let sampler = Sampler::new(&scene, &gpu, method)?;
         let measure = |(view, frame, truth): &(View, FrameValues, Truth)| {
             Ok(compare(&oracle, frame, truth, &sampler.samples(view, frame)?))
         };

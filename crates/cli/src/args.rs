@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
+use sdfc::Method;
 use sdfc_lang::settings::RAY_METHODS;
-use sdfc_march::Method;
 use sdfc_render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
 use crate::sequence::{self, Frames};
@@ -122,7 +122,7 @@ pub struct Compile {
     pub stage: Option<Stage>,
     /// Ray method of `--emit march` and `render` [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
-    pub march: Option<String>,
+    pub march: Option<Method>,
     /// Prefix of all names [default: sdf_]
     #[arg(long, value_name = "NAME")]
     pub prefix: Option<String>,
@@ -229,7 +229,7 @@ pub struct Render {
     pub size: [u32; 2],
     /// Ray method [default: that of the scene, or auto]
     #[arg(long, value_name = "METHOD", value_parser = methods())]
-    pub march: Option<String>,
+    pub march: Option<Method>,
     /// Device that draws
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
@@ -392,7 +392,7 @@ pub struct Chart {
     pub size: [u32; 2],
     /// Ray methods, separated by commas [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = methods())]
-    pub march: Vec<String>,
+    pub march: Vec<Method>,
     /// Note in the picture, such as a date and a commit
     #[arg(long, value_name = "TEXT")]
     pub note: Option<String>,
@@ -428,21 +428,24 @@ pub struct Tune {
     pub size: [u32; 2],
     /// Ray methods to choose from, separated by commas [default: all]
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = scene_methods())]
-    pub march: Vec<String>,
+    pub march: Vec<Method>,
     /// The cache of the oracle.
     #[command(flatten)]
     pub cache: Cache,
 }
 
 /// Parses the name of any ray method. The help lists those for users.
-fn methods() -> PossibleValuesParser {
-    PossibleValuesParser::new(Method::all().map(described))
+fn methods() -> impl TypedValueParser<Value = Method> {
+    parser(Method::all())
 }
 
 /// Parses the name of a ray method that scenes can name.
-fn scene_methods() -> PossibleValuesParser {
-    let methods = Method::all().filter(|method| RAY_METHODS.contains(&method.name()));
-    PossibleValuesParser::new(methods.map(described))
+fn scene_methods() -> impl TypedValueParser<Value = Method> {
+    parser(Method::all().filter(|method| RAY_METHODS.contains(&method.name())))
+}
+
+fn parser(methods: impl Iterator<Item = Method>) -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(methods.map(described)).try_map(|name| name.parse::<Method>())
 }
 
 fn described(method: Method) -> PossibleValue {

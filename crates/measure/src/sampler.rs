@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use sdfc::{Error, Scene};
+use sdfc::{Error, Marched, Method, Scene};
 use sdfc_codegen::normals_module;
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
-use sdfc_march::{MethodDefinition, PixelBlock};
+use sdfc_march::PixelBlock;
 use sdfc_render::{Gpu, HIT, MISS, Pipeline, RenderOptions, View, no_progress, uniform_values};
 
 use crate::metrics::{PixelSample, Status};
@@ -27,12 +27,9 @@ impl<'s> Sampler<'s> {
     /// # Errors
     ///
     /// [`Error::NothingDrawn`], [`Error::Codegen`], [`Error::Render`].
-    pub fn new(scene: &'s Scene, gpu: &Gpu, method: &MethodDefinition) -> Result<Self, Error> {
-        let marched = scene.marched(method.name);
-        // A method outside the table may have the name of one that is in it.
-        let other = sdfc_march::method(&marched.method).filter(|other| other.name != method.name);
-        let program = marched.program;
-        let shader = normals_module(&program, other.unwrap_or(method))?;
+    pub fn new(scene: &'s Scene, gpu: &Gpu, method: Method) -> Result<Self, Error> {
+        let Marched { program, method, .. } = scene.marched(method);
+        let shader = normals_module(&program, method.definition())?;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
         Ok(Self { program, pipeline })
     }

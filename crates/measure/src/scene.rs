@@ -6,7 +6,7 @@ use sdfc::{Error, Scene};
 use sdfc_analyze::cost;
 use sdfc_graph::NodeId;
 use sdfc_graph::eval::FrameValues;
-use sdfc_march::{method, stubs};
+use sdfc_march::stubs;
 use sdfc_render::{Progress, View};
 
 use crate::camera::Camera;
@@ -72,7 +72,7 @@ pub fn truth(
 /// For a method that bounds the field along segments of a ray, an evaluation is the field and these
 /// bounds; operations that they share count once.
 pub fn operations(scene: &Scene, marched: &sdfc::Marched<'_>, evaluations: f64) -> f64 {
-    let Some(method) = method(&marched.method) else { return f64::NAN };
+    let method = marched.method.definition();
     let program = &marched.program;
     let bounds = [(stubs::RANGE, program.range), (stubs::SLOPE_RANGE, program.slope_range)];
     let called = bounds.into_iter().filter(|(stub, _)| method.calls(stub));

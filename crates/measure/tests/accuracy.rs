@@ -7,6 +7,7 @@
 mod common;
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::Method;
 use sdfc_measure::chart::Row;
 use sdfc_measure::{ChartOptions, OracleOptions, chart};
 use sdfc_render::{Gpu, no_progress, testing};
@@ -29,8 +30,14 @@ const DEPTH: [f64; 2] = [0.05, 0.1];
 const FEW_LEAVES: usize = 30;
 
 /// `auto` and what it is compared with: none of these takes fewer operations and errs less.
-const METHODS: [&str; 6] =
-    ["auto", "sphere", "sphere-cone", "relaxed", "accelerated", "auto-relaxed"];
+const METHODS: [Method; 6] = [
+    Method::Auto,
+    Method::Sphere,
+    Method::SphereCone,
+    Method::Relaxed,
+    Method::Accelerated,
+    Method::AutoRelaxed,
+];
 
 /// Most evaluations per pixel, as a part of those of `sphere-cone`.
 const EVALUATIONS: f64 = 0.5;
@@ -89,8 +96,7 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let pixels = f64::from(size[0] * size[1]);
     let gpu = Gpu::new()?;
     let is_alone = exception.is_some() || name == MANY;
-    let names = if is_alone { &METHODS[..1] } else { &METHODS };
-    let methods = names.iter().map(ToString::to_string).collect();
+    let methods = if is_alone { METHODS[..1].to_vec() } else { METHODS.to_vec() };
     let once = ChartOptions::new().repetitions(1).defaults_only(true);
     let options = once.size(*size).methods(methods);
     let chart = chart(&scene, name, &gpu, &options, OracleOptions::default(), &mut no_progress)?;

@@ -8,7 +8,7 @@ mod common;
 
 use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::Scene;
+use sdfc::{Method, Scene};
 use sdfc_measure::chart::Row;
 use sdfc_measure::{ChartOptions, OracleOptions, chart};
 use sdfc_render::{Gpu, no_progress, testing};
@@ -81,10 +81,10 @@ fn main() {
 
 fn proven_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let scene = agree::scene(name, text)?;
-    if scene.is_certified() || scene.marched_by("auto") != "interval" {
+    if scene.is_certified() || scene.marched_by(Method::Auto) != Method::Interval {
         return Err("the scene is not one that `auto` leaves to `interval`".into());
     }
-    let rows = rows(&scene, name, &["sphere", "interval", "auto"])?;
+    let rows = rows(&scene, name, &[Method::Sphere, Method::Interval, Method::Auto])?;
     let [sphere, proven @ ..] = &rows[..] else { return Err("no rows".into()) };
     if sphere.missed == 0 {
         return Err("steps as long as the field miss nothing: the scene tests nothing".into());
@@ -107,7 +107,7 @@ fn chart_shows(name: &str, text: &str) -> Result<(), Failed> {
     if !scene.is_certified() {
         return Err("the compiler knows that it lies".into());
     }
-    let rows = rows(&scene, name, &["sphere"])?;
+    let rows = rows(&scene, name, &[Method::Sphere])?;
     let [Row { missed, false_hits, depth_px, .. }] = &rows[..] else { return Err("no row".into()) };
     if missed + false_hits == 0 && depth_px.p99 <= 1.0 {
         return Err("`sphere` draws it right".into());
@@ -116,8 +116,8 @@ fn chart_shows(name: &str, text: &str) -> Result<(), Failed> {
 }
 
 /// The rows of these methods on the scene's chart.
-fn rows(scene: &Scene, name: &str, methods: &[&str]) -> Result<Vec<Row>, Failed> {
-    let methods = methods.iter().copied().map(str::to_owned).collect();
+fn rows(scene: &Scene, name: &str, methods: &[Method]) -> Result<Vec<Row>, Failed> {
+    let methods = methods.to_vec();
     let once = ChartOptions::new().repetitions(1).defaults_only(true);
     let options = once.size(SIZE).methods(methods);
     let oracle = OracleOptions::default();

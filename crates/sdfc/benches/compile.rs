@@ -4,7 +4,7 @@
 //! process does only once. Other work on the machine counts in all columns but the last.
 
 use cpu_time::ProcessTime;
-use sdfc::Compiler;
+use sdfc::{Compiler, Method};
 
 /// Runs of each scene; the first, in which the library is read, is left out.
 const RUNS: usize = 21;
@@ -76,7 +76,7 @@ fn times(name: &str, text: &str) -> [f64; 5] {
         return [f64::NAN; 5];
     };
     let start = std::time::Instant::now();
-    let Ok(shader) = scene.picture_shader("auto") else {
+    let Ok(shader) = scene.picture_shader(Method::Auto) else {
         return [f64::NAN; 5];
     };
     let linked = start.elapsed().as_secs_f64() * 1e3;

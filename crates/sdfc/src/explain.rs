@@ -40,7 +40,7 @@ impl Scene {
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
             features: feature_names(features),
-            method: self.marched_by(self.method()).to_owned(),
+            method: self.marched_by(self.method()).name(),
             method_why: self.why_marched_by(self.method()),
             step_scale: 1.0,
             certified: self.is_certified(),

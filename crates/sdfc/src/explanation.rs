@@ -39,7 +39,7 @@ pub struct Explanation {
     /// Features of the picture's shader: `material`, `shadow` and so on.
     pub features: Vec<String>,
     /// The ray method that pictures are drawn with.
-    pub method: String,
+    pub method: &'static str,
     /// Why this method was chosen, if the field is uncertified.
     pub method_why: Option<String>,
     /// Factor that turns a distance into a safe step. Always 1: the field is already divided by its

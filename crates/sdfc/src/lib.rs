@@ -94,6 +94,7 @@ pub use sdfc_graph::eval::{FieldSample, FrameValues};
 pub use sdfc_graph::{Param, ParamKind};
 pub use sdfc_lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
 pub use sdfc_lang::{NoFiles, Resolver};
+pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Pose, Progress, Stats, no_progress};
 pub use sdfc_render::{RenderError, View, ViewError};

@@ -6,6 +6,7 @@ use std::time::Instant;
 use sdfc_codegen::{render_module, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
+use sdfc_march::Method;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
     OnProgress, Pipeline, Pose, Progress, RenderError, RenderOptions, Stats, View, Why,
@@ -35,7 +36,7 @@ pub struct PictureOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// Ray method; `None` takes the scene's, or `auto`.
-    pub method: Option<String>,
+    pub method: Option<Method>,
     /// The device that draws.
     pub backend: Backend,
     /// The camera; `None` takes the scene's, or one that sees the whole scene.
@@ -65,7 +66,7 @@ impl PictureOptions {
 
     /// Sets the ray method; `None` takes the scene's, or `auto`.
     #[must_use]
-    pub fn method(self, method: impl Into<Option<String>>) -> Self {
+    pub fn method(self, method: impl Into<Option<Method>>) -> Self {
         Self { method: method.into(), ..self }
     }
 
@@ -161,7 +162,7 @@ impl Scene {
     /// [`Error::Codegen`] if the scene cannot be lowered.
     pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
         let start = Instant::now();
-        let method = options.method.as_deref().unwrap_or(self.method());
+        let method = options.method.unwrap_or(self.method());
         let samples = options.samples.or(self.program.settings.samples).unwrap_or(1);
         let samples = sample_offsets(samples)?;
         let gpu = match options.backend {
@@ -178,7 +179,7 @@ impl Scene {
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
                 let parallel = options.pose.map(|pose| pose.parallel);
-                let (engine, compile) = self.pipeline(&gpu, &program, &method, parallel)?;
+                let (engine, compile) = self.pipeline(&gpu, &program, method, parallel)?;
                 (engine, compile, None)
             }
             Err(note) => {
@@ -211,13 +212,13 @@ impl Scene {
         &self,
         gpu: &Gpu,
         program: &Program,
-        method: &str,
+        method: Method,
         parallel: Option<bool>,
     ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
         let shader = match parallel {
-            Some(parallel) => render_module_with_camera(program, method, parallel)?,
-            None => render_module(program, method)?,
+            Some(parallel) => render_module_with_camera(program, method.name(), parallel)?,
+            None => render_module(program, method.name())?,
         };
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
@@ -255,7 +256,7 @@ pub struct Painter<'s> {
     /// The scene's program, with the functions that the method needs.
     program: Cow<'s, Program>,
     engine: Engine,
-    method: String,
+    method: Method,
     /// Why this method draws, if the field is uncertified.
     why: Option<String>,
     size: [u32; 2],
@@ -290,7 +291,8 @@ impl Painter<'_> {
             repeated(repetitions, || self.averaged(&view, values, &mut *progress))?;
         let frame_ms = FrameTimes::of(&spent, frame.clock).ok_or(Error::NothingDrawn)?;
         let adapter = self.adapter();
-        let mut stats = Stats::new(&frame, frame_ms, adapter, &self.method, self.compile.clone());
+        let mut stats =
+            Stats::new(&frame, frame_ms, adapter, self.method.name(), self.compile.clone());
         match &self.engine {
             Engine::Gpu(pipeline) if pipeline.leaves_out() => {
                 let why = "rays visit the parts that can matter to them, which `sdfc bench` counts";
@@ -310,8 +312,7 @@ impl Painter<'_> {
             Some(pose) => View::from_pose(program, values, bounds, self.size, pose)?,
             None => View::new(program, values, bounds, self.size)?,
         };
-        let knob = sdfc_march::method(&self.method).and_then(|method| method.parameter);
-        Ok(view.with_scaled_parameter(knob, self.tolerance))
+        Ok(view.with_scaled_parameter(self.method.definition().parameter, self.tolerance))
     }
 
     fn adapter(&self) -> Option<&AdapterInfo> {
@@ -363,7 +364,9 @@ impl Painter<'_> {
                 let uniforms = uniform_values(&self.program, values);
                 pipeline.render(view, &uniforms, &options, progress)
             }
-            Engine::Cpu(scene) => scene.render(view, values, &self.method, &options, progress),
+            Engine::Cpu(scene) => {
+                scene.render(view, values, self.method.name(), &options, progress)
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use sdfc_codegen::{
     FieldOptions, PictureOptions, Shader, Stage, Target, Written, field_module, march_module,
     picture_module, render_module, shadertoy_module,
 };
+use sdfc_march::Method;
 use sdfc_render::{Tile, View, view_bytes};
 
 use crate::error::Error;
@@ -40,7 +41,7 @@ pub struct ShaderOptions {
     /// The shader stage of [`Emit::Render`]; ignored otherwise.
     pub stage: Stage,
     /// The ray method of [`Emit::March`] and [`Emit::Render`]; `None` takes the scene's, or `auto`.
-    pub method: Option<String>,
+    pub method: Option<Method>,
     /// Prefix of every name; ignored by [`Target::Shadertoy`].
     pub prefix: String,
     /// Bind group of the buffers, if the target has groups.
@@ -96,7 +97,7 @@ impl ShaderOptions {
 
     /// Sets the ray method; `None` takes the scene's, or `auto`.
     #[must_use]
-    pub fn method(self, method: impl Into<Option<String>>) -> Self {
+    pub fn method(self, method: impl Into<Option<Method>>) -> Self {
         Self { method: method.into(), ..self }
     }
 
@@ -158,10 +159,10 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Codegen`], for an unknown method too.
-    pub fn picture_shader(&self, method: &str) -> Result<Shader, Error> {
+    /// [`Error::Codegen`].
+    pub fn picture_shader(&self, method: Method) -> Result<Shader, Error> {
         let method = self.marched_by(method);
-        Ok(render_module(&with_segment_bounds(&self.program, method), method)?)
+        Ok(render_module(&with_segment_bounds(&self.program, method), method.name())?)
     }
 
     /// Writes the shader in the language of `options`.
@@ -194,7 +195,7 @@ impl Scene {
 
     fn shader(&self, options: &ShaderOptions) -> Result<Shader, Error> {
         let ShaderOptions { target, stage, prefix, group, binding, .. } = options.clone();
-        let method = options.method.as_deref().unwrap_or(self.method());
+        let method = options.method.unwrap_or(self.method());
         if options.emit == Emit::Render && !target.has_stage(stage) {
             let what = stage.name();
             return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
@@ -208,13 +209,13 @@ impl Scene {
         let program = with_segment_bounds(&self.program, method);
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
-            Emit::March => march_module(&program, method, &functions())?,
+            Emit::March => march_module(&program, method.name(), &functions())?,
             Emit::Render if target == Target::Shadertoy => {
-                shadertoy_module(&program, method, &self.default_view()?)?
+                shadertoy_module(&program, method.name(), &self.default_view()?)?
             }
             Emit::Render => {
                 let rows_up = target.counts_rows_upwards();
-                let method = method.to_owned();
+                let method = method.name().to_owned();
                 let options =
                     PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
                 picture_module(&program, &options)?
@@ -267,7 +268,7 @@ mod tests {
         let options = ShaderOptions { emit, prefix, group: 2, ..options };
         assert_eq!(says(&options)?, "--target wgsl --emit march --prefix a_ --group 2");
         let (target, stage) = (Target::Msl, Stage::Fragment);
-        let method = Some("sphere".to_owned());
+        let method = Some(Method::Sphere);
         let options = ShaderOptions { target, stage, method, emit: Emit::Render, ..options };
         let expected = "--target msl --emit render --stage fragment --march sphere --prefix a_";
         assert_eq!(says(&options)?, expected);

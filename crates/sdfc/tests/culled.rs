@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Compiler, FrameValues, LoopStrategy, PictureOptions, Scene, no_progress};
+use sdfc::{Compiler, FrameValues, LoopStrategy, Method, PictureOptions, Scene, no_progress};
 use sdfc_codegen::{FieldSource, Shader, benchmark_module, instrumented_module, render_module};
 use sdfc_graph::{Program, Type};
 use sdfc_render::{
@@ -290,13 +290,12 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
 /// `interval` visits all parts, `sphere` does not and has no count of them.
 fn leaves_are_told() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
-    let told = |method: &str| -> Result<Option<f64>, Failed> {
-        let method = Some(method.to_owned());
+    let told = |method: Method| -> Result<Option<f64>, Failed> {
         let options = PictureOptions::new().size([16, 16]).method(method);
         let drawn = scene.render(&options, &mut no_progress)?;
         Ok(drawn.stats.leaf_evals_per_pixel.mean)
     };
-    match (told("interval")?, told("sphere")?) {
+    match (told(Method::Interval)?, told(Method::Sphere)?) {
         (Some(_), None) => Ok(()),
         told => Err(format!("{told:?}").into()),
     }

@@ -5,8 +5,8 @@ use std::sync::Mutex;
 
 use proptest::prelude::*;
 use sdfc::{
-    Compiler, Diagnostics, Emit, Error, Field, FrameValues, Resolver, Scene, ShaderOptions, Stage,
-    Target, uniform_bytes,
+    Compiler, Diagnostics, Emit, Error, Field, FrameValues, Method, Resolver, Scene, ShaderOptions,
+    Stage, Target, uniform_bytes,
 };
 use sdfc_lang::NoFiles;
 
@@ -125,12 +125,18 @@ proptest! {
         prefix in ".{0,8}",
         group in any::<u32>(),
         binding in any::<u32>(),
-        method in prop::option::of("[a-z-]{0,12}"),
+        method in prop::option::of(prop::sample::select(Method::all().collect::<Vec<_>>())),
         target in prop::sample::select(&Target::ALL[..]),
         emit in prop::sample::select(&[Emit::Field, Emit::March, Emit::Render][..]),
         stage in prop::sample::select(&[Stage::Compute, Stage::Fragment][..]),
     ) {
-        let options = ShaderOptions::new().target(target).emit(emit).stage(stage).method(method).prefix(prefix).group(group).binding(binding);
+        let options = ShaderOptions::new().target(target)
+            .emit(emit)
+            .stage(stage)
+            .method(method)
+            .prefix(prefix)
+            .group(group)
+            .binding(binding);
         let _ = scene().write_shader(&options);
     }
 }

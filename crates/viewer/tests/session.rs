@@ -8,8 +8,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{PictureOptions, no_progress};
-use sdfc_march::METHODS;
+use sdfc::{Method, PictureOptions, no_progress};
+
 use sdfc_render::{Gpu, HIT, testing};
 use sdfc_viewer::render::picture::Picture;
 use sdfc_viewer::scene::model::{Engine, Model};
@@ -219,8 +219,8 @@ fn methods() -> Result<(), Failed> {
     for text in [ball("1").as_str(), flower] {
         let mut fixture = Fixture::new(text)?;
         fixture.session.samples = Some(1);
-        for method in METHODS {
-            fixture.session.update_build(|build| build.method = Some(method.name.to_owned()));
+        for method in Method::all() {
+            fixture.session.update_build(|build| build.method = Some(method));
             let serial = fixture.session.model.as_ref().map_or(0, |model| model.serial);
             fixture.until(|session| {
                 session.problem.is_some()
@@ -229,12 +229,11 @@ fn methods() -> Result<(), Failed> {
             expect(fixture.session.problem.is_none(), &format!("{:?}", fixture.session.problem))?;
             fixture.finish()?;
             let model = fixture.model()?;
-            let options =
-                PictureOptions::new().size(SIZE).method(method.name.to_owned()).samples(Some(1));
+            let options = PictureOptions::new().size(SIZE).method(method).samples(Some(1));
             let expected = model.scene.render(&options, &mut no_progress)?;
             let (shown, meant) = (fixture.picture()?.counts, expected.image.counts());
-            let what = format!("{}: {shown:?}, not {meant:?}", method.name);
-            expect(model.method == expected.stats.method, &what)?;
+            let what = format!("{method}: {shown:?}, not {meant:?}");
+            expect(model.method.name() == expected.stats.method, &what)?;
             expect(shown.hit.abs_diff(meant.hit) <= 2, &what)?;
             expect(shown.capped.abs_diff(meant.capped) <= 2, &what)?;
             // The other methods step over an uncertified field.

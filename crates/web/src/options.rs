@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sdfc::{Emit, Resolver, ShaderOptions, Stage, Target};
+use sdfc::{Emit, Method, Resolver, ShaderOptions, Stage, Target};
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// The options, with the defaults of `sdfc compile`.
@@ -15,7 +15,8 @@ pub(crate) struct Options {
     target: Target,
     emit: Option<Part>,
     stage: Option<Form>,
-    march: Option<String>,
+    #[serde(deserialize_with = "method")]
+    march: Option<Method>,
     prefix: Option<String>,
     group: Option<u32>,
     binding: Option<u32>,
@@ -68,11 +69,16 @@ impl Options {
             .target(target)
             .emit(emit)
             .stage(stage)
-            .method(self.march.clone())
+            .method(self.march)
             .prefix(self.prefix.clone().unwrap_or(standard.prefix))
             .group(self.group.unwrap_or(standard.group))
             .binding(self.binding.unwrap_or(standard.binding))
     }
+}
+
+fn method<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Option<Method>, D::Error> {
+    let name = Option::<String>::deserialize(deserializer)?;
+    name.map(|name| name.parse().map_err(D::Error::custom)).transpose()
 }
 
 fn target<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Target, D::Error> {

@@ -111,8 +111,9 @@ fn command_line(args: &Chart, output: &str) -> String {
     }
     let [width, height] = args.size;
     let _ = write!(text, " --size {width}x{height} {output}");
-    if !args.march.is_empty() {
-        let _ = write!(text, " --march {}", args.march.join(","));
+    let names: Vec<&str> = args.march.iter().map(|method| method.name()).collect();
+    if !names.is_empty() {
+        let _ = write!(text, " --march {}", names.join(","));
     }
     text + if args.note.is_some() { " --note TEXT" } else { "" }
 }

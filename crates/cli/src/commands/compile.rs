@@ -83,7 +83,7 @@ fn options(args: &Compile) -> Result<ShaderOptions, Failure> {
         .target(target)
         .emit(emit)
         .stage(args.stage.map_or(stage, Stage::from))
-        .method(args.march.clone())
+        .method(args.march)
         .prefix(args.prefix.clone().unwrap_or(defaults.prefix))
         .group(args.group.unwrap_or(defaults.group))
         .binding(args.binding.unwrap_or(defaults.binding)))

@@ -116,7 +116,7 @@ impl Outputs {
 fn options(args: &Render) -> PictureOptions {
     PictureOptions::new()
         .size(args.size)
-        .method(args.march.clone())
+        .method(args.march)
         .backend(match args.backend {
             Backend::Auto => sdfc::Backend::Auto,
             Backend::Gpu => sdfc::Backend::Gpu,

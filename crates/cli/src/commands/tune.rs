@@ -1,6 +1,6 @@
 //! `sdfc tune`: finds the cheapest ray method and setting within an error limit.
 
-use sdfc::Compiler;
+use sdfc::{Compiler, Method};
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_measure::ChartOptions;
 use sdfc_measure::chart::{Chart, Row};
@@ -21,7 +21,7 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     let json = args.json.as_deref().map(Output::new);
     output::distinct(&args.file, &args.json.as_deref().into_iter().collect::<Vec<_>>())?;
     json.iter().try_for_each(Output::check)?;
-    let all = || RAY_METHODS.map(str::to_owned).to_vec();
+    let all = || Method::all().filter(|method| RAY_METHODS.contains(&method.name())).collect();
     let methods = if args.march.is_empty() { all() } else { args.march.clone() };
     let options = ChartOptions::new().size(args.size).methods(methods);
     let chart = measured(&args.file, &scene, &options, &args.cache, console)?;
@@ -29,7 +29,7 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     if let Some(json) = &json {
         json.write(&super::json(&chart)?)?;
     }
-    let advice = advice(&chart, args.max_error, scene.method())?;
+    let advice = advice(&chart, args.max_error, scene.method().name())?;
     if json == Some(Output::Stdout) { Ok(()) } else { output::to_stdout(advice.as_bytes()) }
 }
 

@@ -5,7 +5,7 @@ mod suite;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use sdfc::{Error, Scene};
+use sdfc::{Error, Method, Scene};
 use sdfc_analyze::{LoopStrategy, cost, prepare_with};
 use sdfc_codegen::{FieldSource, benchmark_module, instrumented_module};
 use sdfc_graph::Program;
@@ -50,7 +50,7 @@ pub struct BenchOptions {
     /// longer than ten seconds.
     pub repetitions: u32,
     /// Ray method of all variants.
-    pub method: String,
+    pub method: Method,
     /// Whether interpreters and slots take part. Then all variants are unpainted and take normals by differences, as interpreters
     /// must; or else each is the picture that `sdfc render` draws.
     pub baselines: bool,
@@ -84,7 +84,7 @@ impl BenchOptions {
 impl Default for BenchOptions {
     /// 640 by 360, five frames, `sphere`: the method of the practical that `units` follows.
     fn default() -> Self {
-        Self { size: [640, 360], repetitions: 5, method: "sphere".to_owned(), baselines: true }
+        Self { size: [640, 360], repetitions: 5, method: Method::Sphere, baselines: true }
     }
 }
 
@@ -300,7 +300,7 @@ pub fn bench(
         scene: name.to_owned(),
         leaves: scene.report().leaves,
         size: options.size,
-        method: options.method.clone(),
+        method: options.method.name().to_owned(),
         auto,
         auto_times_best_frame: times_best(&variants, auto, frame),
         auto_times_best_first_picture: times_best(&variants, auto, |v| v.first_picture_ms),
@@ -402,8 +402,11 @@ impl<'a> Heat<'a> {
             Ok(data) => data,
             Err(inexpressible) => return Ok(Err(inexpressible)),
         };
-        let shader =
-            benchmark_module(program, &self.options.method, kind.field(self.options.baselines))?;
+        let shader = benchmark_module(
+            program,
+            self.options.method.name(),
+            kind.field(self.options.baselines),
+        )?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, turns) = match &data {
@@ -468,7 +471,7 @@ impl<'a> Heat<'a> {
         if rounds != self.scene.report().leaves {
             return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
         }
-        let shader = instrumented_module(program, &self.options.method)?;
+        let shader = instrumented_module(program, self.options.method.name())?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
         // In one piece: lists of parts of a picture repeat what is asked for wide tiles.
         let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };

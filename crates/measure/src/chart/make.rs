@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-use sdfc::{Error, Scene};
+use sdfc::{Error, Method, Scene};
 use sdfc_codegen::render_module;
 use sdfc_graph::eval::FrameValues;
-use sdfc_march::{METHODS, MethodDefinition, method};
 use sdfc_render::{
     Clock, FrameTimes, Gpu, OnProgress, Pipeline, Progress, RenderOptions, View, uniform_values,
 };
@@ -22,8 +21,8 @@ use crate::scene::{OracleOptions, operations, oracle, truth};
 pub struct ChartOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Names of the ray methods; empty for all.
-    pub methods: Vec<String>,
+    /// The ray methods; empty for all.
+    pub methods: Vec<Method>,
     /// Whether methods are charted at their defaults only.
     pub defaults_only: bool,
     /// Frames that are timed, after one that is not; at least 1.
@@ -46,7 +45,7 @@ impl ChartOptions {
 
     /// Sets the ray methods; none are all.
     #[must_use]
-    pub fn methods(self, methods: Vec<String>) -> Self {
+    pub fn methods(self, methods: Vec<Method>) -> Self {
         Self { methods, ..self }
     }
 
@@ -82,8 +81,7 @@ impl Default for ChartOptions {
 ///
 /// # Errors
 ///
-/// [`Error::NothingDrawn`], [`Error::View`], [`Error::Codegen`] for an unknown method too,
-/// [`Error::Render`].
+/// [`Error::NothingDrawn`], [`Error::View`], [`Error::Codegen`], [`Error::Render`].
 pub fn chart(
     scene: &Scene,
     name: &str,
@@ -98,12 +96,15 @@ pub fn chart(
     let truth = truth(scene, &view, &frame, oracle_options)?;
     let oracle = oracle(scene)?;
 
-    let methods = methods(&options.methods)?;
-    let parts = |method: &'static MethodDefinition| {
-        let all = method.chart_factors.iter().copied();
+    let methods = match options.methods.is_empty() {
+        true => Method::all().collect(),
+        false => options.methods.clone(),
+    };
+    let parts = |method: Method| {
+        let all = method.definition().chart_factors.iter().copied();
         all.filter(|part| !options.defaults_only || *part == 1.0)
     };
-    let total = methods.iter().map(|method| parts(method).count() as u64).sum();
+    let total = methods.iter().map(|method| parts(*method).count() as u64).sum();
     let mut chart = Chart {
         scene: name.to_owned(),
         leaves: scene.report().leaves,
@@ -116,22 +117,22 @@ pub fn chart(
         methods: Vec::new(),
     };
     for method in methods {
-        let marched = scene.marched(method.name);
+        let marched = scene.marched(method);
         let program = &marched.program;
-        let shader = render_module(program, &marched.method)?;
+        let shader = render_module(program, marched.method.name())?;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
         let uniforms = uniform_values(program, &frame);
         let sampler = Sampler::new(scene, gpu, method)?;
         for part in parts(method) {
-            let view = view.with_scaled_parameter(method.parameter, part);
+            let view = view.with_scaled_parameter(method.definition().parameter, part);
             let frame_ms = timed(&pipeline, &view, &uniforms, options.repetitions)?;
             let samples = sampler.samples(&view, &frame)?;
             let metrics = compare(&oracle, &frame, &truth, &samples);
-            let set = method.parameter.map(|knob| (knob.name(), view.parameter(knob)));
+            let set = method.definition().parameter.map(|knob| (knob.name(), view.parameter(knob)));
             let settings = BTreeMap::from_iter(set);
             let operations = operations(scene, &marched, metrics.evaluations.mean);
             let default = part == 1.0;
-            let row = Row::new(method.name, settings, default, &metrics, operations, frame_ms);
+            let row = Row::new(method.name(), settings, default, &metrics, operations, frame_ms);
             chart.methods.push(row);
             let done = chart.methods.len() as u64;
             if let ControlFlow::Break(()) = progress(Progress { done, total }) {
@@ -166,20 +167,9 @@ fn timed(
     };
     Ok(FrameMs { median: times.median, clock })
 }
-/// The methods of those names; all for none.
-fn methods(names: &[String]) -> Result<Vec<&'static MethodDefinition>, Error> {
-    if names.is_empty() {
-        return Ok(METHODS.iter().collect());
-    }
-    let unknown = |name: &String| sdfc_codegen::Error::UnknownMethod(name.clone());
-    let found = |name: &String| method(name).ok_or_else(|| Error::Codegen(unknown(name)));
-    names.iter().map(found).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use sdfc_lang::settings::RAY_METHODS;
-    use sdfc_march::Method;
 
     use super::*;
 

@@ -2,7 +2,7 @@
 //! within less, and far from the origin within what rounding does to coordinates.
 
 use libtest_mimic::Failed;
-use sdfc::{Backend, Compiler, FrameValues, PictureOptions, Scene, no_progress};
+use sdfc::{Backend, Compiler, FrameValues, Method, PictureOptions, Scene, no_progress};
 use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare};
 
 /// Width and height in pixels.
@@ -16,7 +16,7 @@ const ROUNDING: f32 = 1e-6;
 const COLOR: u8 = 2;
 /// More edges than this share of the pixels, and the comparison says too little.
 const EDGES: f64 = 0.5;
-const METHOD: &str = "auto";
+const METHOD: Method = Method::Auto;
 
 /// Compiles a scene.
 pub fn scene(name: &str, text: &str) -> Result<Scene, Failed> {
@@ -36,7 +36,7 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
 /// Compares the graphics adapter with the processor in f32, and its depth with f64.
 pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
     let picture = |backend| {
-        let method = Some(METHOD.to_owned());
+        let method = METHOD;
         // One ray for each pixel, through its centre, as in the pictures of depths.
         let samples = Some(1);
         let options =
@@ -63,11 +63,11 @@ impl Depths {
         let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), [SIDE; 2])?;
         let method = scene.marched_by(METHOD);
         let cpu = CpuScene::new(&scene.program().with_segment_bounds(true, false))?;
-        let double = cpu.depth_map::<f64>(&view, &frame, method)?;
+        let double = cpu.depth_map::<f64>(&view, &frame, method.name())?;
         let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
         let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
         let limit = DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING);
-        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method)?, double, limit })
+        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method.name())?, double, limit })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sdfc::FrameValues;
+use sdfc::{FrameValues, Method};
 use sdfc_measure::{Counts, Metrics};
 use sdfc_render::Pose;
 
@@ -58,7 +58,7 @@ impl ComparisonJob {
 #[derive(Clone, Debug)]
 pub struct MethodResult {
     /// The method's name.
-    pub method: String,
+    pub method: Method,
     /// The method's parameter as a multiple of the scene's.
     pub setting: f64,
     /// The errors.
@@ -121,7 +121,7 @@ mod tests {
         let result = |operations, p99| {
             let mut metrics = Metrics::default();
             metrics.depth.pixels.p99 = p99;
-            let method = "auto".to_owned();
+            let method = Method::Auto;
             MethodResult { method, setting: 1.0, metrics, operations, milliseconds: 0.0 }
         };
         let (cheap, dear, worse) = (result(1.0, 0.5), result(9.0, 0.1), result(9.0, 0.2));

@@ -10,9 +10,8 @@ use std::sync::mpsc::Sender;
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Instant;
 
-use sdfc::Error;
+use sdfc::{Error, Method};
 use sdfc_codegen::render_module_with_camera;
-use sdfc_march::{METHODS, MethodDefinition};
 use sdfc_measure::{Comparison, operations};
 use sdfc_render::{
     Frame, Gpu, Pipeline, Progress, RenderError, RenderOptions, View, milliseconds_since,
@@ -195,10 +194,10 @@ impl ComparisonRunner {
             Engine::Cpu(scene) => {
                 let options = RenderOptions::default();
                 let mut progress = |progress| self.update(progress);
-                scene.render(&view, &job.frame, &model.method, &options, &mut progress)?
+                scene.render(&view, &job.frame, model.method.name(), &options, &mut progress)?
             }
         };
-        let setting = (model.method.as_str(), job.tolerance);
+        let setting = (model.method, job.tolerance);
         let shown = method_result(job, comparison, setting, &drawn);
         if job.all_methods {
             self.compare_all_methods(current, shown)
@@ -232,14 +231,14 @@ impl ComparisonRunner {
         self.report_result(current, shown.clone(), false);
         self.begin_step("drawing with all methods");
         let gpu = self.gpu()?;
-        for (done, method) in METHODS.iter().enumerate() {
+        for (done, method) in Method::all().enumerate() {
             if let Err(error) = self.compare_method(&gpu, method, current) {
                 if matches!(error, Error::Render(RenderError::Cancelled)) {
                     return Err(error);
                 }
-                current.refused.push(format!("{}: {error}", method.name));
+                current.refused.push(format!("{method}: {error}"));
             }
-            let progress = Progress { done: done as u64 + 1, total: METHODS.len() as u64 };
+            let progress = Progress { done: done as u64 + 1, total: Method::all().len() as u64 };
             let finished = progress.done == progress.total;
             self.report_result(current, shown.clone(), finished);
             if !finished && self.update(progress).is_break() {
@@ -252,21 +251,22 @@ impl ComparisonRunner {
     fn compare_method(
         &self,
         gpu: &Gpu,
-        method: &'static MethodDefinition,
+        method: Method,
         current: &mut CachedComparison,
     ) -> Result<(), Error> {
         let CachedComparison { job, comparison, all, .. } = current;
         let scene = &job.model.scene;
         // A result of `auto` has that name even if `auto` chose another method.
-        let marched = scene.marched(method.name);
+        let marched = scene.marched(method);
         let shader =
-            render_module_with_camera(&marched.program, &marched.method, job.pose.parallel)?;
+            render_module_with_camera(&marched.program, marched.method.name(), job.pose.parallel)?;
         let pipeline = Pipeline::new(gpu, shader, marched.program.uniforms.len())?;
         let uniforms = uniform_values(&marched.program, &job.frame);
-        for setting in method.chart_factors {
-            let view = comparison.view().with_scaled_parameter(method.parameter, *setting);
+        for setting in method.definition().chart_factors {
+            let view =
+                comparison.view().with_scaled_parameter(method.definition().parameter, *setting);
             let drawn = self.draw(&pipeline, &view, &uniforms)?;
-            all.push(method_result(job, comparison, (method.name, *setting), &drawn));
+            all.push(method_result(job, comparison, (method, *setting), &drawn));
         }
         Ok(())
     }
@@ -312,14 +312,14 @@ impl ComparisonRunner {
 fn method_result(
     job: &ComparisonJob,
     comparison: &Comparison,
-    (method, setting): (&str, f64),
+    (method, setting): (Method, f64),
     drawn: &Frame,
 ) -> MethodResult {
     let scene = &job.model.scene;
     let metrics = comparison.metrics(&drawn.image);
     let operations = operations(scene, &scene.marched(method), metrics.evaluations.mean);
     let milliseconds = drawn.milliseconds;
-    MethodResult { method: method.to_owned(), setting, metrics, operations, milliseconds }
+    MethodResult { method, setting, metrics, operations, milliseconds }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! The chart of all ray methods: cost to the right, error upwards.
 
 use eframe::egui::{self, Color32, Pos2, Rect, Response, Sense, Stroke, Ui, pos2, vec2};
-use sdfc_march::method;
 
 use super::theme;
 use crate::accuracy::comparison::{ComparisonResult, MethodResult};
@@ -164,8 +163,8 @@ fn mark(
     at: Pos2,
 ) {
     let palette = theme::of(ui);
-    let chosen = session.build().method.as_deref();
-    let own = session.model.as_ref().map_or("", |model| model.scene.method());
+    let chosen = session.build().method;
+    let own = session.model.as_ref().map_or(sdfc::Method::Auto, |model| model.scene.method());
     let is_chosen = result.method == chosen.unwrap_or(own) && result.setting == session.tolerance;
     let color = match result.failed() {
         0 => palette.text,
@@ -180,7 +179,7 @@ fn mark(
 
 fn description(result: &MethodResult, comparison: &ComparisonResult) -> String {
     let MethodResult { method: name, setting, metrics, operations, milliseconds } = result;
-    let parameter = method(name).and_then(|method| method.parameter);
+    let parameter = name.definition().parameter;
     let setting =
         parameter.map_or(String::new(), |parameter| format!(", {} ×{setting}", parameter.name()));
     let [width, height] = comparison.size;

@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
     }
     ui.add_space(4.0);
     if let Some(chosen) = accuracy_chart::show(ui, session, &comparison) {
-        session.update_build(|build| build.method = Some(chosen.method.clone()));
+        session.update_build(|build| build.method = Some(chosen.method));
         session.tolerance = chosen.setting;
     }
     for refused in &comparison.refused {

@@ -260,7 +260,7 @@ impl ExportDialog {
                 let (scene, source) =
                     (self.scene.clone(), session.param_values.source_with_values(model));
                 let (target, emit, stage) = (self.target, self.emit, self.stage);
-                let method = session.build().method.clone();
+                let method = session.build().method;
                 let options =
                     ShaderOptions::new().target(target).emit(emit).stage(stage).method(method);
                 return session.exports().send(ExportJob::Shader { scene, source, path, options });
@@ -272,7 +272,7 @@ impl ExportDialog {
         };
         let options = PictureOptions::new()
             .size(self.size)
-            .method(session.build().method.clone())
+            .method(session.build().method)
             .backend(if session.build().on_cpu { Backend::Cpu } else { Backend::Auto })
             .pose(session.manual_pose())
             .tolerance(session.tolerance)

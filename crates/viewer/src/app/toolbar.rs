@@ -96,10 +96,10 @@ fn views(ui: &mut Ui, session: &mut Session, wide: bool) {
 }
 
 fn methods(ui: &mut Ui, session: &mut Session, wide: bool) {
-    let chosen = session.build().method.clone();
-    let own = session.model.as_ref().map_or("auto", |model| model.scene.method()).to_owned();
-    let shown = chosen.clone().unwrap_or_else(|| own.clone());
-    let text = named("Ray method", &shown, wide);
+    let chosen = session.build().method;
+    let own = session.model.as_ref().map_or(Method::Auto, |model| model.scene.method());
+    let shown = chosen.unwrap_or(own);
+    let text = named("Ray method", shown.name(), wide);
     let combo = egui::ComboBox::from_id_salt("method").selected_text(text);
     let combo = combo.height(400.0).show_ui(ui, |ui| {
         let text = format!("the scene's ({own})");
@@ -111,10 +111,9 @@ fn methods(ui: &mut Ui, session: &mut Session, wide: bool) {
             session.update_build(|build| build.method = None);
         }
         for method in Method::for_users() {
-            let (name, summary) = (method.name(), method.summary());
-            let is_chosen = chosen.as_deref() == Some(name);
-            if ui.selectable_label(is_chosen, name).on_hover_text(summary).clicked() {
-                session.update_build(|build| build.method = Some(name.to_owned()));
+            let label = ui.selectable_label(chosen == Some(method), method.name());
+            if label.on_hover_text(method.summary()).clicked() {
+                session.update_build(|build| build.method = Some(method));
             }
         }
     });

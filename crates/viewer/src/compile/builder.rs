@@ -320,7 +320,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         scene: &Scene,
         build_times: &mut BuildTimes,
     ) -> Result<Option<PreparedEngine>, Error> {
-        let method = request.method.as_deref().unwrap_or(scene.method());
+        let method = request.method.unwrap_or(scene.method());
         if request.on_cpu {
             return on_cpu(scene, method, None).map(Some);
         }

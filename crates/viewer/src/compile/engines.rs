@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::{Error, Marched, Scene};
+use sdfc::{Error, Marched, Method, Scene};
 use sdfc_codegen::{Shader, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_render::{CpuScene, Gpu, Pipeline, RenderError, milliseconds_since};
@@ -20,7 +20,7 @@ pub struct PreparedEngine {
     /// The pipeline or the CPU renderer.
     pub engine: Engine,
     /// The ray method that is used.
-    pub method: String,
+    pub method: Method,
     /// The program with the method's additions; `None` if the method adds nothing.
     pub method_program: Option<Program>,
     /// A note for the user if the request could not be followed, with the reason.
@@ -95,14 +95,14 @@ impl Engines {
     pub fn on_gpu(
         &mut self,
         scene: &Scene,
-        method: &str,
+        method: Method,
         parallel: bool,
         build_times: &mut BuildTimes,
         proceed: impl FnOnce() -> bool,
     ) -> Result<Option<PreparedEngine>, Error> {
         let start = Instant::now();
         let marched = scene.marched(method);
-        let shader = render_module_with_camera(&marched.program, &marched.method, parallel);
+        let shader = render_module_with_camera(&marched.program, marched.method.name(), parallel);
         let shader = shader.map_err(Error::Codegen)?;
         let (sources, lists) = (ShaderSources::new(&shader)?, ShaderLists::new(&shader));
         build_times.lower = milliseconds_since(start);
@@ -162,7 +162,7 @@ impl Engines {
 /// # Errors
 ///
 /// The CPU renderer cannot draw the scene.
-pub fn on_cpu(scene: &Scene, method: &str, why: Option<String>) -> Result<PreparedEngine, Error> {
+pub fn on_cpu(scene: &Scene, method: Method, why: Option<String>) -> Result<PreparedEngine, Error> {
     let marched = scene.marched_on_cpu(method);
     let engine = Engine::Cpu(Arc::new(CpuScene::new(&marched.program)?));
     Ok(PreparedEngine::new(engine, marched, why))

@@ -13,7 +13,7 @@ pub struct BuildRequest {
     /// The scene's file.
     pub path: PathBuf,
     /// The ray method; `None` takes the scene's.
-    pub method: Option<String>,
+    pub method: Option<sdfc::Method>,
     /// True if the scene's numbers become live literals, which change without a recompile.
     pub live_literals: bool,
     /// True for an orthographic camera; `None` takes that of the scene's camera.

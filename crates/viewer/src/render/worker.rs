@@ -217,7 +217,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
                 pipeline.render(view, &uniforms, &options, &mut progress)
             }
             Engine::Cpu(scene) => {
-                scene.render(view, values, &model.method, &options, &mut progress)
+                scene.render(view, values, model.method.name(), &options, &mut progress)
             }
         };
         result.map_err(|error| {

@@ -4,10 +4,10 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
-use sdfc::{FrameValues, Scene};
+use sdfc::{FrameValues, Method, Scene};
 use sdfc_graph::{FrameInput, Node, Param, Program, reachable};
 use sdfc_lang::live_literals::LiveLiteral;
-use sdfc_march::{MethodParameter, method};
+use sdfc_march::MethodParameter;
 use sdfc_render::{CpuScene, Pipeline};
 
 use crate::scene::field_probe::FieldProbe;
@@ -45,7 +45,7 @@ pub struct Model {
     /// The pipeline or CPU renderer that draws it.
     pub engine: Engine,
     /// The ray method that is used.
-    pub method: String,
+    pub method: Method,
     /// True for an orthographic camera.
     pub parallel: bool,
     /// The program with the method's additions; `None` if the method adds nothing.
@@ -104,7 +104,7 @@ impl Model {
 
     /// The parameter of the ray method that makes it finer or coarser.
     pub fn method_parameter(&self) -> Option<MethodParameter> {
-        method(&self.method).and_then(|method| method.parameter)
+        self.method.definition().parameter
     }
 
     /// The frame values with every param at its default.
