@@ -95,13 +95,13 @@ fn while_measuring() -> Result<(), Failed> {
     if names != ["a.sdf"] { Err(format!("left {names:?}").into()) } else { Ok(()) }
 }
 
-/// Where no method keeps the error the figures are written all the same.
+/// Where no method reaches the error the figures are written all the same.
 fn figures_of_what_cannot_be_tuned() -> Result<(), Failed> {
     let folder = folder(&[("a.sdf", "sphere(0.8).twist(90deg)\n")]);
     let args = "tune a.sdf --size 24x16 --max-error 1e-30 --json t.json --no-cache --march sphere";
     let output = run_in(folder.path(), args, b"", &[]);
     let said = said(&output);
-    if output.status.code() != Some(2) || !said.contains("no method keeps") {
+    if output.status.code() != Some(2) || !said.contains("no method reaches") {
         return Err(format!("{:?}, {said}", output.status).into());
     }
     let figures: serde_json::Value =

@@ -59,7 +59,7 @@ fn a_topic_is_listed() {
 fn a_misspelt_name_is_told_with_a_near_one() {
     let output = run(&folder(&[]), "doc spere");
     assert_eq!(output.status.code(), Some(2));
-    assert!(said(&output).contains("nothing is called `spere`; did you mean `sphere`?"));
+    assert!(said(&output).contains("there is no entry `spere`; did you mean `sphere`?"));
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_word_that_is_no_name_is_searched_for() {
     assert_eq!(output.status.code(), Some(0));
     assert!(
         said(&output)
-            .contains("nothing is called `hollow`; that is `shell` here; these mention it:")
+            .contains("there is no entry `hollow`; that is `shell` here; these mention it:")
     );
     assert!(String::from_utf8(output.stdout).unwrap().contains("  shell "));
 }

@@ -54,10 +54,10 @@ fn wrong_values_are_refused_by_name() {
     refused(&folder, "--set r", "NAME=VALUE");
     refused(&folder, "--time inf", "a number of seconds");
     refused(&folder, "--time 1 --frames 0..2", "cannot be used with");
-    refused(&folder, "--frames 2..2", "has no frame");
-    refused(&folder, "--frames 0..2 -o -", "one picture");
+    refused(&folder, "--frames 2..2", "contains no frame");
+    refused(&folder, "--frames 0..2 -o -", "cannot be written to stdout");
     refused(&folder, "--frames 0..2 --stats a.json", "cannot be used with");
-    refused(&folder, "--frames 0..2 --fps 100 -o a.gif", "50 frames a second");
+    refused(&folder, "--frames 0..2 --fps 100 -o a.gif", "50 frames per second");
     refused(&folder, "--samples 0", "--samples");
     refused(&folder, "-o out.jpg", ".png");
     assert_eq!(names(folder.path()), ["knobs.sdf"]);
@@ -158,7 +158,7 @@ fn depths_of_a_sequence_are_numbered() {
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     assert_eq!(names(folder.path()), ["f.gif", "knobs.sdf", "z.0001.exr", "z.0002.exr"]);
     assert!(channel(&folder, "z.0001.exr").1.contains(&f32::INFINITY));
-    refused(&folder, "--depth z.png", "depths are written as .exr");
+    refused(&folder, "--depth z.png", "depths are written as EXR");
     refused(&folder, "-o z.exr --depth z.exr", "two outputs");
 }
 

@@ -110,5 +110,9 @@ impl Scene {
 pub(crate) fn with_segment_bounds(program: &Program, method: Method) -> Cow<'_, Program> {
     let definition = method.definition();
     let (range, slope) = (definition.calls(stubs::RANGE), definition.calls(stubs::SLOPE_RANGE));
-    if range || slope { Cow::Owned(program.enclosed(range, slope)) } else { Cow::Borrowed(program) }
+    if range || slope {
+        Cow::Owned(program.with_segment_bounds(range, slope))
+    } else {
+        Cow::Borrowed(program)
+    }
 }

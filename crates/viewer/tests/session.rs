@@ -237,7 +237,7 @@ fn methods() -> Result<(), Failed> {
             expect(shown.hit.abs_diff(meant.hit) <= 2, &what)?;
             expect(shown.capped.abs_diff(meant.capped) <= 2, &what)?;
             // The other methods step over an uncertified field.
-            expect(!["auto", "interval"].contains(&method.name) || shown.hit > 100, &what)?;
+            expect(!["auto", "interval"].contains(&method.name()) || shown.hit > 100, &what)?;
         }
     }
     Ok(())
@@ -302,14 +302,14 @@ fn compared() -> Result<(), Failed> {
     fixture.session.poll();
     let result = fixture.session.accuracy.result.as_ref().ok_or("there is no result")?;
     expect(result.finished && result.refused.is_empty(), &format!("{result:?}"))?;
-    let settings: usize = METHODS.iter().map(|method| method.chart_factors.len()).sum();
+    let settings: usize = Method::all().map(|method| method.definition().chart_factors.len()).sum();
     expect(result.all.len() == settings, &format!("{} results", result.all.len()))?;
-    let auto = result.all.iter().find(|it| (it.method.as_str(), it.setting) == ("auto", 1.0));
+    let auto = result.all.iter().find(|it| (it.method.name(), it.setting) == ("auto", 1.0));
     let auto = auto.ok_or("auto is missing")?;
     expect(auto.failed() == 0 && auto.metrics.depth.pixels.p99 < 0.25, &format!("{auto:?}"))?;
     expect(auto.metrics == result.shown.metrics, "auto draws another picture than the shown one")?;
     // With a quarter of the steps that it needs, rays run out of steps or step over the surface.
-    let fixed = result.all.iter().find(|it| (it.method.as_str(), it.setting) == ("fixed", 0.25));
+    let fixed = result.all.iter().find(|it| (it.method.name(), it.setting) == ("fixed", 0.25));
     let fixed = fixed.ok_or("fixed is missing")?;
     expect(fixed.failed() > 100, &format!("{fixed:?}"))
 }

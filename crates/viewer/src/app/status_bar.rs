@@ -47,7 +47,7 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
     let color = theme::of(ui).weak;
     let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
-    ui.label(weak(model.method.name())).on_hover_text("The ray method.");
+    ui.label(weak(model.method.to_string())).on_hover_text("The ray method.");
     let [width, height] = picture.request.size;
     ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
     let clock = match picture.clock {

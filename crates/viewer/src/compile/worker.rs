@@ -170,7 +170,7 @@ mod tests {
         std::fs::write(&path, "sphere(1)\n").unwrap();
         let (worker, events) = start_worker();
         let mut models = Vec::new();
-        for method in [None, Some(Method::Interval), Some(Method::Sphere)] {
+        for method in [None, Some(sdfc::Method::Interval), Some(sdfc::Method::Sphere)] {
             worker.send(BuildRequest { method, ..on_cpu(&path) });
             models.push(ready_model(&events));
         }
