@@ -171,8 +171,6 @@ fn timed(
 mod tests {
     use sdfc_lang::settings::RAY_METHODS;
 
-    use super::*;
-
     /// The language cannot ask the crate that has the methods.
     #[test]
     fn a_scene_may_name_the_methods_that_are_for_users() {
