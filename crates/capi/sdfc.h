@@ -1,4 +1,5 @@
-/* The sdfc compiler and the fields of its scenes. Made from crates/capi/src/lib.rs by HEADER_UPDATE=1 cargo test -p sdfc-capi. */
+/* The C interface of the sdfc compiler and of the fields of its scenes.
+   Generated from crates/capi/src by HEADER_UPDATE=1 cargo test -p sdfc-capi --test header. */
 
 #ifndef SDFC_H
 #define SDFC_H
@@ -7,31 +8,31 @@
 #include <stdint.h>
 
 /*
- How a call ended.
+ The result of a call.
  */
 typedef enum {
   /*
-   As asked.
+   The call succeeded.
    */
   SDFC_STATUS_OK = 0,
   /*
-   A pointer is null that may not be.
+   A required pointer is null.
    */
   SDFC_STATUS_NULL = 1,
   /*
-   A text is not UTF-8.
+   A string is not UTF-8.
    */
   SDFC_STATUS_NOT_UTF8 = 2,
   /*
-   There is no such target, part, param or value, or no room.
+   Unknown target, part, param or value, or a buffer that is too small.
    */
   SDFC_STATUS_ARGUMENT = 3,
   /*
-   The scene has errors, draws nothing, or cannot be written so.
+   The scene has errors, draws nothing, or cannot be written with these options.
    */
   SDFC_STATUS_SCENE = 4,
   /*
-   A fault of sdfc.
+   A bug in sdfc.
    */
   SDFC_STATUS_INTERNAL = 5,
 } sdfc_status;
@@ -44,7 +45,8 @@ typedef struct sdfc_file sdfc_file;
 /*
  A compiled scene, and values of its params.
 
- Any number of threads may call functions that take it as `const`, while none calls another.
+ Functions that take the scene as `const` may run in any number of threads at once, but not while
+ another function changes the scene.
  */
 typedef struct sdfc_scene sdfc_scene;
 
@@ -54,9 +56,12 @@ typedef struct sdfc_scene sdfc_scene;
 typedef struct sdfc_shader sdfc_shader;
 
 /*
- Gives a file that a scene imports to `file`, and returns 0; anything else where there is none or the scene may not have it,
- which is then an error at its `import`. `path` is below the scene's folder, with `/` between its parts and neither `.` nor `..`
- among them: `parts/gear.sdf`. `context` is what `sdfc_compile_with_files` was given.
+ Callback that reads a file that a scene imports. It passes the contents to `sdfc_file_give` and
+ returns 0. Any other value means that there is no such file or that the scene may not read it;
+ that is an error at its `import`.
+
+ `path` is relative to the scene's folder, uses `/`, and has no parts `.` or `..`:
+ `parts/gear.sdf`. `context` is the pointer that was passed to `sdfc_compile_with_files`.
  */
 typedef int (*sdfc_read)(void *context, const char *path, sdfc_file *file);
 
@@ -65,24 +70,28 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- The version of sdfc, such as `0.1.0`. Not to be freed.
+ Returns the version of sdfc, such as `0.1.0`. Do not free it.
  */
 const char *sdfc_version(void);
 
 /*
- Why the last call of this thread failed, as text for people; empty if it did not. Valid until the thread's next call.
+ Returns the message of the last error of this thread, or an empty string if the last call
+ succeeded. It is valid until the thread's next call.
  */
 const char *sdfc_error(void);
 
 /*
- Compiles a scene: `length` bytes of source, UTF-8; `name` is what messages call it. Where `diagnostics` is not null, a
- JSON array of all findings is stored there, as `sdfc check --json` writes it, to be freed with `sdfc_string_free`.
+ Compiles a scene from `length` bytes of UTF-8 source. Messages use `name` as its file name.
 
- Null where the source has errors, or imports a file; else to be freed with `sdfc_scene_free`.
+ If `diagnostics` is not null, a JSON array of all diagnostics is stored there, as `sdfc check
+ --json` writes it. Free it with `sdfc_string_free`.
+
+ Returns null if the source has errors or imports a file. Free the scene with `sdfc_scene_free`.
 
  # Safety
 
- `name` ends in a null byte; `source` has that many bytes; `diagnostics` may be written.
+ `name` ends in a null byte. `source` is valid for `length` bytes. `diagnostics` is null or valid
+ for a write.
  */
 sdfc_scene *sdfc_compile(const char *name,
                          const char *source,
@@ -90,12 +99,14 @@ sdfc_scene *sdfc_compile(const char *name,
                          char **diagnostics);
 
 /*
- As `sdfc_compile`, for a scene that imports files: `read` gives them. It is called while this runs, by this thread, with
- `context`. Null for it is none.
+ Compiles a scene like `sdfc_compile`, but `read` provides the files that it imports. `read` is
+ called with `context`, in this thread, before this function returns. If `read` is null, imports
+ are errors.
 
  # Safety
 
- As `sdfc_compile`; `read` may be called with `context`, and neither throws nor jumps out of it.
+ The conditions of `sdfc_compile` hold. `read` may be called with `context`, and returns
+ normally: no exceptions and no jumps out of it.
  */
 sdfc_scene *sdfc_compile_with_files(const char *name,
                                     const char *source,
@@ -105,59 +116,61 @@ sdfc_scene *sdfc_compile_with_files(const char *name,
                                     char **diagnostics);
 
 /*
- Frees what `sdfc_compile` gave; null is nothing.
+ Frees a scene. Does nothing for null.
 
  # Safety
 
- It came from there and is not used again.
+ The scene was returned by `sdfc_compile` or `sdfc_compile_with_files` and is not used again.
  */
 void sdfc_scene_free(sdfc_scene *scene);
 
 /*
- Frees a text that was given to be freed; null is nothing.
+ Frees a string that the caller must free. Does nothing for null.
 
  # Safety
 
- It came from a function that says so and is not used again.
+ The string came from a function whose documentation says so, and is not used again.
  */
 void sdfc_string_free(char *string);
 
 /*
- Sets a param by its name. The value is written as in a scene: `0.5`, `90deg`, `true`, `#d94f30`; a choice by its name.
+ Sets the param with a name. The value is written as in a scene: `0.5`, `90deg`, `true`,
+ `#d94f30`; a choice by its name.
 
  # Safety
 
- The scene is one of `sdfc_compile`; both texts end in a null byte.
+ `scene` is null or a valid scene. Both strings end in a null byte.
  */
 sdfc_status sdfc_set(sdfc_scene *scene,
                      const char *param,
                      const char *value);
 
 /*
- Sets a param that is a number, a whole number or an angle in radians.
+ Sets a param that is a number, an integer or an angle in radians.
 
  # Safety
 
- The scene is one of `sdfc_compile`; the name ends in a null byte.
+ `scene` is null or a valid scene. The name ends in a null byte.
  */
 sdfc_status sdfc_set_number(sdfc_scene *scene, const char *param, double value);
 
 /*
- Sets what `time`, in seconds, and `frame`, a whole number, are in the scene.
+ Sets the values of `time`, in seconds, and `frame`, an integer, in the scene.
 
  # Safety
 
- The scene is one of `sdfc_compile`.
+ `scene` is null or a valid scene.
  */
 sdfc_status sdfc_set_time(sdfc_scene *scene, double time, double frame);
 
 /*
- Signed distances at `count` points, each x, y, z one after the other. Never more than the true distance where the
- scene is certified.
+ Computes the signed distances at `count` points, each given as x, y, z. If the scene is
+ certified, they never exceed the true distances.
 
  # Safety
 
- The scene is one of `sdfc_compile`; `points` has 3 numbers for each point, `distances` room for one.
+ `scene` is null or a valid scene. `points` has 3 numbers for each point, `distances` has room
+ for 1.
  */
 sdfc_status sdfc_distance(const sdfc_scene *scene,
                           const double *points,
@@ -165,11 +178,13 @@ sdfc_status sdfc_distance(const sdfc_scene *scene,
                           double *distances);
 
 /*
- The derivative of the distance at `count` points, and the distance: x, y, z, distance for each.
+ Computes the gradient of the distance and the distance at `count` points: x, y, z, distance for
+ each.
 
  # Safety
 
- The scene is one of `sdfc_compile`; `points` has 3 numbers for each point, `gradients` room for 4.
+ `scene` is null or a valid scene. `points` has 3 numbers for each point, `gradients` has room
+ for 4.
  */
 sdfc_status sdfc_gradient(const sdfc_scene *scene,
                           const double *points,
@@ -177,26 +192,29 @@ sdfc_status sdfc_gradient(const sdfc_scene *scene,
                           double *gradients);
 
 /*
- Lowest and highest corner of a box that holds the surface, three numbers each; infinite where there is no end.
+ Computes the lowest and the highest corner of a box that contains the surface, three numbers
+ each. A number is infinite if the surface has no bound on that side.
 
  # Safety
 
- The scene is one of `sdfc_compile`; both have room for 3 numbers.
+ `scene` is null or a valid scene. `lowest` and `highest` have room for 3 numbers each.
  */
 sdfc_status sdfc_bounds(const sdfc_scene *scene,
                         double *lowest,
                         double *highest);
 
 /*
- Writes the scene as a shader. `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`; `part` one of
- `field`, `march`, `render`; names begin with `prefix`, and the first buffer is at `group` and `binding`. Null for a text
- is `wgsl`, `field` and `sdf_`.
+ Writes the scene as a shader.
 
- Null where that cannot be; else to be freed with `sdfc_shader_free`.
+ `target` is one of `wgsl`, `glsl`, `glsl-es`, `hlsl`, `msl`, `spirv`, `shadertoy`. `part` is one
+ of `field`, `march`, `render`. Names in the shader begin with `prefix`, and the first buffer has
+ the index `binding` in `group`. The defaults for null are `wgsl`, `field` and `sdf_`.
+
+ Returns null if the shader cannot be written. Free the shader with `sdfc_shader_free`.
 
  # Safety
 
- The scene is one of `sdfc_compile`; texts end in a null byte.
+ `scene` is null or a valid scene. The strings are null or end in a null byte.
  */
 sdfc_shader *sdfc_shader_write(const sdfc_scene *scene,
                                const char *target,
@@ -206,32 +224,37 @@ sdfc_shader *sdfc_shader_write(const sdfc_scene *scene,
                                uint32_t binding);
 
 /*
- The shader's text or words, `length` bytes if that is not null; behind them there is a null byte. Null for null.
+ Returns the source of the shader, or its words in SPIR-V, with a null byte behind. If `length`
+ is not null, the number of bytes without that null byte is stored there. Returns null for null.
 
  # Safety
 
- The shader is one of `sdfc_shader_write`, and is not freed while the code is used; `length` may be written.
+ `shader` is null or a valid shader, and is not freed while the code is used. `length` is null or
+ valid for a write.
  */
 const char *sdfc_shader_code(const sdfc_shader *shader,
                              size_t *length);
 
 /*
- What the shader offers and reads, and what is certified of its field, as JSON: that of `sdfc compile --reflect`. Null
- for null.
+ Returns the reflection of the shader as JSON, as `sdfc compile --reflect` writes it: its
+ functions, its inputs, and the certificate of its field. Returns null for null.
 
  # Safety
 
- The shader is one of `sdfc_shader_write`, and is not freed while the text is used.
+ `shader` is null or a valid shader, and is not freed while the string is used.
  */
 const char *sdfc_shader_reflection(const sdfc_shader *shader);
 
 /*
- The bytes of the shader's uniform buffer for the values that the scene has. Stores how many they are, 0 where the shader has
- no such buffer, in `length`, and the bytes themselves where `bytes` is not null and `capacity` is as much.
+ Computes the bytes of the shader's uniform buffer for the current values of the scene's params.
+
+ Stores the number of bytes in `length`: 0 if the shader has no uniform buffer. If `bytes` is not
+ null, writes the bytes there; `capacity` must be large enough.
 
  # Safety
 
- The shader was written of this scene; `bytes` has room for `capacity`; `length` may be written.
+ `shader` was written from `scene`; both are null or valid. `bytes` is null or has room for
+ `capacity` bytes. `length` is null or valid for a write.
  */
 sdfc_status sdfc_shader_uniform(const sdfc_shader *shader,
                                 const sdfc_scene *scene,
@@ -240,20 +263,22 @@ sdfc_status sdfc_shader_uniform(const sdfc_shader *shader,
                                 size_t *length);
 
 /*
- Frees what `sdfc_shader_write` gave; null is nothing.
+ Frees a shader. Does nothing for null.
 
  # Safety
 
- It came from there and is not used again.
+ The shader was returned by `sdfc_shader_write` and is not used again.
  */
 void sdfc_shader_free(sdfc_shader *shader);
 
 /*
- Adds bytes to a file that a scene imports, which are copied. A scene's text is UTF-8.
+ Appends a copy of `length` bytes to a file that a scene imports. The text of a scene must be
+ UTF-8.
 
  # Safety
 
- The file is that of a call of `sdfc_read` that has not returned; there are that many bytes.
+ `file` is the pointer that a running call of `sdfc_read` received. `bytes` is valid for `length`
+ bytes.
  */
 sdfc_status sdfc_file_give(sdfc_file *file, const void *bytes, size_t length);
 
