@@ -54,11 +54,12 @@ fn comment(line: &str) -> Option<&str> {
     Some(behind.trim_start_matches(['/', '!']).trim_start())
 }
 
-/// Returns true if a line could be broken: it is no row of a table, no HTML tag, and has a space
-/// outside of links and code.
+/// Returns true if a line could be broken: it is no row of a table, no HTML tag, no heading, no
+/// code, and has a space outside of links and code.
 fn is_breakable(prose: &str) -> bool {
     let content = prose.strip_prefix("- ").unwrap_or(prose);
-    if content.starts_with('|') || content.starts_with('<') || content.starts_with('#') {
+    // The example in the doc comment of a library entry is code in one line.
+    if content.starts_with(['|', '<', '#']) || content.starts_with("example: ") {
         return false;
     }
     let (mut in_code, mut in_link) = (false, false);
