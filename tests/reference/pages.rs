@@ -54,7 +54,7 @@ fn index(pages: &[(&str, Vec<&Entry>)]) -> String {
             let _ = writeln!(text, "[`{}`]({page}.md#{anchor})", entry.name);
         }
     }
-    text
+    wrapped(&text)
 }
 
 fn page(name: &str, entries: &[&Entry]) -> String {
