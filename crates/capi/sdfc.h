@@ -93,10 +93,7 @@ const char *sdfc_error(void);
  `name` ends in a null byte. `source` is valid for `length` bytes. `diagnostics` is null or valid
  for a write.
  */
-sdfc_scene *sdfc_compile(const char *name,
-                         const char *source,
-                         size_t length,
-                         char **diagnostics);
+sdfc_scene *sdfc_compile(const char *name, const char *source, size_t length, char **diagnostics);
 
 /*
  Compiles a scene like `sdfc_compile`, but `read` provides the files that it imports. `read` is
@@ -141,9 +138,7 @@ void sdfc_string_free(char *string);
 
  `scene` is null or a valid scene. Both strings end in a null byte.
  */
-sdfc_status sdfc_set(sdfc_scene *scene,
-                     const char *param,
-                     const char *value);
+sdfc_status sdfc_set(sdfc_scene *scene, const char *param, const char *value);
 
 /*
  Sets a param that is a number, an integer or an angle in radians.
@@ -199,9 +194,7 @@ sdfc_status sdfc_gradient(const sdfc_scene *scene,
 
  `scene` is null or a valid scene. `lowest` and `highest` have room for 3 numbers each.
  */
-sdfc_status sdfc_bounds(const sdfc_scene *scene,
-                        double *lowest,
-                        double *highest);
+sdfc_status sdfc_bounds(const sdfc_scene *scene, double *lowest, double *highest);
 
 /*
  Writes the scene as a shader.
@@ -232,8 +225,7 @@ sdfc_shader *sdfc_shader_write(const sdfc_scene *scene,
  `shader` is null or a valid shader, and is not freed while the code is used. `length` is null or
  valid for a write.
  */
-const char *sdfc_shader_code(const sdfc_shader *shader,
-                             size_t *length);
+const char *sdfc_shader_code(const sdfc_shader *shader, size_t *length);
 
 /*
  Returns the reflection of the shader as JSON, as `sdfc compile --reflect` writes it: its
