@@ -1,7 +1,7 @@
 //! Converts quadratic curves to circular arcs.
 //!
-//! The nearest point of a parabola is the root of a cubic. That of an arc needs one square root, and
-//! its interval bounds over a box are narrow. A curve is replaced by biarcs: two arcs that meet
+//! The nearest point of a parabola is the root of a cubic. That of an arc needs one square root,
+//! and its interval bounds over a box are narrow. A curve is replaced by biarcs: two arcs that meet
 //! without a kink and match the curve's ends and directions (Bolton, "Biarc curves", 1975). Their
 //! error falls with the third power of the curve's length.
 
@@ -74,8 +74,8 @@ fn biarc(&[a, b, c]: &Curve) -> [Curve; 2] {
     };
     let (leaves, arrives, chord) = (unit(a, b), unit(b, c), sub(c, a));
     let (square, along) = (dot(chord, chord), dot(chord, leaves) + dot(chord, arrives));
-    // d is the root of 2 (1 - leaves . arrives) d² + 2 d along = chord²: then the tangents' ends are
-    // 2 d apart.
+    // d is the root of 2 (1 - leaves . arrives) d² + 2 d along = chord²: then the tangents' ends
+    // are 2 d apart.
     let turn = 2.0 * (1.0 - dot(leaves, arrives)) * square;
     let d = square / (along + (along * along + turn).sqrt()).max(f64::MIN_POSITIVE);
     let first = [0, 1].map(|axis| a[axis] + d * leaves[axis]);

@@ -69,7 +69,7 @@ struct Open {
 ///
 /// Returns the files with diagnostics about imports that cannot be loaded and about their syntax.
 /// In `sources` a file has the name of the scene with its last part replaced: beside
-/// `parts/lamp.sdf`, the import `bulb.sdf` is called `parts/bulb.sdf`.
+/// `parts/shelf.sdf`, the import `hook.sdf` is called `parts/hook.sdf`.
 pub fn load(
     sources: &mut Sources,
     (scene, tree): (FileId, &ast::File),

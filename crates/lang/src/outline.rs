@@ -59,8 +59,8 @@ fn doubled_area([a, b, c]: &Curve) -> f64 {
     cross(a, b) + cross(b, c)
 }
 
-/// The curve, reversed if needed, with the inside on its left. `None` if the inside is on both sides
-/// or on neither.
+/// The curve, reversed if needed, with the inside on its left. `None` if the inside is on both
+/// sides or on neither.
 fn side(outlines: &[Curve], [a, b, c]: Curve) -> Option<Curve> {
     let middle = at(&[a, b, c], 0.5);
     let [x, y] = sub(c, a);

@@ -23,25 +23,25 @@ fn color(text: &str, at: [f64; 3]) -> [f64; 3] {
     [r, g, b]
 }
 
-fn unpainted() -> [f64; 3] {
+fn default_color() -> [f64; 3] {
     let [r, g, b, _] = MaterialField::Color.default_value();
     [r, g, b]
 }
 
 #[test]
 fn an_empty_material_is_the_default_material() {
-    assert_eq!(color("sphere(1).paint(material())", [1.0, 0.0, 0.0]), unpainted());
+    assert_eq!(color("sphere(1).paint(material())", [1.0, 0.0, 0.0]), default_color());
 }
 
 #[test]
 fn material_rules_exist_only_if_a_shape_has_a_material() {
-    let is_told = |text: &str| {
+    let has_rule = |text: &str| {
         let scene = elaborated(text).scene;
         let root = scene.graph.shape(scene.root.expect("the scene draws something"));
         root.material != MaterialRule::Weighted(root.formula)
     };
-    assert!(is_told("intersection(box(1).color(#f00), sphere(0.6))"));
-    assert!(!is_told("intersection(box(1), sphere(0.6))"));
+    assert!(has_rule("intersection(box(1).color(#f00), sphere(0.6))"));
+    assert!(!has_rule("intersection(box(1), sphere(0.6))"));
 }
 
 #[test]
@@ -54,10 +54,18 @@ fn a_face_cut_by_a_shape_without_material_shows_the_body() {
         let (body, knife) = ("box(2)", "sphere(0.5)");
         let (red, blue) = (format!("{body}.color(#f00)"), format!("{knife}.color(#00f)"));
         assert_eq!(cut(&red, knife, 0.5), RED, "the cut face{blend}");
-        assert_eq!(cut(&red, &blue, 0.5), BLUE, "a painted knife{blend}");
-        assert_eq!(cut(body, &blue, 0.5), BLUE, "a painted knife and a bare body{blend}");
-        assert_eq!(cut(knife, &red, 0.5), unpainted(), "the first, bare{blend}");
-        assert_eq!(cut(knife, body, 0.5), unpainted(), "nothing painted{blend}");
+        assert_eq!(cut(&red, &blue, 0.5), BLUE, "a knife with a material{blend}");
+        assert_eq!(
+            cut(body, &blue, 0.5),
+            BLUE,
+            "a knife with a material and a body without{blend}"
+        );
+        assert_eq!(
+            cut(knife, &red, 0.5),
+            default_color(),
+            "the first shape, without a material{blend}"
+        );
+        assert_eq!(cut(knife, body, 0.5), default_color(), "no materials{blend}");
         let carved = format!("difference({red}, {knife}{blend})");
         assert_eq!(color(&carved, [0.5, 0.0, 0.0]), RED, "a hole{blend}");
         let lined = format!("difference({red}, {blue}{blend})");

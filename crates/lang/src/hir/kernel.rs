@@ -106,8 +106,8 @@ pub enum Kernel {
     Oklch,
     /// A shadow without penumbra.
     Hard,
-    /// Arguments: text, font, alignment, spacing, leading. Gives a list of arcs, each a list of four
-    /// vectors.
+    /// Arguments: text, font, alignment, spacing, leading. Gives a list of arcs, each a list of
+    /// four vectors.
     GlyphCurves,
     /// Argument: sharpness.
     Soft,
