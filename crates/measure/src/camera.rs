@@ -4,22 +4,22 @@ use sdfc_render::View;
 
 use crate::oracle::Ray;
 
-/// Where the rays of a picture start and lead: one through the centre of each pixel.
+/// The camera of a picture: one ray through the centre of each pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Whether rays are parallel.
+    /// True if rays are parallel.
     pub parallel: bool,
-    /// Where rays start, or the middle of where parallel ones do.
+    /// Origin of the rays, or the centre of the origins of parallel rays.
     pub eye: [f64; 3],
-    /// Through the middle of the picture, at distance 1 from the eye along the camera's axis.
+    /// Vector to the centre of the picture, at distance 1 from the eye along the camera's axis.
     pub forward: [f64; 3],
     /// Half the width of the picture, at distance 1 unless rays are parallel.
     pub right: [f64; 3],
     /// Half the height of the picture, at distance 1 unless rays are parallel.
     pub up: [f64; 3],
-    /// Rays end here.
+    /// Length of the rays.
     pub t_max: f64,
     /// Half the width of a pixel, at distance 1 unless rays are parallel.
     pub pixel_radius: f64,
@@ -40,7 +40,7 @@ impl Camera {
         }
     }
 
-    /// The ray of a pixel; pixels count row by row, downwards.
+    /// Returns the ray of a pixel. Pixels are numbered row by row from the top.
     pub fn ray(&self, pixel: usize) -> Ray {
         let [width, height] = self.size.map(|side| side.max(1) as usize);
         let place = |index: usize, side: usize| 2.0 * (index as f64 + 0.5) / side as f64 - 1.0;
@@ -57,12 +57,12 @@ impl Camera {
         Ray { origin, direction, t_max: self.t_max }
     }
 
-    /// Width of a pixel at a distance.
+    /// Returns the width of a pixel at a distance.
     pub fn pixel_width(&self, t: f64) -> f64 {
         2.0 * self.pixel_radius * if self.parallel { 1.0 } else { t }
     }
 
-    /// How many pixels.
+    /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }

@@ -1,4 +1,4 @@
-//! A view of a scene with the oracle's verdict on each of its pixels: what pictures of that view are compared with.
+//! Compares pictures of a view with the oracle's verdict on each pixel.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -59,13 +59,13 @@ impl Comparison {
         &self.frame
     }
 
-    /// What the oracle says, in numbers of pixels.
+    /// Numbers of pixels by the oracle's verdict.
     pub fn counts(&self) -> Counts {
         self.truth.counts()
     }
 
-    /// How far a picture of the view is from that, with one ray a pixel. A picture does not tell normals, so there are no
-    /// errors of them.
+    /// Compares a picture of the view, drawn with one ray per pixel. A picture stores no normals, so
+    /// the metrics have no errors of normals.
     pub fn metrics(&self, image: &Image) -> Metrics {
         let sample = |pixel: &sdfc_march::PixelBlock| PixelSample {
             status: status(pixel),
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarser_picture_is_farther_from_the_oracle() {
+    fn a_coarser_picture_has_greater_errors() {
         let scene = scene();
         let frame = FrameValues::defaults(scene.params());
         let view = scene.view(&frame, SIZE).expect("a view");
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cancelled_one_asks_no_further() {
+    fn a_cancelled_comparison_stops() {
         let scene = scene();
         let frame = FrameValues::defaults(scene.params());
         let view = scene.view(&frame, [640, 480]).expect("a view");

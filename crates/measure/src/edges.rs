@@ -1,24 +1,24 @@
-//! Which pixels lie at a silhouette.
+//! Finds the pixels at silhouettes.
 
 use crate::camera::Camera;
 use crate::oracle::Verdict;
 
-/// What a pixel is, apart from what it shows.
+/// The kind of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Its ray and those of all its neighbours meet one surface, or nothing.
+    /// Its ray and those of all its neighbours hit one surface, or nothing.
     Plain,
     /// Within a pixel of a silhouette.
     Edge,
-    /// The oracle does not know.
+    /// The oracle proved nothing.
     Undecided,
 }
 
-/// A step in depth is a silhouette if it is so many times what the slopes of both surfaces explain.
+/// A step in depth is a silhouette if it is this many times what the slopes of both surfaces explain.
 const UNEXPLAINED: f64 = 2.0;
 
-/// The kind of each pixel: an edge where one of its eight neighbours shows something else, or lies
-/// farther or nearer than the slopes of both surfaces explain.
+/// Returns the kind of each pixel. It is an edge if one of its eight neighbours shows something
+/// else, or its depth differs by more than the slopes of both surfaces explain.
 pub(crate) fn edges(camera: &Camera, verdicts: &[Verdict], gradients: &[[f64; 3]]) -> Vec<Kind> {
     let [width, height] = camera.size.map(|side| side as usize);
     let steepness: Vec<f64> =
@@ -26,7 +26,7 @@ pub(crate) fn edges(camera: &Camera, verdicts: &[Verdict], gradients: &[[f64; 3]
     let differs = |a: usize, b: usize| match (verdicts[a], verdicts[b]) {
         (Verdict::Hit(t), Verdict::Hit(u)) => {
             let explained = camera.pixel_width(t.min(u)) * (steepness[a] + steepness[b]);
-            // Without gradients nothing is explained, and nothing is called a step.
+            // Without gradients this is NaN, and no step counts.
             (t - u).abs() > UNEXPLAINED * explained
         }
         (Verdict::Miss, Verdict::Miss) => false,
@@ -50,8 +50,8 @@ pub(crate) fn edges(camera: &Camera, verdicts: &[Verdict], gradients: &[[f64; 3]
         .collect()
 }
 
-/// How far the depth of a surface changes from a pixel to a diagonal neighbour, in widths of a pixel:
-/// the tangent of the angle at which the ray meets it, and one more for its curvature.
+/// Returns how much the depth of a surface changes to a diagonal neighbour, in widths of a pixel:
+/// the tangent of the angle of incidence, plus one for curvature.
 fn steepness(camera: &Camera, pixel: usize, gradient: &[f64; 3]) -> f64 {
     let direction = camera.ray(pixel).direction;
     let dot: f64 = gradient.iter().zip(&direction).map(|(a, b)| a * b).sum();

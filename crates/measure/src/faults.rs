@@ -1,5 +1,5 @@
-//! The faults of a classroom practical, measured: scenes under `examples/faults` as its own interpreter and march
-//! draw them, and as they are drawn otherwise.
+//! Counts the wrong pixels of a naive ray marcher on the scenes of `examples/faults`, and those of
+//! sdfc.
 
 use sdfc::Scene;
 use sdfc_codegen::{FieldSource, benchmark_module};
@@ -14,17 +14,17 @@ use serde::Serialize;
 use crate::baseline::{self, Inexpressible};
 use crate::error::MeasureError;
 
-/// The reference ends a ray at this part of the scene's tolerance.
+/// Tolerance of the reference picture, as a fraction of the scene's.
 const REFERENCE_PART: f64 = 1e-5;
-/// The reference's rays need many steps where they graze a surface.
+/// Step limit of the reference picture. Rays that graze a surface need many steps.
 const REFERENCE_STEPS: u32 = 1_000_000;
-/// A colour that is off by more sRGB steps of 1/255 is another colour.
+/// A colour that differs by more sRGB steps of 1/255 counts as wrong.
 const COLOR_STEPS: u8 = 8;
 
 /// What `bench --faults --json` writes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultReport {
-    /// Name of the adapter.
+    /// Name of the GPU.
     pub adapter: String,
     /// Name and version of its driver.
     pub driver: String,
@@ -39,32 +39,32 @@ pub struct FaultRow {
     pub scene: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Pixels compared: all but those at the reference's edges.
+    /// Number of compared pixels: all except those at the reference's edges.
     pub compared: usize,
-    /// One for each way.
+    /// One for each combination of field and method.
     pub variants: Vec<FaultVariant>,
 }
 
-/// How far a picture is from the reference, in pixels of each kind.
+/// Numbers of wrong pixels of a picture, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct FaultVariant {
     /// Field and ray method.
     pub name: &'static str,
-    /// Surface where none was found.
+    /// Missed surface.
     pub missed: usize,
-    /// Found where there is none.
+    /// Hit where there is no surface.
     pub false_hits: usize,
-    /// Found off its place by more than the width of a pixel there.
+    /// Hit with an error in depth of more than the width of a pixel.
     pub misplaced: usize,
-    /// Found in its place with a colour off by more than 8 of 255 steps.
+    /// Hit at the right depth with a colour that differs by more than 8 of 255 steps.
     pub miscolored: usize,
-    /// Share of the compared pixels that are any of these.
+    /// Fraction of the compared pixels that are wrong.
     pub wrong: f64,
-    /// Mean evaluations of the field for each pixel of the picture.
+    /// Mean number of field evaluations per pixel.
     pub evals_per_pixel: f64,
 }
 
-/// Names and texts of the scenes.
+/// Returns names and sources of the scenes.
 pub fn fault_scenes() -> [(&'static str, &'static str); 4] {
     [
         ("overshoot", include_str!("../../../examples/faults/overshoot.sdf")),
@@ -74,20 +74,21 @@ pub fn fault_scenes() -> [(&'static str, &'static str); 4] {
     ]
 }
 
-/// What is drawn, by which field and which ray method.
+/// Name, field and ray method of the compared pictures.
 const VARIANTS: [(&str, FieldSource, &str); 3] = [
     ("units, practical", FieldSource::Units, "practical"),
     ("units, sphere", FieldSource::Units, "sphere"),
     ("scene, auto", FieldSource::Scene, "auto"),
 ];
 
-/// Draws the scene unpainted with the practical's interpreter and march, with the interpreter and a march of
-/// ours, and as sdfc draws it, and compares each with a picture of the CPU in f64.
+/// Draws the scene without materials in three ways, and compares each picture with one drawn in f64
+/// on the CPU: with a naive interpreter and marcher, with that interpreter and a ray method of sdfc,
+/// and with sdfc alone.
 ///
 /// # Errors
 ///
-/// [`MeasureError::Scene`] for a failure of the scene or the machine; [`MeasureError::Inexpressible`] where the interpreter cannot hold
-/// the scene.
+/// [`MeasureError::Scene`] for a failure of the scene or the machine;
+/// [`MeasureError::Inexpressible`] if the interpreter cannot hold the scene.
 pub fn count_faults(
     scene: &Scene,
     name: &str,
@@ -118,7 +119,8 @@ pub fn count_faults(
     Ok(FaultRow { scene: name.to_owned(), size, compared, variants })
 }
 
-/// The CPU's picture in f64, by small steps of plain sphere tracing: apart from the shader in all but the formula.
+/// Draws the reference on the CPU in f64, by sphere tracing with small steps. It shares only the
+/// formula with the shader.
 fn reference(program: &Program, frame: &FrameValues, view: &View) -> Result<Image, MeasureError> {
     let (epsilon, steps) = (view.epsilon * REFERENCE_PART, REFERENCE_STEPS);
     let view = View { epsilon, steps, ..view.clone() };
@@ -147,7 +149,7 @@ fn compared(name: &'static str, image: &Image, reference: &Image) -> FaultVarian
                     let [a, b] = [pixel, right].map(|pixel| linear_to_srgb8(pixel.color[channel]));
                     a.abs_diff(b) > COLOR_STEPS
                 };
-                // What is no number is not near.
+                // NaN is not near.
                 let near = (pixel.depth - right.depth).abs() <= width;
                 match (near, (0..3).any(off)) {
                     (false, _) => found.misplaced += 1,

@@ -4,16 +4,18 @@
 //!
 //! # What
 //!
-//! The [`Oracle`] finds the first point at which a ray meets the surface, in f64, without marching: it
-//! rejects stretches of the ray on which the field, evaluated over intervals, has no zero, and proves
-//! the root that is left. [`Truth`] is its verdict on every pixel of a picture; [`Metrics`] compares a
-//! picture with it.
+//! The [`Oracle`] finds the first point at which a ray hits the surface, in f64, without marching:
+//! it rejects ray segments on which the field, evaluated over intervals, has no zero, and proves
+//! the root that is left. [`Truth`] is its verdict on every pixel of a picture, and [`Metrics`]
+//! compare a picture with it. [`chart()`] does this for all ray methods, [`bench()`] compares the
+//! speed of the shader with [`baseline`]s, and [`count_faults`] with a naive ray marcher.
 //!
 //! # How
 //!
-//! It shares the scene's formula with the shader and nothing else: neither its steps nor its arithmetic.
-//! An interval holds the field's value at every point of a box, so a stretch whose interval lacks 0 is
-//! free; where the interval of the derivative lacks 0 too, different signs at the ends prove one root.
+//! The oracle shares only the scene's formula with the shader, neither its steps nor its arithmetic.
+//! An interval contains the field's value at every point of a box, so a segment whose interval does
+//! not contain 0 is free. If the interval of the derivative does not contain 0, different signs at
+//! the ends prove exactly one root.
 //!
 //! ```
 //! use sdfc_measure::{Oracle, Ray, Verdict};
@@ -31,16 +33,16 @@
 //! let oracle = Oracle::new(&program)?;
 //! let mut prober = oracle.prober(&FrameValues::default());
 //! let ray = Ray { origin: [0.0, 0.0, 3.0], direction: [0.0, 0.0, -1.0], t_max: 10.0 };
-//! let Verdict::Hit(t) = prober.first_hit(&ray).verdict else { panic!("it meets the ball") };
+//! let Verdict::Hit(t) = prober.first_hit(&ray).verdict else { panic!("it hits the ball") };
 //! assert!((t - 2.5).abs() < 1e-9);
 //! # Ok::<(), sdfc_measure::OracleError>(())
 //! ```
 //!
 //! # Limits
 //!
-//! A ray on which [`Prober::BUDGET`] evaluations prove nothing is [`Verdict::Undecided`], as is one that
-//! touches a surface without crossing it, to within 1e-9 of the distance. Both are counted and shown.
-//! Stretches with jumps are decided by rejection and signs alone, each way through the jumps apart
+//! A ray on which [`Prober::BUDGET`] evaluations prove nothing is [`Verdict::Undecided`], as is one
+//! that touches a surface without crossing it, to within 1e-9 of the distance. Both are counted.
+//! Segments with jumps are decided by rejection and signs alone, separately for each path
 //! ([`BranchPath`](sdfc_graph::eval::BranchPath)); a jump through zero counts as surface.
 
 pub mod baseline;

@@ -1,4 +1,4 @@
-//! How far a picture is from the truth.
+//! Metrics of a picture: how far it is from the oracle's verdict.
 
 use rayon::prelude::*;
 use sdfc_graph::eval::FrameValues;
@@ -8,10 +8,10 @@ use crate::normals::{Normal, normal_error};
 use crate::oracle::{Oracle, Prober, Verdict};
 use crate::truth::Truth;
 
-/// Part of a pixel by which a ray must lead past a surface, or into it, before a wrong verdict at an
-/// edge is the method's fault and not the pixel's.
+/// Fraction of a pixel's width by which a ray must pass or enter a surface before a wrong result at
+/// an edge counts as an error of the method.
 const CLEARANCE: f64 = 0.25;
-/// Samples along a ray by which the depth of what it crossed is judged.
+/// Number of samples along a ray that measure how deep a missed surface is.
 const CROSSING: u32 = 64;
 
 /// How a method's ray ended.
@@ -19,81 +19,84 @@ const CROSSING: u32 = 64;
 pub enum Status {
     /// At a surface.
     Hit,
-    /// At its end.
+    /// At its end, without a hit.
     Miss,
-    /// Out of steps.
+    /// Out of steps (capped).
     Capped,
 }
 
-/// What a method says of one pixel.
+/// The result of a ray method for one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelSample {
     /// How its ray ended.
     pub status: Status,
-    /// Where, in scene units along the ray.
+    /// Distance along the ray at which it ended, in scene units.
     pub t: f64,
-    /// Evaluations of the field for the ray from the eye.
+    /// Number of field evaluations for the primary ray.
     pub evaluations: u32,
-    /// Of what was hit; `None` where the picture does not tell.
+    /// Normal at the hit; `None` if the picture does not store normals.
     pub normal: Option<Normal>,
 }
 
-/// Of a sorted list: the middle, the 99th of 100, the last. Of an empty one they say nothing, and are 0.
+/// Quantiles of a list of errors; all 0 if the list is empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Quantiles {
-    /// How many there are.
+    /// Number of values.
     pub n: u64,
-    /// The middle.
+    /// Median.
     pub p50: f64,
-    /// 99 of 100 are at most this.
+    /// 99th percentile.
     pub p99: f64,
-    /// The greatest.
+    /// Maximum.
     pub max: f64,
 }
 
-/// Evaluations per pixel.
+/// Field evaluations per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Evaluations {
-    /// Of all pixels.
+    /// Mean over all pixels.
     pub mean: f64,
-    /// 99 of 100 pixels take at most so many.
+    /// 99th percentile.
     pub p99: u32,
-    /// The most that one took.
+    /// Maximum.
     pub max: u32,
 }
 
-/// Errors in depth, over plain pixels that both hit.
+/// Errors in depth, over plain pixels that are hit in the picture and by the oracle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Depth {
-    /// In widths of a pixel there.
+    /// In widths of a pixel at the hit.
     pub pixels: Quantiles,
-    /// In parts of the distance.
+    /// As a fraction of the distance.
     pub relative: Quantiles,
 }
 
-/// A picture against the truth.
+/// The errors and the cost of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Metrics {
-    /// Rays that led through a surface; at an edge only by more than a quarter of a pixel.
+    /// Rays that passed through a surface; at an edge only by more than a quarter of a pixel.
     pub missed: u64,
-    /// Rays that ended where no surface is; at an edge only farther than a quarter of a pixel from one.
+    /// Rays that ended where there is no surface; at an edge only if farther than a quarter of a
+    /// pixel from one.
     pub false_hits: u64,
     /// Errors in depth.
     pub depth: Depth,
-    /// Angle in degrees between the picture's normal and the field's gradient in f64 where the picture takes it, over plain
-    /// pixels where the surface is smooth.
+    /// Angle in degrees between the picture's normal and the field's gradient in f64 at the same
+    /// point, over plain pixels where the surface is smooth.
     pub normal: Quantiles,
-    /// What is hit in the picture or in truth but not in both, as a part of what is hit in either.
+    /// Pixels hit in the picture or by the oracle but not in both, as a fraction of those hit in
+    /// either.
     pub silhouette: f64,
     /// Rays out of steps.
     pub capped: u64,
-    /// Rays that ended nowhere.
+    /// Rays whose end is NaN.
     pub nan: u64,
-    /// Evaluations per pixel.
+    /// Field evaluations per pixel.
     pub evaluations: Evaluations,
 }
 
-/// Compares a picture, row by row, with the truth. Pixels beyond the shorter of both are ignored.
+/// Compares a picture, given row by row, with the oracle's verdict. If one is shorter, the rest of
+/// the other is ignored.
 pub fn compare(
     oracle: &Oracle,
     frame: &FrameValues,
@@ -140,10 +143,10 @@ pub fn compare(
     }
 }
 
-/// What becomes of a pixel.
+/// The comparison of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Judgement {
-    /// A hit where one is, off by so much.
+    /// A hit where there is one, with its errors in depth.
     Right {
         pixels: f64,
         relative: f64,
@@ -151,7 +154,7 @@ enum Judgement {
     Missed,
     False,
     Nan,
-    /// Rightly nothing, or at an edge, or not known.
+    /// A correct miss, an edge, or undecided.
     Apart,
 }
 
@@ -196,8 +199,8 @@ fn judge(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
     }
 }
 
-/// By how much the normal of a plain pixel's hit is off. A ray that starts inside is at its hit at once, and meets no
-/// surface.
+/// Returns the error of the normal at a plain pixel's hit. `None` for a ray that starts inside: it
+/// has no surface.
 fn angle(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample) -> Option<f64> {
     let is_plain = truth.kinds[pixel] == Kind::Plain && seen.status == Status::Hit && seen.t > 0.0;
     let is_hit = matches!(truth.verdicts[pixel], Verdict::Hit(_)) && is_plain;
@@ -205,7 +208,7 @@ fn angle(prober: &mut Prober<'_>, truth: &Truth, pixel: usize, seen: PixelSample
     normal_error(prober, truth.camera.pixel_width(seen.t), normal)
 }
 
-/// 1 - the intersection over the union of what is hit in truth and in the picture.
+/// Returns 1 - intersection over union of the pixels hit by the oracle and in the picture.
 fn silhouette(truth: &Truth, picture: &[PixelSample]) -> f64 {
     let known = truth.verdicts.iter().zip(picture);
     let hits = known.filter_map(|(verdict, seen)| match verdict {
@@ -221,7 +224,7 @@ fn silhouette(truth: &Truth, picture: &[PixelSample]) -> f64 {
     if either == 0 { 0.0 } else { (either - both) as f64 / either as f64 }
 }
 
-/// Of a ray that ended at a distance where the truth has no surface.
+/// Judges a ray that ended where the oracle found no surface.
 fn far_from_surface(
     prober: &mut Prober<'_>,
     truth: &Truth,
@@ -234,7 +237,7 @@ fn far_from_surface(
     if excused { Judgement::Apart } else { Judgement::False }
 }
 
-/// Of a ray that went on past a surface.
+/// Judges a ray that passed a surface.
 fn led_through(
     prober: &mut Prober<'_>,
     truth: &Truth,
@@ -244,8 +247,8 @@ fn led_through(
 ) -> Judgement {
     let ray = truth.camera.ray(pixel);
     let excused = CLEARANCE * truth.camera.pixel_width(from);
-    // Past a surface no deeper than that, the ray is out again within the reach of a pixel or, on a
-    // flank, of many: looked at in steps that grow.
+    // A ray that is no deeper than this inside leaves the surface again within one pixel or, on a
+    // grazed flank, within many. The samples are therefore spaced with growing steps.
     let depth = (0..CROSSING)
         .map(|step| from + excused * 1.25f64.powi(step as i32))
         .take_while(|t| *t < to)
@@ -260,7 +263,7 @@ fn quantiles(mut values: Vec<f64>) -> Quantiles {
     Quantiles { n: values.len() as u64, p50, p99, max }
 }
 
-/// The value that a part of a sorted list does not exceed (nearest rank); the default for an empty one.
+/// Returns a quantile of a sorted list by nearest rank; the default for an empty list.
 fn rank<T: Copy + Default>(values: &[T], part: f64) -> T {
     let index = (part * values.len() as f64).ceil() as usize;
     values.get(index.saturating_sub(1)).copied().unwrap_or_default()

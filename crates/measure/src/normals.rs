@@ -1,22 +1,23 @@
-//! How far a picture's normals are off, where the surface has one.
+//! Errors of a picture's normals on smooth surfaces.
 
 use crate::oracle::Prober;
 
-/// A surface whose normal turns by more within half a pixel has a crease there, or bends within the pixel: no
-/// picture of that size shows its normal.
+/// A surface whose normal turns by more than this within half a pixel has a crease or bends within
+/// the pixel; no picture of that size shows its normal.
 const SMOOTH_DEGREES: f64 = 5.0;
 
 /// A normal that a picture shades with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normal {
-    /// Where it was taken. That is the ray's hit as the method itself has it, which it gives away as a distance, rounded.
+    /// The point of the normal: the method's own hit, before its distance is rounded.
     pub place: [f64; 3],
-    /// Outward, of any length.
+    /// Outward direction, of any length.
     pub direction: [f64; 3],
 }
 
-/// Degrees between the normal that a picture shows and the field's gradient at just the place where it was taken, in f64;
-/// none where the surface is not smooth there, within half the width of a pixel. A normal that is no number is as wrong as can be.
+/// Returns the angle in degrees between a picture's normal and the field's gradient in f64 at the
+/// same point. `None` if the surface is not smooth within half the width of a pixel. A NaN normal
+/// counts as 180 degrees.
 pub(crate) fn normal_error(prober: &mut Prober<'_>, width: f64, normal: Normal) -> Option<f64> {
     let Normal { place, direction } = normal;
     let gradient = prober.gradient(place);
@@ -24,14 +25,15 @@ pub(crate) fn normal_error(prober: &mut Prober<'_>, width: f64, normal: Normal) 
     let is_smooth = (0..6).all(|side| {
         let mut beside = place;
         beside[side / 2] += if side % 2 == 0 { half } else { -half };
-        // What is no number is not smooth.
+        // NaN is not smooth.
         degrees(prober.gradient(beside), gradient) <= SMOOTH_DEGREES
     });
     let error = degrees(direction, gradient);
     is_smooth.then_some(if error.is_nan() { 180.0 } else { error })
 }
 
-/// The angle between two vectors, by a formula that is good for small angles too; NaN if one is 0.
+/// Returns the angle between two vectors in degrees, accurate for small angles too; NaN if one
+/// vector is 0.
 fn degrees(a: [f64; 3], b: [f64; 3]) -> f64 {
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let dot: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();

@@ -1,69 +1,71 @@
-//! The first root of the field along a ray, isolated by intervals.
+//! Finds the first root of the field along a ray by interval arithmetic.
 
 use sdfc_graph::Program;
 use sdfc_graph::eval::{BranchPath, Evaluator, FrameValues, Interval, Number, Tape, TapeError};
 
-/// A stretch this short, in parts of the distance, is not cut again.
+/// A segment this short, as a fraction of the distance, is not split again.
 const FINEST: f64 = 1e-9;
-/// A proven root is closed in to this width, in parts of the distance.
+/// A proven root is narrowed to this width, as a fraction of the distance.
 const CLOSE: f64 = 1e-13;
-/// Signs about an unproven stretch are looked for so many times its width away.
+/// Distances from an unproven segment, in its widths, at which signs are tested.
 const SEARCH: [f64; 4] = [0.0, 1.0, 4.0, 16.0];
-/// A root counts although something before it is not proven, if that is nearer to it than this part of
-/// the distance: a ten-thousandth of a pixel.
+/// A root counts although a segment before it is unproven, if that is nearer to it than this
+/// fraction of the distance: a ten-thousandth of a pixel.
 const DOUBT: f64 = 1e-7;
-/// What is known of a field's value at a point is no wider than this, in parts of the point's size, but on a jump.
+/// The interval of the field at a single point is at most this wide, as a fraction of the point's
+/// magnitude, except on a jump.
 const NARROW: f64 = 1e-10;
 
-/// On a stretch with more jumps the ways through them are not told apart: it is cut first.
+/// A segment with more jumps than this is split before the paths through them are separated.
 const FEW_JUMPS: usize = 2;
-/// As many are told apart on a stretch that is not cut again.
+/// At most this many jumps are separated on a segment that is not split again.
 const MOST_JUMPS: usize = 12;
 
 /// A ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, in scene units.
+    /// Start, in scene units.
     pub origin: [f64; 3],
-    /// A unit vector.
+    /// Direction, a unit vector.
     pub direction: [f64; 3],
-    /// Where it ends, in scene units from its origin.
+    /// Length, in scene units.
     pub t_max: f64,
 }
 
 impl Ray {
-    /// The point at a distance.
+    /// Returns the point at a distance.
     pub fn at(&self, t: f64) -> [f64; 3] {
         std::array::from_fn(|axis| self.origin[axis] + t * self.direction[axis])
     }
 }
 
-/// What a ray meets.
+/// The oracle's result for a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The surface, first at this distance. A ray that starts inside, or on the surface as far as f64 tells, is there at once.
+    /// The ray hits the surface first at this distance. A ray that starts inside, or on the surface
+    /// within the precision of f64, hits at 0.
     Hit(f64),
-    /// Nothing.
+    /// The ray hits nothing.
     Miss,
-    /// Nothing before this distance; what is there is not proven.
+    /// The ray hits nothing before this distance; what follows is not proven.
     Undecided(f64),
 }
 
-/// A verdict, and the evaluations over intervals that it took.
+/// A verdict and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
-    /// What the ray meets.
+    /// The result.
     pub verdict: Verdict,
-    /// Evaluations of the field or of its gradient.
+    /// Interval evaluations of the field or its gradient.
     pub evaluations: u32,
 }
 
 /// Why a program has no oracle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OracleError {
-    /// It draws nothing.
+    /// The program draws nothing.
     NothingDrawn,
-    /// It is not flat.
+    /// The program is not flat.
     NotFlat(TapeError),
 }
 
@@ -84,7 +86,7 @@ impl From<TapeError> for OracleError {
     }
 }
 
-/// A scene's field, made ready to be asked.
+/// A scene's field, prepared for proofs along rays.
 #[derive(Clone, Debug)]
 pub struct Oracle {
     field: Tape,
@@ -92,7 +94,7 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// Of a program.
+    /// Prepares the field of a program.
     ///
     /// # Errors
     ///
@@ -104,7 +106,7 @@ impl Oracle {
         Ok(Self { field: tape(distance)?, gradient })
     }
 
-    /// Ready for the rays of one frame; threads each take their own.
+    /// Returns a prober for one frame. Each thread takes its own.
     pub fn prober(&self, frame: &FrameValues) -> Prober<'_> {
         Prober {
             range: self.field.prepare(frame),
@@ -117,7 +119,7 @@ impl Oracle {
     }
 }
 
-/// An [`Oracle`] with its registers.
+/// An [`Oracle`] with the registers of its evaluators.
 #[derive(Clone, Debug)]
 pub struct Prober<'o> {
     range: Evaluator<'o, Interval>,
@@ -129,22 +131,22 @@ pub struct Prober<'o> {
 }
 
 impl Prober<'_> {
-    /// A ray that needs more evaluations over intervals stays undecided.
+    /// A ray that needs more interval evaluations stays undecided.
     pub const BUDGET: u32 = 100_000;
 
-    /// The field at a point, in scene units.
+    /// Returns the field at a point, in scene units.
     pub fn distance(&mut self, point: [f64; 3]) -> f64 {
         self.value.scalar(point)
     }
 
-    /// The gradient at a point; NaN without one.
+    /// Returns the gradient at a point; NaN if the program has none.
     pub fn gradient(&mut self, point: [f64; 3]) -> [f64; 3] {
         let Some(gradient) = &mut self.gradient else { return [f64::NAN; 3] };
         let lanes = gradient.eval(point).first().copied().unwrap_or([f64::NAN; 4]);
         [lanes[0], lanes[1], lanes[2]]
     }
 
-    /// What the ray meets first.
+    /// Finds what the ray hits first.
     pub fn first_hit(&mut self, ray: &Ray) -> Probe {
         self.evaluations = 0;
         let verdict = self.search(ray);
@@ -153,15 +155,15 @@ impl Prober<'_> {
 
     fn search(&mut self, ray: &Ray) -> Verdict {
         let start = self.over(ray, 0.0, 0.0);
-        // Where the ray starts on a jump, what is known of its start is wide, and tells nothing.
+        // If the ray starts on a jump, the interval at its start is wide and proves nothing.
         let size = ray.origin.iter().fold(1.0, |size, x| x.abs().max(size));
         let is_narrow = start.hi() - start.lo() <= NARROW * size;
         if start.hi() <= 0.0 || (start.lo() <= 0.0 && is_narrow) {
             return Verdict::Hit(0.0);
         }
-        // Stretches that may hold the root, the nearest on top.
+        // Segments that may contain the root, the nearest on top.
         let mut stretches = vec![(0.0, ray.t_max)];
-        // The first stretch too short to cut of which nothing is proven.
+        // The first unproven segment that is too short to split.
         let mut doubt = None;
         while let Some((from, to)) = stretches.pop() {
             if self.evaluations > Self::BUDGET {
@@ -192,7 +194,7 @@ impl Prober<'_> {
         doubt.map_or(Verdict::Miss, Verdict::Undecided)
     }
 
-    /// What intervals say of a stretch.
+    /// Classifies a segment by interval arithmetic.
     fn look(&mut self, ray: &Ray, from: f64, to: f64) -> Found {
         if self.is_free(ray, from, to) {
             return Found::Nothing;
@@ -210,7 +212,7 @@ impl Prober<'_> {
         if slope.contains(0.0) {
             return Found::Maybe;
         }
-        // The field only rises or only falls here: the signs at the ends tell all.
+        // The field is monotonic here, so the signs at the ends decide.
         let (first, last) = (self.over(ray, from, from), self.over(ray, to, to));
         match (sign(first), sign(last)) {
             (Some(first), Some(last)) if first == last => Found::Nothing,
@@ -219,8 +221,8 @@ impl Prober<'_> {
         }
     }
 
-    /// Whether the field has one sign on a stretch, on all paths through its jumps there. If it may not have, the path tells
-    /// whether the stretch has jumps.
+    /// Returns true if the field has one sign on a segment, on all paths through its jumps.
+    /// Otherwise the path records if the segment has jumps.
     fn is_free(&mut self, ray: &Ray, from: f64, to: f64) -> bool {
         let most = if to - from > FINEST * to { FEW_JUMPS } else { MOST_JUMPS };
         let mut side = None;
@@ -238,7 +240,7 @@ impl Prober<'_> {
         }
     }
 
-    /// Halves a stretch with one root until it is as narrow as f64 can tell.
+    /// Bisects a segment with one root down to the precision of f64.
     fn closed_in(&mut self, ray: &Ray, mut from: f64, mut to: f64) -> f64 {
         while to - from > CLOSE * to {
             let middle = from + 0.5 * (to - from);
@@ -251,7 +253,8 @@ impl Prober<'_> {
         from + 0.5 * (to - from)
     }
 
-    /// Distances about a stretch too short to cut between which the field leads from outside to inside.
+    /// Returns distances around an unproven segment between which the field goes from outside to
+    /// inside.
     fn crossing_about(&mut self, ray: &Ray, from: f64, to: f64) -> Option<(f64, f64)> {
         let width = to - from;
         let mut find = |place: &dyn Fn(f64) -> f64| {
@@ -263,13 +266,13 @@ impl Prober<'_> {
         (before == Sign::Outside && beyond == Sign::Inside).then_some((from, to))
     }
 
-    /// All values of the field on a stretch.
+    /// Returns the interval of the field on a segment.
     fn over(&mut self, ray: &Ray, from: f64, to: f64) -> Interval {
         self.evaluations += 1;
         self.range.scalar(stretch(ray, from, to))
     }
 
-    /// All derivatives of the field along the ray on a stretch.
+    /// Returns the interval of the field's derivative along the ray on a segment.
     fn slope_over(&mut self, ray: &Ray, from: f64, to: f64) -> Option<Interval> {
         let slopes = self.slopes.as_mut()?;
         self.evaluations += 1;
@@ -279,7 +282,7 @@ impl Prober<'_> {
     }
 }
 
-/// What a stretch holds.
+/// The classification of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Found {
     Nothing,
@@ -303,7 +306,7 @@ fn sign(range: Interval) -> Option<Sign> {
     }
 }
 
-/// The box about a stretch of a ray.
+/// Returns the bounding box of a ray segment.
 fn stretch(ray: &Ray, from: f64, to: f64) -> [Interval; 3] {
     let t = Interval::new(from, to);
     std::array::from_fn(|axis| {

@@ -1,4 +1,4 @@
-//! What one ray method makes of a view: of each pixel how its ray ended, where, and with which normal.
+//! Draws a view with one ray method and returns the end and the normal of each ray.
 
 use std::borrow::Cow;
 
@@ -50,7 +50,7 @@ impl Sampler<'_> {
 }
 
 fn sample(pixel: &PixelBlock) -> PixelSample {
-    // As `normals.wgsl` has it.
+    // The layout that `normals.wgsl` writes.
     let [x, y, z, u] = pixel.color.map(f64::from);
     let v = f64::from(f32::from_bits(pixel.evaluations));
     PixelSample {
@@ -61,7 +61,7 @@ fn sample(pixel: &PixelBlock) -> PixelSample {
     }
 }
 
-/// The direction to a place on an octahedron whose lower half is turned outward.
+/// Decodes a direction from octahedral coordinates.
 fn folded([u, v]: [f64; 2]) -> [f64; 3] {
     let up = 1.0 - u.abs() - v.abs();
     if up < 0.0 {
@@ -71,7 +71,7 @@ fn folded([u, v]: [f64; 2]) -> [f64; 3] {
     }
 }
 
-/// How the ray of a pixel ended.
+/// Returns how the ray of a pixel ended.
 pub(crate) fn status(pixel: &PixelBlock) -> Status {
     match pixel.status {
         HIT => Status::Hit,
@@ -85,7 +85,7 @@ mod tests {
     use super::folded;
 
     #[test]
-    fn a_direction_is_what_the_octahedron_makes_of_it() {
+    fn octahedral_decoding_inverts_encoding() {
         for [x, y, z] in
             [[1.0, 2.0, 5.0], [-3.0, 1.0, -2.0], [0.5, -1.0, -9.0], [0.0, 0.0, -1.0f64]]
         {

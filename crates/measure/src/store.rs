@@ -1,4 +1,4 @@
-//! A truth that was found before need not be found again.
+//! Stores the oracle's verdicts between runs.
 
 use std::fmt::Write;
 
@@ -9,23 +9,23 @@ use crate::edges::Kind;
 use crate::oracle::{Oracle, Verdict};
 use crate::truth::Truth;
 
-/// Of what the oracle says and of how it is written down: a change of either takes the next number.
+/// Version of the oracle and of the file layout. Increase it when either changes.
 const VERSION: u32 = 2;
-/// So many pixels of a kept truth are asked again before it is believed.
+/// Number of pixels of a stored truth that are verified before it is used.
 const TRIED: usize = 64;
 const TAGS: [&[u8]; 2] = [b"HMU", b"peu"];
 
-/// Where truths are kept between runs. It may forget and fail as it likes: what it does not have is found anew, and
-/// what it has is tried.
+/// Storage for truths between runs. It may lose entries and fail: missing entries are computed
+/// again, and stored ones are verified.
 pub trait TruthStore: Sync {
-    /// What was put there under this key, 32 hexadecimal digits.
+    /// Returns the entry with this key of 32 hexadecimal digits.
     fn get(&self, key: &str) -> Option<Vec<u8>>;
-    /// Keeps it.
+    /// Stores an entry.
     fn put(&self, key: &str, bytes: &[u8]);
 }
 
 impl Truth {
-    /// As [`Truth::find`], or as the store has it.
+    /// Loads the truth from a store, or computes it like [`Truth::find`] and stores it.
     pub fn load_or_find(
         store: &dyn TruthStore,
         oracle: &Oracle,
@@ -44,7 +44,7 @@ impl Truth {
         truth
     }
 
-    /// Whether the oracle says the same of some pixels, evenly strewn.
+    /// Returns true if the oracle confirms the verdicts of evenly spaced pixels.
     fn holds(&self, oracle: &Oracle, frame: &FrameValues) -> bool {
         let mut prober = oracle.prober(frame);
         let step = self.verdicts.len().div_ceil(TRIED).max(1);
@@ -53,15 +53,16 @@ impl Truth {
     }
 }
 
-/// A hash of all that a truth follows from: the field's program, the frame's values and the camera.
+/// Returns a hash of everything that a truth depends on: the field's program, the frame's values
+/// and the camera.
 fn key(oracle: &Oracle, frame: &FrameValues, camera: &Camera) -> String {
     let mut hash = Fnv::default();
-    // A hash fails to take no text. Numbers are written with all their digits.
+    // Writing to a hash cannot fail. Numbers are written with all their digits.
     let _ = write!(hash, "{VERSION} {} {oracle:?} {frame:?} {camera:?}", env!("CARGO_PKG_VERSION"));
     format!("{:032x}", hash.0)
 }
 
-/// FNV-1a in 128 bits, of text as it is written.
+/// 128-bit FNV-1a of text.
 struct Fnv(u128);
 
 impl Default for Fnv {
@@ -79,7 +80,7 @@ impl Write for Fnv {
     }
 }
 
-/// The evaluations that it took; then of each pixel its verdict, its kind and a distance.
+/// Serialises a truth: the number of evaluations; then verdict, kind and distance of each pixel.
 fn written(truth: &Truth) -> Vec<u8> {
     let mut bytes = truth.evaluations.to_le_bytes().to_vec();
     for (verdict, kind) in truth.verdicts.iter().zip(&truth.kinds) {
@@ -99,7 +100,7 @@ fn written(truth: &Truth) -> Vec<u8> {
     bytes
 }
 
-/// What [`written`] wrote of that camera; nothing if it did not.
+/// Deserialises what [`written`] wrote for that camera; `None` if the bytes are invalid.
 fn read(bytes: &[u8], camera: Camera) -> Option<Truth> {
     let (evaluations, pixels) = bytes.split_first_chunk::<8>()?;
     let (pixels, rest) = pixels.as_chunks::<10>();
@@ -174,7 +175,8 @@ mod tests {
     };
 
     #[test]
-    fn a_truth_is_kept_by_what_it_is_of_and_tried() -> Result<(), crate::oracle::OracleError> {
+    fn stored_truths_are_found_by_their_inputs_and_verified()
+    -> Result<(), crate::oracle::OracleError> {
         let (store, frame) = (Memory::default(), FrameValues::default());
         let truth = |oracle: &Oracle, camera: Camera| {
             Truth::load_or_find(&store, oracle, &frame, camera, &|_| ())
@@ -191,7 +193,7 @@ mod tests {
         let nearer = truth(&ball(0.5)?, Camera { eye: [0.0, 0.0, 2.0], ..CAMERA });
         assert!(!same(&found, &nearer), "another camera");
 
-        // What another ball has shown is not believed of this one, nor is what is cut short.
+        // The truth of another view, and a truncated one, are not used.
         let key = key(&ball(0.5)?, &frame, &CAMERA);
         for wrong in [written(&nearer), written(&found)[..100].to_vec(), Vec::new()] {
             store.put(&key, &wrong);

@@ -12,34 +12,35 @@ use crate::oracle::{Oracle, Prober, Ray, Verdict};
 /// The oracle's verdict on every pixel.
 #[derive(Clone, Debug)]
 pub struct Truth {
-    /// The picture's camera.
+    /// The camera.
     pub camera: Camera,
-    /// Of each pixel, row by row.
+    /// The verdict for each pixel, row by row.
     pub verdicts: Vec<Verdict>,
-    /// Of each pixel.
+    /// The kind of each pixel.
     pub kinds: Vec<Kind>,
-    /// Evaluations over intervals, in all.
+    /// Total number of interval evaluations.
     pub evaluations: u64,
 }
 
-/// Pixels by verdict and kind. An edge or undecided pixel is one of them and nothing else.
+/// Numbers of pixels by verdict and kind. Edge and undecided pixels count once, as such.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counts {
-    /// Meet the surface.
+    /// Plain pixels that hit the surface.
     pub hit: u64,
-    /// Meet nothing.
+    /// Plain pixels that hit nothing.
     pub miss: u64,
-    /// Within a pixel of a silhouette.
+    /// Pixels within one pixel of a silhouette.
     pub edge: u64,
-    /// Not known.
+    /// Undecided pixels.
     pub undecided: u64,
 }
 
-/// Pixels that one thread takes at a time.
+/// Number of pixels that a thread processes at a time.
 const GROUP: usize = 64;
 
 impl Truth {
-    /// Asks the oracle about every pixel, on all threads. `progress` is told after each group how many pixels it had, and is called from any thread.
+    /// Asks the oracle about every pixel, on all threads. After each group of pixels, `progress` is
+    /// called with their number, from any thread.
     pub fn find(
         oracle: &Oracle,
         frame: &FrameValues,
@@ -53,7 +54,7 @@ impl Truth {
         Self::of(camera, &looks(oracle, frame, &camera, &goes_on))
     }
 
-    /// As [`Truth::find`], unless `progress` says that it is not to go on: then there is none.
+    /// Like [`Truth::find`], but returns `None` as soon as `progress` returns false.
     pub fn find_while(
         oracle: &Oracle,
         frame: &FrameValues,
@@ -78,7 +79,7 @@ impl Truth {
         Self { camera, verdicts, kinds, evaluations }
     }
 
-    /// How many pixels are what.
+    /// Counts the pixels by verdict and kind.
     pub fn counts(&self) -> Counts {
         let mut counts = Counts::default();
         for (kind, verdict) in self.kinds.iter().zip(&self.verdicts) {
@@ -94,10 +95,10 @@ impl Truth {
     }
 }
 
-/// A verdict, the gradient where it is a hit, and what it took.
+/// A verdict, the gradient at a hit, and the number of evaluations.
 type Look = (Verdict, [f64; 3], u32);
 
-/// Of each pixel, on all threads. Once `goes_on` denies it, the rest is left out.
+/// Probes each pixel, on all threads. Stops as soon as `goes_on` returns false.
 fn looks(
     oracle: &Oracle,
     frame: &FrameValues,
@@ -106,7 +107,7 @@ fn looks(
 ) -> Vec<Look> {
     let mut found = vec![(Verdict::Miss, [0.0; 3], 0); camera.pixels()];
     let groups = found.par_chunks_mut(GROUP).enumerate();
-    // What ends it early is known to who denied it.
+    // The caller knows if `goes_on` ended it early.
     let _ = groups.try_for_each_init(
         || oracle.prober(frame),
         |prober, (group, pixels)| {

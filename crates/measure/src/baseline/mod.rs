@@ -1,8 +1,8 @@
-//! What the interpreting baselines read: scenes as rows of tables, for shaders that look up at every
-//! evaluation what a specialised shader has been compiled from.
+//! Encodes scenes as tables for the interpreting baselines: shaders that read the scene from buffers
+//! at every evaluation.
 //!
-//! [`units()`] knows a scene by the library's names, the only code outside the library that does; [`tape()`] knows
-//! it by its flat math.
+//! [`units()`] recognises shapes by the names of the library, as the only code outside the library;
+//! [`tape()`] encodes the flat math.
 
 mod tape;
 mod units;
@@ -15,17 +15,17 @@ pub use units::units;
 pub struct Encoded {
     /// Contents of the storage buffers, from binding 3 on; none is empty.
     pub tables: Vec<Vec<u8>>,
-    /// How many turns the interpreter's loop takes at each evaluation of the field.
+    /// Iterations of the interpreter's loop per evaluation of the field.
     pub turns: usize,
-    /// How many leaves it evaluates there.
+    /// Leaves evaluated per evaluation of the field.
     pub leaves: usize,
 }
 
-/// What of a scene an interpreter cannot express, in one sentence.
+/// One sentence that says what an interpreter cannot express.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Inexpressible(pub String);
 
-/// Numbers as a storage buffer holds them: in the order of bytes of the machine, which is its GPU's.
+/// The bytes of a storage buffer, in the byte order of the machine, which is that of its GPU.
 #[derive(Default)]
 struct Bytes(Vec<u8>);
 

@@ -1,4 +1,4 @@
-//! The specialised shader against shaders that interpret the scene, in one run.
+//! Compares the speed of the specialised shader with shaders that interpret the scene.
 
 mod suite;
 
@@ -24,35 +24,37 @@ pub use suite::{large_suite, suite};
 
 /// The variant that the others are compared with.
 const REFERENCE: &str = "specialized";
-/// Hits whose depths differ by more than so many tolerances are different hits: rounding alone may make a ray
-/// take one step more, which is at most about one tolerance long.
+/// Hits whose depths differ by more tolerances than this are different. Rounding alone may make a
+/// ray take one step more, which is at most about one tolerance long.
 const TOLERANCES: f64 = 4.0;
-/// A picture that differs in more of its pixels, edges left out, is another picture.
+/// A picture that differs in a greater fraction of its pixels, without edges, is refused.
 const MAX_DIFFERING: f64 = 1e-3;
-/// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver takes it for hung.
+/// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver resets the GPU.
 const ONE_TILE: f64 = 1000.0;
-/// Variants that are slow or take long to compile by then are not measured on scenes of more leaves.
+/// Slow variants, and those that compile slowly, are not measured on scenes with more leaves.
 const MOST_INTERPRETED: usize = 300;
-/// Nor are loops that leave out nothing on scenes of more.
+/// Loops without culling are not measured on scenes with more leaves.
 const MOST_FLAT: usize = 2000;
-/// A field of more operations is not measured written out: with normals by its derivative, and by differences.
+/// A field with more operations is not measured unrolled: with normals by its gradient, and by
+/// differences.
 const MOST_INLINED: [usize; 2] = [5000, 14_000];
 /// A frame that takes longer, in milliseconds, is timed once.
 const LONG: f64 = 10_000.0;
 
-/// How scenes are measured.
+/// Options of [`bench`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BenchOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// How many frames of each variant are timed, after one that is not; at least 1. One where frames take
-    /// longer than ten seconds.
+    /// Number of timed frames per variant, after one that is not timed; at least 1. Only one if
+    /// frames take longer than ten seconds.
     pub repetitions: u32,
     /// Ray method of all variants.
     pub method: Method,
-    /// Whether interpreters and slots take part. Then all variants are unpainted and take normals by differences, as interpreters
-    /// must; or else each is the picture that `sdfc render` draws.
+    /// True if interpreters and live literals are measured too. Then all variants draw without
+    /// materials and take normals by differences, as interpreters must; otherwise each draws the
+    /// picture of `sdfc render`.
     pub baselines: bool,
 }
 
@@ -82,16 +84,16 @@ impl BenchOptions {
 }
 
 impl Default for BenchOptions {
-    /// 640 by 360, five frames, `sphere`: the method of the practical that `units` follows.
+    /// As [`BenchOptions::new`]; `sphere` is the method of the op-unit interpreter.
     fn default() -> Self {
         Self { size: [640, 360], repetitions: 5, method: Method::Sphere, baselines: true }
     }
 }
 
-/// What `bench --json` writes.
+/// The results, as `bench --json` writes them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchReport {
-    /// Name of the adapter.
+    /// Name of the GPU.
     pub adapter: String,
     /// Name and version of its driver.
     pub driver: String,
@@ -110,48 +112,47 @@ pub struct BenchRow {
     pub size: [u32; 2],
     /// Ray method.
     pub method: String,
-    /// The variant that `sdfc render` takes of its own accord.
+    /// The variant that `sdfc render` uses by default.
     pub auto: &'static str,
-    /// What its frame takes in that of the variant whose frame takes least; by time of the processor where that is measured.
+    /// Its frame time relative to the fastest variant (CPU time where measured).
     pub auto_times_best_frame: Option<f64>,
-    /// What its first picture takes in that of the variant that is first.
+    /// Its time to the first picture relative to the fastest variant.
     pub auto_times_best_first_picture: Option<f64>,
     /// One for each way to evaluate the field.
     pub variants: Vec<BenchVariant>,
 }
 
-/// One way to evaluate the field. A figure that cannot be had is null, with the reason in `why`.
+/// One way to evaluate the field. A value that is not available is null, with the reason in `why`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchVariant {
     /// `units`, `tape`, `specialized`, `specialized-slots`, `rolled` or `pruned`.
     pub name: &'static str,
     /// Time of one frame without compilation.
     pub frame_ms: Option<FrameTimes>,
-    /// Median time of a frame in that of `specialized`.
+    /// Median frame time relative to `specialized`.
     pub times_specialized: Option<f64>,
-    /// Median time of processor that the process took for one frame, where the adapter is one; other work on the
-    /// machine does not count.
+    /// Median CPU time of this process per frame, for a software GPU. Other processes do not count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpu_ms: Option<f64>,
-    /// That time in that of `specialized`.
+    /// CPU time relative to `specialized`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpu_times_specialized: Option<f64>,
     /// Stages of compilation; encoding the tables is part of `lower`.
     pub compile_ms: Option<CompileTimes>,
     /// From reading the scene to its first finished picture, in milliseconds.
     pub first_picture_ms: Option<f64>,
-    /// Evaluations of the field, shadows included, those for normals not.
+    /// Field evaluations, including shadows, without normals.
     pub evals_per_pixel: Option<EvaluationCounts>,
     /// Evaluations of leaves.
     pub leaf_evals_per_pixel: Option<LeafEvaluations>,
-    /// Turns of the interpreter's loop at each evaluation; none in a shader without one.
+    /// Iterations of the interpreter's loop per evaluation; null without an interpreter.
     pub turns_per_eval: Option<usize>,
-    /// How many numbers of the scene are slots; of `specialized-slots` alone.
+    /// Number of live literals, for `specialized-slots` only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slots: Option<usize>,
-    /// Pixels that differ from those of `specialized`, edges left out.
+    /// Pixels that differ from those of `specialized`, without edges.
     pub differing_pixels: Option<usize>,
-    /// Why figures are null, by their keys.
+    /// Why values are null, by their keys.
     #[serde(skip_serializing_if = "Why::is_empty")]
     pub why: Why,
 }
@@ -163,9 +164,9 @@ enum Kind {
     Tape,
     Specialized,
     Slots,
-    /// Loops over alike parts; all rounds of them.
+    /// Loops over similar parts, with all iterations.
     Rolled,
-    /// The same, rays from the eye by the lists of their tiles.
+    /// The same; primary rays use the active lists of their tiles.
     Pruned,
 }
 
@@ -197,7 +198,7 @@ impl Kind {
     }
 }
 
-/// A variant that draws.
+/// A variant that is measured.
 struct Contestant {
     kind: Kind,
     pipeline: Pipeline,
@@ -205,42 +206,42 @@ struct Contestant {
     compile: CompileTimes,
     first_picture: f64,
     options: RenderOptions,
-    /// How many frames are timed.
+    /// Number of timed frames.
     repetitions: u32,
     image: Image,
     leaf_evaluations: LeafEvaluations,
     turns: Option<usize>,
     times: Vec<f64>,
-    /// What the process took of the processor for each of them, on an adapter that is one.
+    /// CPU time of each, for a software GPU.
     cpu: Vec<f64>,
 }
 
-/// What a variant reads beside the view.
+/// The data of a variant beside the view.
 enum Data {
     Encoded(Encoded),
     Uniforms(Vec<[f32; 4]>),
 }
 
-/// What all variants of a row share.
+/// Everything that all variants of a row share.
 struct Heat<'a> {
     scene: &'a Scene,
     slots: &'a Scene,
     gpu: &'a Gpu,
     options: &'a BenchOptions,
     view: View,
-    /// The field written out.
+    /// The unrolled field.
     inline: Program,
-    /// Its alike parts as loops, all rounds of which are visited, or those that matter; none: no parts are alike.
+    /// The field with loops, without and with culling. `None` if no parts are similar.
     rolled: Option<Program>,
     pruned: Option<Program>,
     /// The variant that [`LoopStrategy::Auto`] is.
     auto: Kind,
 }
 
-/// Measures the scene at its params' defaults: after a first frame of every variant, which is not timed,
-/// one frame of each in turn, then the next of each.
+/// Measures the scene at its params' defaults. After a first frame of every variant, which is not
+/// timed, one frame of each in turn, then the next of each.
 ///
-/// `slots` is the same scene with its numbers as params .
+/// `slots` is the same scene compiled with live literals.
 ///
 /// # Errors
 ///
@@ -260,7 +261,7 @@ pub fn bench(
     let rounds = options.repetitions.max(1);
     let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
     let mut counted = Counted { frames, drawn: 0, progress };
-    // What takes minutes to compile is compared with nothing.
+    // A variant that takes minutes to compile is no reference.
     let first = if heat.is_inlined() { Kind::Specialized } else { Kind::Pruned };
     let reference = match heat.enter(first, &mut counted)? {
         Ok(contestant) => contestant,
@@ -308,7 +309,7 @@ pub fn bench(
     })
 }
 
-/// A figure of the variant of that name in the least that any variant has.
+/// Returns a metric of a variant relative to the smallest of all variants.
 fn times_best(
     variants: &[BenchVariant],
     name: &str,
@@ -344,7 +345,7 @@ impl<'a> Heat<'a> {
         Ok(Self { scene, slots, gpu, options, view, inline, rolled, pruned, auto })
     }
 
-    /// Whether the field written out can be waited for.
+    /// True if the unrolled field compiles in reasonable time.
     fn is_inlined(&self) -> bool {
         self.pruned.is_none()
             || cost(&self.inline.graph, self.inline.distance.as_slice()).operations
@@ -355,7 +356,7 @@ impl<'a> Heat<'a> {
         MOST_INLINED[usize::from(self.options.baselines)]
     }
 
-    /// What a variant's field is compiled from.
+    /// Returns the program that a variant is compiled from.
     fn program(&self, kind: Kind) -> Result<&Program, Inexpressible> {
         fn alike(program: &Option<Program>) -> Result<&Program, Inexpressible> {
             let why = "few of its parts are alike, or have no Lipschitz constant";
@@ -458,8 +459,8 @@ impl<'a> Heat<'a> {
         }))
     }
 
-    /// Leaf evaluations where only those rounds of loops are visited that can matter, what finds these included, counted by a
-    /// shader of its own.
+    /// Counts leaf evaluations with culling, including those of the culling pass, with an
+    /// instrumented shader.
     fn counted(
         &self,
         program: &Program,
@@ -491,7 +492,7 @@ impl<'a> Heat<'a> {
         counted.draw(pipeline, &self.view, uniforms, options)
     }
 
-    /// The figures of a contestant; those of another picture than the reference's are null.
+    /// Returns the results of a variant; null if its picture differs from the reference.
     fn result(&self, contestant: &Contestant, reference: &Contestant) -> BenchVariant {
         let clock = if self.gpu.has_timestamps() {
             sdfc_render::Clock::Gpu
@@ -527,7 +528,7 @@ impl<'a> Heat<'a> {
         variant
     }
 
-    /// Why the time of a contestant says nothing, if its picture is another than the reference's.
+    /// Returns why the time of a variant is meaningless, if its picture differs from the reference.
     fn refusal(&self, contestant: &Contestant, reference: &Contestant) -> Option<String> {
         let differing = self.differing(contestant, reference);
         let pixels = contestant.image.pixels().len();
@@ -540,14 +541,14 @@ impl<'a> Heat<'a> {
         ))
     }
 
-    /// Pixels that are no edge in either picture and show different things.
+    /// Counts pixels that differ and are no edge in either picture.
     fn differing(&self, contestant: &Contestant, reference: &Contestant) -> usize {
         let (a, b) = (&contestant.image, &reference.image);
         let near = (TOLERANCES * self.view.epsilon) as f32;
         let edges = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b);
         let pairs = a.pixels().iter().zip(b.pixels()).zip(edges);
         let differ = pairs.filter(|((a, b), edge)| match [a, b].map(|pixel| pixel.status == HIT) {
-            // What is not finite is not near.
+            // NaN and infinities are not near.
             [true, true] if (a.depth - b.depth).abs() <= near => false,
             [false, false] => false,
             [true, true] | [true, false] | [false, true] => !edge,
@@ -556,7 +557,7 @@ impl<'a> Heat<'a> {
     }
 }
 
-/// What a variant reads of a scene at its params' defaults.
+/// Returns the data of a variant at the scene's defaults.
 fn data(kind: Kind, scene: &Scene, program: &Program) -> Result<Data, Inexpressible> {
     let frame = FrameValues::defaults(scene.params());
     let uniforms = || Data::Uniforms(uniform_values(program, &frame));
@@ -571,7 +572,7 @@ fn data(kind: Kind, scene: &Scene, program: &Program) -> Result<Data, Inexpressi
     }
 }
 
-/// Tells how far all frames are.
+/// Counts frames for the progress report.
 struct Counted<'a, 'b> {
     frames: u64,
     drawn: u64,
@@ -597,7 +598,7 @@ impl Counted<'_, '_> {
 }
 
 impl BenchVariant {
-    /// All of whose figures cannot be had, for one reason.
+    /// A variant without results, for one reason.
     fn missing(name: &'static str, reason: &str) -> Self {
         let keys = [
             "frame_ms",
@@ -626,7 +627,7 @@ impl BenchVariant {
         }
     }
 
-    /// Takes back the figures that say nothing.
+    /// Removes results that are meaningless.
     fn refuse(&mut self, reason: &str) {
         (self.frame_ms, self.times_specialized, self.first_picture_ms) = (None, None, None);
         (self.cpu_ms, self.cpu_times_specialized) = (None, None);

@@ -15,7 +15,7 @@ use crate::metrics::compare;
 use crate::sampler::Sampler;
 use crate::scene::{OracleOptions, operations, oracle, truth};
 
-/// How a chart is made.
+/// Options of [`chart`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ChartOptions {
@@ -23,9 +23,9 @@ pub struct ChartOptions {
     pub size: [u32; 2],
     /// The ray methods; empty for all.
     pub methods: Vec<Method>,
-    /// Whether methods are charted at their defaults only.
+    /// True if methods are charted at their defaults only.
     pub defaults_only: bool,
-    /// Frames that are timed, after one that is not; at least 1.
+    /// Number of timed frames, after one that is not timed; at least 1.
     pub repetitions: u32,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
@@ -69,15 +69,15 @@ impl ChartOptions {
 }
 
 impl Default for ChartOptions {
-    /// 320 by 180, all methods, three frames each.
+    /// As [`ChartOptions::new`].
     fn default() -> Self {
         let (size, methods) = ([320, 180], Vec::new());
         Self { size, methods, defaults_only: false, repetitions: 3, frame: None }
     }
 }
 
-/// Draws the scene with every method at several settings and compares each picture with the oracle's
-/// verdict. `progress` counts the pictures and may cancel.
+/// Draws the scene with every method at several settings, and compares each picture with the
+/// oracle's verdict. `progress` counts the pictures and may cancel.
 ///
 /// # Errors
 ///
@@ -144,7 +144,7 @@ pub fn chart(
     Ok(chart)
 }
 
-/// The time that a picture takes.
+/// Measures the time of a frame.
 fn timed(
     pipeline: &Pipeline,
     view: &View,

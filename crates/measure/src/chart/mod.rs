@@ -1,4 +1,4 @@
-//! Cost against error: every method at several settings, on one scene.
+//! Charts of cost against error: all ray methods at several settings, on one scene.
 
 mod draw;
 mod growth;
@@ -20,30 +20,30 @@ pub use make::{ChartOptions, chart};
 pub use pixels::png;
 pub use theme::Theme;
 
-/// Errors below this lie on the axis: no eye and no f32 tells them apart.
+/// Smaller errors are drawn on the axis: neither f32 nor the eye distinguishes them.
 pub const LEAST_ERROR: f64 = 1e-5;
 
-/// What a chart shows, and what `chart --json` writes.
+/// The results of a chart, as `chart --json` writes them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
     /// Name of the scene.
     pub scene: String,
     /// Leaves of the scene.
     pub leaves: usize,
-    /// Whether every part of the field is known never to exceed the distance.
+    /// True if the field is proven never to exceed the distance.
     pub certified: bool,
-    /// Name of the adapter.
+    /// Name of the GPU.
     pub adapter: String,
     /// Name and version of its driver.
     pub driver: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// When and from what it was made, if that is to be told.
+    /// A note about date and commit, if given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub made: Option<String>,
-    /// What the oracle found.
+    /// The oracle's counts.
     pub oracle: Counts,
-    /// One for each method and setting, methods together, from coarse to fine.
+    /// One row per method and setting, grouped by method, from coarse to fine.
     pub methods: Vec<Row>,
 }
 
@@ -52,54 +52,55 @@ pub struct Chart {
 pub struct Row {
     /// Name of the ray method.
     pub method: String,
-    /// What was set, by name.
+    /// The settings by name.
     pub settings: BTreeMap<&'static str, f64>,
-    /// Whether the method is used with this setting unless told otherwise.
+    /// True for the default setting of the method.
     pub default: bool,
-    /// Whether no other row is as cheap and as good, see [`Chart::mark_front`].
+    /// True if the row is on the Pareto front, see [`Chart::mark_front`].
     pub pareto: bool,
-    /// Evaluations of the field for the ray from the eye.
+    /// Field evaluations for primary rays.
     pub evals_per_pixel: Evals,
-    /// Scalar and vector operations of the field's formula that these are.
+    /// Scalar and vector operations of these evaluations.
     pub ops_per_pixel: f64,
     /// Time of a frame.
     pub frame_ms: FrameMs,
-    /// Rays that led through a surface.
+    /// Rays that passed through a surface.
     pub missed: u64,
-    /// Rays that ended where no surface is.
+    /// Rays that ended where there is no surface.
     pub false_hits: u64,
     /// Error in depth in widths of a pixel.
     pub depth_px: Quantiles,
     /// Error of the normal in degrees, on smooth surfaces.
     pub normal_deg: Quantiles,
-    /// What is hit in the picture or in truth but not in both, as a part of what is hit in either.
+    /// Pixels hit in the picture or by the oracle but not in both, as a fraction of those hit in
+    /// either.
     pub silhouette: f64,
     /// Rays out of steps.
     pub capped: u64,
-    /// Rays that ended nowhere.
+    /// Rays whose end is NaN.
     pub nan: u64,
 }
 
-/// Evaluations per pixel.
+/// Field evaluations per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Evals {
-    /// Of all pixels.
+    /// Mean over all pixels.
     pub mean: f64,
-    /// 99 of 100 pixels take at most so many.
+    /// 99th percentile.
     pub p99: u32,
 }
 
 /// Time of a frame without compilation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrameMs {
-    /// Of the repetitions, in milliseconds.
+    /// Median of the repetitions, in milliseconds.
     pub median: f64,
     /// `gpu` or `wall`.
     pub clock: &'static str,
 }
 
 impl Row {
-    /// A row of what was measured.
+    /// Makes a row from measurements.
     pub fn new(
         method: &str,
         settings: BTreeMap<&'static str, f64>,
@@ -127,43 +128,46 @@ impl Row {
         }
     }
 
-    /// Pixels that are plainly wrong.
+    /// Number of wrong pixels.
     pub fn wrong(&self) -> u64 {
         self.missed + self.false_hits + self.nan
     }
 
-    /// Pixels that are wrong or were given up.
+    /// Number of wrong pixels and capped rays.
     pub fn failed(&self) -> u64 {
         self.wrong() + self.capped
     }
 
-    /// Whether it is at least as good in all that counts, and better in something.
+    /// Returns true if the row is at least as good in every respect, and better in one.
     fn beats(&self, other: &Self) -> bool {
         let figures = |row: &Self| [row.ops_per_pixel, row.failed() as f64, row.depth_px.p99];
         is_less(figures(self), figures(other))
     }
 
-    /// Whether it takes fewer operations and errs less: at no more pixels and no farther, and less in one of these.
+    /// Returns true if the row takes fewer operations and has smaller errors: no more failed pixels
+    /// and no greater depth error, and less of one of these.
     fn outdoes(&self, other: &Self) -> bool {
         let errors = |row: &Self| [row.failed() as f64, row.depth_px.p99.max(LEAST_ERROR)];
         self.ops_per_pixel < other.ops_per_pixel && is_less(errors(self), errors(other))
     }
 }
 
-/// Whether nothing is more than in others, and something is less.
+/// Returns true if no number is greater than in `others`, and one is less.
 fn is_less<const N: usize>(figures: [f64; N], others: [f64; N]) -> bool {
     figures.iter().zip(&others).all(|(a, b)| a <= b) && figures != others
 }
 
 impl Chart {
-    /// Rows of other methods that take fewer operations and err less than one does as it is used unless told otherwise.
+    /// Returns the rows of other methods that are cheaper and more accurate than a method at its
+    /// default.
     pub fn outdoing(&self, method: &str) -> Vec<&Row> {
         let own = self.methods.iter().find(|row| row.default && row.method == method);
         let others = self.methods.iter().filter(|row| row.method != method);
         own.map_or_else(Vec::new, |own| others.filter(|row| row.outdoes(own)).collect())
     }
 
-    /// Marks the rows that no other beats in operations, in wrong pixels and rays out of steps, and in depth (99th of 100).
+    /// Marks the Pareto front: rows that no other row beats in operations, failed pixels and depth
+    /// error (99th percentile).
     pub fn mark_front(&mut self) {
         let beaten = |row: &Row| self.methods.iter().any(|other| other.beats(row));
         let front: Vec<bool> = self.methods.iter().map(|row| !beaten(row)).collect();
@@ -172,7 +176,7 @@ impl Chart {
         }
     }
 
-    /// The front as a chart draws it: rows that nothing beats and that fail nowhere, from cheap to dear.
+    /// Returns the front as a chart draws it: marked rows without failed pixels, by cost.
     pub fn front(&self) -> Vec<&Row> {
         let mut front: Vec<&Row> =
             self.methods.iter().filter(|row| row.pareto && row.failed() == 0).collect();
@@ -209,7 +213,7 @@ mod tests {
     use super::testing::{chart, row};
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn the_front_contains_the_rows_that_no_row_beats() {
         let mut fast = row("m", 5.0, 0.01);
         fast.missed = 3;
         let rows = [row("m", 10.0, 1.0), row("m", 20.0, 0.1), row("m", 21.0, 0.1), fast];
@@ -220,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_method_is_outdone_by_what_is_cheaper_and_nearer() {
+    fn a_method_is_outdone_by_cheaper_and_more_accurate_rows() {
         let mut own = row("own", 10.0, 0.1);
         own.default = true;
         let mut wrong = row("wrong", 5.0, 0.01);

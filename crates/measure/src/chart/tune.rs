@@ -1,10 +1,11 @@
-//! The setting of a chart that does what is asked at the least cost.
+//! Finds the cheapest setting of a chart within an error limit.
 
 use super::{Chart, Row};
 
 impl Chart {
-    /// The row with the fewest operations among those that keep an error in depth, 99 of 100 pixels, in widths of a
-    /// pixel, with no pixel wrong and no ray out of steps. Of equal ones the first, so that the default method goes before.
+    /// Returns the cheapest row whose depth error (99th percentile, in widths of a pixel) is at most
+    /// `error`, without wrong pixels and capped rays. Of equal rows the first, which is that of the
+    /// default method.
     pub fn cheapest(&self, error: f64) -> Option<&Row> {
         let good = self.methods.iter().filter(|row| row.keeps(error));
         good.min_by(|a, b| a.ops_per_pixel.total_cmp(&b.ops_per_pixel))
@@ -12,12 +13,13 @@ impl Chart {
 }
 
 impl Row {
-    /// Whether no pixel is wrong, no ray out of steps, and depths are as near as that.
+    /// Returns true if there are no wrong pixels and no capped rays, and the depth error is at most
+    /// `error`.
     pub fn keeps(&self, error: f64) -> bool {
         self.wrong() == 0 && self.capped == 0 && self.depth_px.p99 <= error
     }
 
-    /// What a scene says to be drawn like this: `march(method: "relaxed", tolerance: 0.05)`.
+    /// Returns the setting as a scene writes it: `march(method: "relaxed", tolerance: 0.05)`.
     pub fn setting(&self) -> String {
         let settings = self.settings.iter().map(|(name, value)| format!(", {name}: {value}"));
         format!("march(method: \"{}\"{})", self.method, settings.collect::<String>())
@@ -29,7 +31,7 @@ mod tests {
     use crate::chart::testing::{chart, row};
 
     #[test]
-    fn the_cheapest_row_misses_nothing_and_keeps_the_error() {
+    fn the_cheapest_row_has_no_failures_and_stays_within_the_error() {
         let mut capped = row("capped", 2.0, 0.01);
         capped.capped = 1;
         let mut missing = row("missing", 1.0, 0.01);
@@ -50,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_says_what_to_write() {
+    fn a_setting_is_written_as_in_a_scene() {
         let text = row("relaxed", 1.0, 0.1).setting();
         assert_eq!(text, "march(method: \"relaxed\", tolerance: 0.05)");
     }
