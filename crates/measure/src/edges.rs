@@ -14,7 +14,8 @@ pub enum Kind {
     Undecided,
 }
 
-/// A step in depth is a silhouette if it is this many times what the slopes of both surfaces explain.
+/// A step in depth is a silhouette if it is this many times what the slopes of both surfaces
+/// explain.
 const UNEXPLAINED: f64 = 2.0;
 
 /// Returns the kind of each pixel. It is an edge if one of its eight neighbours shows something

@@ -1,4 +1,4 @@
-//! Measures what sdfc draws: accuracy against an oracle, cost against error, speed against baselines.
+//! Measures pictures and shaders of sdfc: accuracy, cost and speed.
 //!
 //! No program that only compiles or draws scenes needs this crate.
 //!

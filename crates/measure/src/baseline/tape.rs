@@ -1,8 +1,8 @@
-//! A scene's field as a tape for the stack machine of `baseline/tape.wgsl`.
+//! Encodes a scene's field as a tape for the stack machine of `baseline/tape.wgsl`.
 //!
-//! A value is computed where it is first used. One that is used again is also kept in a local, until its last
-//! use. Of two operands the one that needs more of the stack comes first, so that a long chain of joins takes no
-//! more of it than a short one. What is known per frame is a constant of the tape.
+//! A value is computed where it is first used. A value that is used again is also stored in a local
+//! until its last use. The operand that needs more of the stack is computed first, so that a long
+//! chain needs no more stack than a short one. Per-frame values are constants of the tape.
 
 mod machine;
 
@@ -14,15 +14,16 @@ use sdfc_graph::{Graph, Node, NodeId, Program, Stage, Type, reachable_where};
 use self::machine::{Operation, Step, steps};
 use super::{Bytes, Encoded, Inexpressible};
 
-/// Most values on the stack, and in locals, at a time: what the shader has room for.
+/// Size of the stack and number of locals, as in the shader.
 const STACK_SIZE: usize = 16;
 const LOCAL_COUNT: usize = 16;
 
-/// The table of a program's distance at a frame. `leaves` is how many leaves the scene has.
+/// Returns the table of a program's distance at a frame. `leaves` is the scene's number of leaves.
 ///
 /// # Errors
 ///
-/// [`Inexpressible`] names the first operation that the machine lacks, or says that it has too little room.
+/// [`Inexpressible`] names the first operation that the machine lacks, or says that the stack is too
+/// small.
 pub fn tape(
     program: &Program,
     leaves: usize,

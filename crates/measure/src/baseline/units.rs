@@ -1,27 +1,27 @@
-//! Scenes as the op units of a classroom practical: the nearest of many units, each an operation on two
-//! primitives.
+//! Encodes scenes as op units: the nearest of many units, each an operation on two primitives.
 //!
-//! Primitives and translations are recognised by the names of their definitions. Operations are recognised by
-//! what they compute: a formula of two samples is asked for its value at many pairs of distances, so that
-//! `a - b`, `difference(a, b)` and a user's own operator are the same unit.
+//! Primitives and translations are recognised by the names of their definitions. Operations are
+//! recognised by what they compute: a formula of two samples is evaluated at many pairs of
+//! distances, so that `a - b`, `difference(a, b)` and a user's own operator are the same unit.
 
 use sdfc_graph::eval::{FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Arg, Dim, Graph, Node, NodeId, Scene, Shape, ShapeId, reachable};
 
 use super::{Bytes, Encoded, Inexpressible};
 
-/// How many tuples of distances an operation is tried at.
+/// Number of distance pairs at which an operation is evaluated.
 const TRIALS: usize = 64;
-/// Operations that differ by less are the same.
+/// Operations whose values differ by less are the same.
 const SAME: f64 = 1e-9;
 /// Bytes of a row of the largest table.
 const ROW: usize = 32;
 
-/// Tables of a scene at a frame, in the order of `baseline/units.wgsl`: units, planes, spheres, boxes.
+/// Returns the tables of a scene at a frame, in the order of `baseline/units.wgsl`: units, planes,
+/// spheres, boxes.
 ///
 /// # Errors
 ///
-/// [`Inexpressible`] names the first shape that no unit holds.
+/// [`Inexpressible`] names the first shape that no unit can express.
 pub fn units(scene: &Scene, frame: &FrameValues) -> Result<Encoded, Inexpressible> {
     let root = scene.root.ok_or_else(|| Inexpressible("the scene draws nothing".to_owned()))?;
     let mut encoder = Encoder { graph: &scene.graph, frame, tables: Tables::default() };

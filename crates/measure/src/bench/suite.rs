@@ -1,5 +1,5 @@
-//! The scenes of `bench --suite`: the course's, a chain of thirty leaves, and generated ones that every baseline
-//! can express.
+//! The scenes of `bench --suite`: those of the course, a chain of thirty leaves, and generated
+//! scenes that every baseline can express.
 
 use std::fmt::Write;
 

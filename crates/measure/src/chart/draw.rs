@@ -1,5 +1,5 @@
-//! The chart as a picture: operations per pixel to the right, error in depth upwards, both by powers of
-//! ten. A method is a line through its settings; a ring instead of a disc says that pixels are wrong.
+//! Draws a chart: operations per pixel to the right, error in depth upwards, both logarithmic. A
+//! method is a line through its settings; a ring instead of a disc marks wrong pixels.
 
 use plotters::coord::combinators::LogCoord;
 use plotters::prelude::*;
@@ -10,10 +10,10 @@ use super::theme::Theme;
 use super::{Chart, LEAST_ERROR, Row};
 
 pub(super) const SIZE: (u32, u32) = (960, 620);
-/// Width and height that a count above a marker takes.
+/// Width and height of a count above a marker.
 const LABEL: (i32, i32) = (30, 13);
 
-/// The bytes of a font, by which letters are measured, and drawn where the picture is one of pixels.
+/// The bytes of a font. It gives the size of text, and its shapes in a PNG.
 #[derive(Clone, Copy, Debug)]
 pub struct Font(pub &'static [u8]);
 
@@ -24,7 +24,7 @@ impl Font {
     }
 }
 
-/// What is drawn on, and how that fails.
+/// A drawing area and its error.
 type Area<B> = DrawingArea<B, plotters::coord::Shift>;
 type Failed = DrawingAreaErrorKind<std::io::Error>;
 
@@ -46,7 +46,7 @@ impl std::fmt::Display for DrawError {
 
 impl std::error::Error for DrawError {}
 
-/// The chart as SVG, on a ground of its own, which is dark where the reader's page is.
+/// Draws the chart as SVG, with a background that follows the reader's theme.
 ///
 /// # Errors
 ///
@@ -56,7 +56,7 @@ pub fn svg(chart: &Chart, font: Font) -> Result<String, DrawError> {
     themed(SIZE, |root, theme| draw(chart, root, theme))
 }
 
-/// A picture as SVG that is dark where the reader's page is.
+/// Draws an SVG that follows the reader's theme.
 pub(super) fn themed(
     size: (u32, u32),
     draw: impl FnOnce(&Area<SVGBackend<'_>>, &Theme) -> Result<(), Failed>,
@@ -71,10 +71,10 @@ pub(super) fn themed(
     Ok(text)
 }
 
-/// A plane of powers of ten to the right and upwards.
+/// A logarithmic coordinate system.
 type Plane<'a, B> = ChartContext<'a, B, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 
-/// The axes of a plane, and what they say.
+/// Draws the axes and their labels.
 pub(super) fn mesh<B: DrawingBackend>(
     plane: &mut Plane<'_, B>,
     theme: &Theme,
@@ -153,7 +153,7 @@ pub(super) fn draw<B: DrawingBackend>(
     root.present()
 }
 
-/// What was measured on what, above the plane; gives what is left of the paper.
+/// Draws the title and returns the rest of the drawing area.
 fn header<B: DrawingBackend>(
     chart: &Chart,
     root: &DrawingArea<B, plotters::coord::Shift>,
@@ -185,7 +185,7 @@ fn header<B: DrawingBackend>(
     Ok(body)
 }
 
-/// A text in lines of at most so many characters.
+/// Wraps a text into lines of limited length.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -200,7 +200,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The methods' names in the order of their first rows.
+/// Returns the names of the methods in order of their first rows.
 fn names(chart: &Chart) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for row in &chart.methods {
@@ -229,7 +229,7 @@ fn error(row: &Row) -> f64 {
     row.depth_px.p99.max(LEAST_ERROR)
 }
 
-/// From below the least value to above the greatest, with room for markers.
+/// Returns the range of values, with room for markers.
 fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
     let values = || rows.iter().map(&value).filter(|value| value.is_finite());
     let least = values().fold(f64::INFINITY, f64::min);
@@ -237,7 +237,7 @@ fn span(rows: &[Row], value: impl Fn(&Row) -> f64) -> [f64; 2] {
     if least > greatest { [1.0, 10.0] } else { [least / 1.6, greatest * 4.0] }
 }
 
-/// 0.001, 20, 3000: as few digits as the axis needs.
+/// Formats a tick with few digits: 0.001, 20, 3000.
 fn plain(value: f64) -> String {
     if value >= 1.0 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) }
 }

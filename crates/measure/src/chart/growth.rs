@@ -1,25 +1,27 @@
-//! How what a pixel costs grows with the leaves of scenes, as a picture: both by powers of ten, beside the square root.
+//! Draws how the cost per pixel grows with the number of leaves, beside the square root; both axes
+//! are logarithmic.
 
 use plotters::prelude::*;
 
 use super::draw::{DrawError, Font, mesh, themed};
 
 const SIZE: (u32, u32) = (760, 460);
-/// Part of a span that is left free beside what is drawn.
+/// Margin as a fraction of the range.
 const MARGIN: f64 = 1.4;
 
-/// What is shown.
+/// The data of the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Growth {
-    /// On what it was measured.
+    /// Title: the scene and the GPU.
     pub title: String,
-    /// What a pixel costs, and its unit.
+    /// Label of the cost, with its unit.
     pub cost: String,
-    /// Names, and for numbers of leaves what a pixel costs; what is not above 0 is left out.
+    /// Names and points: number of leaves and cost per pixel. Values that are not above 0 are left
+    /// out.
     pub series: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// The picture as SVG.
+/// Draws the plot as SVG.
 ///
 /// # Errors
 ///
@@ -35,7 +37,7 @@ pub fn growth_svg(growth: &Growth, font: Font) -> Result<String, DrawError> {
     let Some(leaves) = span(all().map(|point| point.0)) else {
         return Err(DrawError::new(&"nothing was measured"));
     };
-    // The square root, from where the first of the shown begins.
+    // The square root, from the first point on.
     let first = series.iter().find_map(|(_, points)| points.first().copied());
     let (from, at) = first.unwrap_or((1.0, 1.0));
     let root = |leaves: f64| (leaves, at * (leaves / from).sqrt());
@@ -82,7 +84,7 @@ pub fn growth_svg(growth: &Growth, font: Font) -> Result<String, DrawError> {
     })
 }
 
-/// The least and the greatest, with some room beside them.
+/// Returns the range of values, with a margin.
 fn span(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let ends = values.fold(None, |ends: Option<[f64; 2]>, value| {
         let [lo, hi] = ends.unwrap_or([value; 2]);

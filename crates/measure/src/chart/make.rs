@@ -32,7 +32,7 @@ pub struct ChartOptions {
 }
 
 impl ChartOptions {
-    /// The default options: 320 by 180 pixels, all methods at all their settings, three frames each.
+    /// The default options: 320 by 180 pixels, all methods at all their settings, three frames.
     pub fn new() -> Self {
         Self::default()
     }

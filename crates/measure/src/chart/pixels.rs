@@ -1,4 +1,4 @@
-//! The chart as pixels: what plotters draws for an SVG, on a plane of finer pixels, each the mean of several.
+//! Draws a chart as pixels: what plotters draws for an SVG, with supersampling.
 
 use std::convert::Infallible;
 
@@ -15,13 +15,13 @@ use super::Chart;
 use super::draw::{DrawError, Font, SIZE, draw};
 use super::theme::Theme;
 
-/// Pixels of the picture for a unit of the chart, so that small print stays sharp.
+/// Pixels of the picture per unit of the chart, so that small text stays sharp.
 const SCALE: u32 = 2;
-/// Pixels that are drawn for a pixel of the picture, along each side.
+/// Samples per pixel along each axis.
 const SAMPLES: u32 = 2;
 const ENLARGED: u32 = SCALE * SAMPLES;
 
-/// The chart as PNG: the picture of [`svg`](super::svg), on the ground of one theme.
+/// Draws the chart as PNG: the picture of [`svg`](super::svg) in one theme.
 ///
 /// # Errors
 ///
@@ -39,7 +39,7 @@ pub fn png(chart: &Chart, font: Font, theme: &Theme) -> Result<Vec<u8>, DrawErro
     Ok(file)
 }
 
-/// Pixels, on which plotters draws all else by itself.
+/// A pixel buffer as a backend of plotters.
 struct Fine(RgbImage);
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
@@ -77,10 +77,10 @@ impl DrawingBackend for &mut Fine {
     }
 }
 
-/// Takes lengths in units of the chart.
+/// A backend with lengths in units of the chart.
 struct Enlarged<'f>(&'f mut Fine);
 
-/// A style whose lines are as much wider.
+/// A style with scaled line widths.
 struct Wide {
     color: BackendColor,
     width: u32,
@@ -198,7 +198,7 @@ mod tests {
         let RGBColor(r, g, b) = theme.paper;
         assert_eq!(picture.get_pixel(2, 2), &Rgb([r, g, b]));
         for (index, color) in theme.methods[..2].iter().enumerate() {
-            // A disc of the SVG is one of pixels, at its place.
+            // A disc of the SVG is at the same position in the PNG.
             let RGBColor(r, g, b) = Theme::LIGHT.methods[index];
             let fill = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
             let circle =

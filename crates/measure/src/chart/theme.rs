@@ -1,24 +1,25 @@
-//! The colours of charts, on a light and on a dark ground.
+//! The colours of charts, on a light and on a dark background.
 
 use plotters::style::RGBColor;
 
-/// A ground, and colours that are told apart on it.
+/// A background, and colours that can be distinguished on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
-    /// The ground.
+    /// The background.
     pub(super) paper: RGBColor,
-    /// What is written on it.
+    /// Text.
     pub(super) ink: RGBColor,
-    /// What is written small.
+    /// Small text.
     pub(super) soft: RGBColor,
-    /// Lines of the grid and the band behind the front.
+    /// Grid lines and the band behind the front.
     pub(super) faint: RGBColor,
-    /// Of the methods, in their order.
+    /// The methods, in order.
     pub(super) methods: [RGBColor; 10],
 }
 
 impl Theme {
-    /// For a light page. The first seven colours are those of Okabe and Ito ("Color universal design", 2008) but black and yellow.
+    /// The light theme. The first seven colours are those of Okabe and Ito ("Color universal
+    /// design", 2008) except black and yellow.
     pub const LIGHT: Self = Self {
         paper: RGBColor(252, 252, 250),
         ink: RGBColor(40, 44, 52),
@@ -38,7 +39,7 @@ impl Theme {
         ],
     };
 
-    /// For a dark page.
+    /// The dark theme.
     pub const DARK: Self = Self {
         paper: RGBColor(22, 24, 29),
         ink: RGBColor(222, 224, 228),
@@ -62,7 +63,8 @@ impl Theme {
         [self.paper, self.ink, self.soft, self.faint].into_iter().chain(self.methods)
     }
 
-    /// Rules for a picture in the colours of [`Theme::LIGHT`], which readers of dark pages see in those of [`Theme::DARK`].
+    /// CSS rules that replace the colours of [`Theme::LIGHT`] by those of [`Theme::DARK`] on dark
+    /// pages.
     pub(super) fn css() -> String {
         let pairs = Self::LIGHT.colors().zip(Self::DARK.colors());
         let rules = pairs.map(|(light, dark)| {
