@@ -1,4 +1,4 @@
-//! `sdfc chart`: compares all ray methods with the oracle.
+//! `sdfc chart` for one scene: compares all ray methods with the oracle.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -8,7 +8,6 @@ use sdfc_measure::chart::{Chart as Results, Font, Row, Theme, png, svg};
 use sdfc_measure::{ChartOptions, OracleOptions, Quantiles, TruthStore};
 use sdfc_render::Gpu;
 
-use super::charts;
 use crate::args::{Cache, Chart};
 use crate::cache::TruthFolder;
 use crate::console::Console;
@@ -18,23 +17,12 @@ use crate::output::{self, Output};
 /// The method that the others are compared with.
 const AUTO: &str = "auto";
 
-/// Charts scenes, and writes pictures, tables and results.
+/// Charts one scene, prints a table and writes the picture and the results.
 ///
 /// # Errors
 ///
-/// A scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write.
-pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
-    match (&args.files[..], &args.output) {
-        (files, None) if args.table.is_some() => charts::table(args, files, console),
-        (files, Some(folder)) if folder.is_dir() => charts::run(args, files, folder, console),
-        ([file], _) => one(args, file, console),
-        (_, Some(_) | None) => {
-            Err(Failure::Call("several scenes need an existing folder: add -o FOLDER".to_owned()))
-        }
-    }
-}
-
-fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Failure> {
+/// The scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write.
+pub(super) fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Failure> {
     let [picture, json] = [&args.output, &args.json].map(|path| path.as_deref().map(Output::new));
     let paths: Vec<_> =
         [&args.output, &args.json].into_iter().filter_map(|path| path.as_deref()).collect();

@@ -1,4 +1,4 @@
-//! `sdfc chart -o FOLDER`: charts of several scenes, and a page that lists them.
+//! `sdfc chart`: charts of one scene or several, and a page that lists them.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use sdfc_measure::Quantiles;
 use sdfc_measure::chart::{Chart as Results, Row};
 
-use super::chart::{Form, charted, drawn, outdone, statistic};
+use super::chart::{Form, charted, drawn, one, outdone, statistic};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -15,12 +15,28 @@ use crate::output::Output;
 /// The first line of a page of charts.
 const TITLE: &str = "# Charts\n";
 
+/// Charts scenes, and writes pictures, tables and results.
+///
+/// # Errors
+///
+/// A scene cannot be read, has errors or draws nothing; the machine has no GPU, or cannot write.
+pub fn run(args: &Chart, console: &Console) -> Result<(), Failure> {
+    match (&args.files[..], &args.output) {
+        (files, None) if args.table.is_some() => table(args, files, console),
+        (files, Some(folder)) if folder.is_dir() => folder_of_charts(args, files, folder, console),
+        ([file], _) => one(args, file, console),
+        (_, Some(_) | None) => {
+            Err(Failure::Call("several scenes need an existing folder: add -o FOLDER".to_owned()))
+        }
+    }
+}
+
 /// Writes `NAME.svg`, `NAME.png` and `NAME.json` for each scene, and `README.md`, into a folder.
 ///
 /// # Errors
 ///
 /// Those of one chart. Files that were already written stay.
-pub fn run(
+fn folder_of_charts(
     args: &Chart,
     files: &[PathBuf],
     folder: &Path,
@@ -79,7 +95,7 @@ fn own_page(path: &Path) -> Result<(), Failure> {
 /// # Errors
 ///
 /// Those of one chart. Then nothing is written.
-pub fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), Failure> {
+fn table(args: &Chart, files: &[PathBuf], console: &Console) -> Result<(), Failure> {
     let Some(output) = args.table.as_deref().map(Output::new) else { return Ok(()) };
     output.check()?;
     let mut charts = Vec::new();

@@ -1,8 +1,8 @@
 //! The commands, one file each.
 
 pub mod bench;
-pub mod chart;
-mod charts;
+mod chart;
+pub mod charts;
 pub mod check;
 pub mod compile;
 pub mod doc;

@@ -2,7 +2,7 @@
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Ternary, Unary};
 
-use super::Inexpressible;
+use crate::baseline::Inexpressible;
 
 /// A length below this is taken for it where a vector is divided by its own.
 const TINY: f64 = 1e-30;
