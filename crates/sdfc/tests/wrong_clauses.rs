@@ -1,4 +1,5 @@
-//! Scenes whose fields lie: `check` says so at the place. What samples do not find, the chart's figures show: `lying`.
+//! Scenes with wrong clauses: `check` reports them. The test `uncertified` of `sdfc-measure` has those
+//! that samples do not find.
 
 use sdfc::{Compiler, Diagnostic, Severity};
 
