@@ -63,7 +63,7 @@ fn no_clause_of_the_library_is_refuted() {
 }
 
 #[test]
-fn what_no_constant_covers_is_a_warning_with_its_reason() {
+fn a_field_without_a_constant_is_a_warning_with_its_reason() {
     let found = findings("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
     let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no bounds limit it; state \
          `lipschitz`, or finite `bounds`";
@@ -75,11 +75,11 @@ fn what_no_constant_covers_is_a_warning_with_its_reason() {
 }
 
 #[test]
-fn an_operator_that_wants_a_distance_warns_of_a_bound() {
+fn an_operator_that_needs_a_distance_warns_about_a_bound() {
     let blend = "let a = union(sphere(1), box(1), blend: smooth(0.2))";
     let found = findings(&format!("{blend}\na\n  .round(0.1)"));
-    let message =
-        "`round` of a field that is only a bound: its distance from the surface will be uneven";
+    let message = "`round` is applied to a field that is only a bound: the distance between the \
+                   surfaces will vary";
     assert_eq!(found, [("W0601", 2, message.to_owned())]);
     // Outside a hard union is exact, an intersection inside.
     assert_eq!(codes("union(sphere(1), box(1)).round(0.1)"), []);
