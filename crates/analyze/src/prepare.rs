@@ -52,9 +52,11 @@ pub fn prepare_with(
     origin: [f64; 3],
     strategy: LoopStrategy,
 ) -> Result<Prepared, ExpandError> {
+    // The passes turn this copy of the scene's graph into the graph of the flat program.
+    let program_graph = scene.graph.clone();
     let mut program = Program {
         origin,
-        graph: scene.graph.clone(),
+        graph: program_graph,
         params: scene.params.clone(),
         settings: scene.settings.clone(),
         ..Program::default()

@@ -196,11 +196,26 @@ impl Graph {
             return id;
         }
         let facts = self.facts_of(&node);
+        self.insert(node, facts, half)
+    }
+
+    /// Adds a node that is known to be new.
+    fn insert(&mut self, node: Node, facts: Facts, half: u32) -> NodeId {
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.facts.push(facts);
         self.ids.insert_unique(whole_hash(half), (half, id), |&(half, _)| whole_hash(half));
         id
+    }
+
+    /// Adds a node that is known to be new, with the properties of a node of another graph.
+    pub(crate) fn adopt(&mut self, node: Node, other: &Self, id: NodeId) -> NodeId {
+        self.insert(node, other.facts[id.index()], half_hash_of(&node))
+    }
+
+    /// Adds a claim about a node as it is.
+    pub(crate) fn adopt_claim(&mut self, node: NodeId, claim: LipschitzClaim) {
+        self.claims.insert(node, claim);
     }
 
     fn facts_of(&self, node: &Node) -> Facts {

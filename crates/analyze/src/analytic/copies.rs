@@ -47,12 +47,14 @@ pub enum CopiesObstacle {
 
 /// The reason why the clause `copies` of a shape has no effect; `None` if it has one, or is not
 /// stated.
-pub fn copies_obstacle(graph: &mut Graph, shape: ShapeId) -> Option<CopiesObstacle> {
+pub fn copies_obstacle(graph: &Graph, shape: ShapeId) -> Option<CopiesObstacle> {
     let Shape { contract, dim, .. } = graph.shape(shape);
     if !contract.copies || *dim != Dim::Three {
         return None;
     }
-    split_copies(graph, shape).err()
+    let mut extract = graph.extract(&[], &[shape]);
+    let shape = extract.shape(shape)?;
+    split_copies(&mut extract.graph, shape).err()
 }
 
 /// Takes the formula of a shape with the clause `copies` apart.

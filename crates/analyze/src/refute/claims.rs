@@ -40,17 +40,26 @@ pub fn refute_lipschitz(
     value: NodeId,
     claim: &LipschitzClaim,
 ) -> Option<LipschitzViolation> {
-    let graph = &mut scene.graph.clone();
+    let graph = &scene.graph;
     if graph.levels(value) != 1 || graph.loops_around(value) > 0 {
         return None;
     }
     let shapes = callers(graph, scene.root, value);
     let dim = graph.shape(*shapes.first()?).dim;
-    let tape = call_tape(graph, dim, value, &claim.arguments)?;
+    let nodes = [&[value, claim.lipschitz], &claim.arguments[..]].concat();
+    let mut extract = graph.extract(&nodes, &shapes);
+    let value = extract.node(value)?;
+    let constant = extract.node(claim.lipschitz)?;
+    let arguments: Vec<NodeId> =
+        claim.arguments.iter().map(|&id| extract.node(id)).collect::<Option<_>>()?;
+    let shapes: Vec<ShapeId> =
+        shapes.into_iter().map(|id| extract.shape(id)).collect::<Option<_>>()?;
+    let graph = &mut extract.graph;
+    let tape = call_tape(graph, dim, value, &arguments)?;
     let mut bounds = Bounds::new(&scene.params);
     let corners: Vec<[NodeId; 2]> = shapes.iter().map(|&shape| bounds.of(graph, shape)).collect();
     frames(&scene.params).into_iter().find_map(|(params, frame)| {
-        let constant = evaluate_frame(graph, &[claim.lipschitz], &frame).first()?[0];
+        let constant = evaluate_frame(graph, &[constant], &frame).first()?[0];
         corners.iter().find_map(|corners| {
             let ends = evaluate_frame(graph, corners, &frame);
             let window = [ends.first()?, ends.get(1)?].map(|end| [end[0], end[1], end[2]]);

@@ -8,14 +8,14 @@
 //! as it is meant: for children that keep the same promise.
 
 use sdfc_graph::eval::FrameValues;
-use sdfc_graph::{Bounds, Graph, Scene, ShapeId};
+use sdfc_graph::{Bounds, Graph, Param, Scene, ShapeId};
 
 use crate::certify::promise::Promise;
 use crate::certify::quality::{Qualities, Stated};
-use crate::refute::copies::{CopiesViolation, refute_copies};
+use crate::refute::copies::{CopiesViolation, copies_violation};
 use crate::refute::frames::{ParamValues, frames};
 use crate::refute::probe::Probe;
-use crate::refute::rays::{RayViolation, refute_intersect};
+use crate::refute::rays::{RayViolation, intersect_violation};
 
 /// Relative error that intervals along rays may have.
 const RAY_ROUNDING: f64 = 1e-8;
@@ -68,52 +68,63 @@ pub enum Clause {
 /// The budget is about ten thousand evaluations for each shape. Shapes whose arguments depend on a
 /// point, and fields that do not expand, are skipped.
 pub fn refute(scene: &Scene, shapes: &[ShapeId]) -> Vec<Violation> {
-    let mut graph = scene.graph.clone();
-    let mut bounds = Bounds::new(&scene.params);
-    let mut found = Vec::new();
-    for &shape in shapes.iter().filter(|&&shape| scene.graph.shape(shape).level == 0) {
-        let stated =
-            Qualities::of_scene(&mut graph, shape, &scene.params).stated(&mut graph, shape);
-        let refuted = refuted_hits(scene, shape).or_else(|| refuted_copies(scene, shape));
-        if let Some(refuted) = refuted {
-            found.push(refuted);
-            continue;
-        }
-        if stated.is_empty() {
-            continue;
-        }
-        let corners = bounds.of(&mut graph, shape);
-        let refuted = frames(&scene.params).into_iter().find_map(|(params, frame)| {
-            let probe = Probe::new(&mut graph, shape, corners, &frame)?;
-            let fault = first_fault(&graph, &stated, probe, &frame)?;
-            Some(Violation {
-                shape,
-                clause: fault.clause,
-                at: fault.at,
-                field: fault.field,
-                params,
-            })
-        });
-        found.extend(refuted);
-    }
-    found
+    let is_fixed = |&&shape: &&ShapeId| scene.graph.shape(shape).level == 0;
+    let shapes = shapes.iter().filter(is_fixed);
+    shapes.filter_map(|&shape| violation(scene, shape)).collect()
+}
+
+/// A violated clause of one shape.
+fn violation(scene: &Scene, shape: ShapeId) -> Option<Violation> {
+    let mut extract = scene.graph.extract(&[], &[shape]);
+    let copy = extract.shape(shape)?;
+    let (graph, params) = (&mut extract.graph, &scene.params[..]);
+    let stated = Qualities::of_scene(graph, copy, params).stated(graph, copy);
+    let (fault, params) = intersect_fault(graph, params, copy)
+        .or_else(|| copies_fault(graph, params, copy))
+        .or_else(|| field_fault(graph, params, copy, &stated))?;
+    Some(Violation { shape, clause: fault.clause, at: fault.at, field: fault.field, params })
 }
 
 /// A ray with wrong intervals.
-fn refuted_hits(scene: &Scene, shape: ShapeId) -> Option<Violation> {
-    frames(&scene.params).into_iter().find_map(|(params, frame)| {
-        let fault = refute_intersect::<f64>(scene, shape, &frame, RAY_ROUNDING)?;
+fn intersect_fault(
+    graph: &mut Graph,
+    params: &[Param],
+    shape: ShapeId,
+) -> Option<(Fault, ParamValues)> {
+    frames(params).into_iter().find_map(|(values, frame)| {
+        let fault = intersect_violation::<f64>(graph, params, shape, &frame, RAY_ROUNDING)?;
         let (at, field) = (fault.at().to_vec(), fault.field);
-        Some(Violation { shape, clause: Clause::Intersect(fault), at, field, params })
+        Some((Fault { clause: Clause::Intersect(fault), at, field }, values))
     })
 }
 
 /// A ball that contains more than the copies sampled at its centre.
-fn refuted_copies(scene: &Scene, shape: ShapeId) -> Option<Violation> {
-    frames(&scene.params).into_iter().find_map(|(params, frame)| {
-        let fault = refute_copies(scene, shape, &frame, 1.0)?;
+fn copies_fault(
+    graph: &mut Graph,
+    params: &[Param],
+    shape: ShapeId,
+) -> Option<(Fault, ParamValues)> {
+    frames(params).into_iter().find_map(|(values, frame)| {
+        let fault = copies_violation(graph, params, shape, &frame, 1.0)?;
         let (at, field) = (fault.to.to_vec(), fault.field);
-        Some(Violation { shape, clause: Clause::Copies(fault), at, field, params })
+        Some((Fault { clause: Clause::Copies(fault), at, field }, values))
+    })
+}
+
+/// A point at which a clause on bounds, the constant or distances fails.
+fn field_fault(
+    graph: &mut Graph,
+    params: &[Param],
+    shape: ShapeId,
+    stated: &Stated,
+) -> Option<(Fault, ParamValues)> {
+    if stated.is_empty() {
+        return None;
+    }
+    let corners = Bounds::new(params).of(graph, shape);
+    frames(params).into_iter().find_map(|(values, frame)| {
+        let probe = Probe::new(graph, shape, corners, &frame)?;
+        Some((first_fault(graph, stated, probe, &frame)?, values))
     })
 }
 

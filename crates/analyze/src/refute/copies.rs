@@ -6,7 +6,7 @@
 //! at that point.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
-use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Scene, ShapeId};
+use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
 use crate::analytic::copies::{CopySample, split_copies};
 use crate::refute::probe::Random;
@@ -46,12 +46,24 @@ pub fn refute_copies(
     frame: &FrameValues,
     radius_factor: f64,
 ) -> Option<CopiesViolation> {
-    let stated = scene.graph.shape(shape);
+    let mut extract = scene.graph.extract(&[], &[shape]);
+    let shape = extract.shape(shape)?;
+    copies_violation(&mut extract.graph, &scene.params, shape, frame, radius_factor)
+}
+
+/// As [`refute_copies`], in a graph to which nodes may be added.
+pub(super) fn copies_violation(
+    graph: &mut Graph,
+    params: &[Param],
+    shape: ShapeId,
+    frame: &FrameValues,
+    radius_factor: f64,
+) -> Option<CopiesViolation> {
+    let stated = graph.shape(shape);
     if !stated.contract.copies || stated.dim != Dim::Three || stated.level > 0 {
         return None;
     }
-    let graph = &mut scene.graph.clone();
-    let corners = Bounds::new(&scene.params).of(graph, shape);
+    let corners = Bounds::new(params).of(graph, shape);
     let [around, field] = [ball_tape(graph, shape)?, field(graph, shape)?];
     let ends = evaluate_frame(graph, &corners, frame);
     let mut sampler = Sampler {

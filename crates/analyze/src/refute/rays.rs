@@ -5,7 +5,7 @@
 //! outside of them not negative. At their ends it must be 0.
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Tape};
-use sdfc_graph::{Bounds, Dim, Expander, NodeId, Scene, ShapeId};
+use sdfc_graph::{Bounds, Dim, Expander, Graph, NodeId, Param, Scene, ShapeId};
 
 use crate::refute::probe::Random;
 
@@ -47,12 +47,24 @@ pub fn refute_intersect<N: Number + Into<f64>>(
     frame: &FrameValues,
     rounding: f64,
 ) -> Option<RayViolation> {
-    let stated = scene.graph.shape(shape).intersect.clone();
+    let mut extract = scene.graph.extract(&[], &[shape]);
+    let shape = extract.shape(shape)?;
+    intersect_violation::<N>(&mut extract.graph, &scene.params, shape, frame, rounding)
+}
+
+/// As [`refute_intersect`], in a graph to which nodes may be added.
+pub(super) fn intersect_violation<N: Number + Into<f64>>(
+    graph: &mut Graph,
+    params: &[Param],
+    shape: ShapeId,
+    frame: &FrameValues,
+    rounding: f64,
+) -> Option<RayViolation> {
+    let stated = graph.shape(shape).intersect.clone();
     if stated.is_empty() {
         return None;
     }
-    let graph = &mut scene.graph.clone();
-    let corners = Bounds::new(&scene.params).of(graph, shape);
+    let corners = Bounds::new(params).of(graph, shape);
     let rays = [0, 1].map(|level| graph.point(level, Dim::Three));
     let mut expander = Expander::new();
     let distance = expander.field(graph, shape, rays[0]).ok()?;

@@ -74,7 +74,10 @@ fn prefers_loops(
     if operations <= limit || operations > LIMIT_WITHOUT_LISTS {
         return (operations > limit, limit);
     }
-    let mut trial = graph.clone();
+    // The number of loops is only known once they are built, which happens on a copy of the field.
+    let trial = graph.extract(&[distance], &[]);
+    let Some(distance) = trial.node(distance) else { return (false, limit) };
+    let mut trial = trial.graph;
     let folded = fold_transforms(&mut trial, &[distance]).roots;
     let roots = reroll(&mut trial, &folded).0;
     let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
