@@ -13,9 +13,11 @@ pub(crate) struct DerivedBounds {
 impl DerivedBounds {
     /// Derives the bounds of a scene, or returns `None` if it draws nothing.
     pub(crate) fn of(scene: &Scene) -> Option<Self> {
-        let mut graph = scene.graph.clone();
-        let corners = bounds(&mut graph, scene.root?, &scene.params);
-        Some(Self { graph, corners })
+        let root = scene.root?;
+        let mut extract = scene.graph.extract(&[], &[root]);
+        let root = extract.shape(root)?;
+        let corners = bounds(&mut extract.graph, root, &scene.params);
+        Some(Self { graph: extract.graph, corners })
     }
 
     /// Returns the corners at a frame, infinite where the scene has no limit.

@@ -2,7 +2,7 @@
 
 use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_graph::eval::evaluate_frame;
-use sdfc_graph::{Dim, NodeId};
+use sdfc_graph::{Dim, NodeId, ShapeId};
 use sdfc_lang::Site;
 
 use crate::explanation::{Bounds, QualityRow};
@@ -15,15 +15,18 @@ impl Scene {
         let sites: Vec<(&Site, &ShapeReport)> =
             self.sites().iter().filter_map(|site| Some((site, report(site)?))).collect();
 
-        let mut graph = self.graph().graph.clone();
+        let graph = &self.graph().graph;
+        let shapes: Vec<ShapeId> = sites.iter().map(|(site, _)| site.shape).collect();
+        let mut extract = graph.extract(&[], &shapes);
         let mut derived = sdfc_graph::Bounds::new(self.params());
         let mut corners: Vec<NodeId> = Vec::new();
         let mut reaches = Vec::new();
-        for (site, _) in &sites {
-            corners.extend(derived.of(&mut graph, site.shape));
-            reaches.push(derived.max_offset(&mut graph, site.shape));
+        for shape in shapes {
+            let Some(shape) = extract.shape(shape) else { continue };
+            corners.extend(derived.of(&mut extract.graph, shape));
+            reaches.push(derived.max_offset(&mut extract.graph, shape));
         }
-        let corners = evaluate_frame(&graph, &corners, &self.defaults());
+        let corners = evaluate_frame(&extract.graph, &corners, &self.defaults());
         let (corners, _) = corners.as_chunks::<2>();
 
         let rows = sites.iter().zip(corners).zip(reaches);

@@ -51,13 +51,11 @@ pub(crate) fn warnings(
 /// Warns about a clause `copies` that helps no instance of its declaration (W0606).
 fn idle(elaborated: &Elaborated, declared: &Declared) -> Option<Diagnostic> {
     let span = declared.copies?;
-    let mut graph = elaborated.scene.graph.clone();
-    let all = graph.shape_ids();
-    let instances: Vec<ShapeId> =
-        all.filter(|&id| graph.shape(id).definition == declared.definition).collect();
+    let graph = &elaborated.scene.graph;
+    let is_instance = |&id: &ShapeId| graph.shape(id).definition == declared.definition;
     let mut reason = None;
-    for shape in instances {
-        reason = Some(copies_obstacle(&mut graph, shape)?);
+    for shape in graph.shape_ids().filter(is_instance) {
+        reason = Some(copies_obstacle(graph, shape)?);
     }
     let reason = match reason? {
         CopiesObstacle::NotASample => {

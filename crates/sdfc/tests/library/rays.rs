@@ -24,7 +24,7 @@ pub const FARTHER: &str = "copies said of balls a quarter larger";
 
 /// A point that refutes what a shape states of its copies, if it said so of balls `farther` times as large; or why the clause is none.
 pub fn copies_fault(scene: &Scene, id: ShapeId, farther: f64) -> Option<String> {
-    let idle = copies_obstacle(&mut scene.graph.clone(), id);
+    let idle = copies_obstacle(&scene.graph, id);
     let fault = refute_copies(scene, id, &FrameValues::defaults(&scene.params), farther);
     let idle = idle.map(|reason| format!("copies does nothing: {reason:?}"));
     idle.or_else(|| fault.map(|fault| format!("copies: {fault:?}")))

@@ -148,24 +148,27 @@ impl ShapeIndex {
 
 /// The material fields of a scene in which each shape's material holds digits of its number.
 fn pass_of(scene: &Scene, shapes: &[ShapeId], from: u32) -> Option<Tape> {
-    let mut graph = scene.graph().graph.clone();
     let root = scene.graph().root?;
+    let mut extract = scene.graph().graph.extract(&[], &[root]);
+    let root = extract.shape(root)?;
     let numbers: HashMap<ShapeId, usize> = shapes.iter().copied().zip(1..).collect();
     for shape in scene.report().shapes.iter().map(|report| report.shape) {
-        let (formula, is_leaf) =
-            (graph.shape(shape).formula, graph.shape(shape).children.is_empty());
+        let Some(copy) = extract.shape(shape) else { continue };
+        let graph = &mut extract.graph;
+        let (formula, is_leaf) = (graph.shape(copy).formula, graph.shape(copy).children.is_empty());
         let rule = match numbers.get(&shape) {
             None if !is_leaf => MaterialRule::Weighted(formula),
-            None => digits_material(&mut graph, 0),
-            Some(number) => digits_material(&mut graph, *number >> from),
+            None => digits_material(graph, 0),
+            Some(number) => digits_material(graph, *number >> from),
         };
-        graph.set_material(shape, rule);
+        graph.set_material(copy, rule);
     }
+    let graph = &mut extract.graph;
     let own = graph.point(0, Dim::Three);
     let origin = graph.constant(Dim::Three.point_type(), &scene.drawn().origin);
     let point = graph.add(own, origin);
-    let fields = Expander::new().material(&mut graph, root, point).ok()?;
-    Tape::new(&graph, &fields).ok()
+    let fields = Expander::new().material(graph, root, point).ok()?;
+    Tape::new(graph, &fields).ok()
 }
 
 /// A material whose lanes are the digits of a number, the lowest first.
