@@ -25,7 +25,7 @@ use crate::shapes::minimum;
 pub struct Prepared {
     /// The flat program.
     pub program: Program,
-    /// What the passes found and decided.
+    /// The findings and decisions of the passes.
     pub report: Report,
 }
 

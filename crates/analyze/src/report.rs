@@ -1,4 +1,4 @@
-//! What the passes report about a scene and its shapes.
+//! The report of the passes on a scene and its shapes.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Graph, ShapeId};
@@ -12,7 +12,7 @@ use crate::cost::Cost;
 use crate::reroll::rewrite::RerolledLoop;
 use crate::shapes::shapes_below;
 
-/// What the passes found and decided.
+/// The findings and decisions of the passes.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// The loops that stand for similar operands; empty if the field is unrolled.

@@ -95,12 +95,12 @@ fn boxes(
 /// analytic operands and of the marched operands, of which the last two may be missing.
 pub(crate) fn ray_functions(operands: &Operands, fields: &[NodeId], queries: RayQueries) -> Rays {
     let RayQueries { hits, clip, copies } = queries;
-    let (whole, parts) = (fields.first().copied(), fields.get(1..).unwrap_or_default());
+    let (whole, rest) = (fields.first().copied(), fields.get(1..).unwrap_or_default());
     match (operands.analytic.is_empty(), operands.marched.is_empty()) {
         (true, _) => Rays { first_hit: hits, analytic: None, marched: whole, clip, copies },
         (false, is_all) => {
-            let marched = parts.get(1).copied().filter(|_| !is_all);
-            Rays { first_hit: hits, analytic: parts.first().copied(), marched, clip, copies }
+            let marched = rest.get(1).copied().filter(|_| !is_all);
+            Rays { first_hit: hits, analytic: rest.first().copied(), marched, clip, copies }
         }
     }
 }

@@ -9,7 +9,7 @@ use sdfc_graph::{Binary, Graph, Node, NodeId, ShapeId, Stage, Ternary, Type, Una
 use crate::certify::maps::Maps;
 use crate::certify::quality::{is_fixed_shape, scaled_sample};
 
-/// How a node of a formula passes on the values of its operands.
+/// The kind of a node in the descent, with its operands.
 pub(crate) enum Form {
     /// The minimum of two operands.
     Min(NodeId, NodeId),

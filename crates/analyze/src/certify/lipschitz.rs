@@ -85,17 +85,17 @@ impl Slopes {
         level: u16,
         shapes: &dyn Fn(ShapeId) -> Constant,
     ) -> Result<Vec<NodeId>, Reason> {
-        let repeated = graph.loop_at(id).clone();
-        if repeated.condition.is_some() {
+        let looped = graph.loop_at(id).clone();
+        if looped.condition.is_some() {
             return Err(Reason::Jump("while"));
         }
-        let start = repeated.init.iter().map(|&part| self.constant(part));
+        let start = looped.init.iter().map(|&part| self.constant(part));
         let mut known: Vec<NodeId> = start.collect::<Result<_, _>>()?;
         let body = graph.loop_body(id);
-        for _ in 0..repeated.max_iterations.min(MAX_ITERATIONS) {
+        for _ in 0..looped.max_iterations.min(MAX_ITERATIONS) {
             for &node in &body.step {
-                if let Node::Variable(_, place, _) = graph.node(node) {
-                    let constant = match place {
+                if let Node::Variable(_, variable, _) = graph.node(node) {
+                    let constant = match variable {
                         // The index is the same at every point.
                         LoopVar::Index => graph.number(0.0),
                         LoopVar::State(position) => known[usize::from(position)],
@@ -105,7 +105,7 @@ impl Slopes {
                     self.visit(graph, node, level, shapes);
                 }
             }
-            let next = repeated.step.iter().map(|&part| self.constant(part));
+            let next = looped.step.iter().map(|&part| self.constant(part));
             let next: Vec<NodeId> = next.collect::<Result<_, _>>()?;
             for node in &body.step {
                 self.constants.remove(node);
@@ -117,7 +117,7 @@ impl Slopes {
             }
             known = raised;
         }
-        if repeated.max_iterations <= MAX_ITERATIONS {
+        if looped.max_iterations <= MAX_ITERATIONS {
             Ok(known)
         } else {
             Err(Reason::Unbounded("iterate"))

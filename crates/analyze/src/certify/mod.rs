@@ -1,4 +1,4 @@
-//! What each shape promises about its field, and the conservative field that rays march.
+//! The promises and constants of shapes, and the conservative field that rays march.
 
 pub(crate) mod affine;
 pub(crate) mod components;

@@ -20,12 +20,14 @@ pub(super) fn with_annotated_arguments(graph: &Graph, roots: &[NodeId]) -> Vec<N
     }
 }
 
-/// How often the most frequent lane occurs: `v.xxy` changes by up to sqrt(2) times as much as `v`.
+/// The number of occurrences of the most frequent lane: `v.xxy` changes by up to sqrt(2) times as
+/// much as `v`.
 pub(super) fn max_repeats(lanes: &[u8]) -> f64 {
     let count = |lane: &u8| lanes.iter().filter(|other| *other == lane).count();
     lanes.iter().map(count).max().unwrap_or(1) as f64
 }
 
+/// True if a node is the constant 0.
 pub(super) fn is_zero(graph: &Graph, node: NodeId) -> bool {
     graph.as_number(node) == Some(0.0)
 }
@@ -54,6 +56,7 @@ pub(super) fn largest_lane(graph: &mut Graph, node: NodeId) -> NodeId {
     largest
 }
 
+/// The square root of the sum of the squares.
 pub(super) fn hypotenuse(graph: &mut Graph, parts: &[NodeId]) -> NodeId {
     let varying: Vec<NodeId> = parts.iter().copied().filter(|&x| !is_zero(graph, x)).collect();
     match varying[..] {

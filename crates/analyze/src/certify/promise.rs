@@ -3,7 +3,7 @@
 use sdfc_graph::eval::Interval;
 use sdfc_graph::{Contract, Graph, Node, NodeId, SidePromise};
 
-/// What the field promises about |f| on one side of the surface, from weak to strong.
+/// A promise about |f| on one side of the surface, from weak to strong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Promise {
     /// Nothing.
@@ -27,9 +27,9 @@ impl std::fmt::Display for Promise {
 /// The promises on both sides of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sides {
-    /// Where the field is positive.
+    /// The promise where the field is positive.
     pub outside: Promise,
-    /// Where the field is negative.
+    /// The promise where the field is negative.
     pub inside: Promise,
 }
 

@@ -1,4 +1,4 @@
-//! What each shape's field promises outside and inside, and its Lipschitz constant.
+//! The promises of each shape's field outside and inside, and its Lipschitz constant.
 //!
 //! The two facts are independent: `|f| <= distance` lets a ray step by `f`, and "L-Lipschitz"
 //! limits how fast `f` changes. `exact` implies both, and a constant of at most 1 implies `bound`
@@ -29,7 +29,7 @@ pub struct Quality {
     pub local_bounds: Option<[NodeId; 2]>,
 }
 
-/// What a shape's clauses state, given the promises that its children keep.
+/// The statements of a shape's clauses, given the promises that its children keep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stated {
     /// The promises, if all children keep the same ones.
@@ -105,7 +105,7 @@ impl Qualities {
             .map_err(|_| Reason::Child(graph.shape(child).definition.clone()))
     }
 
-    /// What the clauses of a shape of the scene state.
+    /// The statements of the clauses of a shape of the scene.
     pub(crate) fn stated(&self, graph: &mut Graph, shape: ShapeId) -> Stated {
         let contract = graph.shape(shape).contract;
         let children = graph.shape(shape).children.clone();
@@ -119,7 +119,7 @@ impl Qualities {
         Stated { sides, lipschitz, bounds: contract.bounds.is_some() }
     }
 
-    /// What the clauses state about the two sides, given the promises of the children.
+    /// The promises of the clauses for the two sides, given the promises of the children.
     fn stated_sides(&self, graph: &Graph, contract: &Contract, children: &[ShapeId]) -> Sides {
         let all_at_least = |promise: Promise| {
             children.iter().all(|child| {

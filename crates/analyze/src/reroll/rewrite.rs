@@ -84,13 +84,14 @@ struct Plan {
     parts: Vec<Part>,
 }
 
+/// A part of a plan.
 #[derive(Debug)]
 enum Part {
     /// An operand of a minimum, or the first operand of a blend, unrolled.
     Value(NodeId),
     /// A step of a blend, unrolled.
     Step { step: NodeId, before: NodeId, operand: NodeId },
-    /// A loop: the value after an iteration, as [`template`] formulas it, and its skip condition.
+    /// A loop: the value after an iteration, built by [`template`], and its skip condition.
     Loop { next: NodeId, skip: Option<SkipCondition>, operands: usize, blended: bool },
 }
 
@@ -106,6 +107,7 @@ impl Part {
     }
 }
 
+/// The pass, with the plans that it has made.
 struct Rerolling<'g> {
     graph: &'g mut Graph,
     keys: ShapeKeys,

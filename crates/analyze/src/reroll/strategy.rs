@@ -6,7 +6,7 @@ use crate::cost::cost;
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::rewrite::reroll;
 
-/// How the similar operands of a scene become code.
+/// The strategy by which the similar operands of a scene become code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopStrategy {
     /// [`LoopStrategy::Looped`] if the field has more operations than

@@ -279,8 +279,8 @@ impl Merging<'_> {
                 None => rows.push(vec![number]),
             }
         }
-        let round = self.graph.variable(0, LoopVar::Index, Type::Scalar);
-        let mut reads = vec![round; self.columns.len()];
+        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
+        let mut reads = vec![index; self.columns.len()];
         for row in rows {
             let instances = self.columns[row[0]].len();
             let element = |instance: usize| {
@@ -291,7 +291,7 @@ impl Merging<'_> {
                 Const::new(Type::Vec4, &lanes.collect::<Vec<f64>>())
             };
             let elements = (0..instances).map(element).collect();
-            let element = self.graph.element(Table { ty: Type::Vec4, elements }, round);
+            let element = self.graph.element(Table { ty: Type::Vec4, elements }, index);
             let mut lane = 0u8;
             for number in row {
                 let width = self.columns[number][0].ty().width() as u8;
