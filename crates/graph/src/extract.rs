@@ -302,7 +302,7 @@ mod tests {
         let copy = extract.node(field).expect("the field was extracted");
         assert_eq!(dump(&extract.graph, &[("field", copy)]), dump(&graph, &[("field", field)]));
         assert_eq!(extract.node(unused), None);
-        assert_eq!(extract.graph.len() + 1, graph.len());
+        assert!(extract.graph.len() < graph.len());
     }
 
     #[test]
