@@ -12,7 +12,7 @@ pub fn wrapped(page: &str) -> String {
     let mut is_code = false;
     for line in page.lines() {
         is_code ^= line.starts_with("```");
-        let is_prose = !is_code && !line.starts_with(['|', '#', '<', '`']);
+        let is_prose = !is_code && !line.starts_with(['|', '#', '<']) && !line.starts_with("```");
         if is_prose && line.chars().count() > WIDTH {
             wrap(line, &mut out);
         } else {

@@ -272,7 +272,7 @@ impl Rerolling<'_> {
                         condition: None,
                         init: start,
                         step: next,
-                        skip: skip,
+                        skip,
                     };
                     let result = self.graph.add_loop(repeated)[0];
                     match value.filter(|_| !blended) {

@@ -83,13 +83,11 @@ fn gpu(console: &Console) -> Result<Gpu, Failure> {
 
 /// Converts an error of a measurement.
 fn measuring(error: &MeasureError, console: &Console) -> Failure {
-    match error {
-        MeasureError::Scene(error) => lowering(error, console),
-        other => {
-            console.error(&other.to_string());
-            Failure::Scene
-        }
+    if let MeasureError::Scene(error) = error {
+        return lowering(error, console);
     }
+    console.error(&error.to_string());
+    Failure::Scene
 }
 
 /// Runs `act` on every file, also after one that fails.
