@@ -41,7 +41,7 @@ const MOST_INLINED: [usize; 2] = [5000, 14_000];
 /// A frame that takes longer, in milliseconds, is timed once.
 const LONG: f64 = 10_000.0;
 
-/// Options of [`bench`].
+/// Options of [`bench()`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BenchOptions {

@@ -15,7 +15,7 @@ use crate::metrics::compare;
 use crate::sampler::Sampler;
 use crate::scene::{OracleOptions, operations, oracle, truth};
 
-/// Options of [`chart`].
+/// Options of [`chart()`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ChartOptions {
