@@ -73,7 +73,7 @@ pub fn prepare_with(
 fn flatten(
     program: &mut Program,
     root: ShapeId,
-    painted: bool,
+    has_material: bool,
     strategy: LoopStrategy,
 ) -> Result<Report, ExpandError> {
     let params = program.params.clone();
@@ -96,7 +96,7 @@ fn flatten(
     }
     let mut flat = fields(graph, field.distance, &operands);
     let count = flat.len();
-    if painted {
+    if has_material {
         flat.extend(expander.material(graph, root, point)?);
     }
     let folded = fold_transforms(graph, &flat);

@@ -120,7 +120,8 @@ fn declare_buffer(module: &mut Module, binding: ResourceBinding) -> Handle<Globa
         name: Some("lists".to_owned()),
         space: AddressSpace::Storage { access: StorageAccess::LOAD },
         binding: Some(binding),
-        ty: types::value(&mut module.types, Type::Vec4), // of one element, until their number is known
+        // The type of one element, until their number is known.
+        ty: types::value(&mut module.types, Type::Vec4),
         init: None,
         memory_decorations: MemoryDecorations::empty(),
     };

@@ -93,8 +93,8 @@ impl Recorder {
         }
     }
 
-    /// The definitions that do not depend on the point, in order. Afterwards `locations` holds their
-    /// indices in the result.
+    /// The definitions that do not depend on the point, in order. Afterwards `locations` holds
+    /// their indices in the result.
     fn prelude(&self, liveness: &Liveness, locations: &mut [u32]) -> Vec<Definition> {
         let mut prelude = Vec::new();
         for (value, &definition) in self.definitions.iter().enumerate() {
