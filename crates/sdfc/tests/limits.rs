@@ -58,7 +58,7 @@ fn recursion_without_an_end() {
 
 #[test]
 fn work_that_grows_exponentially() {
-    let limit = "10000000 steps";
+    let limit = "10000000 evaluation steps";
     let twice =
         "fn f(n: int) -> number = if n == 0 { 1 } else { f(n - 1) + f(n - 1) }\nsphere(f(60))";
     stopped(twice, "E0406", limit);
@@ -77,9 +77,9 @@ fn shapes_that_grow_exponentially() {
 
 #[test]
 fn sequences() {
-    stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "1000000 are possible");
+    stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "the limit is 1000000");
     let cube = "union(for i in 0..1000: union(for j in 0..1000: union(for k in 0..1000: sphere(i + j + k))))";
-    stopped(cube, "E0406", "10000000 steps");
+    stopped(cube, "E0406", "10000000 evaluation steps");
 }
 
 #[test]
