@@ -1,21 +1,23 @@
-//! How long each stage takes from a scene's text to a validated module. Medians of repeated runs in one process;
-//! run with `cargo bench -p sdfc --bench compile`. The row `library read` is one sphere where nothing was
-//! compiled before: what it takes more than `one sphere` is the reading of the library, and whatever else a
-//! process does only once. Other work on the machine counts in all columns but the last.
+//! Measures how long each stage takes from a scene's source to a validated module, as medians of
+//! repeated runs in one process. Run it with `cargo bench -p sdfc --bench compile`.
+//!
+//! The row `library read` is a single sphere before anything else was compiled. Its difference to
+//! `one sphere` is the time of reading the library, and of everything else that a process does only
+//! once. Other work on the machine counts in all columns but the last.
 
 use cpu_time::ProcessTime;
 use sdfc::{Compiler, Method};
 
-/// Runs of each scene; the first, in which the library is read, is left out.
+/// Runs of each scene, plus a first run, which reads the library and is not counted.
 const RUNS: usize = 21;
-/// The same, of scenes of ten thousand leaves.
+/// The same for scenes of ten thousand leaves.
 const FEW_RUNS: usize = 6;
 
-/// Leaves that are turned too.
+/// Rotated leaves.
 const TURNED: &str = "box([0.2, 0.3, 0.1]).rotate(x: i * 1deg, y: i * 2deg, z: i * 3deg).round(";
 
 fn main() {
-    // `cargo test --benches` passes no `--bench`: then there is nothing to measure.
+    // `cargo test --benches` passes no `--bench`: then nothing is measured.
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -38,7 +40,7 @@ fn main() {
     for (name, text) in &scenes {
         table.push_str(&row(name, median_times(name, text)));
     }
-    // A benchmark is a program of its own; it may print.
+    // A benchmark is a program; it may print.
     #[allow(clippy::print_stdout)]
     {
         print!("{table}");
@@ -53,7 +55,7 @@ fn row(name: &str, times: [f64; 5]) -> String {
     )
 }
 
-/// A scene of so many leaves, moved and turned, joined by a blend.
+/// Returns a scene with this number of leaves, moved and rotated, joined by a blend.
 fn many(leaves: usize, blend: &str) -> String {
     format!(
         "union(for i in 0..{leaves}: sphere(0.1 + 0.05 * sin(7 * i)).translate([3 * sin(i * 12.9898), \

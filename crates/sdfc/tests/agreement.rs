@@ -1,5 +1,5 @@
-//! GPU, CPU in f32 and CPU in f64 see the same surface in every scene under `examples`; the test `library` asks
-//! the same of every entry of the library.
+//! GPU, CPU in f32 and CPU in f64 render the same surface for every scene under `examples`. The
+//! test `library` checks the same for every entry of the library.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 

@@ -1,4 +1,5 @@
-//! Pictures whose rays visit only what can matter to them are those of rays that visit all.
+//! Rays that visit only the parts that can matter to them draw the same picture as rays that visit
+//! all parts.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -13,9 +14,9 @@ use sdfc_render::{
 };
 
 const SIZE: [u32; 2] = [160, 96];
-/// How many parts, few enough for a driver that ends all loops after 65,535 turns.
+/// Number of parts, few enough for a driver that ends all loops after 65,535 iterations.
 const PARTS: usize = 150;
-/// Most of a pixel's width that a hit may be off.
+/// Largest error of a hit's depth, as a fraction of a pixel's width.
 const DEPTH: f32 = 0.1;
 
 const OUTSIDE: &str = "camera(eye: [4, 3.5, 6], target: 0, fov: 40deg)\n";
@@ -75,7 +76,7 @@ fn main() {
                 + "sun(direction: [1, 2, 1], shadow: soft(6))\nambient(strength: 0.2)\n",
         ),
         (
-            "lamps on a floor",
+            "lights on a floor",
             format!("plane(y: -2.5)\n{}{OUTSIDE}", chain("smooth(0.15)"))
                 + "point_light(position: [0.3, 4, 1], strength: 20, shadow: hard)\n\
                    point_light(position: [5, 3, 3], strength: 20, shadow: soft(10))\n",
@@ -98,22 +99,26 @@ fn main() {
         let draw = move || same_picture(&text);
         trials.push(Trial::test(name, draw).with_ignored_flag(without_gpu));
     }
-    let too_few = Trial::test("lists that lack something show", missing_rounds_show);
+    let too_few =
+        Trial::test("incomplete lists change the picture", missing_iterations_change_the_picture);
     trials.push(too_few.with_ignored_flag(without_gpu));
-    let broken = Trial::test("broken tiles, slices and cells show", broken_lists_show);
+    let broken = Trial::test(
+        "broken tiles, slices and cells change the picture",
+        broken_lists_change_the_picture,
+    );
     trials.push(broken.with_ignored_flag(without_gpu));
-    let counted = Trial::test("what is visited is counted", visited_rounds_are_counted);
+    let counted = Trial::test("visited iterations are counted", visited_iterations_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
-    let told = Trial::test("leaves are told where all are evaluated", leaves_are_told);
-    trials.push(told.with_ignored_flag(without_gpu));
+    let leaves = Trial::test("leaves are counted if all are visited", leaves_are_counted);
+    trials.push(leaves.with_ignored_flag(without_gpu));
     let kept = Trial::test("lists of cells are kept until something moves", cells_are_kept);
     trials.push(kept.with_ignored_flag(without_gpu));
-    let small = Trial::test("an adapter that is too small is told by its limit", limits_are_named);
+    let small = Trial::test("a GPU that is too small is reported", limits_are_reported);
     trials.push(small.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-/// Numbers that look irregular.
+/// Returns numbers that look irregular.
 fn number(seed: usize) -> f64 {
     ((seed as f64 * 12.9898).sin() * 43_758.545).fract()
 }
@@ -127,7 +132,7 @@ fn hard() -> String {
     let mut text = String::new();
     for i in 0..PARTS {
         let at = place(i);
-        // LoopStrategy to a String cannot fail.
+        // Writing to a `String` cannot fail.
         let _ = match i % 3 {
             0 => writeln!(text, "sphere(0.2){at}"),
             1 => writeln!(text, "box([0.3, 0.2, 0.4]).rotate(y: {i}deg){at}"),
@@ -137,7 +142,7 @@ fn hard() -> String {
     text
 }
 
-/// Balls as arguments.
+/// Returns balls as arguments of a call.
 fn balls() -> String {
     (0..PARTS)
         .map(|i| format!("sphere({:.3}){},\n", 0.15 + 0.1 * number(i).abs(), place(i)))
@@ -156,7 +161,7 @@ fn scene(text: &str) -> Scene {
     Compiler::new().loops(LoopStrategy::Looped).compile("culled.sdf", text).expect("compiles")
 }
 
-/// A picture by a program, in tiles that begin anywhere.
+/// Draws a program in tiles that need not begin at a multiple of a culling tile.
 fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {
     Ok(frame(scene, program, render_module(program, "auto")?)?.image)
 }
@@ -170,24 +175,24 @@ fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Fail
     Ok(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
 }
 
-/// How many pixels of a scene differ between rays that visit what the program says and such that visit all.
+/// Counts the pixels that differ between the culled program and one that visits everything.
 fn differing(scene: &Scene, culled: &Program) -> Result<(usize, String), Failed> {
     differ(&picture(scene, culled)?, &picture(scene, &whole(culled))?)
 }
 
-/// The same, with all rounds visited.
+/// Returns the same program without culling.
 fn whole(culled: &Program) -> Program {
     Program { cullable_loops: Vec::new(), ..culled.clone() }
 }
 
-/// How many pixels that are no edges differ in color or, by more than a part of a pixel, in depth.
+/// Counts the pixels that are no edges and differ in colour or, by more than `DEPTH`, in depth.
 fn differ(culled: &Image, whole: &Image) -> Result<(usize, String), Failed> {
     let hits = whole.pixels().iter().filter(|pixel| pixel.status == HIT).count();
     if hits < 1000 {
         return Err(format!("only {hits} pixels show something").into());
     }
     let edges = edges(culled).into_iter().zip(edges(whole)).map(|(a, b)| a || b);
-    // Less than a pixel is wide in any scene here, at depth 1 and beyond.
+    // A lower bound on the width of a pixel in any scene here, at depth 1 and beyond.
     let width = 2.0 * 0.0037;
     let pairs = culled.pixels().iter().zip(whole.pixels()).zip(edges);
     let differ = pairs.enumerate().filter(|(_, ((a, b), is_edge))| {
@@ -213,15 +218,15 @@ fn same_picture(text: &str) -> Result<(), Failed> {
     }
 }
 
-/// The test itself: where rounds are left out that matter, pixels differ.
-fn missing_rounds_show() -> Result<(), Failed> {
+/// Checks the test itself: pixels differ if iterations that matter are skipped.
+fn missing_iterations_change_the_picture() -> Result<(), Failed> {
     for text in [hard() + OUTSIDE, chain("smooth(0.15)") + OUTSIDE] {
         let scene = scene(&text);
         let mut program = scene.program().clone();
-        for visit in &mut program.cullable_loops {
+        for cullable in &mut program.cullable_loops {
             let part = program.graph.number(1.0);
             let part = program.graph.splat(Type::Vec3, part);
-            visit.culling_bounds = program.graph.add(visit.culling_bounds, part);
+            cullable.culling_bounds = program.graph.add(cullable.culling_bounds, part);
         }
         let (differing, _) = differing(&scene, &program)?;
         if differing == 0 {
@@ -231,9 +236,9 @@ fn missing_rounds_show() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The tests of pictures: where a tile asks wrong ones of the wider tiles, slices end elsewhere than their lists, or cells are left out,
-/// pixels differ.
-fn broken_lists_show() -> Result<(), Failed> {
+/// Checks the tests of pictures: pixels differ if a tile reads the wrong one of the wider tiles, if
+/// slices do not end where their lists end, or if cells are left out.
+fn broken_lists_change_the_picture() -> Result<(), Failed> {
     let (plain, sunny) = (hard() + OUTSIDE, format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard()));
     let mutants = [
         ("WIDER_BITS", 2, &plain),
@@ -254,14 +259,15 @@ fn broken_lists_show() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Where nothing is left out, each evaluation visits all parts, those for normals too; else far fewer are visited.
-fn visited_rounds_are_counted() -> Result<(), Failed> {
+/// Without culling each evaluation visits all parts, those for normals too. With culling far fewer
+/// are visited.
+fn visited_iterations_are_counted() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
     let mut all = scene.program().clone();
-    for visit in &mut all.cullable_loops {
+    for cullable in &mut all.cullable_loops {
         let near = all.graph.number(-1e3);
         let near = all.graph.splat(Type::Vec3, near);
-        visit.culling_bounds = all.graph.add(visit.culling_bounds, near);
+        cullable.culling_bounds = all.graph.add(cullable.culling_bounds, near);
     }
     let plain = benchmark_module(&all, "sphere", FieldSource::Distance)?;
     let plain = frame(&scene, &all, plain)?.image;
@@ -270,7 +276,7 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
         let normals = if plain.status == HIT { 4 } else { 0 };
         let expected = PARTS as u32 * (plain.evaluations + normals);
         if counted.evaluations != expected {
-            return Err(format!("{} rounds, not {expected}", counted.evaluations).into());
+            return Err(format!("{} iterations, not {expected}", counted.evaluations).into());
         }
     }
     let program = scene.program();
@@ -278,30 +284,34 @@ fn visited_rounds_are_counted() -> Result<(), Failed> {
     let sum = |image: &Image| -> u64 {
         image.pixels().iter().map(|pixel| u64::from(pixel.evaluations)).sum()
     };
-    let (few_rounds, all_rounds) = (sum(&few.image), sum(&counted.image));
-    // What finds them asks for each part at least once.
+    let (few_iterations, all_iterations) = (sum(&few.image), sum(&counted.image));
+    // The culling pass evaluates each part at least once.
     let before = few.culling_evaluations;
-    if few_rounds == 0 || 10 * (few_rounds + before) > all_rounds || before < PARTS as u64 {
-        return Err(format!("{few_rounds} and {before} before of {all_rounds}").into());
+    if few_iterations == 0
+        || 10 * (few_iterations + before) > all_iterations
+        || before < PARTS as u64
+    {
+        return Err(format!("{few_iterations} and {before} before of {all_iterations}").into());
     }
     Ok(())
 }
 
-/// `interval` visits all parts, `sphere` does not and has no count of them.
-fn leaves_are_told() -> Result<(), Failed> {
+/// `interval` visits all parts; `sphere` does not, and has no count of them.
+fn leaves_are_counted() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
-    let told = |method: Method| -> Result<Option<f64>, Failed> {
+    let count = |method: Method| -> Result<Option<f64>, Failed> {
         let options = PictureOptions::new().size([16, 16]).method(method);
         let drawn = scene.render(&options, &mut no_progress)?;
         Ok(drawn.stats.leaf_evals_per_pixel.mean)
     };
-    match (told(Method::Interval)?, told(Method::Sphere)?) {
+    match (count(Method::Interval)?, count(Method::Sphere)?) {
         (Some(_), None) => Ok(()),
-        told => Err(format!("{told:?}").into()),
+        counts => Err(format!("{counts:?}").into()),
     }
 }
 
-/// A second frame finds nothing for the cells, whatever the eye does; one with another param does, and is the picture of that param.
+/// A second frame evaluates nothing for the cells, even if the camera moves. A frame with another
+/// value of the param does, and shows the picture of that value.
 fn cells_are_kept() -> Result<(), Failed> {
     let text = format!("param s: length = 0.2 in 0..1\nplane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard());
     let scene = scene(&text.replace("sphere(0.2)", "sphere(s)"));
@@ -323,7 +333,7 @@ fn cells_are_kept() -> Result<(), Failed> {
     let again = draw(&kept, 0.2, SIZE[0])?;
     let narrower = draw(&kept, 0.2, SIZE[0] / 2)?;
     let moved = draw(&kept, 0.3, SIZE[0])?;
-    // There are 4096 cells of many more parts than a tile's.
+    // There are 4096 cells, each of which has many more parts than a tile.
     let [a, b, c, d] = [&first, &again, &narrower, &moved].map(|frame| frame.culling_evaluations);
     if 2 * b > a || 2 * c > a || d < a / 2 {
         return Err(format!("{a}, {b}, {c} and {d} evaluations before the rays").into());
@@ -332,12 +342,12 @@ fn cells_are_kept() -> Result<(), Failed> {
     let fresh = draw(&pipeline()?, 0.3, SIZE[0])?;
     match (same(&first, &again), same(&moved, &fresh), same(&moved, &first)) {
         (true, true, false) => Ok(()),
-        told => Err(format!("{told:?}").into()),
+        same => Err(format!("{same:?}").into()),
     }
 }
 
-/// 150 parts take 4 or 5 KiB as constants, and their lists more than that.
-fn limits_are_named() -> Result<(), Failed> {
+/// As constants, 150 parts take 4 or 5 KiB; their lists take more.
+fn limits_are_reported() -> Result<(), Failed> {
     let scene = scene(&(hard() + OUTSIDE));
     let program = scene.program();
     for (bytes, part) in [(1 << 10, "the scene's lists"), (6 << 10, "a tile of the picture")] {
@@ -345,9 +355,9 @@ fn limits_are_named() -> Result<(), Failed> {
         let shader = render_module(program, "auto")?;
         let made = Pipeline::new(&gpu, shader, program.uniforms.len());
         let Err(error) = made else { return Err(format!("{bytes} bytes are enough").into()) };
-        let told = error.to_string();
-        if !told.contains(part) || !told.contains("maxStorageBufferBindingSize") {
-            return Err(told.into());
+        let message = error.to_string();
+        if !message.contains(part) || !message.contains("maxStorageBufferBindingSize") {
+            return Err(message.into());
         }
     }
     let gpu = testing::with_storage(1 << 20)?;

@@ -1,18 +1,18 @@
-//! What the analyses and sampling say of a scene, at its own text.
+//! Diagnostics of the analyses and of sampling, with their positions in the scene.
 
 #![allow(clippy::panic, reason = "a test stops where it fails")]
 
 use sdfc::Compiler;
 use sdfc_lang::library;
 
-/// Codes, the lines at which they stand, and messages.
-fn findings(text: &str) -> Vec<(&'static str, u32, String)> {
+/// Returns the codes, lines and messages of the diagnostics.
+fn diagnostics(text: &str) -> Vec<(&'static str, u32, String)> {
     let found = Compiler::new().verify(true).check("scene.sdf", text).located().into_iter();
     found.map(|f| (f.code, f.start.line, f.message)).collect()
 }
 
 fn codes(text: &str) -> Vec<(&'static str, u32)> {
-    findings(text).into_iter().map(|(code, line, _)| (code, line)).collect()
+    diagnostics(text).into_iter().map(|(code, line, _)| (code, line)).collect()
 }
 
 #[test]
@@ -29,15 +29,16 @@ fn a_clause_that_sampling_refutes_is_an_error_at_the_clause() {
         ("solid it()\n  bound inside\n  = if length(p) < 1 { length(p) - 1 } else { 3 }", 0),
         ("solid it()\n  bounds -1..1\n  lipschitz 1.9\n  = 2 * (length(p) - 1)", 3),
         ("solid it()\n  exact\n  bounds -0.95..0.95\n  = length(p) - 1", 3),
-        // The constant that is often given for a twist, where the field slopes along the axis and around it.
+        // The constant that is often given for a twist. Here the field also slopes along and around
+        // the axis.
         (
             "solid it()\n  lipschitz sqrt(2)\n  bounds -1..1\n  = {\n    let q = spin(p.xz, p.y * 1rad)\n\
              capsule([-0.9, 0, 0], [0.9, 0, 0], r: 0.1)([q.x, p.y, q.y])\n}",
             2,
         ),
-        // True of the default, false at an end of the range.
+        // True at the default, false at one end of the range.
         ("param k = 1 in 0.5..2\nsolid it()\n  exact\n  = k * (length(p) - 1)", 3),
-        // Kept by exact children alone.
+        // Only exact children keep this promise.
         ("solid it(a: solid = box(1))\n  exact outside\n  = a(p / 2)", 2),
         // The clause is false, but its condition does not hold.
         ("solid it(k: number = 1)\n  exact if k == 2\n  lipschitz 1\n  = 0.5 * (length(p) - k)", 0),
@@ -64,11 +65,11 @@ fn no_clause_of_the_library_is_refuted() {
 
 #[test]
 fn a_field_without_a_constant_is_a_warning_with_its_reason() {
-    let found = findings("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
+    let found = diagnostics("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
     let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no bounds limit it; state \
          `lipschitz`, or finite `bounds`";
     assert_eq!(found, [("W0602", 3, reason.to_owned())]);
-    // What an entry of the library builds for itself is told at the scene's call of it.
+    // A problem of a shape that an entry of the library builds is reported at the scene's call.
     assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);
     assert_eq!(codes("param k = 20deg in 0deg..90deg\nplane().twist(k)"), [("W0602", 2)]);
     assert_eq!(codes("box([0.6, 2, 0.6]).twist(20deg)\nsphere(1)"), []);
@@ -77,15 +78,15 @@ fn a_field_without_a_constant_is_a_warning_with_its_reason() {
 #[test]
 fn an_operator_that_needs_a_distance_warns_about_a_bound() {
     let blend = "let a = union(sphere(1), box(1), blend: smooth(0.2))";
-    let found = findings(&format!("{blend}\na\n  .round(0.1)"));
+    let found = diagnostics(&format!("{blend}\na\n  .round(0.1)"));
     let message = "`round` is applied to a field that is only a bound: the distance between the \
                    surfaces will vary";
     assert_eq!(found, [("W0601", 2, message.to_owned())]);
-    // Outside a hard union is exact, an intersection inside.
+    // A hard union is exact outside, an intersection inside.
     assert_eq!(codes("union(sphere(1), box(1)).round(0.1)"), []);
     assert_eq!(codes("(sphere(1) & box(1)).round(0.1)"), [("W0601", 1)]);
     assert_eq!(codes("solid eroded(a: solid) = a(p) + 0.1\neroded(sphere(1) & box(1.5))"), []);
-    // A rounded distance is one outside again.
+    // Rounding an exact distance gives an exact distance outside.
     assert_eq!(codes("box(1).round(0.1).round(0.1).round(0.1)"), []);
     assert_eq!(codes("param r = 0.1 in 0..0.2\nbox(1).round(r).round(r).round(r)"), []);
     assert_eq!(
@@ -99,8 +100,8 @@ fn an_operator_that_needs_a_distance_warns_about_a_bound() {
 
 #[test]
 fn a_soft_shadow_wants_distances_outside() {
-    let lamp = "sun(direction: [1, 2, 1], shadow: soft(8))\n";
-    let found = |scene: &str| codes(&format!("{lamp}{scene}"));
+    let sun = "sun(direction: [1, 2, 1], shadow: soft(8))\n";
+    let found = |scene: &str| codes(&format!("{sun}{scene}"));
     assert_eq!(found("sphere(1) | box(1) | plane(y: -1)"), []);
     assert_eq!(found("sphere(1) & box(1)"), [("W0605", 1)]);
     assert_eq!(codes("sun(shadow: hard)\nsphere(1) & box(1)"), []);
@@ -108,25 +109,25 @@ fn a_soft_shadow_wants_distances_outside() {
         codes("point_light([1, 2, 3], shadow: soft(4))\nellipsoid([1, 2, 1])"),
         [("W0605", 1)]
     );
-    // The union is no distance inside, but that is not where shadows are made.
+    // The union is no distance inside, but shadow rays do not run there.
     let text =
-        format!("{lamp}(sphere(1) | box(1))\n  | union(sphere(2), box(1), blend: smooth(0.2))");
+        format!("{sun}(sphere(1) | box(1))\n  | union(sphere(2), box(1), blend: smooth(0.2))");
     let said = Compiler::new().verify(true).check("scene.sdf", &text).to_string();
     assert!(said.contains("not the distance because of `union` at line 3"), "{said}");
 }
 
 #[test]
-fn copies_that_are_of_no_use_are_told() {
+fn copies_without_effect_are_reported() {
     let row = |head: &str, formula: &str| {
         format!(
             "solid row(a: solid)\n  copies\n  = {{\n    let t = p.x - round(p.x)\n    {formula}\n  }}\n{head}row(sphere(0.3))"
         )
     };
-    let told = |text: &str| {
+    let reported = |text: &str| {
         let found = codes(text).into_iter().filter(|(code, _)| *code != "W0602");
         found.collect::<Vec<_>>()
     };
-    assert_eq!(told(&row("", "min(a([t, p.y, p.z]), 0.7 - abs(t))")), []);
+    assert_eq!(reported(&row("", "min(a([t, p.y, p.z]), 0.7 - abs(t))")), []);
     let idle = [
         "a([t, p.y, p.z])",
         "min(a([t, 0.5 * p.y, p.z]), 0.7 - abs(t))",
@@ -134,7 +135,7 @@ fn copies_that_are_of_no_use_are_told() {
         "min(length([t, p.y, p.z]) - 0.2, 0.7 - abs(t))",
     ];
     for formula in idle {
-        let found = told(&row("", formula));
+        let found = reported(&row("", formula));
         assert!(found.contains(&("W0606", 2)), "{formula}: {found:?}");
     }
     let flat = "region row(a: region)\n  copies\n  = min(a(p), 9)\nrow(circle(1)).extrude(1)";

@@ -1,4 +1,4 @@
-//! What an embedder hands in may be anything: it comes back as an error, and opens no file.
+//! Any input of an embedding program gives a result or an error, and opens no file.
 #![allow(missing_docs, clippy::panic, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
@@ -31,7 +31,7 @@ fn threads_may_share_scenes() {
     shared::<sdfc::bind::Bindings>();
 }
 
-/// Words that make a text more likely to be a scene.
+/// Returns random sequences of words that are likely to form a scene.
 fn words() -> impl Strategy<Value = String> {
     const KNOWN: [&str; 30] = [
         "sphere",
@@ -75,12 +75,12 @@ proptest! {
 
     #[test]
     fn any_bytes_are_a_scene_or_errors(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        one_or_the_other(&String::from_utf8_lossy(&bytes));
+        compiles_or_reports_errors(&String::from_utf8_lossy(&bytes));
     }
 
     #[test]
     fn any_words_are_a_scene_or_errors(text in words()) {
-        one_or_the_other(&text);
+        compiles_or_reports_errors(&text);
     }
 
     #[test]
@@ -96,7 +96,7 @@ proptest! {
         let _ = scene.set(&mut frame, name, lanes);
         let _ = scene.set(&mut frame, name, text.as_str());
         let _ = scene.set_param(&mut frame, name, &text);
-        // What was taken is a number, and so is the field of it.
+        // A value that was accepted is a number, and so is the field.
         prop_assert!(frame.params.as_flattened().iter().all(|lane| lane.is_finite()));
         let mut field = scene.field(&frame)?;
         prop_assert!(field.distance([0.1, 0.2, 0.3]).is_finite());
@@ -141,9 +141,8 @@ proptest! {
     }
 }
 
-/// A batch is what its points are one by one.
 #[test]
-fn a_batch_is_its_points() -> Result<(), Error> {
+fn a_batch_gives_the_same_values_as_its_points() -> Result<(), Error> {
     let scene = scene();
     let mut field = scene.field(&scene.defaults())?;
     let points: Vec<_> = (0..19).map(|i| [0.1 * f64::from(i), 0.3, -0.05 * f64::from(i)]).collect();
@@ -155,7 +154,7 @@ fn a_batch_is_its_points() -> Result<(), Error> {
     Ok(())
 }
 
-fn one_or_the_other(text: &str) {
+fn compiles_or_reports_errors(text: &str) {
     match Compiler::new().compile("any.sdf", text) {
         Err(errors) => assert!(errors.has_errors()),
         Ok(scene) => {
@@ -167,7 +166,7 @@ fn one_or_the_other(text: &str) {
     }
 }
 
-/// Gives nothing, and notes what it was asked for.
+/// Refuses all files, and records their paths.
 #[derive(Default)]
 struct Asked(Mutex<Vec<String>>);
 
@@ -190,7 +189,7 @@ const READERS: [&str; 6] = [
 #[test]
 fn a_scene_reads_no_file_unless_its_resolver_does() {
     for text in READERS {
-        // Files of the repository are there to be read, by whoever would.
+        // These files exist in the repository, so a file access would succeed.
         let compiler = Compiler::new().resolver(&NoFiles);
         assert!(compiler.compile("crates/sdfc/a.sdf", text).is_err(), "{text}");
         assert!(Compiler::new().compile("a.sdf", text).is_err(), "{text}");

@@ -1,5 +1,5 @@
-//! A scene that is moved far away together with its camera and lamps gives the same picture, on the processor in f32
-//! and on a graphics adapter.
+//! A scene that is moved far away together with its camera and lights gives the same picture, on
+//! the CPU in f32 and on the GPU.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -8,10 +8,11 @@ use sdfc::{Backend, Compiler, PictureOptions, no_progress};
 use sdfc_render::testing;
 
 const SIZE: [u32; 2] = [96, 54];
-/// Where the scenes are moved.
+/// The positions that the scenes are moved to.
 const PLACES: [&str; 2] = ["[1000000, -20000, 700000.25]", "[-1000000, 1000000, 1000000]"];
 
-/// What is drawn, at `at`: closed forms, a blend that is marched, a turned part, a pattern, a param, lamps, a mirror.
+/// The scenes, at the position `at`: analytic shapes, a marched blend, a rotated part, a pattern, a
+/// param, lights and a mirror.
 const SCENES: [(&str, &str); 3] = [
     (
         "solids",
@@ -77,7 +78,7 @@ fn drawn(text: &str, at: &str, backend: Backend) -> Result<Drawn, Failed> {
     Ok((image.pixels().iter().map(|pixel| pixel.depth).collect(), image.to_srgb8()))
 }
 
-/// Whether a pixel's neighbours lie at other depths than a plane through it would have them, or are unlike each other.
+/// Returns true if the depths around a pixel do not lie on a plane, or differ too much.
 fn is_edge(depths: &[f32], pixel: usize) -> bool {
     let [width, height] = SIZE.map(|side| side as usize);
     let (x, y) = (pixel % width, pixel / width);

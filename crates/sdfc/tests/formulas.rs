@@ -1,8 +1,8 @@
-//! Constants and promises that are derived, against random formulas and points.
+//! Checks derived constants and promises with random formulas and points.
 //!
-//! A field whose derived constant is L must not change by more than L times the way between two points; the
-//! field that rays march must not change by more than the way. `bound` and `exact` are held against points of
-//! the surface, found by bisection.
+//! A field with the derived constant L must not change by more than L times the distance between
+//! two points; the field that rays march must not change by more than that distance. `bound` and
+//! `exact` are compared with points of the surface, found by bisection.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test stops where it fails")]
 
@@ -15,10 +15,10 @@ use sdfc_graph::{Dim, Expander};
 
 /// Random scenes for each property.
 const SCENES: u32 = 256;
-/// Rounding of f64 in a slope of a pair of points at least 1e-4 apart.
+/// Rounding error of f64 in the slope between two points at least 1e-4 apart.
 const ROUNDING: f64 = 1e-6;
 
-/// A formula of a number in the point, from rules that have a constant.
+/// Returns a formula of a number that depends on the point, from operations that have a constant.
 fn number(depth: u32) -> BoxedStrategy<String> {
     let constant = prop::sample::select(vec!["0.5", "1.5", "-2", "k", "(k - 1)", "time"]);
     if depth == 0 {
@@ -56,7 +56,7 @@ fn number(depth: u32) -> BoxedStrategy<String> {
     .boxed()
 }
 
-/// A formula of a vector in the point.
+/// Returns a formula of a vector that depends on the point.
 fn vector(depth: u32) -> BoxedStrategy<String> {
     if depth == 0 {
         let leaf = ["p", "(p - [1, k, 0])", "p.zxy", "(p * 2)", "[p.x, p.z, -p.y]"];
@@ -92,7 +92,7 @@ fn runner() -> TestRunner {
     TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
 }
 
-/// The field as it is written, undivided, and the one that rays march.
+/// Returns the field as it is written, undivided, and the one that rays march.
 fn fields(scene: &Scene) -> [Tape; 2] {
     let mut graph = scene.graph().graph.clone();
     let point = graph.point(0, Dim::Three);
@@ -103,7 +103,7 @@ fn fields(scene: &Scene) -> [Tape; 2] {
         .map(|(graph, root)| Tape::new(graph, &[root]).expect("it is flat"))
 }
 
-/// The largest slope between pairs of points, near ones and far ones.
+/// Returns the largest slope between pairs of points, near and far.
 fn steepest(tape: &Tape, frame: &FrameValues) -> f64 {
     let mut field = tape.prepare::<f64>(frame);
     let mut random = Random(3);
@@ -145,7 +145,7 @@ fn no_random_field_is_steeper_than_its_constant() {
     }
 }
 
-/// Composed shapes, and what is to be derived of them: outside, then inside.
+/// Composed shapes with the promises that must be derived, outside and inside.
 const COMPOSED: &[(&str, Promise, Promise)] = &[
     ("sphere(0.7).translate(x: 0.4).rotate(z: 30deg)", Promise::Exact, Promise::Exact),
     ("box([1, 0.6, 0.8]).scale(0.7).rotate(x: 20deg, y: 50deg)", Promise::Exact, Promise::Exact),
@@ -168,8 +168,8 @@ const COMPOSED: &[(&str, Promise, Promise)] = &[
     ("rect([1, 0.5]).extrude(0.4).translate(y: 0.3)", Promise::Exact, Promise::Exact),
     ("box(1).scale(k)", Promise::Exact, Promise::Exact),
 ];
-/// A negative factor turns a shape inside out; the same, twice, is itself. An ellipsoid by its first-order
-/// estimate is a bound on one side only.
+/// Definitions of the scenes. A negative factor turns a shape inside out; two of them cancel. The
+/// first-order estimate of an ellipsoid is a bound on one side only.
 const OWN: &str = "param k = 0.8 in 0.5..1
 solid guess(r: vec3 = [0.9, 0.3, 0.5])
   bound outside
@@ -202,7 +202,8 @@ fn derived_promises_hold() {
                 let nearest = surface.iter().map(to).fold(f64::INFINITY, f64::min);
                 assert!(value.abs() <= nearest + 1e-6, "{text} at {p:?}: {value}, {nearest} away");
             }
-            // Down the gradient by the distance lies the surface, except where the gradient breaks.
+            // The surface lies at the distance down the gradient, except where the gradient is
+            // discontinuous.
             if promise == Promise::Exact {
                 let foot = plus(p, gradient(&mut f, p), -value);
                 astray += u32::from(f(foot).abs() > 1e-4);
@@ -212,7 +213,7 @@ fn derived_promises_hold() {
     }
 }
 
-/// Zeros on random chords of the ball of radius 2.5 about the origin.
+/// Returns the zeros on random chords of the ball of radius 2.5 about the origin.
 fn surface_points(f: &mut impl FnMut([f64; 3]) -> f64) -> Vec<[f64; 3]> {
     let mut random = Random(5);
     let mut points = Vec::new();
@@ -258,7 +259,7 @@ fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Xorshift64* (Vigna 2016): repeatable points.
+/// Xorshift64* (Vigna 2016), for repeatable points.
 struct Random(u64);
 
 impl Random {

@@ -1,17 +1,17 @@
-//! Scenes that would take all memory or time: each is compiled whole or refused with a code and the limit's
-//! number, and none ends the program.
+//! Scenes that would take all memory or time: each is compiled or refused with a code and the
+//! limit's number, and none ends the process.
 #![allow(missing_docs, clippy::panic, reason = "a test fails by panicking")]
 
 use sdfc::Compiler;
 
-/// The codes of the errors, and all text that people see.
+/// Returns the codes of the errors, and the rendered messages.
 fn refused(text: &str) -> (Vec<String>, String) {
     let Err(errors) = Compiler::new().compile("bomb.sdf", text) else { panic!("it was compiled") };
     let codes = errors.located().iter().map(|found| found.code.to_owned()).collect();
     (codes, errors.render(false))
 }
 
-/// Refused with this error alone, which says what the limit is.
+/// Checks that the scene is refused with this error alone, which names the limit.
 fn stopped(text: &str, code: &str, limit: &str) {
     let (codes, message) = refused(text);
     assert_eq!(codes, [code], "{message}");
@@ -23,14 +23,14 @@ fn nested(open: &str, middle: &str, close: &str) -> String {
 }
 
 #[test]
-fn nesting() {
+fn deep_nesting_is_refused() {
     stopped(&format!("sphere({})", nested("(", "1", ")")), "E0107", "256 levels");
     stopped(&format!("let a = {}\nsphere(1)", nested("[", "1", "]")), "E0107", "256 levels");
     stopped(&nested("union(", "sphere(1)", ")"), "E0107", "256 levels");
 }
 
 #[test]
-fn chains() {
+fn long_chains_are_refused() {
     stopped(&format!("sphere({}1)", "1 + ".repeat(100_000)), "E0107", "4096 links");
     stopped(&format!("sphere(1){}", " | sphere(2)".repeat(100_000)), "E0107", "4096 links");
     stopped(&format!("sphere(1){}", ".round(0.1)".repeat(100_000)), "E0107", "4096 links");
@@ -46,7 +46,7 @@ fn a_union_over_a_long_list_is_compiled() {
 }
 
 #[test]
-fn recursion_without_an_end() {
+fn infinite_recursion_is_refused() {
     for text in [
         "fn f(n: number) -> number = f(n + 1)\nsphere(f(0))",
         "fn f(n: number) -> number = f(n + 1) + f(n + 2)\nsphere(f(0))",
@@ -57,7 +57,7 @@ fn recursion_without_an_end() {
 }
 
 #[test]
-fn work_that_grows_exponentially() {
+fn exponential_work_is_refused() {
     let limit = "10000000 evaluation steps";
     let twice =
         "fn f(n: int) -> number = if n == 0 { 1 } else { f(n - 1) + f(n - 1) }\nsphere(f(60))";
@@ -68,7 +68,7 @@ fn work_that_grows_exponentially() {
 }
 
 #[test]
-fn shapes_that_grow_exponentially() {
+fn exponentially_many_shapes_are_refused() {
     let shapes: String = (1u64..50)
         .map(|i| format!("let s{i} = s{0} | s{0}.translate(x: {1})\n", i - 1, 1u64 << i))
         .collect();
@@ -76,14 +76,14 @@ fn shapes_that_grow_exponentially() {
 }
 
 #[test]
-fn sequences() {
+fn long_sequences_are_refused() {
     stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "the limit is 1000000");
     let cube = "union(for i in 0..1000: union(for j in 0..1000: union(for k in 0..1000: sphere(i + j + k))))";
     stopped(cube, "E0406", "10000000 evaluation steps");
 }
 
 #[test]
-fn loops() {
+fn loops_with_too_many_iterations_are_refused() {
     let big = "solid s() = iterate(1000000000, p.x, fn(s) = sin(s) + p.y)\ns()";
     stopped(big, "E0410", "4096");
     let within = "iterate(1000, q, fn(u) = sin(u) + p.y)";
@@ -92,12 +92,12 @@ fn loops() {
 }
 
 #[test]
-fn copies() {
+fn too_many_copies_are_refused() {
     stopped("sphere(1).translate(x: 5).polar_repeat(1000000000)", "E0309", "1..1000");
 }
 
 #[test]
-fn numbers() {
+fn numbers_that_are_too_large_are_refused() {
     stopped("sphere(1e400)", "E0105", "too large");
     stopped(&format!("sphere({})", "9".repeat(100_000)), "E0105", "too large");
 }

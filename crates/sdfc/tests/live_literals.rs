@@ -1,4 +1,4 @@
-//! Numbers of a scene as params: the same scene until one is moved.
+//! A scene with live literals is the same scene until one of them is changed.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -8,13 +8,13 @@ use sdfc::{
 };
 use sdfc_graph::eval::sample_field;
 
-/// The scene with its numbers as params.
+/// Compiles the scene with live literals.
 fn live(text: &str) -> Scene {
     let compiler = Compiler::new().live_literals(None);
     compiler.compile("a.sdf", text).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-/// The live literals, as they are written.
+/// Returns the live literals as they are written.
 fn literals(text: &str) -> Vec<String> {
     let scene = live(text);
     let written = |literal: &LiveLiteral| scene.sources().slice(literal.span).to_owned();
@@ -41,7 +41,7 @@ fn every_example_is_the_same_scene_with_live_literals() {
         }
         let slots = live(&text);
         if slots.live_literals().is_empty() {
-            continue; // all its numbers decide what is built
+            continue; // all its numbers decide which shapes are built
         }
         assert_eq!(plain.report().uncertified.len(), slots.report().uncertified.len(), "{path}");
         let frame = |scene: &Scene| FrameValues::defaults(scene.params());
@@ -52,7 +52,7 @@ fn every_example_is_the_same_scene_with_live_literals() {
         }
         seen += 1;
         if plain.program().settings.camera.is_none() {
-            continue; // the view is fitted to bounds, which are wider where numbers move
+            continue; // live literals widen the bounds, and so the fitted view
         }
         let options = PictureOptions::new().size([24, 15]).backend(Backend::Cpu);
         let [a, b] = [&plain, &slots]
@@ -72,7 +72,7 @@ fn changing_a_live_literal_gives_the_scene_with_that_number() {
     let other = live("sphere(0.75).translate(y: -1)\n");
     let expected = distances(&other, &FrameValues::defaults(other.params()));
     assert_eq!(distances(&scene, &frame), expected);
-    // The radius keeps the range of the library's parameter.
+    // The radius keeps the range of the parameter in the library.
     let error = scene.set_param(&mut frame, "at_1_8", "-0.1").unwrap_err().to_string();
     assert!(error.contains("0..inf"), "{error}");
 }
@@ -90,7 +90,7 @@ fn numbers_that_decide_what_is_built_stay_constant() {
     assert_eq!(literals("solid s() = pow(length(p), 2) - 1\ns()\n"), ["1"]);
     assert_eq!(literals("solid s(a, b) require a < b, \"a < b\" = length(p) - b\ns(1, 2)\n"), none);
     assert_eq!(literals("solid s(a) exact if a > 1 = length(p) - a\ns(2)\n"), none);
-    // What a range limits moves alone, not within a formula.
+    // A literal whose parameter has a range is live by itself, but not within a formula.
     assert_eq!(literals("sphere(0.5 / 2)\n"), none);
     assert_eq!(literals("sphere(pi)\n"), none);
 }

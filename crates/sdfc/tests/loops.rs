@@ -1,4 +1,4 @@
-//! A field of many alike parts as loops is the same field.
+//! Loops over similar parts give the same field as the unrolled formula.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -7,10 +7,10 @@ use std::fmt::Write;
 use sdfc::{Compiler, LoopStrategy, Scene};
 use sdfc_graph::eval::{FrameValues, sample_field};
 
-/// How many parts.
+/// Number of parts.
 const PARTS: usize = 60;
 
-/// Numbers that look irregular.
+/// Returns numbers that look irregular.
 fn number(seed: usize) -> f64 {
     (seed as f64 * 0.618_033_988_75).fract() * 2.0 - 1.0
 }
@@ -20,12 +20,12 @@ fn place(i: usize) -> String {
     format!(".translate([{x:.4}, {y:.4}, {z:.4}])")
 }
 
-/// Balls, blocks and turned pairs, joined by a hard minimum.
+/// Returns balls, boxes and rotated pairs, joined by a hard minimum.
 fn scattered() -> String {
     let mut text = "plane(y: -3)\n".to_owned();
     for i in 0..PARTS {
         let (size, at) = (0.3 + 0.1 * number(i), place(i));
-        // LoopStrategy to a String cannot fail.
+        // Writing to a `String` cannot fail.
         let _ = match i % 3 {
             0 => writeln!(text, "sphere({size:.3}){at}"),
             1 => writeln!(text, "box([{size:.3}, 0.2, 0.4]).rotate(y: {i}deg){at}"),
@@ -35,7 +35,7 @@ fn scattered() -> String {
     text
 }
 
-/// Balls, then blocks, blended in that order.
+/// Returns balls, then boxes, blended in that order.
 fn chained(blend: &str) -> String {
     let mut text = "union(\n".to_owned();
     for i in 0..PARTS {
@@ -45,20 +45,19 @@ fn chained(blend: &str) -> String {
     text + "  blend: " + blend + ")\n"
 }
 
-fn written(text: &str, writing: LoopStrategy) -> Scene {
-    let scene = Compiler::new().loops(writing).compile("rolled.sdf", text).expect("no errors");
+fn compiled(text: &str, loops: LoopStrategy) -> Scene {
+    let scene = Compiler::new().loops(loops).compile("rolled.sdf", text).expect("no errors");
     assert_eq!(scene.diagnostics().to_string(), "");
     scene
 }
 
-/// Where fields are compared: on and off the parts.
+/// Returns the points at which fields are compared, on and off the parts.
 fn points() -> Vec<[f64; 3]> {
     (0..400).map(|i| [1, 2, 3].map(|axis| 3.0 * number(axis * 17 + 13 * i))).collect()
 }
 
 fn compare(text: &str) -> Scene {
-    let scenes =
-        [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|writing| written(text, writing));
+    let scenes = [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|loops| compiled(text, loops));
     let frame = FrameValues::defaults(scenes[0].params());
     let samples = scenes
         .each_ref()
@@ -77,22 +76,22 @@ fn compare(text: &str) -> Scene {
 }
 
 #[test]
-fn of_a_hard_union_each_kind_is_a_loop() {
+fn each_kind_in_a_hard_union_becomes_a_loop() {
     let rolled = compare(&scattered());
     let mut loops = rolled.report().loops.clone();
     loops.sort_by_key(|found| found.operands);
     assert_eq!(loops.iter().map(|found| found.operands).collect::<Vec<_>>(), [20, 20, 20]);
     assert!(loops.iter().all(|found| !found.blended));
-    // The floor is met in closed form; what is in loops is marched.
+    // The floor is intersected analytically; the loops are marched.
     assert_eq!(rolled.report().analytic.len(), 1);
 }
 
 #[test]
-fn of_a_blended_union_each_run_is_a_loop() {
+fn each_run_in_a_blended_union_becomes_a_loop() {
     for blend in ["smooth(0.2)", "smooth_cubic(0.3)"] {
         let rolled = compare(&chained(blend));
         let loops = &rolled.report().loops;
-        // The first ball is where the first loop starts.
+        // The first loop starts from the first ball.
         let operands: Vec<usize> = loops.iter().map(|found| found.operands).collect();
         assert_eq!(operands, [PARTS / 2 - 1, PARTS / 2]);
         assert!(loops.iter().all(|found| found.blended));
@@ -110,7 +109,7 @@ fn params_stay_params() {
 }
 
 #[test]
-fn blends_that_do_not_end_and_few_alike_parts_stay_written_out() {
+fn infinite_blends_and_few_similar_parts_stay_unrolled() {
     let rolled = compare(&chained("smooth_exp(0.1)"));
     assert!(rolled.report().loops.is_empty());
     assert!(compare("sphere(1) | box(1.5)").report().loops.is_empty());

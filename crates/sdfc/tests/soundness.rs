@@ -1,7 +1,7 @@
-//! The field that rays march: divided where it must be, and nowhere moved.
+//! The field that rays march is divided where necessary, and its surface is never moved.
 //!
-//! For each scene the marched distance, in f64, must change no faster than the point moves and have the sign of
-//! the undivided field. The undivided field is the graph's plain expansion.
+//! For each scene the marched distance, in f64, must change no faster than the point moves and must
+//! have the sign of the undivided field. The undivided field is the graph's plain expansion.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test stops where it fails")]
 
@@ -12,10 +12,10 @@ use sdfc_graph::{Dim, Expander};
 
 /// Pairs of points for each scene.
 const PAIRS: usize = 20_000;
-/// Rounding of f64 in a slope of a pair of points at least 1e-4 apart.
+/// Rounding error of f64 in the slope between two points at least 1e-4 apart.
 const ROUNDING: f64 = 1e-6;
 
-/// Scenes whose plain field is steeper than 1, or is 1 only thanks to a constant.
+/// Scenes whose plain field is steeper than 1, or at most 1 only because a constant is stated.
 const SCENES: &[(&str, &str)] = &[
     ("twisted box", "box([0.6, 2, 0.6]).twist(120deg)"),
     ("twisted off the axis", "box([0.4, 2, 0.4]).translate(x: 0.5).twist(200deg)"),
@@ -30,7 +30,7 @@ const SCENES: &[(&str, &str)] = &[
         "twist turned by a param",
         "param a = 20deg in 0deg..90deg\nbox([0.6, 2, 0.6]).twist(120deg).rotate(y: a, x: a)",
     ),
-    // The constant holds within bounds; what looks beyond them sees the continued field.
+    // The constant holds within the bounds; outside of them the field is continued.
     (
         "twist in a blend",
         "union(box([0.6, 2, 0.6]).twist(120deg), sphere(0.7), blend: smooth(0.2))",
@@ -46,7 +46,7 @@ const SCENES: &[(&str, &str)] = &[
         "sphere(0.8).displace(fn(q) = 0.1 * sin(9 * q.x) * cos(8 * q.x + q.y))",
     ),
     ("ellipsoid", "ellipsoid([1, 0.2, 0.5])"),
-    // No rule gives a constant: interval derivatives over the bounds do.
+    // No rule gives a constant here, but interval derivatives over the bounds do.
     (
         "product of coordinates",
         "solid saddle()\n  bounds -0.8 .. 0.8\n  = max(abs(p.y - p.x * p.z) - 0.1, length(p.xz) - 0.7)\nsaddle()",
@@ -56,7 +56,7 @@ const SCENES: &[(&str, &str)] = &[
         "param k = 2 in 1..3\nsolid lens()\n  bounds -0.8 .. 0.8\n  = k * (dot(p, p) - 0.5)\n\
          lens() | sphere(0.1).translate(y: 0.8)",
     ),
-    // What differs from cell to cell is fixed within each.
+    // Values that differ from cell to cell are constant within each cell.
     (
         "copies that vary",
         "repeat(fn(c) = sphere(0.14 + 0.06 * hash(3, c)).translate(0.3 * (hash3(1, c) - 0.5)), \
@@ -81,7 +81,7 @@ const SCENES: &[(&str, &str)] = &[
         "blend of scaled fields",
         "union(sphere(0.5), box(1).translate(x: 0.6), blend: smooth(0.3)).scale(2)",
     ),
-    // The claim of the blend is about a value that the negation around it takes apart.
+    // The annotation of the blend refers to a value that the negation around it rewrites.
     ("smooth intersection", "intersection(sphere(0.7), box(1.1), torus(), blend: smooth(0.2))"),
     ("smooth difference", "difference(box(1), sphere(0.6), sphere(0.4), blend: smooth(0.1))"),
     (
@@ -91,7 +91,8 @@ const SCENES: &[(&str, &str)] = &[
     ),
 ];
 
-/// Scenes that tempt a rule to a constant that is too small. They may have none; one that they have holds.
+/// Scenes for which an incorrect rule might derive too small a constant. They need no constant, but
+/// one that is derived must hold.
 const LURES: &[(&str, &str)] = &[
     (
         "another shape at each point",
@@ -141,7 +142,7 @@ fn marched_fields_change_no_faster_than_the_point() {
 }
 
 #[test]
-fn what_has_no_constant_is_given_none() {
+fn fields_without_a_constant_get_none() {
     for (name, text) in LURES {
         let scene = scene(name, text);
         let steepest = steepest(&scene);
@@ -183,7 +184,6 @@ fn a_blend_that_reaches_past_a_constants_bounds_is_not_certified() {
     assert!(scene("alone", &format!("{own}bar()")).report().uncertified.is_empty());
 }
 
-/// Of a shape that is another at each point no promise of its own is left.
 #[test]
 fn a_shape_that_moves_with_the_point_promises_nothing() {
     let text = "solid wave()\n  bounds -1 .. 1\n  = sphere(0.5 + 0.4 * sin(5 * p.x))(p)\nwave()";
@@ -194,7 +194,7 @@ fn a_shape_that_moves_with_the_point_promises_nothing() {
 }
 
 #[test]
-fn a_field_without_a_constant_is_told_with_its_reason() {
+fn a_field_without_a_constant_is_reported_with_its_reason() {
     let scene = scene("product", "solid odd() = p.x * p.y - 0.1\nodd()");
     let reasons: Vec<String> =
         scene.report().uncertified.iter().map(|found| found.reason.to_string()).collect();
@@ -214,8 +214,8 @@ fn tape(scene: &Scene) -> Tape {
     Tape::new(&scene.program().graph, &[distance]).expect("the program is flat")
 }
 
-/// The largest slope between pairs of points, near ones and far ones, with the params at their defaults and at both ends of
-/// their ranges.
+/// Returns the largest slope between pairs of points, near and far, with the params at their
+/// defaults and at both ends of their ranges.
 fn steepest(scene: &Scene) -> f64 {
     let tape = tape(scene);
     let mut steepest = 0.0f64;
@@ -253,7 +253,7 @@ fn frames(scene: &Scene) -> Vec<FrameValues<f64>> {
     vec![at(|[lo, _]| lo), at(|[_, hi]| hi), defaults]
 }
 
-/// Xorshift64* (Vigna 2016): repeatable points.
+/// Xorshift64* (Vigna 2016), for repeatable points.
 struct Random(u64);
 
 impl Random {

@@ -1,5 +1,6 @@
-//! GPU, CPU in f32 and CPU in f64 see the same surface: at 64x64, depth outside edges within 1e-3, in small scenes
-//! within less, and far from the origin within what rounding does to coordinates.
+//! Checks that GPU, CPU in f32 and CPU in f64 render the same surface at 64x64. Outside edges,
+//! depths differ by at most 1e-3, by less in small scenes, and far from the origin by no more than
+//! the rounding of coordinates.
 
 use libtest_mimic::Failed;
 use sdfc::{Backend, Compiler, FrameValues, Method, PictureOptions, Scene, no_progress};
@@ -7,14 +8,15 @@ use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
-/// Largest difference of depth outside edges, in scene units, and in parts of the scene's scale.
+/// Largest difference of depth outside edges, in scene units and relative to the scene's scale.
 const DEPTH: f32 = 1e-3;
 const DEPTH_PART: f32 = 1e-4;
-/// Eight units in the last place of coordinates, in parts of the scale: what the shader allows itself.
+/// Eight units in the last place of coordinates, relative to the scale: the tolerance of the
+/// shader.
 const ROUNDING: f32 = 1e-6;
 /// Largest difference of a colour channel outside edges, in steps of 1/255.
 const COLOR: u8 = 2;
-/// More edges than this share of the pixels, and the comparison says too little.
+/// If more than this fraction of the pixels are edges, the comparison is meaningless.
 const EDGES: f64 = 0.5;
 const METHOD: Method = Method::Auto;
 
@@ -23,7 +25,7 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, Failed> {
     Ok(Compiler::new().compile(name, text)?)
 }
 
-/// Compares the processor's two precisions; gives the pixels that are hit and the difference.
+/// Compares f32 with f64 on the CPU. Returns the number of pixels with a hit, and the difference.
 pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
     let Depths { single, double, limit } = Depths::of(scene)?;
     let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
@@ -33,11 +35,11 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
     Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
 }
 
-/// Compares the graphics adapter with the processor in f32, and its depth with f64.
+/// Compares the GPU with the CPU in f32, and its depths with f64.
 pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
     let picture = |backend| {
         let method = METHOD;
-        // One ray for each pixel, through its centre, as in the pictures of depths.
+        // One ray for each pixel, through its centre, as in the depth images.
         let samples = Some(1);
         let options =
             PictureOptions::new().size([SIDE; 2]).method(method).backend(backend).samples(samples);
@@ -50,7 +52,7 @@ pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
     Ok(found)
 }
 
-/// The CPU's picture of depths in f32 and in f64, and how far depths may differ.
+/// The depths on the CPU in f32 and in f64, and the largest difference that is allowed.
 struct Depths {
     single: Image,
     double: Image,
