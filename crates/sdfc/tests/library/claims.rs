@@ -1,4 +1,4 @@
-//! What is claimed of a field, from its clauses or by derivation, and whether samples refute it.
+//! Claims about a field, stated by clauses or derived, and their refutation by samples.
 
 use sdfc_analyze::{Promise, Qualities};
 use sdfc_graph::{Graph, NodeId, Scene, ShapeId, SidePromise};
@@ -7,30 +7,31 @@ use crate::field::Field;
 use crate::geometry::Point;
 use crate::samples::Samples;
 
-/// Parts of a length by which distances that are compared may differ: what f64 leaves of a chain of moves.
+/// Relative difference that is allowed between compared distances: the rounding of f64 over a chain
+/// of operations.
 const SLACK: f64 = 1e-6;
-/// As [`SLACK`], of a slope.
+/// The same for a slope.
 const SLOPE_SLACK: f64 = 1e-7;
 
-/// The sides of a surface, as arrays have them.
+/// The sides of a surface, in the order of arrays.
 pub const SIDES: [&str; 2] = ["outside", "inside"];
 
-/// What a field promises.
+/// The claims about a field.
 #[derive(Clone, Debug)]
 pub struct Claims {
-    /// Outside, inside.
+    /// For outside and inside.
     pub sides: [Promise; 2],
-    /// The constant within the bounds.
+    /// The Lipschitz constant within the bounds.
     pub lipschitz: Option<f64>,
-    /// Lowest and highest point.
+    /// The lowest and the highest corner.
     pub bounds: Option<[Point; 2]>,
 }
 
 impl Claims {
-    /// Nothing.
+    /// No claims.
     pub const NONE: Self = Self { sides: [Promise::None; 2], lipschitz: None, bounds: None };
 
-    /// What the compiler makes of the shape: its clauses, and what follows from its formula.
+    /// Returns what the compiler derives for the shape from its clauses and its formula.
     pub fn derived(graph: &Graph, qualities: &Qualities, id: ShapeId, field: &Field) -> Self {
         let Some(quality) = qualities.get(id) else { return Self::NONE };
         let constant = quality.lipschitz.as_ref().ok().and_then(|&node| graph.as_number(node));
@@ -43,7 +44,7 @@ impl Claims {
         }
     }
 
-    /// The first claim that the samples refute.
+    /// Returns the first claim that the samples refute.
     pub fn refuted_by(&self, samples: &Samples) -> Option<String> {
         self.constant_refuted(samples)
             .or_else(|| self.bounds_refuted(samples))
@@ -57,7 +58,7 @@ impl Claims {
             let (slope, p, q) = (steepest.slope, steepest.p, steepest.q);
             return Some(format!("lipschitz {constant}, but {slope} between {p:?} and {q:?}"));
         }
-        // The surface and the way to it lie within the bounds, which are convex.
+        // The surface and the segment to it lie within the bounds, which are convex.
         samples.points.iter().filter(|sample| sample.within).find_map(|sample| {
             let most = constant * sample.nearest + SLACK * samples.scale;
             let (f, p, nearest) = (sample.f, sample.p, sample.nearest);
@@ -80,7 +81,7 @@ impl Claims {
     }
 
     fn side_refuted(&self, samples: &Samples, sample: &crate::samples::Sample) -> Option<String> {
-        // What is 0 is on neither side.
+        // Where the field is 0, the point is on neither side.
         if sample.f == 0.0 {
             return None;
         }
@@ -99,14 +100,15 @@ impl Claims {
     }
 }
 
-/// What the clauses of one instance say, each with what it rests on.
+/// The clauses of one instance, and what they depend on.
 pub struct Stated {
-    /// Of each side: `exact`, `bound`; `None` if not stated, else whether the condition holds here.
+    /// For each side `exact` and `bound`: `None` if not stated, otherwise true if the condition
+    /// holds here.
     pub promises: [[Option<bool>; 2]; 2],
-    /// The constant, the children's counted, if they have one that holds everywhere.
+    /// The constant, including those of the children, if they have one that holds everywhere.
     pub lipschitz: Option<f64>,
     pub bounds: Option<[Point; 2]>,
-    /// Whether all children are exact, and whether all are bounds: what `exact` and `bound` rest on.
+    /// True if all children are exact, and if all are bounds; `exact` and `bound` depend on this.
     pub children: [bool; 2],
 }
 
@@ -114,8 +116,8 @@ pub struct Stated {
 pub const PROMISES: [Promise; 2] = [Promise::Exact, Promise::Bound];
 
 impl Stated {
-    /// `clauses` are those of the shape's entry, as written: of a condition that does not hold nothing is left
-    /// in the graph.
+    /// Returns the clauses of a shape. `clauses` are those of the entry, as written, because the
+    /// graph keeps nothing of a clause whose condition is false.
     pub fn of(
         scene: &Scene,
         graph: &Graph,
@@ -160,12 +162,12 @@ impl Stated {
         }
     }
 
-    /// Whether any clause stands.
+    /// Returns true if no clause is stated.
     pub fn is_silent(&self) -> bool {
         self.promises == [[None; 2]; 2] && self.lipschitz.is_none() && self.bounds.is_none()
     }
 
-    /// As claims.
+    /// Returns the clauses as claims.
     pub fn claims(&self) -> Claims {
         let side = |promises: [Option<bool>; 2]| {
             let holds = |at: usize| promises[at] == Some(true) && self.children[at];
@@ -179,7 +181,7 @@ impl Stated {
     }
 }
 
-/// Whether one of the clauses, as written, states a promise of a side.
+/// Returns true if one of the clauses, as written, states a promise for a side.
 pub fn says(clauses: &[String], promise: Promise, side: &str) -> bool {
     clauses.iter().any(|clause| {
         let mut words = clause.split_whitespace();

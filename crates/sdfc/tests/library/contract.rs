@@ -1,4 +1,4 @@
-//! The contract of one entry, over its example and variants of it.
+//! Checks the contract of one entry with its example and with variants of it.
 
 use std::collections::BTreeMap;
 
@@ -13,39 +13,39 @@ use crate::geometry::Random;
 use crate::samples::Samples;
 use crate::{mutants, rays, variants};
 
-/// So many scenes with other numbers are looked at at least; more, until every fault is seen; of so many that are
-/// tried.
+/// Scenes with other numbers: the least number that is checked, and the largest number that is
+/// tried. More than the least number are checked until every mutant is refuted.
 const VARIANTS: usize = 12;
 const TRIES: usize = 400;
 
-/// What came of it.
+/// The outcome of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// Scenes looked at, the example itself the first.
+    /// Number of checked scenes; the example itself is the first.
     pub scenes: usize,
-    /// What is promised of the example, outside and inside.
+    /// The promises of the example, outside and inside.
     pub sides: [String; 2],
     /// The constant of the example, and the steepest slope found in it.
     pub lipschitz: Option<f64>,
     pub steepest: f64,
-    /// Whether bounds are stated.
+    /// True if bounds are stated.
     pub bounds: bool,
-    /// Faults, and whether some scene showed each of them up.
+    /// The mutants, each with true if some scene refuted it.
     pub mutants: BTreeMap<String, bool>,
 }
 
-/// Checks all that is claimed of the entry's shapes.
+/// Checks all claims about the entry's shapes.
 ///
 /// # Errors
 ///
-/// A claim that samples refute, or a fault that they do not.
+/// A claim that samples refute, or a mutant that they do not refute.
 pub fn check(entry: &Entry) -> Result<Outcome, String> {
     let mut outcome = Outcome::default();
     let scene = scene(&entry.example).ok_or("the example does not compile")?;
     if !of_entry(&scene, entry).any(|_| true) {
         return Err("its example lacks it".into());
     }
-    // All shapes that the example builds; of the variants only those of the entry.
+    // All shapes of the example are checked, but of the variants only those of the entry.
     for id in scene.graph.shape_ids() {
         one(entry, &scene, id, &entry.example, &mut outcome)?;
     }
@@ -65,14 +65,14 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
     missing(entry, &outcome).map_or(Ok(outcome), Err)
 }
 
-/// What no scene has shown yet: a fault that is refuted, a condition that does not hold.
+/// Returns a mutant that no scene refutes, or a condition that holds in every scene.
 fn missing(entry: &Entry, outcome: &Outcome) -> Option<String> {
     let missed: Vec<&String> = outcome.mutants.iter().filter(|it| !it.1).map(|it| it.0).collect();
     let missed = (!missed.is_empty()).then(|| format!("no sample refutes: {missed:?}"));
     missed.or_else(|| condition_unseen(entry, outcome))
 }
 
-/// Checks all shapes of a scene that is no entry's example.
+/// Checks all shapes of a scene that is not the example of an entry.
 ///
 /// # Errors
 ///
@@ -86,7 +86,7 @@ pub fn check_scene(text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The scene, if it is right.
+/// Returns the scene, if it has no errors.
 pub fn scene(text: &str) -> Option<Scene> {
     let mut sources = Sources::new();
     let file = sources.add("scene.sdf", text);
@@ -113,28 +113,28 @@ fn one(
     outcome: &mut Outcome,
 ) -> Result<(), String> {
     let shape = scene.graph.shape(id);
-    // What is built anew at each point promises nothing by itself.
+    // A shape that is rebuilt at each point makes no promise by itself.
     if shape.level > 0 {
         return Ok(());
     }
     let Some(field) = Field::new(scene, id) else { return Ok(()) };
     let mut graph = scene.graph.clone();
     let qualities = Qualities::of_scene(&mut graph, id, &scene.params);
-    let told = |what: String| format!("`{}` in {text}: {what}", shape.definition);
-    let samples = Samples::of(&field).map_err(&told)?;
+    let error = |what: String| format!("`{}` in {text}: {what}", shape.definition);
+    let samples = Samples::of(&field).map_err(&error)?;
     let clauses = if is_of(scene, entry, id) { &*entry.clauses } else { &[] };
     let stated = Stated::of(scene, &graph, &qualities, id, &field, clauses);
     let derived = Claims::derived(&graph, &qualities, id, &field);
     for claims in [&stated.claims(), &derived] {
         if let Some(refuted) = claims.refuted_by(&samples) {
-            return Err(told(refuted));
+            return Err(error(refuted));
         }
     }
     if let Some(fault) = rays::fault(scene, id) {
-        return Err(told(fault));
+        return Err(error(fault));
     }
     if let Some(fault) = rays::copies_fault(scene, id, 1.0) {
-        return Err(told(fault));
+        return Err(error(fault));
     }
     if !is_of(scene, entry, id) {
         return Ok(());
@@ -156,7 +156,7 @@ fn one(
     Ok(())
 }
 
-/// A clause whose condition holds in all variants, so that dropping it is no fault.
+/// Returns a mutant without its condition that would be true in all variants.
 fn condition_unseen(entry: &Entry, outcome: &Outcome) -> Option<String> {
     let conditional: Vec<String> =
         entry.clauses.iter().filter(|clause| clause.contains(" if ")).cloned().collect();

@@ -1,10 +1,11 @@
-//! Scenes that are no entry's example: false contracts, and the entry that the documentation adds.
+//! Scenes that are not the example of an entry: false contracts, edge cases, and the entry that the
+//! documentation adds.
 
 use libtest_mimic::Trial;
 
 use crate::contract::check_scene;
 
-/// Contracts that are false, each in its own way.
+/// Contracts that are false, each in a different way.
 const FALSE: [(&str, &str); 8] = [
     ("too steep to be exact", "solid wrong() exact bounds -1..1 = 1.1 * (length(p) - 1)\nwrong()"),
     ("outside its bounds", "solid wrong() exact bounds -0.9..0.9 = length(p) - 1\nwrong()"),
@@ -13,7 +14,7 @@ const FALSE: [(&str, &str); 8] = [
         "farther than the surface",
         "solid wrong() bound outside bounds -1..1 = if length(p) < 1 { -1 } else { 1.01 * (length(p) - 1) }\nwrong()",
     ),
-    // Its corners are farther away than its planes.
+    // The corners are farther away than the planes.
     (
         "planes of an octahedron",
         "solid wrong() exact bounds -1..1 = (abs(p.x) + abs(p.y) + abs(p.z) - 1) / sqrt(3)\nwrong()",
@@ -27,14 +28,15 @@ const FALSE: [(&str, &str); 8] = [
         "the usual twist",
         "solid wrong() lipschitz sqrt(2) bounds -1..1 = rect([1.2, 0.1])([p.x * cos(p.y) - p.z * sin(p.y), p.x * sin(p.y) + p.z * cos(p.y)])\nwrong()",
     ),
-    // Zero all over a disc within the body, where no surface is.
+    // Zero on a whole disc inside the solid, where there is no surface.
     (
         "a membrane",
         "solid wrong() exact bounds -1..1 = if abs(p.y) < 0.5 { -abs(p.y) } else { length(p) - 1 }\nwrong()",
     ),
 ];
 
-/// Arguments where formulas degenerate, and fields of several operators, where contracts meet.
+/// Arguments for which formulas degenerate, and fields of several operators, whose contracts
+/// interact.
 const AWKWARD: [&str; 18] = [
     "torus(major: 0.3, minor: 0.5)",
     "capsule([0.1, 0.2, 0.3], [0.1, 0.2, 0.3], r: 0.3)",
@@ -47,7 +49,8 @@ const AWKWARD: [&str; 18] = [
     "circle(0.3).translate(x: -0.1, y: 0.4).revolve()",
     "rect([0.4, 1]).translate(x: 0.2).revolve()",
     "box([0.6, 2, 0.6]).twist(-150deg)",
-    // A bound whose gradient has no part towards the axis, which an exact distance has far out.
+    // The gradient of this bound has no component towards the axis; far away that of an exact
+    // distance has one.
     "solid plate() lipschitz 1 bounds [-1, -1, -0.05] .. [1, 1, 0.05] = max(abs(p.x) - 1, abs(p.y) - 1, abs(p.z) - 0.05)\nplate().twist(90deg)",
     "ellipsoid([0.9, 0.4, 0.2]).twist(90deg).scale(0.7)",
     "union(sphere(0.5), box(0.8).translate(x: 0.5), blend: smooth(0))",
@@ -57,7 +60,7 @@ const AWKWARD: [&str; 18] = [
     "rect([1, 0.3]).rotate(30deg).round(0.1).extrude(0.2).rotate(x: 50deg, y: -20deg)",
 ];
 
-/// The same of the solids that are made of nothing else.
+/// The same for solids that are a single expression.
 const AWKWARD_SOLIDS: [&str; 109] = [
     "sphere(0)",
     "box([1, 0, 0.5])",
@@ -186,7 +189,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// The page on adding a shape shows one whose contract holds.
+/// Checks that the contract holds of the shape that the page on adding a shape shows.
 fn documented() -> Result<(), libtest_mimic::Failed> {
     let page = include_str!("../../../../docs/contributing/add-a-shape.md");
     let entry = page

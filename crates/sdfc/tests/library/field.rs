@@ -1,41 +1,42 @@
-//! A shape's field with the means to ask it, and the oracle: points of its surface.
+//! Evaluates a shape's field, and finds points of its surface, as the oracle of the checks.
 //!
-//! The oracle knows a surface by changes of sign alone. A field's values are never taken for distances;
-//! its slopes only say where to look next.
+//! The oracle finds the surface by changes of sign alone. It never uses a value of the field as a
+//! distance; slopes only say where to search next.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Dim, Expander, Graph, Scene, ShapeId, bounds};
 
 use crate::geometry::{Point, Random, add, combine, distance, dot, length, mix, scaled, sub};
 
-/// How far a shape without bounds is looked at.
+/// Half the size of the window in which a shape without bounds is sampled.
 const REACH: f64 = 1.5;
-/// Points among which changes of sign are looked for, and points of the surface that are found.
+/// Number of points among which changes of sign are searched, and number of surface points to find.
 const SEEDS: usize = 1500;
 const SURFACE: usize = 500;
-/// Halvings between two signs: more than the digits of f64 there are.
+/// Bisection steps between two signs: more than f64 has digits.
 const HALVINGS: usize = 60;
-/// Moves along the surface towards a point.
+/// Steps along the surface towards a point.
 const MOVES: usize = 40;
-/// The least turn of a direction that counts as a move.
+/// Relative distance along the surface below which the search stops.
 const STALL: f64 = 1e-12;
-/// Directions in which the other side of a corner is looked for: towards points of the surface, and any.
+/// Directions in which the other side of a corner is searched: towards points of the surface, and
+/// random ones.
 const AIMS: usize = 60;
-/// How near a point that stands in for another is, in parts of the scale.
+/// Relative distance to a point that is tried instead of another.
 const NEARBY: f64 = 1e-7;
 
 /// The field of a shape as a program, undivided.
 pub struct Field {
     tape: Tape,
     frame: FrameValues,
-    /// Axes that it has: 2 for a region.
+    /// Number of axes: 2 for a region.
     pub axes: usize,
     /// Stated or derived bounds.
     pub bounds: [Point; 2],
 }
 
 impl Field {
-    /// `None` if the shape is nowhere or too large a program.
+    /// Returns `None` if the shape is empty or its program is too large.
     pub fn new(scene: &Scene, id: ShapeId) -> Option<Self> {
         let mut graph: Graph = scene.graph.clone();
         let dim = graph.shape(id).dim;
@@ -54,21 +55,21 @@ impl Field {
         Some(Self { tape, frame, axes, bounds })
     }
 
-    /// Ready to be asked.
-    pub fn asked(&self) -> Asked<'_> {
+    /// Returns an evaluator of the field.
+    pub fn evaluator(&self) -> FieldEvaluator<'_> {
         let value = self.tape.prepare(&self.frame);
         let dual = self.tape.prepare(&self.frame);
-        Asked { field: self, value, dual }
+        FieldEvaluator { field: self, value, dual }
     }
 
-    /// The bounds, cut where they are infinite.
+    /// Returns the bounds, cut where they are infinite.
     pub fn window(&self) -> [Point; 2] {
         let cut = |end: f64, instead: f64| if end.is_finite() { end } else { instead };
         let [lo, hi] = self.bounds;
         let end = |from: Point, instead: f64| {
             [0, 1, 2].map(|axis| if axis < self.axes { cut(from[axis], instead) } else { 0.0 })
         };
-        // An end that is finite may lie beyond the reach of the other, which is not.
+        // A finite end may lie beyond the default for the other end, which is infinite.
         let lo = end(lo, -REACH);
         let hi = end(hi, REACH);
         [
@@ -77,7 +78,7 @@ impl Field {
         ]
     }
 
-    /// The window's longest edge.
+    /// Returns the length of the window's longest edge.
     pub fn scale(&self) -> f64 {
         let [lo, hi] = self.window();
         sub(hi, lo).into_iter().fold(1e-6, f64::max)
@@ -85,27 +86,27 @@ impl Field {
 }
 
 /// A field with its registers.
-pub struct Asked<'f> {
+pub struct FieldEvaluator<'f> {
     field: &'f Field,
     value: Evaluator<'f, f64>,
     dual: Evaluator<'f, Dual>,
 }
 
-impl Asked<'_> {
+impl FieldEvaluator<'_> {
     pub fn at(&mut self, p: Point) -> f64 {
         self.value.scalar(p)
     }
 
-    /// The gradient.
+    /// Returns the gradient.
     pub fn slope(&mut self, p: Point) -> Point {
         let mut slope = self.dual.scalar(Dual::point(p)).partials;
-        // What a region's picture does with z is no business of its field.
+        // Only the picture of a region depends on z, not its field.
         slope[self.field.axes..].fill(0.0);
         slope
     }
 
-    /// A point of the window grown by so much, one coordinate in four on a face and one in eight in the middle:
-    /// edges, corners and axes are where formulas fail.
+    /// Returns a random point of the window, grown by `grown`. One coordinate in four lies on a
+    /// face, and one in eight in the middle, because formulas fail at edges, corners and axes.
     pub fn point(&self, random: &mut Random, grown: f64) -> Point {
         let [lo, hi] = self.field.window();
         [0, 1, 2].map(|axis| {
@@ -122,12 +123,12 @@ impl Asked<'_> {
         })
     }
 
-    /// Points of the surface, between points of opposite sign.
+    /// Returns points of the surface, found between points of opposite sign.
     pub fn surface(&mut self, random: &mut Random) -> Vec<Point> {
         let margin = 0.1 * self.field.scale();
         let seeds: Vec<Point> =
             (0..SEEDS).map(|i| self.point(random, if i % 2 == 0 { 0.0 } else { margin })).collect();
-        // What is 0 is on neither side.
+        // Where the field is 0, the point is on neither side.
         let mut side = |sign: f64| -> Vec<Point> {
             seeds.iter().copied().filter(|&p| sign * self.at(p) > 0.0).collect()
         };
@@ -144,7 +145,8 @@ impl Asked<'_> {
             .collect()
     }
 
-    /// The last point inside on the way from one inside to one outside, as halving finds it.
+    /// Returns the last point inside on the segment from a point inside to one outside, by
+    /// bisection.
     fn between(&mut self, mut inside: Point, mut outside: Point) -> Point {
         for _ in 0..HALVINGS {
             let middle = mix(inside, outside, 0.5);
@@ -157,7 +159,7 @@ impl Asked<'_> {
         inside
     }
 
-    /// The surface where a line crosses it within `reach` of `p`, if it does.
+    /// Returns where a line crosses the surface within `reach` of `p`, if it does.
     fn on_line(&mut self, p: Point, direction: Point, reach: f64) -> Option<Point> {
         let is_inside = self.at(p) < 0.0;
         for share in [0.05, 0.25, 1.0] {
@@ -171,7 +173,7 @@ impl Asked<'_> {
         None
     }
 
-    /// From a point of the surface along it to where nothing near is nearer to the target.
+    /// Moves a point along the surface to a local minimum of the distance to the target.
     pub fn towards(&mut self, target: Point, from: Point) -> Point {
         let mut at = from;
         let mut step = 1.0;
@@ -201,8 +203,9 @@ impl Asked<'_> {
         at
     }
 
-    /// How far the surface is from `p` at most: to the nearest points found, moved along the surface, and to
-    /// the foot point that the field itself names, if the sign changes there. Infinite if nothing was found.
+    /// Returns an upper bound of the distance from `p` to the surface: to the nearest points found,
+    /// moved along the surface, and to the foot point that the field's gradient gives, if the sign
+    /// changes there. Infinite if no point was found.
     pub fn nearest(&mut self, p: Point, surface: &[Point], random: &mut Random) -> f64 {
         let mut nearest: Vec<(f64, Point)> = surface.iter().map(|&s| (distance(p, s), s)).collect();
         nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -211,7 +214,8 @@ impl Asked<'_> {
             let found = self.towards(p, start);
             least = least.min(distance(p, found));
         }
-        // Right above a face or on it a way down may run along the face: then one from nearby does not.
+        // On a face, or right above it, the descent may run along the face; from a nearby point it
+        // does not.
         let near = NEARBY * self.field.scale();
         let axes = self.field.axes;
         for round in 0..5 {
@@ -225,8 +229,8 @@ impl Asked<'_> {
         self.corner(p, surface, random).map_or(least, |corner| least.min(corner))
     }
 
-    /// How far from `p` the foot point is that the field names, if the sign is another somewhere beside it: the way
-    /// down to a sharp corner goes past the surface.
+    /// Returns the distance from `p` to the foot point that the gradient gives, if the sign changes
+    /// near it. The descent to a sharp corner may miss the surface.
     fn corner(&mut self, p: Point, surface: &[Point], random: &mut Random) -> Option<f64> {
         let (f, slope) = (self.at(p), self.slope(p));
         let foot = sub(p, scaled(slope, f / length(slope)));
@@ -235,7 +239,7 @@ impl Asked<'_> {
         ways.extend((0..AIMS).map(|_| [0; 3].map(|_| random.signed())));
         for way in ways {
             let mut beside = add(foot, scaled(way, NEARBY * self.field.scale() / length(way)));
-            // Then on to where the field, whose sign alone counts, points from there.
+            // From there, follow the field's gradient; only the sign of the field counts.
             for _ in 0..3 {
                 let found = self.at(beside);
                 if found * f < 0.0 {
@@ -248,7 +252,7 @@ impl Asked<'_> {
         None
     }
 
-    /// How far from `p` the surface is met straight down the slope, if it is where |f| says.
+    /// Returns the distance from `p` to the surface along the gradient, if it is |f|.
     fn foot(&mut self, p: Point) -> Option<f64> {
         let (f, slope) = (self.at(p), self.slope(p));
         let steep = length(slope);
@@ -258,7 +262,7 @@ impl Asked<'_> {
         let down = scaled(slope, -f.signum() / steep);
         let beyond = add(p, scaled(down, f.abs() * (1.0 + 1e-7) + 1e-9));
         let before = add(p, scaled(down, f.abs() * (1.0 - 1e-4)));
-        // A zero within the inside is no surface: the sign changes there for good.
+        // A zero inside the solid is no surface; at the surface the sign stays changed.
         let past = add(p, scaled(down, f.abs() + 1e-4 * self.field.scale()));
         let is_inside = f < 0.0;
         let crossed = (self.at(beyond) <= 0.0) != is_inside || self.at(beyond) == 0.0;

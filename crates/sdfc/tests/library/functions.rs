@@ -1,4 +1,4 @@
-//! Functions that state how fast they change: blends, and functions of a point.
+//! Checks functions that state how fast they change: blends, and functions of a point.
 
 use std::collections::HashMap;
 
@@ -13,14 +13,15 @@ use crate::variants;
 const PAIRS: usize = 6000;
 const VARIANTS: usize = 8;
 const TRIES: usize = 80;
-/// Rounding of f64, in the values that are compared.
+/// Rounding error of f64 in the compared values.
 const ROUNDING: f64 = 1e-12;
 const SMALLER: f64 = 0.9;
-/// Searches for the hashes of the steepest slope, and steps of each.
+/// Searches for the hashes with the steepest slope, and steps of each.
 const CLIMBS: usize = 24;
 const STEPS: usize = 600;
 
-/// Whether there is anything to check: a function that states a constant, or gives a blend.
+/// Returns true if the function states a constant or returns a blend, so that there is something to
+/// check.
 pub fn states_something(entry: &Entry) -> bool {
     let states = entry.clauses.iter().any(|clause| clause.starts_with("lipschitz "));
     entry.kind == "fn" && (is_blend(entry) || states)
@@ -66,7 +67,7 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
     if caught { Ok(outcome) } else { Err("no sample refutes a constant 10 % smaller".into()) }
 }
 
-/// A scene whose formula is the function, of coordinates of the point.
+/// Returns a scene whose formula is the function, applied to coordinates of the point.
 fn probe(entry: &Entry, call: &str) -> String {
     if is_blend(entry) {
         return format!("solid probe() = {{ let f = {call}\n  f(p.x, p.y) }}\nprobe()");
@@ -77,7 +78,8 @@ fn probe(entry: &Entry, call: &str) -> String {
     format!("solid probe() = {name}({argument})\nprobe()")
 }
 
-/// The stated constant, and the steepest of pairs, the way between them that of the argument that moves most.
+/// Returns the stated constant and the steepest slope of pairs of points. The run of a slope is
+/// that of the argument that changes most.
 fn measured(scene: &Scene) -> Option<(f64, f64)> {
     let graph = &scene.graph;
     let id = graph.shape_ids().find(|&id| graph.shape(id).definition == "probe")?;
@@ -107,8 +109,8 @@ fn measured(scene: &Scene) -> Option<(f64, f64)> {
     Some((stated, steepest.max(steepest_of_all_hashes(scene, formula)?)))
 }
 
-/// The steepest slope found, whatever the hashes in the formula were: a constant holds for all of them, and
-/// those of a few cells seldom come near it. 0 without hashes.
+/// Returns the steepest slope over all values of the hashes in the formula, or 0 without hashes. A
+/// constant holds for all values, but those of a few cells seldom come near it.
 fn steepest_of_all_hashes(scene: &Scene, formula: NodeId) -> Option<f64> {
     let mut graph = scene.graph.clone();
     let mut new: HashMap<NodeId, NodeId> = HashMap::new();
@@ -160,7 +162,7 @@ fn steepest_of_all_hashes(scene: &Scene, formula: NodeId) -> Option<f64> {
     Some(steepest)
 }
 
-/// Often one of the ends.
+/// Returns a random hash, often 0 or 1.
 fn any_hash(random: &mut Random) -> f64 {
     ((0.5 + random.signed()).clamp(0.0, 1.0) * (HASH_COUNT - 1.0)).floor()
 }

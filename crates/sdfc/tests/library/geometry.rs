@@ -1,6 +1,6 @@
 //! Points and random numbers.
 
-/// A point or a vector; the last lane of a region's is 0.
+/// A point or a vector; the third lane is 0 for a region.
 pub type Point = [f64; 3];
 
 pub fn combine(a: Point, b: Point, f: impl Fn(f64, f64) -> f64) -> Point {
@@ -48,12 +48,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// In 0..1.
+    /// Returns a number in 0..1.
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// In -1..1.
+    /// Returns a number in -1..1.
     pub fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }

@@ -1,11 +1,12 @@
-//! Every entry of the library against every check, without a list of entries here.
+//! Checks every entry of the library, without a list of entries here.
 //!
-//! - `drawn`: the example compiles, something is seen, and f32 and f64 agree on the processor.
-//! - `gpu`: the graphics adapter agrees with both.
-//! - `contract`: what is promised holds at samples of the example and of scenes like it with other numbers, against an
-//!   oracle that knows the surface by changes of sign alone; and every clause with one fault is refuted there.
+//! - `drawn`: the example compiles, something is visible, and f32 and f64 agree on the CPU.
+//! - `gpu`: the GPU agrees with both.
+//! - `contract`: promises hold at samples of the example and of variants with other numbers. The
+//!   oracle finds the surface by changes of sign alone. Every mutant of a clause is refuted.
 //!
-//! `cargo test -p sdfc-cli -p sdfc --test library -- --nocapture` prints the table of entries and checks at the end.
+//! `cargo test -p sdfc-cli -p sdfc --test library -- --nocapture` prints the table of entries and
+//! checks at the end.
 
 #![allow(
     clippy::expect_used,
@@ -82,7 +83,7 @@ fn kept(entry: &Entry) -> Result<String, Failed> {
     if functions::states_something(entry) {
         return Ok(functions::check(entry).map(|it| it.to_string())?);
     }
-    // What it gives is drawn, and promised by whatever uses it.
+    // Its result is drawn and checked with the shapes that use it.
     let name = &entry.name;
     contract::check_scene(&entry.example).map_err(|e| format!("{name}: {e}"))?;
     Ok("states nothing; its example keeps what is derived".to_owned())

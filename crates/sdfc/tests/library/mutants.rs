@@ -1,22 +1,24 @@
-//! Claims with one fault each, made from what an entry states. The samples of some variant of its example must
-//! refute every one of them: else the clause promises less than it could, or the checks see too little.
+//! Mutants: claims with one fault each, made from what an entry states. The samples of some variant
+//! of its example must refute each of them. Otherwise the clause promises less than it could, or
+//! the checks see too little.
 
 use sdfc_analyze::Promise;
 
 use crate::claims::{Claims, PROMISES, SIDES, Stated};
 
-/// By how much a constant is made smaller, and each end of the bounds drawn in, in parts of the extent.
+/// The factor by which a constant is reduced, and the fraction of the extent by which each end of
+/// the bounds is moved inward.
 const SMALLER: f64 = 0.9;
 const DRAWN_IN: f64 = 0.05;
 
 /// A faulty claim.
 pub struct Mutant {
-    /// What was done, the same in all variants.
+    /// The fault, named the same in all variants.
     pub label: String,
     pub claims: Claims,
 }
 
-/// Every fault that the clauses of this instance can have, where what they rest on holds.
+/// Returns all mutants of the clauses of this instance whose dependencies hold.
 pub fn of(stated: &Stated, derived: &Claims, axes: usize) -> Vec<Mutant> {
     let mut mutants = Vec::new();
     let mut add = |label: String, claims: Claims| mutants.push(Mutant { label, claims });
@@ -53,7 +55,7 @@ pub fn of(stated: &Stated, derived: &Claims, axes: usize) -> Vec<Mutant> {
     mutants
 }
 
-/// The label of a clause whose condition was dropped.
+/// Returns the label of a clause whose condition was dropped.
 pub fn without_condition(promise: Promise, side: &str) -> String {
     format!("{promise} {side} without its condition")
 }
@@ -64,7 +66,8 @@ fn one_side(side: usize, promise: Promise) -> Claims {
     claims
 }
 
-/// A promise of one kind more than clauses and derivation give, for entries that state anything.
+/// Returns the promise one level above what clauses and derivation give, for entries that state
+/// anything.
 fn raised(stated: &Stated, derived: &Claims, side: usize) -> Option<Promise> {
     if stated.is_silent() || stated.promises[side][0].is_some() {
         return None;

@@ -1,14 +1,14 @@
-//! Whether rays are inside where an entry's `intersect` says so, in both precisions, and whether they meet nothing else than copies where
-//! `copies` says so.
+//! Checks `intersect` and `copies`: in both precisions rays are inside where `intersect` says so,
+//! and they hit nothing but the sampled copies where `copies` says so.
 
 use sdfc::FrameValues;
 use sdfc_analyze::{copies_obstacle, refute_copies, refute_intersect};
 use sdfc_graph::{Scene, ShapeId};
 
-/// What the intervals may be off, in parts of the lengths that they are computed from.
+/// Relative error that is allowed in the ends of intervals, for f64 and f32.
 const ROUNDING: [f64; 2] = [1e-8, 4e-6];
 
-/// A ray that refutes what a shape states of rays.
+/// Returns a ray that refutes the shape's `intersect`.
 pub fn fault(scene: &Scene, id: ShapeId) -> Option<String> {
     let frame = FrameValues::defaults(&scene.params);
     let double =
@@ -19,10 +19,11 @@ pub fn fault(scene: &Scene, id: ShapeId) -> Option<String> {
     fault.map(|(number, fault)| format!("hits in {number}: {fault:?}"))
 }
 
-/// A faulty `copies`.
+/// A mutant of `copies`.
 pub const FARTHER: &str = "copies said of balls a quarter larger";
 
-/// A point that refutes what a shape states of its copies, if it said so of balls `farther` times as large; or why the clause is none.
+/// Returns a point that refutes the shape's `copies`, with balls `farther` times as large, or the
+/// reason why the clause has no effect.
 pub fn copies_fault(scene: &Scene, id: ShapeId, farther: f64) -> Option<String> {
     let idle = copies_obstacle(&scene.graph, id);
     let fault = refute_copies(scene, id, &FrameValues::defaults(&scene.params), farther);

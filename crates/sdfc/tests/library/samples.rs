@@ -1,27 +1,28 @@
-//! What is found out about a field once, to hold any claim against.
+//! Samples of a field, taken once, to check all claims with.
 
 use crate::field::Field;
 use crate::geometry::{Point, Random, add, distance, length, mix, sub};
 
-/// Points that are compared with the surface, and points and pairs that are compared with a constant.
+/// Number of points that are compared with the surface, and of points and pairs that are compared
+/// with a constant.
 const POINTS: usize = 240;
 const SLOPES: usize = 1200;
 const PAIRS: usize = 900;
-/// Points where the search for a steeper place begins, and its steps.
+/// Number of points from which a steeper slope is searched, and number of steps.
 const CLIMBS: usize = 6;
 const STEPS: usize = 60;
 
-/// A point with what the field says there and how far the surface is.
+/// A point, the field's value there and the distance to the surface.
 pub struct Sample {
     pub p: Point,
     pub f: f64,
-    /// At most so far is the surface; infinite if none was found.
+    /// An upper bound of the distance to the surface; infinite if none was found.
     pub nearest: f64,
-    /// Whether the point lies within the bounds.
+    /// True if the point lies within the bounds.
     pub within: bool,
 }
 
-/// The steepest way between two points.
+/// The steepest slope between two points.
 #[derive(Clone, Copy, Debug)]
 pub struct Steepest {
     pub slope: f64,
@@ -33,11 +34,11 @@ pub struct Samples {
     pub points: Vec<Sample>,
     /// Steepest pair of points within the bounds.
     pub steepest: Steepest,
-    /// Points of the surface and of the inside, the outermost of each axis among them.
+    /// Points of the surface and of the inside, including the outermost along each axis.
     pub reached: Vec<Point>,
-    /// Whether the sign changes anywhere.
+    /// True if the sign changes anywhere.
     pub has_surface: bool,
-    /// Longest edge of what is looked at, in scene units.
+    /// Longest edge of the window, in scene units.
     pub scale: f64,
     pub axes: usize,
 }
@@ -45,11 +46,11 @@ pub struct Samples {
 impl Samples {
     /// # Errors
     ///
-    /// The field is not a number somewhere.
+    /// The field is NaN or infinite somewhere.
     pub fn of(field: &Field) -> Result<Self, String> {
         let mut random = Random(7);
         let (scale, axes) = (field.scale(), field.axes);
-        let surface = field.asked().surface(&mut random);
+        let surface = field.evaluator().surface(&mut random);
         let points = points(field, &surface, &mut random)?;
         let steepest = steepest(field, &mut random)?;
         let mut reached = extremes(field, &surface);
@@ -61,29 +62,30 @@ impl Samples {
 }
 
 fn points(field: &Field, surface: &[Point], random: &mut Random) -> Result<Vec<Sample>, String> {
-    let mut asked = field.asked();
+    let mut evaluator = field.evaluator();
     let [lo, hi] = field.bounds;
     let reach = 0.5 * field.scale();
     let sample = |round: usize| {
-        let p = asked.point(random, [0.0, reach][round % 2]);
-        let f = asked.at(p);
+        let p = evaluator.point(random, [0.0, reach][round % 2]);
+        let f = evaluator.at(p);
         if !f.is_finite() {
             return Err(format!("the field is {f} at {p:?}"));
         }
         let within = (0..field.axes).all(|axis| lo[axis] <= p[axis] && p[axis] <= hi[axis]);
-        Ok(Sample { p, f, nearest: asked.nearest(p, surface, random), within })
+        Ok(Sample { p, f, nearest: evaluator.nearest(p, surface, random), within })
     };
     (0..POINTS).map(sample).collect()
 }
 
-/// The steepest of random pairs, slopes at random points, and slopes that are found by climbing.
+/// Returns the steepest of random pairs, of slopes at random points, and of slopes found by
+/// climbing.
 fn steepest(field: &Field, random: &mut Random) -> Result<Steepest, String> {
-    let mut asked = field.asked();
+    let mut evaluator = field.evaluator();
     let mut slopes: Vec<Steepest> = Vec::new();
     for _ in 0..SLOPES {
-        let p = asked.point(random, 0.0);
+        let p = evaluator.point(random, 0.0);
         // At a kink or a centre there is no slope, and none is claimed.
-        let slope = length(asked.slope(p));
+        let slope = length(evaluator.slope(p));
         if slope.is_finite() {
             slopes.push(Steepest { slope, p, q: p });
         }
@@ -98,7 +100,7 @@ fn steepest(field: &Field, random: &mut Random) -> Result<Steepest, String> {
                 let offset = reach * (hi[axis] - lo[axis]) * random.signed();
                 (start.p[axis] + offset).clamp(lo[axis], hi[axis])
             });
-            let slope = length(asked.slope(move_to));
+            let slope = length(evaluator.slope(move_to));
             if slope.is_finite() && slope > start.slope {
                 *start = Steepest { slope, p: move_to, q: move_to };
             } else {
@@ -107,15 +109,15 @@ fn steepest(field: &Field, random: &mut Random) -> Result<Steepest, String> {
         }
     }
     for round in 0..PAIRS {
-        let p = asked.point(random, 0.0);
-        // Near pairs find a steep place, far pairs a step.
-        let q = mix(p, asked.point(random, 0.0), [1.0, 1e-2, 1e-4][round % 3]);
+        let p = evaluator.point(random, 0.0);
+        // Near pairs find steep slopes, far pairs find jumps.
+        let q = mix(p, evaluator.point(random, 0.0), [1.0, 1e-2, 1e-4][round % 3]);
         let run = distance(p, q);
-        let rise = (asked.at(p) - asked.at(q)).abs();
+        let rise = (evaluator.at(p) - evaluator.at(q)).abs();
         if !rise.is_finite() {
             return Err(format!("the field is not finite at {p:?} or {q:?}"));
         }
-        // Rounding counts as no rise.
+        // A change within rounding does not count.
         if run > 1e-7 * field.scale() {
             slopes.push(Steepest { slope: (rise - 1e-12 * field.scale()) / run, p, q });
         }
@@ -124,9 +126,9 @@ fn steepest(field: &Field, random: &mut Random) -> Result<Steepest, String> {
     Ok(slopes.into_iter().max_by(|a, b| a.slope.total_cmp(&b.slope)).unwrap_or(none))
 }
 
-/// The outermost points of the surface along each axis that moving along it finds.
+/// Returns the outermost points along each axis that moving along the surface finds.
 fn extremes(field: &Field, surface: &[Point]) -> Vec<Point> {
-    let mut asked = field.asked();
+    let mut evaluator = field.evaluator();
     let far = 1e3 * field.scale();
     let mut found = Vec::new();
     for axis in 0..field.axes {
@@ -136,7 +138,7 @@ fn extremes(field: &Field, surface: &[Point]) -> Vec<Point> {
             for start in outermost.into_iter().take(3) {
                 let mut way = [0.0; 3];
                 way[axis] = sign * far;
-                found.push(asked.towards(add(start, way), start));
+                found.push(evaluator.towards(add(start, way), start));
             }
         }
     }

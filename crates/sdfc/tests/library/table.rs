@@ -1,4 +1,4 @@
-//! The table of entries and checks. No cell is blank: what did not run says so.
+//! The table of entries and checks. No cell is blank: a check that did not run has `not run`.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -26,7 +26,7 @@ impl Column {
         }
     }
 
-    /// What the cells say.
+    /// Returns the heading of the column.
     fn title(self) -> &'static str {
         match self {
             Self::Drawn => "seen, f32-f64",
@@ -41,7 +41,7 @@ struct Row {
     cells: [String; Column::ALL.len()],
 }
 
-/// The table; clones share their rows.
+/// The table; clones share its rows.
 #[derive(Clone)]
 pub struct Table(Arc<Mutex<Vec<Row>>>);
 

@@ -1,12 +1,13 @@
-//! Scenes like an entry's example, with other numbers: where formulas degenerate and conditions change.
+//! Scenes like an entry's example with other numbers, for which formulas degenerate and conditions
+//! change.
 
 use crate::geometry::Random;
 
-/// Numbers are multiplied by up to this, or divided by it.
+/// Numbers are multiplied or divided by up to this factor.
 const LARGEST: f64 = 5.0;
 
-/// The text with its numbers changed at random: each is kept, scaled or made 0, and now and then turned round.
-/// Many such scenes are refused by the entry's own ranges; the caller drops those.
+/// Returns the text with random changes: each number is kept, scaled or set to 0, and sometimes
+/// negated. The entry's own ranges refuse many of these scenes; the caller drops those.
 pub fn changed(text: &str, random: &mut Random) -> String {
     let mut out = String::new();
     let mut rest = text;
@@ -18,7 +19,7 @@ pub fn changed(text: &str, random: &mut Random) -> String {
     out + rest
 }
 
-/// The first number of a text, with what stands before and after it.
+/// Returns the first number of a text, with the text before and after it.
 fn next_number(text: &str) -> Option<(&str, &str, &str)> {
     let bytes = text.as_bytes();
     let mut at = 0;
@@ -27,7 +28,7 @@ fn next_number(text: &str) -> Option<(&str, &str, &str)> {
         if byte == b'"' {
             at += 1 + text[at + 1..].find('"')? + 1;
         } else if byte.is_ascii_alphabetic() || byte == b'_' || byte == b'#' {
-            // A name, a colour or a unit: its digits are no number.
+            // The digits of a name, a colour or a unit are no number.
             at += 1;
             while at < bytes.len() && (bytes[at].is_ascii_alphanumeric() || bytes[at] == b'_') {
                 at += 1;
@@ -58,14 +59,14 @@ fn other(number: &str, random: &mut Random) -> String {
         _ => value * LARGEST.powf(random.signed()),
     };
     let changed = if random.below(6) == 0 { -changed } else { changed };
-    // Counts stay counts in half of the cases; elsewhere a whole number is a number like others.
+    // Half of the whole numbers stay whole, because they may be counts.
     let changed = if whole && random.below(2) == 0 { changed.round() } else { changed };
     let digits = format!("{changed:.3}");
     let short = digits.trim_end_matches('0').trim_end_matches('.');
     if changed < 0.0 { format!("({short})") } else { short.to_owned() }
 }
 
-/// The call of `name` in an example, with its arguments.
+/// Returns the call of `name` in an example, with its arguments.
 pub fn call_of<'t>(name: &str, text: &'t str) -> Option<&'t str> {
     let starts = text.match_indices(name).map(|(at, _)| at);
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
