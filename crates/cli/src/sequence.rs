@@ -54,8 +54,8 @@ pub fn time(number: u32, rate: f64) -> f64 {
     f64::from(number) / rate
 }
 
-/// Returns how long a frame is shown, in hundredths of a second. Rounding errors of a sequence do not
-/// add up.
+/// Returns how long a frame is shown, in hundredths of a second. Rounding errors of a sequence do
+/// not add up.
 pub fn hundredths(number: u32, rate: f64) -> u32 {
     let start = |number: f64| (100.0 * number / rate).round();
     (start(f64::from(number) + 1.0) - start(f64::from(number))) as u32

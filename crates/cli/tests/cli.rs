@@ -1,4 +1,4 @@
-//! The binary from outside: exit statuses, streams, files.
+//! Tests the binary from outside: exit statuses, streams and files.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -28,7 +28,7 @@ fn run_with(folder: &Path, args: &[&str], stdin: &[u8]) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A program that refuses its arguments may be gone before it reads.
+    // A program that refuses its arguments may exit before it reads.
     let _ = child.stdin.take().unwrap().write_all(stdin);
     child.wait_with_output().unwrap()
 }
@@ -45,7 +45,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// Names in a folder, so that stray temporary files are seen.
+/// Returns the names of the files in a folder, including temporary ones.
 fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> =
@@ -55,14 +55,14 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_scene_without_faults_checks_silently() {
+fn a_correct_scene_is_checked_silently() {
     let folder = folder();
     let output = run(&folder, &["check", "scene.sdf"]);
     assert_eq!((status(&output), output.stdout, text(&output.stderr)), (0, vec![], String::new()));
 }
 
 #[test]
-fn a_wrong_scene_is_status_1_and_all_its_errors_are_shown() {
+fn a_wrong_scene_exits_with_1_and_shows_all_errors() {
     let folder = folder();
     let output = run(&folder, &["check", "wrong.sdf"]);
     let shown = text(&output.stderr);
@@ -74,7 +74,7 @@ fn a_wrong_scene_is_status_1_and_all_its_errors_are_shown() {
 }
 
 #[test]
-fn diagnostics_as_json_have_their_keys() {
+fn json_diagnostics_have_all_keys() {
     let folder = folder();
     let output = run(&folder, &["check", "--json", "wrong.sdf", "scene.sdf"]);
     assert_eq!(status(&output), 1);
@@ -92,7 +92,7 @@ fn diagnostics_as_json_have_their_keys() {
 }
 
 #[test]
-fn a_missing_file_is_status_2_and_the_others_are_checked() {
+fn a_missing_file_exits_with_2_and_other_files_are_checked() {
     let folder = folder();
     let output = run(&folder, &["check", "missing.sdf", "wrong.sdf"]);
     let shown = text(&output.stderr);
@@ -101,7 +101,7 @@ fn a_missing_file_is_status_2_and_the_others_are_checked() {
 }
 
 #[test]
-fn what_is_no_text_is_status_2() {
+fn a_file_that_is_no_text_exits_with_2() {
     let folder = folder();
     std::fs::write(folder.path().join("picture.sdf"), b"\x89PNG\xff").unwrap();
     let output = run(&folder, &["check", "picture.sdf"]);
@@ -110,7 +110,7 @@ fn what_is_no_text_is_status_2() {
 }
 
 #[test]
-fn wrong_calls_are_status_2() {
+fn wrong_command_lines_exit_with_2() {
     let folder = folder();
     for args in [
         &["check"][..],
@@ -153,14 +153,14 @@ fn stdin_is_a_scene_like_any_other() {
 }
 
 #[test]
-fn colour_is_given_when_asked_for() {
+fn colours_are_used_on_request() {
     let folder = folder();
     let output = run(&folder, &["--color", "always", "check", "wrong.sdf"]);
     assert!(text(&output.stderr).contains("\x1b["));
 }
 
 #[test]
-fn a_reflection_goes_beside_its_shader() {
+fn a_reflection_is_written_beside_its_shader() {
     let folder = folder();
     let args = ["compile", "scene.sdf", "--target", "spirv", "-o", "a.spv", "--reflect", "a.json"];
     let output = run(&folder, &args);
@@ -179,7 +179,7 @@ fn a_reflection_goes_beside_its_shader() {
 }
 
 #[test]
-fn shaders_go_to_stdout_or_whole_into_a_file() {
+fn shaders_are_written_to_stdout_or_to_a_complete_file() {
     let folder = folder();
     let streamed = run(&folder, &["compile", "scene.sdf"]);
     assert_eq!(status(&streamed), 0, "{}", text(&streamed.stderr));
@@ -193,7 +193,7 @@ fn shaders_go_to_stdout_or_whole_into_a_file() {
 }
 
 #[test]
-fn a_wrong_scene_leaves_an_older_output_alone() {
+fn a_wrong_scene_does_not_change_an_older_output() {
     let folder = folder();
     std::fs::write(folder.path().join("out.wgsl"), "older").unwrap();
     let output = run(&folder, &["compile", "wrong.sdf", "-o", "out.wgsl"]);
@@ -202,7 +202,7 @@ fn a_wrong_scene_leaves_an_older_output_alone() {
 }
 
 #[test]
-fn an_output_in_no_folder_is_status_3() {
+fn an_output_in_a_missing_folder_exits_with_3() {
     let folder = folder();
     for args in [
         ["compile", "scene.sdf", "-o", "none/out.wgsl"],
@@ -217,7 +217,7 @@ fn an_output_in_no_folder_is_status_3() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk_is_status_3() {
+fn a_full_disk_exits_with_3() {
     let folder = folder();
     let output = run(&folder, &["compile", "scene.sdf", "-o", "/dev/full"]);
     assert_eq!(status(&output), 3, "{}", text(&output.stderr));
@@ -225,7 +225,7 @@ fn a_full_disk_is_status_3() {
 
 #[test]
 #[cfg(unix)]
-fn a_link_is_written_through() {
+fn output_to_a_link_is_written_to_its_target() {
     let folder = folder();
     std::fs::write(folder.path().join("target.wgsl"), "older").unwrap();
     std::os::unix::fs::symlink("target.wgsl", folder.path().join("link.wgsl")).unwrap();
@@ -235,7 +235,7 @@ fn a_link_is_written_through() {
 }
 
 #[test]
-fn the_processor_draws_and_gives_figures() {
+fn the_cpu_draws_and_writes_metrics() {
     let folder = folder();
     let args =
         ["render", "scene.sdf", "--backend", "cpu", "--size", "40x24", "--stats", "stats.json"];
@@ -270,7 +270,7 @@ fn a_picture_streams_to_stdout() {
 }
 
 #[test]
-fn explain_says_what_was_modelled() {
+fn explain_describes_the_scene() {
     let folder = folder();
     let output = run(&folder, &["explain", "--json", "scene.sdf"]);
     assert_eq!(status(&output), 0, "{}", text(&output.stderr));
@@ -283,7 +283,8 @@ fn explain_says_what_was_modelled() {
         assert!(explained.get(key).is_some(), "{key}");
     }
     assert!(text(&run(&folder, &["explain", "scene.sdf"]).stdout).contains("leaves"));
-    // Steps by a bound need no constant; that of a twist by a param follows it.
+    // A field that is stepped by its bound needs no constant; the constant of a twist depends on
+    // its param.
     let constant = |scene: &[u8]| {
         let output = run_with(folder.path(), &["explain", "-"], scene);
         let page = text(&output.stdout);
@@ -295,7 +296,7 @@ fn explain_says_what_was_modelled() {
 }
 
 #[test]
-fn a_scene_that_draws_nothing_is_checked_not_rendered() {
+fn a_scene_that_draws_nothing_is_checked_but_not_rendered() {
     let folder = folder();
     let check = run_with(folder.path(), &["check", "-"], b"let a = sphere(1)\n");
     assert_eq!(status(&check), 0, "{}", text(&check.stderr));
@@ -307,7 +308,7 @@ fn a_scene_that_draws_nothing_is_checked_not_rendered() {
 }
 
 #[test]
-fn scenes_are_formatted_in_place_or_only_looked_at() {
+fn scenes_are_formatted_in_place_or_only_checked() {
     let folder = folder();
     let ragged = folder.path().join("ragged.sdf");
     std::fs::write(&ragged, "sphere( 1 ) // ball\n").unwrap();
@@ -324,7 +325,7 @@ fn scenes_are_formatted_in_place_or_only_looked_at() {
 }
 
 #[test]
-fn imports_are_files_beside_the_scene() {
+fn imports_are_read_from_the_folder_of_the_scene() {
     let folder = folder();
     std::fs::create_dir(folder.path().join("parts")).unwrap();
     std::fs::write(folder.path().join("parts/knob.sdf"), "let knob = sphere(0.2)\n").unwrap();

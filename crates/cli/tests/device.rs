@@ -1,6 +1,6 @@
-//! A device that is lost on the way: a clear error, status 3, no partial output. The program loses it on purpose, which
-//! it can only in a build with debug assertions; elsewhere, and without an adapter, these are reported as ignored. Beside
-//! them what else needs an adapter.
+//! A lost device gives a clear error, status 3 and no partial output. The program loses its device
+//! on purpose, which needs a build with debug assertions. Without them or without a GPU these tests
+//! are ignored. Other tests that need a GPU are here too.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,21 +15,26 @@ const BALL: &str = "sphere(0.8)\nplane(y: -0.8)\n";
 fn main() {
     let ignored = without_gpu() || !cfg!(debug_assertions);
     let trials = vec![
-        Trial::test("before the first tile", || no_output("0")),
-        Trial::test("in the middle of a picture", || no_output("2")),
-        Trial::test("in the middle of a sequence", a_sequence_keeps_whole_frames),
-        Trial::test("while measuring", while_measuring),
+        Trial::test("a device lost before the first tile leaves no output", || no_output("0")),
+        Trial::test("a device lost in the middle of a picture leaves no output", || no_output("2")),
+        Trial::test(
+            "a device lost in the middle of a sequence leaves whole frames",
+            a_sequence_keeps_whole_frames,
+        ),
+        Trial::test("a device lost while measuring leaves no output", while_measuring),
     ];
     let mut trials: Vec<Trial> =
         trials.into_iter().map(|trial| trial.with_ignored_flag(ignored)).collect();
-    let charts = Trial::test("charts into a folder", charts_into_a_folder);
+    let charts = Trial::test("a folder gets all charts", a_folder_gets_all_charts);
     trials.push(charts.with_ignored_flag(without_gpu()));
-    let tuned = Trial::test("figures of what cannot be tuned", figures_of_what_cannot_be_tuned);
+    let tuned =
+        Trial::test("metrics are written without a result", metrics_are_written_without_a_result);
     trials.push(tuned.with_ignored_flag(without_gpu()));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-/// Runs it with a device that is lost after so many tiles; names of the files that it leaves.
+/// Runs the program with a device that is lost after `after` tiles. Returns the folder and the
+/// names of the files in it.
 fn lost(after: &str, args: &str) -> Result<(tempfile::TempDir, Vec<String>), Failed> {
     let folder = folder(&[("a.sdf", BALL)]);
     let output = run_in(folder.path(), args, b"", &[(LOSE_DEVICE, after)]);
@@ -58,7 +63,7 @@ fn no_output(after: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A frame of 24x16 is six tiles of 64 pixels or fewer.
+/// A frame of 24x16 takes at most six tiles of 64 pixels.
 fn a_sequence_keeps_whole_frames() -> Result<(), Failed> {
     let (folder, names) = lost("20", "render a.sdf -o a.png --frames 0..100 --size 24x16")?;
     let pictures: Vec<_> = names.iter().filter(|name| name.ends_with(".png")).collect();
@@ -71,8 +76,8 @@ fn a_sequence_keeps_whole_frames() -> Result<(), Failed> {
     Ok(())
 }
 
-/// A page, and of each scene both pictures and the figures.
-fn charts_into_a_folder() -> Result<(), Failed> {
+/// A page is written, and for each scene both pictures and the metrics.
+fn a_folder_gets_all_charts() -> Result<(), Failed> {
     let folder = folder(&[("a.sdf", BALL), ("b.sdf", "box(1)")]);
     std::fs::create_dir(folder.path().join("charts"))?;
     let args =
@@ -86,8 +91,8 @@ fn charts_into_a_folder() -> Result<(), Failed> {
     let page = std::fs::read_to_string(written.join("README.md"))?;
     let svg = std::fs::read_to_string(written.join("a.svg"))?;
     image::open(written.join("a.png"))?;
-    let told = page.contains("12x8") && page.contains("today") && svg.contains("today");
-    if told { Ok(()) } else { Err(page.into()) }
+    let is_complete = page.contains("12x8") && page.contains("today") && svg.contains("today");
+    if is_complete { Ok(()) } else { Err(page.into()) }
 }
 
 fn while_measuring() -> Result<(), Failed> {
@@ -95,8 +100,8 @@ fn while_measuring() -> Result<(), Failed> {
     if names != ["a.sdf"] { Err(format!("left {names:?}").into()) } else { Ok(()) }
 }
 
-/// Where no method reaches the error the figures are written all the same.
-fn figures_of_what_cannot_be_tuned() -> Result<(), Failed> {
+/// The metrics are written even if no method reaches the error.
+fn metrics_are_written_without_a_result() -> Result<(), Failed> {
     let folder = folder(&[("a.sdf", "sphere(0.8).twist(90deg)\n")]);
     let args = "tune a.sdf --size 24x16 --max-error 1e-30 --json t.json --no-cache --march sphere";
     let output = run_in(folder.path(), args, b"", &[]);
@@ -104,10 +109,10 @@ fn figures_of_what_cannot_be_tuned() -> Result<(), Failed> {
     if output.status.code() != Some(2) || !said.contains("no method reaches") {
         return Err(format!("{:?}, {said}", output.status).into());
     }
-    let figures: serde_json::Value =
+    let metrics: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.path().join("t.json"))?)?;
-    if figures["methods"].as_array().is_none_or(Vec::is_empty) {
-        return Err("no figures".into());
+    if metrics["methods"].as_array().is_none_or(Vec::is_empty) {
+        return Err("no metrics".into());
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `sdfc doc` from outside.
+//! Tests `sdfc doc` from outside.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -7,7 +7,7 @@ mod common;
 use common::{folder, run, said};
 use serde_json::Value;
 
-/// Status and what went to stdout.
+/// Returns the status and the text on stdout.
 fn doc(args: &str) -> (i32, String) {
     let output = run(&folder(&[]), &format!("doc {args}"));
     (output.status.code().unwrap(), String::from_utf8(output.stdout).unwrap())
@@ -44,7 +44,7 @@ solid torus(major: length = 1 in 0..inf, minor: length = 0.25 in 0..inf)
 }
 
 #[test]
-fn a_name_with_several_meanings_shows_them_all() {
+fn all_meanings_of_a_name_are_shown() {
     let (_, text) = doc("round");
     assert!(text.contains("shape round(") && text.contains("kernel round(x)"), "{text}");
 }
@@ -56,14 +56,14 @@ fn a_topic_is_listed() {
 }
 
 #[test]
-fn a_misspelt_name_is_told_with_a_near_one() {
+fn a_misspelt_name_gives_a_suggestion() {
     let output = run(&folder(&[]), "doc spere");
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("there is no entry `spere`; did you mean `sphere`?"));
 }
 
 #[test]
-fn a_word_that_is_no_name_is_searched_for() {
+fn a_word_that_is_no_name_starts_a_search() {
     let output = run(&folder(&[]), "doc hollow");
     assert_eq!(output.status.code(), Some(0));
     assert!(
@@ -74,7 +74,7 @@ fn a_word_that_is_no_name_is_searched_for() {
 }
 
 #[test]
-fn colour_comes_when_it_is_asked_for() {
+fn colours_are_used_on_request() {
     let (_, text) = doc("sphere --color always");
     assert!(text.starts_with("\x1b[36msolid\x1b[0m \x1b[1msphere\x1b[0m(r: length"), "{text}");
 }
@@ -87,7 +87,7 @@ fn a_code_is_explained() {
 }
 
 #[test]
-fn as_json_every_key_is_there() {
+fn json_entries_have_all_keys() {
     let (status, text) = doc("--json");
     let rows: Value = serde_json::from_str(&text).unwrap();
     let rows = rows.as_array().unwrap();

@@ -1,5 +1,5 @@
-//! Bad input and bad luck: a clear error, the right exit status, no panic, no partial output. A device that is lost
-//! is in `device.rs`.
+//! Bad input and failures of the machine give a clear error, the right exit status, no panic and no
+//! partial output. `device.rs` tests lost devices.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -11,7 +11,8 @@ use common::{folder, names, run, run_with, said};
 
 const BALL: &str = "sphere(0.8)\nplane(y: -0.8)\n";
 
-/// Runs it, and checks status, words on stderr, and that it ended as it meant to.
+/// Runs the program, and checks its status, words on stderr, and that it neither panicked nor left
+/// files behind.
 fn ends(folder: &Path, args: &str, stdin: &[u8], status: i32, words: &[&str]) {
     let before = names(folder);
     let output = run_with(folder, args, stdin);
@@ -27,7 +28,7 @@ fn ends(folder: &Path, args: &str, stdin: &[u8], status: i32, words: &[&str]) {
     }
 }
 
-/// A scene with an error, by every command that takes one.
+/// Checks a scene with an error, with every command that reads scenes.
 fn wrong(scene: &str, words: &[&str]) {
     let folder = folder(&[]);
     for args in
@@ -37,7 +38,7 @@ fn wrong(scene: &str, words: &[&str]) {
     }
 }
 
-/// An input that is no scene, by every command that takes one.
+/// Checks an input that is no scene, with every command that reads scenes.
 fn unreadable(folder: &Path, name: &str, words: &[&str]) {
     for command in ["check", "compile", "render", "explain", "fmt", "bench"] {
         ends(folder, &format!("{command} {name}"), b"", 2, words);
@@ -45,19 +46,19 @@ fn unreadable(folder: &Path, name: &str, words: &[&str]) {
 }
 
 #[test]
-fn a_missing_file() {
+fn a_missing_file_is_reported() {
     unreadable(folder(&[]).path(), "none.sdf", &["cannot read none.sdf", "No such file"]);
 }
 
 #[test]
-fn a_folder() {
+fn a_folder_is_reported() {
     let folder = folder(&[]);
     std::fs::create_dir(folder.path().join("scenes.sdf")).unwrap();
     unreadable(folder.path(), "scenes.sdf", &["cannot read scenes.sdf"]);
 }
 
 #[test]
-fn charts_that_would_overwrite() {
+fn charts_that_would_overwrite_files_are_refused() {
     let folder = folder(&[("a.sdf", BALL), ("README.md", "# A program of mine\n")]);
     std::fs::create_dir_all(folder.path().join("b")).unwrap();
     std::fs::create_dir_all(folder.path().join("out")).unwrap();
@@ -70,16 +71,16 @@ fn charts_that_would_overwrite() {
 }
 
 #[test]
-fn binary_bytes() {
+fn binary_bytes_are_reported() {
     let folder = folder(&[]);
     std::fs::write(folder.path().join("a.sdf"), b"sphere(1)\n\xff\xfe\x00").unwrap();
     unreadable(folder.path(), "a.sdf", &["a.sdf is not UTF-8 text", "offset 10"]);
-    // These are UTF-8.
+    // These bytes are UTF-8.
     wrong("sphere(1)\n\0\x01\x02\n", &["2:1"]);
 }
 
 #[test]
-fn a_file_of_100_mb() {
+fn a_file_of_100_mb_is_refused() {
     let folder = folder(&[]);
     std::fs::File::create(folder.path().join("a.sdf")).unwrap().set_len(100 << 20).unwrap();
     unreadable(folder.path(), "a.sdf", &["a.sdf is larger than 64 MiB"]);
@@ -88,7 +89,7 @@ fn a_file_of_100_mb() {
 }
 
 #[test]
-fn a_byte_order_mark_and_crlf() {
+fn a_byte_order_mark_and_crlf_are_accepted() {
     let folder = folder(&[]);
     let scene = b"\xef\xbb\xbfsphere(1)\r\nplane(y: -1)\r\n";
     ends(folder.path(), "check -", scene, 0, &[]);
@@ -98,7 +99,7 @@ fn a_byte_order_mark_and_crlf() {
 }
 
 #[test]
-fn unclosed_brackets() {
+fn unclosed_brackets_are_reported() {
     wrong("sphere((1\n", &["E01"]);
     wrong("union([sphere(1), box(1)\n", &["E01"]);
     wrong(&"(".repeat(100_000), &["E01"]);
@@ -106,21 +107,21 @@ fn unclosed_brackets() {
 }
 
 #[test]
-fn unknown_names() {
+fn unknown_names_are_reported() {
     wrong("spere(1)\n", &["E0201", "did you mean `sphere`?"]);
     wrong("sphere(radius: 1)\n", &["radius"]);
     wrong("import a from \"none.sdf\"\na\n", &["none.sdf"]);
 }
 
 #[test]
-fn wrong_types() {
+fn wrong_types_are_reported() {
     wrong("sphere(\"big\")\n", &["E03"]);
     wrong("sphere(1).rotate(x: 90)\n", &["E0304", "90deg"]);
     wrong("sphere(1) + 1\n", &["E03"]);
 }
 
 #[test]
-fn numbers_that_are_not_finite() {
+fn numbers_that_are_not_finite_are_reported() {
     wrong("sphere(1e999)\n", &["too large"]);
     wrong("sphere(nan)\n", &["unknown name"]);
     wrong("sphere(sqrt(-1))\n", &["shaders need finite numbers"]);
@@ -129,24 +130,24 @@ fn numbers_that_are_not_finite() {
 }
 
 #[test]
-fn division_by_a_constant_zero() {
+fn division_by_a_constant_zero_is_reported() {
     wrong("sphere(1 / 0)\n", &["shaders need finite numbers"]);
     wrong("let a = 0\nsphere(1 % a)\n", &["shaders need finite numbers"]);
 }
 
 #[test]
-fn values_that_make_no_shape() {
+fn values_that_make_no_shape_are_reported() {
     wrong("plane(normal: [0, 0, 0])\n", &["normal"]);
     wrong("sphere(-1)\n", &["E0309", "`r` is -1"]);
     wrong("sphere(1).scale(0)\n", &["E0"]);
-    // Cameras may move: whether one sees anything is known when a frame is drawn.
+    // Cameras may depend on time, so this is known only when a frame is drawn.
     let blind = b"camera(eye: [0, 0, 0], target: [0, 0, 0])\nsphere(1)\n";
     let args = "render - -o out.png --backend cpu";
     ends(folder(&[]).path(), args, blind, 1, &["eye and target are one point"]);
 }
 
 #[test]
-fn sizes_of_pictures() {
+fn wrong_sizes_of_pictures_are_refused() {
     let folder = folder(&[("a.sdf", BALL)]);
     for (size, words) in [
         ("0x4", "at least 1"),
@@ -161,7 +162,7 @@ fn sizes_of_pictures() {
 }
 
 #[test]
-fn outputs_that_cannot_be_written() {
+fn outputs_that_cannot_be_written_are_reported() {
     let folder = folder(&[("a.sdf", BALL)]);
     std::fs::create_dir(folder.path().join("taken.png")).unwrap();
     for args in [
@@ -180,7 +181,7 @@ fn outputs_that_cannot_be_written() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_disk() {
+fn a_full_disk_is_reported() {
     let folder = folder(&[("a.sdf", BALL)]);
     for args in [
         "render a.sdf -o /dev/full --backend cpu --size 8x8",
@@ -198,10 +199,10 @@ fn a_full_disk() {
     }
 }
 
-/// A file that stops taking bytes when part of it is written.
+/// The disk fills up when a part of the file is written.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_disk_that_fills_while_writing() {
+fn a_disk_that_fills_up_leaves_no_partial_file() {
     let folder = folder(&[("a.sdf", BALL)]);
     for args in [
         "render a.sdf -o a.png --backend cpu --size 160x100",
@@ -209,7 +210,7 @@ fn a_disk_that_fills_while_writing() {
         "render a.sdf -o a.png --depth z.exr --backend cpu --size 160x100",
         "compile a.sdf -o a.wgsl --emit render",
     ] {
-        // Files of this shell and what it starts hold at most one block of 512 bytes.
+        // Files written by this shell and its children can have at most one block of 512 bytes.
         let output = shell_with(&folder, "trap '' XFSZ; ulimit -f 1", args);
         assert_eq!(output.status.code(), Some(3), "{args}: {}", said(&output));
         assert!(said(&output).contains("cannot write a."), "{args}: {}", said(&output));
@@ -217,7 +218,7 @@ fn a_disk_that_fills_while_writing() {
     }
 }
 
-/// Runs it by the shell, which splits the arguments and redirects.
+/// Runs the program by the shell, which splits the arguments and redirects.
 #[cfg(target_os = "linux")]
 fn shell(folder: &tempfile::TempDir, args: &str) -> std::process::Output {
     shell_with(folder, ":", args)
@@ -233,10 +234,10 @@ fn shell_with(folder: &tempfile::TempDir, before: &str, args: &str) -> std::proc
         .unwrap()
 }
 
-/// Ctrl-C, once the first file of a sequence is there.
+/// Sends Ctrl-C when the first file of a sequence exists.
 #[test]
 #[cfg(unix)]
-fn ctrl_c_in_the_middle_of_a_sequence() {
+fn ctrl_c_leaves_whole_frames_of_a_sequence() {
     use std::process::{Command, Stdio};
     let folder = folder(&[("a.sdf", BALL)]);
     let frames =
@@ -264,10 +265,10 @@ fn ctrl_c_in_the_middle_of_a_sequence() {
     }
 }
 
-/// An animation that is stopped is no file at all.
+/// An animation is one file, which is not written if it is interrupted.
 #[test]
 #[cfg(unix)]
-fn ctrl_c_before_an_animation_is_whole() {
+fn ctrl_c_leaves_no_partial_animation() {
     use std::process::{Command, Stdio};
     let folder = folder(&[("a.sdf", BALL)]);
     let frames =

@@ -1,4 +1,4 @@
-//! `sdfc render` and its options, on the processor.
+//! Tests `sdfc render` and its options on the CPU.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,24 +10,24 @@ use common::{folder, names, run, run_in, said};
 use exr::prelude::traits::*;
 use tempfile::TempDir;
 
-const KNOBS: &str = "param r = 0.5 in 0.1..1\nparam tilt = 0deg in 0deg..90deg\nparam paint = #ff0000\n\
+const WITH_PARAMS: &str = "param r = 0.5 in 0.1..1\nparam tilt = 0deg in 0deg..90deg\nparam paint = #ff0000\n\
                      box([3 * r, r, r]).rotate(z: tilt).translate(x: sin(time))\n  .color(paint)\n\
                      camera(eye: [0, 0, 5], target: [0, 0, 0], fov: 45deg)\nambient(strength: 1)\n";
 
-fn knobs() -> TempDir {
-    folder(&[("knobs.sdf", KNOBS)])
+fn with_params() -> TempDir {
+    folder(&[("params.sdf", WITH_PARAMS)])
 }
 
-/// The bytes of the picture that these options give, 24 by 16 pixels.
+/// Returns the bytes of the picture with these options, 24 by 16 pixels.
 fn drawn(folder: &TempDir, options: &str) -> Vec<u8> {
-    let args = format!("render knobs.sdf --backend cpu --size 24x16 -o out.png {options}");
+    let args = format!("render params.sdf --backend cpu --size 24x16 -o out.png {options}");
     let output = run(folder, &args);
     assert_eq!(output.status.code(), Some(0), "{options}: {}", said(&output));
     std::fs::read(folder.path().join("out.png")).unwrap()
 }
 
 fn refused(folder: &TempDir, options: &str, part: &str) {
-    let args = format!("render knobs.sdf --backend cpu --size 24x16 {options}");
+    let args = format!("render params.sdf --backend cpu --size 24x16 {options}");
     let output = run(folder, &args);
     assert_eq!(output.status.code(), Some(2), "{options}: {}", said(&output));
     assert!(said(&output).contains(part), "{options}: {}", said(&output));
@@ -35,7 +35,7 @@ fn refused(folder: &TempDir, options: &str, part: &str) {
 
 #[test]
 fn params_and_time_move_the_picture() {
-    let folder = knobs();
+    let folder = with_params();
     let plain = drawn(&folder, "");
     for options in ["--set r=0.9", "--set tilt=45deg", "--set paint=#00f", "--time 1"] {
         assert_ne!(drawn(&folder, options), plain, "{options}");
@@ -45,7 +45,7 @@ fn params_and_time_move_the_picture() {
 
 #[test]
 fn wrong_values_are_refused_by_name() {
-    let folder = knobs();
+    let folder = with_params();
     refused(&folder, "--set q=1", "it has r, tilt, paint");
     refused(&folder, "--set r=2", "the param `r` takes 0.1..1; 2 is outside");
     refused(&folder, "--set tilt=45", "an angle with its unit");
@@ -60,21 +60,21 @@ fn wrong_values_are_refused_by_name() {
     refused(&folder, "--frames 0..2 --fps 100 -o a.gif", "50 frames per second");
     refused(&folder, "--samples 0", "--samples");
     refused(&folder, "-o out.jpg", ".png");
-    assert_eq!(names(folder.path()), ["knobs.sdf"]);
+    assert_eq!(names(folder.path()), ["params.sdf"]);
 }
 
 #[test]
 fn a_sequence_cut_into_ranges_gives_the_same_files() {
-    let (whole, cut) = (knobs(), knobs());
+    let (whole, cut) = (with_params(), with_params());
     let draw = |folder: &TempDir, frames: &str| {
-        let args = "render knobs.sdf --backend cpu --size 24x16 -o f.png --fps 2 --frames";
+        let args = "render params.sdf --backend cpu --size 24x16 -o f.png --fps 2 --frames";
         let output = run(folder, &format!("{args} {frames}"));
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
         assert!(said(&output).contains("f.000"), "it says where the pictures are");
     };
     draw(&whole, "0..4");
     draw(&cut, "2..4");
-    assert_eq!(names(cut.path()), ["f.0002.png", "f.0003.png", "knobs.sdf"]);
+    assert_eq!(names(cut.path()), ["f.0002.png", "f.0003.png", "params.sdf"]);
     draw(&cut, "0..2");
     assert_eq!(names(whole.path()), names(cut.path()));
     let read = |folder: &TempDir, n: u32| {
@@ -83,20 +83,20 @@ fn a_sequence_cut_into_ranges_gives_the_same_files() {
     for number in 0..4 {
         assert_eq!(read(&whole, number), read(&cut, number), "{number}");
     }
-    // Frame 2 at 2 frames a second is second 1.
+    // At 2 frames per second frame 2 is at second 1.
     assert_eq!(read(&whole, 2), drawn(&whole, "--time 1"));
     assert_ne!(read(&whole, 2), read(&whole, 3));
 }
 
 #[test]
 fn an_animation_is_one_file() {
-    let folder = knobs();
-    let args = "render knobs.sdf --backend cpu --size 24x16 -o f.gif --frames 0..3";
+    let folder = with_params();
+    let args = "render params.sdf --backend cpu --size 24x16 -o f.gif --frames 0..3";
     let output = run(&folder, args);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert_eq!(names(folder.path()), ["f.gif", "knobs.sdf"]);
+    assert_eq!(names(folder.path()), ["f.gif", "params.sdf"]);
     let gif = std::fs::read(folder.path().join("f.gif")).unwrap();
-    // Signature and size; one graphic control extension a frame; the trailer.
+    // The signature and the size, one graphic control extension per frame, and the trailer.
     assert_eq!(
         (&gif[..6], &gif[6..10], gif.last()),
         (&b"GIF89a"[..], &[24, 0, 16, 0][..], Some(&0x3b))
@@ -104,12 +104,13 @@ fn an_animation_is_one_file() {
     assert_eq!(gif.windows(3).filter(|bytes| *bytes == [0x21, 0xf9, 4]).count(), 3);
 }
 
-/// Slanted bars, all of one shade, before black: one ray sees either, nine see any ninth between.
+/// Slanted bars of one shade before black: a pixel with one ray has one of two values, a pixel with
+/// nine rays any ninth between them.
 #[test]
 fn more_samples_soften_edges() {
     let bars = "union([for i in 0..8: box([0.3, 6, 0.001]).translate(x: i * 0.6 - 2.1)]).rotate(z: 20deg)\n\
                 camera(eye: [0, 0, 5], target: 0, fov: 45deg)\nsun(direction: [0, 0, 1])\n";
-    let folder = folder(&[("knobs.sdf", bars)]);
+    let folder = folder(&[("params.sdf", bars)]);
     let shades = |options: &str| {
         let picture = image::load_from_memory(&drawn(&folder, options)).unwrap().to_rgb8();
         picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>()
@@ -122,7 +123,7 @@ fn more_samples_soften_edges() {
     assert_eq!(drawn(&folder, "--samples 9"), drawn(&folder, "--samples 9"));
 }
 
-/// The samples of the first channel of an EXR.
+/// Returns the name and the samples of the first channel of an EXR.
 fn channel(folder: &TempDir, name: &str) -> (String, Vec<f32>) {
     let read = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels();
     let layer = read.first_valid_layer().all_attributes();
@@ -133,7 +134,7 @@ fn channel(folder: &TempDir, name: &str) -> (String, Vec<f32>) {
 
 #[test]
 fn depths_are_along_the_ray() {
-    // A wall of depth 0.5 about the origin, seen from 5 in front of it: its face is 4.75 away.
+    // A wall 0.5 deep at the origin, seen from a distance of 5: its face is 4.75 away.
     let scene = "box([9, 9, 0.5])\ncamera(eye: [0, 0, 5], target: [0, 0, 0], fov: 90deg)\n";
     let folder = folder(&[("wall.sdf", scene)]);
     let args = "render wall.sdf --backend cpu --size 3x3 -o w.exr --depth z.exr";
@@ -142,7 +143,7 @@ fn depths_are_along_the_ray() {
     let (name, depths) = channel(&folder, "z.exr");
     assert_eq!((name.as_str(), depths.len()), ("Z", 9));
     assert!((depths[4] - 4.75).abs() < 1e-3, "{depths:?}");
-    // The middle of the next pixel is 2/3 to the side of the axis at distance 1.
+    // The centre of the next pixel is 2/3 to the side of the axis at distance 1.
     let slant = 4.75 * (1.0f32 + 4.0 / 9.0).sqrt();
     assert!((depths[3] - slant).abs() < 1e-2, "{depths:?} {slant}");
     let (name, blue) = channel(&folder, "w.exr");
@@ -152,19 +153,19 @@ fn depths_are_along_the_ray() {
 
 #[test]
 fn depths_of_a_sequence_are_numbered() {
-    let folder = knobs();
-    let args = "render knobs.sdf --backend cpu --size 8x8 -o f.gif --depth z.exr --frames 1..3";
+    let folder = with_params();
+    let args = "render params.sdf --backend cpu --size 8x8 -o f.gif --depth z.exr --frames 1..3";
     let output = run(&folder, args);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert_eq!(names(folder.path()), ["f.gif", "knobs.sdf", "z.0001.exr", "z.0002.exr"]);
+    assert_eq!(names(folder.path()), ["f.gif", "params.sdf", "z.0001.exr", "z.0002.exr"]);
     assert!(channel(&folder, "z.0001.exr").1.contains(&f32::INFINITY));
     refused(&folder, "--depth z.png", "depths are written as EXR");
     refused(&folder, "-o z.exr --depth z.exr", "two outputs");
 }
 
 #[test]
-fn numbers_move_where_asked_for() {
-    let folder = knobs();
+fn live_literals_can_be_set_on_request() {
+    let folder = with_params();
     let plain = drawn(&folder, "");
     assert_eq!(drawn(&folder, "--live-literals"), plain);
 
@@ -176,11 +177,13 @@ fn numbers_move_where_asked_for() {
     );
 }
 
-/// Of a scene that wants another method the processor draws what it can, unless it was asked for just that.
+/// The CPU uses `auto` for a scene that states another method, but refuses that method as an
+/// option.
 #[test]
-fn without_an_adapter_auto_stands_in_for_methods_that_the_processor_lacks() {
+fn without_a_gpu_auto_replaces_methods_that_the_cpu_lacks() {
     let folder = folder(&[("a.sdf", "sphere(0.8)\nmarch(method: \"segment\")\n")]);
-    // The loaders of Vulkan find no driver; elsewhere there may be an adapter, which has the method.
+    // With these variables Vulkan loaders find no driver. Elsewhere a GPU may exist, which has the
+    // method.
     let hidden = [("VK_DRIVER_FILES", "/nowhere"), ("VK_ICD_FILENAMES", "/nowhere")];
     let output = run_in(folder.path(), "render a.sdf -o a.png --size 24x16", b"", &hidden);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));

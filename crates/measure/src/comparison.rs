@@ -64,8 +64,8 @@ impl Comparison {
         self.truth.counts()
     }
 
-    /// Compares a picture of the view, drawn with one ray per pixel. A picture stores no normals, so
-    /// the metrics have no errors of normals.
+    /// Compares a picture of the view, drawn with one ray per pixel. A picture stores no normals,
+    /// so the metrics have no errors of normals.
     pub fn metrics(&self, image: &Image) -> Metrics {
         let sample = |pixel: &sdfc_march::PixelBlock| PixelSample {
             status: status(pixel),

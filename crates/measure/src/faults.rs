@@ -82,9 +82,9 @@ const VARIANTS: [(&str, FieldSource, &str); 3] = [
 ];
 
 /// Draws the scene without materials in three ways, and compares each picture with one drawn in f64
-/// on the CPU: with a naive interpreter and marcher, with that interpreter and a ray method of sdfc,
-/// and with sdfc alone.
-///
+/// Draws the scene without materials in three ways, and compares each picture with one drawn in f64
+/// on the CPU: with a naive interpreter and marcher, with that interpreter and a ray method of
+/// sdfc, and with sdfc alone.
 /// # Errors
 ///
 /// [`MeasureError::Scene`] for a failure of the scene or the machine;

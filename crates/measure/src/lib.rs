@@ -12,10 +12,10 @@
 //!
 //! # How
 //!
-//! The oracle shares only the scene's formula with the shader, neither its steps nor its arithmetic.
-//! An interval contains the field's value at every point of a box, so a segment whose interval does
-//! not contain 0 is free. If the interval of the derivative does not contain 0, different signs at
-//! the ends prove exactly one root.
+//! The oracle shares only the scene's formula with the shader, neither its steps nor its
+//! arithmetic. An interval contains the field's value at every point of a box, so a segment whose
+//! interval does not contain 0 is free. If the interval of the derivative does not contain 0,
+//! different signs at the ends prove exactly one root.
 //!
 //! ```
 //! use sdfc_measure::{Oracle, Ray, Verdict};

@@ -1,5 +1,6 @@
-//! `auto` against the oracle and against other methods, on every scene under `examples`. Certified scenes keep one bound; those that
-//! cannot are on a list, each with its reason and its own.
+//! Compares `auto` with the oracle and with other methods, on every scene under `examples`. All
+//! certified scenes have the same bounds. The other scenes are listed, each with a reason and its
+//! own bounds.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -13,23 +14,26 @@ use sdfc_measure::{ChartOptions, OracleOptions, chart};
 use sdfc_render::{Gpu, no_progress, testing};
 use sdfc_test_support::example_sources;
 
-/// What a scene keeps, seen at a size; no pixel is missed, false, out of steps or no number.
+/// Limits for a scene, drawn at a size. In all scenes no pixel is missed, false, out of steps or
+/// NaN.
 struct Bound {
     size: [u32; 2],
-    /// Most of a picture's pixels that the oracle may leave undecided, as a share.
+    /// Largest fraction of the pixels that the oracle may leave undecided.
     undecided: f64,
 }
 
 const CERTIFIED: Bound = Bound { size: [96, 54], undecided: 1e-3 };
 
-/// Error of normals that 99 of 100 pixels of smooth surfaces keep, in degrees.
+/// Largest error of normals on smooth surfaces (99th percentile), in degrees.
 const NORMAL: f64 = 1e-3;
 
-/// Error in depth that 99 of 100 pixels keep, in widths of a pixel: of scenes of a few leaves, and of more.
+/// Largest error in depth (99th percentile), in widths of a pixel: for scenes of a few leaves, and
+/// of more.
 const DEPTH: [f64; 2] = [0.05, 0.1];
 const FEW_LEAVES: usize = 30;
 
-/// `auto` and what it is compared with: none of these takes fewer operations and errs less.
+/// `auto` and the methods that it is compared with: none of them takes fewer operations with
+/// smaller errors.
 const METHODS: [Method; 6] = [
     Method::Auto,
     Method::Sphere,
@@ -39,20 +43,21 @@ const METHODS: [Method; 6] = [
     Method::AutoRelaxed,
 ];
 
-/// Most evaluations per pixel, as a part of those of `sphere-cone`.
+/// Largest number of evaluations per pixel, relative to `sphere-cone`.
 const EVALUATIONS: f64 = 0.5;
 
-/// Scenes that take more, and why.
-const DEARER: &[(&str, &str, f64)] = &[
-    ("terrain.sdf", "hills of noise: nothing has a closed form, and every ray grazes it", 0.8),
-    ("bench/thirty.sdf", "one chain of blends without a floor: nothing has a closed form", 0.8),
-    ("pawn.sdf", "the board is a rounded box, cheaper to march than in closed form", 0.55),
+/// Scenes that take more, each with the reason and its limit.
+const EXPENSIVE: &[(&str, &str, f64)] = &[
+    ("terrain.sdf", "hills of noise: nothing is analytic, and every ray grazes it", 0.8),
+    ("bench/thirty.sdf", "one chain of blends without a floor: nothing is analytic", 0.8),
+    ("pawn.sdf", "the board is a rounded box, cheaper to march than to intersect analytically", 0.55),
 ];
 
-/// A scene of hundreds of leaves, which no example has. Drivers take long for its shaders, so `auto` is drawn alone.
+/// A scene of hundreds of leaves, unlike any example. Drivers take long for its shaders, so only
+/// `auto` is drawn.
 const MANY: &str = "three hundred leaves";
 
-/// Scenes of which less can be promised, and why.
+/// Scenes with weaker limits, each with the reason.
 const EXCEPTIONS: &[(&str, &str, Bound)] = &[(
     "mandelbulb.sdf",
     "its field is an estimate without a constant, and intervals over its rounds prove misses alone",
@@ -67,7 +72,7 @@ fn main() {
     };
     let mut files = example_sources().expect("the examples can be read");
     files.push((MANY.to_owned(), many()));
-    let listed = EXCEPTIONS.iter().map(|it| it.0).chain(DEARER.iter().map(|it| it.0));
+    let listed = EXCEPTIONS.iter().map(|it| it.0).chain(EXPENSIVE.iter().map(|it| it.0));
     for listed in listed {
         assert!(files.iter().any(|(name, _)| *name == listed), "there is no {listed}");
     }
@@ -75,12 +80,12 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-/// Pairs of a ball and a ring, in places that keep apart from each other.
+/// Returns pairs of a ball and a ring at positions far from each other.
 fn many() -> String {
     let pair = |index: i32| {
-        let place = [0.819_172_5, 0.671_043_6, 0.549_700_5]
+        let position = [0.819_172_5, 0.671_043_6, 0.549_700_5]
             .map(|step: f64| 8.0 * (step * f64::from(index)).fract() - 4.0);
-        format!("union(sphere(0.3), torus(0.4, 0.1), blend: smooth(0.1)).translate({place:?})\n")
+        format!("union(sphere(0.3), torus(0.4, 0.1), blend: smooth(0.1)).translate({position:?})\n")
     };
     let parts: String = (0..150).map(pair).collect();
     parts + "camera(eye: [5, 4, 8], target: 0, fov: 40deg)\n"
@@ -120,10 +125,12 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
         return Err(format!("`{}` is cheaper and nearer", other.method).into());
     }
     if let Some(cone) = chart.methods.iter().find(|row| row.method == "sphere-cone") {
-        let part = row.evals_per_pixel.mean / cone.evals_per_pixel.mean;
-        let dearer = DEARER.iter().find(|(listed, ..)| *listed == name);
-        if part > dearer.map_or(EVALUATIONS, |it| it.2) || row.depth_px.p99 > cone.depth_px.p99 {
-            return Err(format!("{part:.2} of the evaluations of `sphere-cone`").into());
+        let fraction = row.evals_per_pixel.mean / cone.evals_per_pixel.mean;
+        let expensive = EXPENSIVE.iter().find(|(listed, ..)| *listed == name);
+        if fraction > expensive.map_or(EVALUATIONS, |it| it.2)
+            || row.depth_px.p99 > cone.depth_px.p99
+        {
+            return Err(format!("{fraction:.2} of the evaluations of `sphere-cone`").into());
         }
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! The interpreting baselines draw what the specialised shader draws, and say what they cannot draw.
-//! At 64x64, depth within 1e-3 outside edges.
+//! The interpreting baselines draw the same picture as the specialised shader, and report what they
+//! cannot draw. At 64x64, depths agree within 1e-3 outside edges.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -17,14 +17,14 @@ const SIDE: u32 = 64;
 /// Largest difference of depth outside edges, in scene units.
 const DEPTH: f32 = 1e-3;
 
-/// A view, and a tolerance so fine that one step more or less moves no hit by `DEPTH`.
+/// A view with a tolerance so small that one step more or less changes no depth by `DEPTH`.
 const VIEW: &str = "
 camera(eye: [3, 2.5, 4], target: 0, fov: 40deg)
 sun(direction: [1, 2, 1], shadow: hard)
 march(steps: 255, epsilon: 0.0002)
 ";
 
-/// What both baselines hold: every operation and primitive, params, wrappers, lone primitives.
+/// Scenes for both baselines: every operation and primitive, params, wrappers, single primitives.
 const BOTH: [(&str, &str); 4] = [
     ("blend", include_str!("../../../examples/course/blend.sdf")),
     (
@@ -47,7 +47,7 @@ carve(box(1), sphere(0.65))",
     ),
 ];
 
-/// What the stack machine holds and units do not.
+/// Scenes that the stack machine can express and units cannot.
 const TAPE_ALONE: [(&str, &str, &str); 5] = [
     (
         "conditions",
@@ -78,10 +78,13 @@ box([1, 0.4, 0.6]).rotate(y: a).twist(40deg)",
 fn main() {
     let without_gpu = testing::without_gpu();
     let mut trials = vec![
-        Trial::test("what units cannot hold", units_say_what_they_cannot_hold),
-        Trial::test("what the tape cannot hold", the_tape_says_what_it_cannot_hold),
-        Trial::test("tables by hand", tables_by_hand),
-        Trial::test("many leaves", many_leaves_need_few_places),
+        Trial::test("units report what they cannot express", units_report_what_they_cannot_express),
+        Trial::test(
+            "the tape reports what it cannot express",
+            the_tape_reports_what_it_cannot_express,
+        ),
+        Trial::test("tables are those made by hand", tables_are_those_made_by_hand),
+        Trial::test("many leaves need few locals", many_leaves_need_few_locals),
     ];
     let texts = BOTH.map(|(name, text)| (name, text, true));
     let alone = TAPE_ALONE.map(|(name, text, _)| (name, text, false));
@@ -93,14 +96,14 @@ fn main() {
         let draw = move || same_picture(text, FieldSource::Tape);
         trials.push(Trial::test(format!("tape/{name}"), draw).with_ignored_flag(without_gpu));
     }
-    let rows = Trial::test("rows", a_row_has_figures_or_reasons);
+    let rows = Trial::test("a row has metrics or reasons", a_row_has_metrics_or_reasons);
     trials.push(rows.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
 fn scene(text: &str) -> Scene {
     let view = if text.contains("camera(") { "" } else { VIEW };
-    // The tape has no loops.
+    // The tape cannot express loops.
     let compiler = Compiler::new().loops(LoopStrategy::Unrolled);
     compiler.compile("test.sdf", &format!("{text}{view}")).expect("compiles")
 }
@@ -138,7 +141,7 @@ fn same_picture(text: &str, field: FieldSource) -> Result<(), Failed> {
     if few || found.depth > DEPTH || found.status > 0 || found.color > 2 {
         return Err(format!("{found:?}, {:?}", expected.counts()).into());
     }
-    // Differences give the normals that the derivative gives.
+    // Differences give the same normals as the derivative.
     let derived = picture(&scene, FieldSource::Scene)?;
     let found = compare(&expected, &derived).ok_or("the sizes differ")?;
     if scene.program().material.is_none() && found.mean_color > 1.0 {
@@ -147,7 +150,7 @@ fn same_picture(text: &str, field: FieldSource) -> Result<(), Failed> {
     Ok(())
 }
 
-fn units_say_what_they_cannot_hold() -> Result<(), Failed> {
+fn units_report_what_they_cannot_express() -> Result<(), Failed> {
     for (name, text, reason) in TAPE_ALONE {
         match in_units(&scene(text)) {
             Err(Inexpressible(said)) if said.contains(reason) => {}
@@ -157,7 +160,7 @@ fn units_say_what_they_cannot_hold() -> Result<(), Failed> {
     Ok(())
 }
 
-fn the_tape_says_what_it_cannot_hold() -> Result<(), Failed> {
+fn the_tape_reports_what_it_cannot_express() -> Result<(), Failed> {
     let exponential = scene("solid wave() lipschitz 1 = p.y - 0.1 * exp(sin(p.x))\nwave()");
     let said = on_tape(&exponential).unwrap_err().0;
     if said != "the tape's machine has no `exp`" {
@@ -166,8 +169,8 @@ fn the_tape_says_what_it_cannot_hold() -> Result<(), Failed> {
     Ok(())
 }
 
-/// A plane and a ball beside a block: two units.
-fn tables_by_hand() -> Result<(), Failed> {
+/// A plane, and a blended ball and box, are two units.
+fn tables_are_those_made_by_hand() -> Result<(), Failed> {
     let scene = scene(
         "plane(y: -0.5)\nunion(sphere(0.25), box([1, 2, 3]).translate(x: 4), blend: smooth(0.5))",
     );
@@ -191,20 +194,20 @@ fn tables_by_hand() -> Result<(), Failed> {
     Ok(())
 }
 
-/// However many leaves, joined one after the other or side by side.
-fn many_leaves_need_few_places() -> Result<(), Failed> {
+/// The stack and the locals suffice for scenes of many leaves, joined in a chain or side by side.
+fn many_leaves_need_few_locals() -> Result<(), Failed> {
     for (name, text) in suite() {
         let scene = scene(&text);
         let encoded = on_tape(&scene).map_err(|e| format!("{name}: {}", e.0))?;
         let most = 23 * scene.report().leaves;
         if encoded.turns > most {
-            return Err(format!("{name}: {} turns, over {most}", encoded.turns).into());
+            return Err(format!("{name}: {} iterations, over {most}", encoded.turns).into());
         }
     }
     Ok(())
 }
 
-fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
+fn a_row_has_metrics_or_reasons() -> Result<(), Failed> {
     let options = BenchOptions::new().size([32, 24]).repetitions(2);
     let text = format!("torus(major: 0.8, minor: 0.2){VIEW}");
     let torus = scene(&text);
@@ -226,7 +229,7 @@ fn a_row_has_figures_or_reasons() -> Result<(), Failed> {
     assert!([rolled, pruned].iter().all(|none| none.why["frame_ms"].contains("alike")));
     assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
-    // A scene none of whose numbers can move.
+    // No literal of this scene can become live.
     let row = bench(&torus, &torus, "torus", &gpu, &options, &mut no_progress)?;
     assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);
     Ok(())

@@ -1,5 +1,5 @@
-//! A classroom practical's march fails at the scenes under `examples/faults`, each by the fault that it is there
-//! for; `auto` does not.
+//! A naive marcher fails on each scene under `examples/faults` by the fault that the scene
+//! demonstrates; `auto` does not.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -10,21 +10,22 @@ use sdfc_render::{Gpu, testing};
 
 /// Width and height in pixels.
 const SIZE: [u32; 2] = [160, 100];
-/// At most so many of the pixels of `auto` are wrong.
+/// Largest fraction of wrong pixels with `auto`.
 const RIGHT: f64 = 1e-3;
 
-/// What a fault does to the practical's picture, as a share of the compared pixels, and at least how much.
+/// Counts the pixels with a fault in the naive marcher's picture, and the least fraction of the
+/// compared pixels.
 type Symptom = (fn(&FaultVariant) -> usize, f64);
 
 fn symptom(scene: &str) -> Option<Symptom> {
     match scene {
         // The loop ends at a negative distance.
         "overshoot" => Some((|picture| picture.missed, 0.4)),
-        // The least distance is taken off each step.
+        // The least distance is subtracted from each step.
         "stall" => Some((|picture| picture.missed, 0.6)),
         // The tolerance is absolute.
         "small" => Some((|picture| picture.false_hits + picture.misplaced, 0.9)),
-        // Differences vanish.
+        // Differences round to zero.
         "far" => Some((|picture| picture.miscolored, 0.05)),
         _ => None,
     }
@@ -33,22 +34,23 @@ fn symptom(scene: &str) -> Option<Symptom> {
 fn main() {
     let without_gpu = testing::without_gpu();
     let trials = fault_scenes().map(|(name, text)| {
-        Trial::test(name, move || the_practical_fails(name, text)).with_ignored_flag(without_gpu)
+        Trial::test(name, move || the_naive_marcher_fails(name, text))
+            .with_ignored_flag(without_gpu)
     });
     libtest_mimic::run(&Arguments::from_args(), trials.into()).exit();
 }
 
-fn the_practical_fails(name: &str, text: &str) -> Result<(), Failed> {
-    let (part, least) = symptom(name).ok_or("the scene has no symptom")?;
+fn the_naive_marcher_fails(name: &str, text: &str) -> Result<(), Failed> {
+    let (count, least) = symptom(name).ok_or("the scene has no symptom")?;
     let scene = Compiler::new().compile(name, text)?;
     let row = count_faults(&scene, name, &Gpu::new()?, SIZE)?;
     let FaultRow { compared, variants, .. } = &row;
-    let [practical, _, auto] = &variants[..] else { return Err("three pictures".into()) };
-    let share = part(practical) as f64 / *compared as f64;
-    if share < least {
-        return Err(format!("the practical's share is {share}: {row:?}").into());
+    let [naive, _, auto] = &variants[..] else { return Err("three pictures".into()) };
+    let fraction = count(naive) as f64 / *compared as f64;
+    if fraction < least {
+        return Err(format!("the fraction of the naive marcher is {fraction}: {row:?}").into());
     }
-    // Most of the picture is looked at.
+    // Most of the picture is compared.
     if auto.wrong > RIGHT || *compared < 14_000 {
         return Err(format!("{row:?}").into());
     }

@@ -1,4 +1,4 @@
-//! What a comparison counts, on a ball whose truth is known in closed form.
+//! Checks the metrics of a comparison with a ball whose hits are known analytically.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -10,7 +10,7 @@ use sdfc_measure::{
 
 const SIZE: usize = 32;
 
-/// A ball of radius 1 about the origin.
+/// Returns a ball of radius 1 about the origin.
 fn ball() -> Program {
     let mut graph = Graph::new();
     let p = graph.point(0, Dim::Three);
@@ -33,7 +33,7 @@ fn camera() -> Camera {
     }
 }
 
-/// What a picture without errors shows.
+/// Returns a picture without errors.
 fn perfect(truth: &Truth) -> Vec<PixelSample> {
     let sample = |verdict: &Verdict| {
         let (status, t) = match *verdict {
@@ -72,9 +72,9 @@ impl Case {
     }
 }
 
-/// |o + t d| = 1 with o = (0, 0, 4).
+/// Solves |o + t d| = 1 with o = (0, 0, 4).
 #[test]
-fn the_truth_is_the_closed_form() {
+fn the_truth_is_the_analytic_solution() {
     let case = Case::new();
     for (pixel, verdict) in case.truth.verdicts.iter().enumerate() {
         let along = -4.0 * camera().ray(pixel).direction[2];
@@ -88,10 +88,10 @@ fn the_truth_is_the_closed_form() {
 }
 
 #[test]
-fn edges_are_one_ring_about_the_ball() {
+fn edges_are_the_ring_around_the_ball() {
     let case = Case::new();
     let counts = case.truth.counts();
-    // A circle of 20.6 pixels across, and the pixels on both sides of it.
+    // A circle with a diameter of 20.6 pixels, and the pixels on both sides of it.
     assert!((80..260).contains(&counts.edge), "{counts:?}");
     assert!(counts.hit > 150 && counts.miss > 300 && counts.undecided == 0, "{counts:?}");
 }
@@ -101,12 +101,12 @@ fn a_perfect_picture_has_no_errors() {
     let metrics = Case::new().metrics();
     assert_eq!((metrics.missed, metrics.false_hits, metrics.nan, metrics.capped), (0, 0, 0, 0));
     assert_eq!(metrics.depth.pixels.max, 0.0);
-    assert!(metrics.depth.pixels.n > 0 && metrics.normal.n == 0, "no normal is told");
+    assert!(metrics.depth.pixels.n > 0 && metrics.normal.n == 0, "normals are not compared");
     assert_eq!((metrics.evaluations.mean, metrics.evaluations.max), (10.0, 10));
 }
 
 #[test]
-fn each_error_is_counted_for_what_it_is() {
+fn each_error_is_counted_by_its_kind() {
     let mut case = Case::new();
     let [hit, miss] = [true, false].map(|hit| case.pixel(Kind::Plain, hit));
     case.picture[hit] =
@@ -127,17 +127,17 @@ fn each_error_is_counted_for_what_it_is() {
     assert_eq!((metrics.nan, metrics.capped, metrics.missed), (1, 1, 0));
 }
 
-/// At an edge a ray that passes the ball by less than a quarter of a pixel may take it for hit, one
-/// that passes it by more may not.
+/// At an edge a ray that passes the ball by less than a quarter of a pixel may hit it; a ray that
+/// passes it by more may not.
 #[test]
-fn an_edge_excuses_a_quarter_of_a_pixel() {
+fn an_edge_allows_a_quarter_of_a_pixel() {
     let case = Case::new();
     let mut excused = 0;
     for pixel in 0..case.picture.len() {
         if case.truth.kinds[pixel] != Kind::Edge || case.truth.verdicts[pixel] != Verdict::Miss {
             continue;
         }
-        // Where the ray is nearest to the ball, and how near.
+        // The point of the ray nearest to the ball, and its distance.
         let t = -4.0 * camera().ray(pixel).direction[2];
         let clearance = (16.0 - t * t).sqrt() - 1.0;
         let mut case = Case { truth: case.truth.clone(), picture: case.picture.clone() };
@@ -150,28 +150,28 @@ fn an_edge_excuses_a_quarter_of_a_pixel() {
 }
 
 #[test]
-fn a_normal_is_held_against_the_gradient_where_it_was_taken() {
+fn a_normal_is_compared_with_the_gradient_at_its_point() {
     let mut case = Case::new();
     let hit = case.pixel(Kind::Plain, true);
     let ray = camera().ray(hit);
-    // Not at the ball: a sample deeper has another normal.
+    // This point is not on the ball, and the normal differs there.
     case.picture[hit].t += 0.1;
-    let place = ray.at(case.picture[hit].t);
-    let [x, y, z] = place;
-    case.picture[hit].normal = Some(Normal { place, direction: place });
+    let point = ray.at(case.picture[hit].t);
+    let [x, y, z] = point;
+    case.picture[hit].normal = Some(Normal { place: point, direction: point });
     assert!(case.metrics().normal.max < 1e-9);
-    // Turned about y by half a degree, at most.
+    // Rotated about y by half a degree, at most.
     let (sine, cosine) = 0.5f64.to_radians().sin_cos();
     let direction = [cosine * x + sine * z, y, cosine * z - sine * x];
-    case.picture[hit].normal = Some(Normal { place, direction });
+    case.picture[hit].normal = Some(Normal { place: point, direction });
     let off = case.metrics().normal.max;
     assert!(off > 0.2 && off < 0.5 + 1e-9, "{off}");
-    case.picture[hit].normal = Some(Normal { place, direction: [f64::NAN; 3] });
+    case.picture[hit].normal = Some(Normal { place: point, direction: [f64::NAN; 3] });
     assert_eq!(case.metrics().normal.max, 180.0);
 }
 
 #[test]
-fn a_silhouette_is_as_wrong_as_its_pixels() {
+fn the_error_of_a_silhouette_is_that_of_its_pixels() {
     let mut case = Case::new();
     assert_eq!(case.metrics().silhouette, 0.0);
     let hits = case.picture.iter().filter(|pixel| pixel.status == Status::Hit).count();

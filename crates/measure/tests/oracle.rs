@@ -1,4 +1,4 @@
-//! The oracle against closed forms.
+//! Compares the oracle with analytic solutions.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -27,9 +27,9 @@ fn probe(program: &Program, ray: &Ray) -> Probe {
     oracle.prober(&FrameValues::default()).first_hit(ray)
 }
 
-/// First positive root of |o + t d - c| = r for an origin outside, and how far inside or outside the
-/// ray passes.
-fn meets(ray: &Ray, center: [f64; 3], radius: f64) -> (Option<f64>, f64) {
+/// Returns the first positive root of |o + t d - c| = r for an origin outside, and the depth below
+/// the surface at which the ray passes, negative outside.
+fn intersect(ray: &Ray, center: [f64; 3], radius: f64) -> (Option<f64>, f64) {
     let offset: [f64; 3] = std::array::from_fn(|axis| ray.origin[axis] - center[axis]);
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let along = -dot(offset, ray.direction);
@@ -40,9 +40,9 @@ fn meets(ray: &Ray, center: [f64; 3], radius: f64) -> (Option<f64>, f64) {
 }
 
 proptest! {
-    /// The nearest of two balls, for any ray that is not within 1e-6 of a touch.
+    /// The nearer of two balls is hit, by any ray that is not within 1e-6 of a tangent.
     #[test]
-    fn two_balls(
+    fn the_nearer_of_two_balls_is_hit(
         (x, y) in (-2.0..2.0f64, -2.0..2.0f64),
         (dx, dy) in (-0.5..0.5f64, -0.5..0.5f64),
         far in -6.0..-1.0f64,
@@ -58,7 +58,7 @@ proptest! {
             direction: [dx / length, dy / length, -1.0 / length],
             t_max: 20.0,
         };
-        let found = balls.map(|(center, radius)| meets(&ray, center, radius));
+        let found = balls.map(|(center, radius)| intersect(&ray, center, radius));
         prop_assume!(found.iter().all(|(_, depth)| depth.abs() > 1e-6));
         let nearest = found.iter().filter_map(|(t, _)| *t).reduce(f64::min);
         match (probe(&program, &ray).verdict, nearest) {
@@ -70,23 +70,23 @@ proptest! {
 }
 
 #[test]
-fn a_ray_that_starts_inside_is_there() {
+fn a_ray_that_starts_inside_hits_at_once() {
     let program = program(|graph, p| ball(graph, p, [0.0; 3], 1.0));
     let ray = Ray { origin: [0.2, 0.0, 0.0], direction: [1.0, 0.0, 0.0], t_max: 5.0 };
     assert_eq!(probe(&program, &ray).verdict, Verdict::Hit(0.0));
 }
 
 #[test]
-fn a_touch_is_undecided() {
+fn a_tangent_ray_is_undecided() {
     let program = program(|graph, p| ball(graph, p, [0.0; 3], 1.0));
     let ray = Ray { origin: [-3.0, 1.0, 0.0], direction: [1.0, 0.0, 0.0], t_max: 9.0 };
     let Verdict::Undecided(t) = probe(&program, &ray).verdict else { panic!("it only touches") };
     assert!((t - 3.0).abs() < 1e-3, "{t}");
 }
 
-/// A wall a millionth thick, which every march steps over that trusts a false distance.
+/// The wall is a millionth thick; a marcher that trusts a false distance steps over it.
 #[test]
-fn a_wall_is_found_however_thin() {
+fn a_very_thin_wall_is_found() {
     let program = program(|graph, p| {
         let shell = ball(graph, p, [0.0; 3], 1.0);
         let shell = graph.abs(shell);
@@ -95,13 +95,13 @@ fn a_wall_is_found_however_thin() {
     });
     let ray = Ray { origin: [0.1, 0.2, 5.0], direction: [0.0, 0.0, -1.0], t_max: 20.0 };
     let wanted = 5.0 - ((1.0 + 5e-7f64).powi(2) - 0.05).sqrt();
-    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it meets the wall") };
+    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it hits the wall") };
     assert!((t - wanted).abs() < 1e-9, "{t} is not {wanted}");
 }
 
-/// A field that exceeds the distance nine times over: no march is right on it, the oracle is.
+/// The field is nine times the distance. Every marcher fails on it, the oracle does not.
 #[test]
-fn a_lie_about_the_distance_does_not_matter() {
+fn a_field_that_exceeds_the_distance_is_intersected() {
     let program = program(|graph, p| {
         let field = ball(graph, p, [0.0; 3], 0.1);
         let factor = graph.number(9.0);
@@ -109,11 +109,12 @@ fn a_lie_about_the_distance_does_not_matter() {
     });
     let ray = Ray { origin: [0.05, 0.0, 3.0], direction: [0.0, 0.0, -1.0], t_max: 8.0 };
     let wanted = 3.0 - 0.0075f64.sqrt();
-    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it meets the ball") };
+    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it hits the ball") };
     assert!((t - wanted).abs() < 1e-9);
 }
 
-/// Balls in all cells of a grid of 1, moved and sized by hashes of the cell, so small that none reaches a wall.
+/// Returns balls in all cells of a grid of 1, moved and scaled by hashes of the cell. None of them
+/// reaches a wall of its cell.
 fn jittered(graph: &mut Graph, p: NodeId) -> NodeId {
     let cell = graph.unary(Unary::Round, p);
     let lanes = [0, 1, 2].map(|lane| graph.component(cell, lane));
@@ -140,7 +141,8 @@ fn jittered(graph: &mut Graph, p: NodeId) -> NodeId {
     graph.sub(length, radius)
 }
 
-/// The nearest of the balls, by going through all cells about the ray.
+/// Returns the first hit of the balls, found by visiting all cells around the ray, and the smallest
+/// distance between the ray and a ball's surface.
 fn first_ball(ray: &Ray) -> (Option<f64>, f64) {
     use sdfc_graph::eval::hash;
     let (mut nearest, mut doubt) = (None::<f64>, f64::INFINITY);
@@ -157,7 +159,7 @@ fn first_ball(ray: &Ray) -> (Option<f64>, f64) {
                 cell.iter().fold(seed, |state, lane| hash(state, *lane)) / 16_777_216.0
             });
             let center = std::array::from_fn(|i| cell[i] + 0.3 * (random[i] - 0.5));
-            let (t, depth) = meets(ray, center, 0.1 + 0.1 * random[3]);
+            let (t, depth) = intersect(ray, center, 0.1 + 0.1 * random[3]);
             nearest = t.map_or(nearest, |t| Some(nearest.map_or(t, |other| other.min(t))));
             doubt = doubt.min(depth.abs());
         }
@@ -166,9 +168,10 @@ fn first_ball(ray: &Ray) -> (Option<f64>, f64) {
 }
 
 proptest! {
-    /// Cells without end, in which a hash places the shape: each cell's formula is told from its neighbours'.
+    /// A hash of the cell places each ball, so the formula of each cell differs from that of its
+    /// neighbours.
     #[test]
-    fn a_hash_of_the_cell(
+    fn balls_placed_by_a_hash_of_the_cell_are_hit(
         (x, y) in (-0.5..0.5f64, -0.5..0.5f64),
         (dx, dy) in (-0.5..0.5f64, -0.5..0.5f64),
     ) {
@@ -187,9 +190,9 @@ proptest! {
     }
 }
 
-/// A field that leaps from outside to inside without a zero.
+/// The field jumps from outside to inside without a zero.
 #[test]
-fn a_leap_through_zero_is_surface() {
+fn a_jump_through_zero_is_a_surface() {
     let program = program(|graph, p| {
         let x = graph.component(p, 0);
         let whole = graph.unary(Unary::Floor, x);
@@ -197,17 +200,17 @@ fn a_leap_through_zero_is_surface() {
         graph.sub(height, whole)
     });
     let ray = Ray { origin: [0.2, 0.3, 0.1], direction: [1.0, 0.0, 0.0], t_max: 9.0 };
-    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it leaps at x = 3") };
+    let Verdict::Hit(t) = probe(&program, &ray).verdict else { panic!("it jumps at x = 3") };
     assert!((t - 2.8).abs() < 1e-6, "{t}");
 }
 
-/// Between two cells, one of which would have a wall where the other holds.
+/// The formula of one cell would have a wall inside its neighbour.
 #[test]
-fn a_cell_does_not_show_in_its_neighbour() {
+fn a_cell_has_no_effect_on_its_neighbour() {
     let program = program(|graph, p| {
         let x = graph.component(p, 0);
         let whole = graph.unary(Unary::Floor, x);
-        // 1 and 2 in turn, and a wall at 1 + 1e-5 that belongs to the first cell.
+        // The field alternates by 1; a wall at 1 + 1e-5 belongs to the formula of the first cell.
         let two = graph.number(2.0);
         let odd = graph.binary(Binary::Rem, whole, two);
         let wall = graph.number(1.0 + 1e-5);

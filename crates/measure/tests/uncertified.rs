@@ -1,5 +1,6 @@
-//! Fields that exceed the distance, or jump: where that is known, `interval`, and `auto` by it, find what the oracle finds though
-//! steps as long as the field lead through; where a scene hides it from the compiler, the chart's figures show it.
+//! Fields that exceed the distance, or jump. If the compiler knows that, `interval`, and so `auto`,
+//! finds what the oracle finds although steps as long as the field pass through the surface. If a
+//! scene hides it from the compiler, the chart shows the errors.
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
@@ -14,10 +15,10 @@ use sdfc_measure::{ChartOptions, OracleOptions, chart};
 use sdfc_render::{Gpu, no_progress, testing};
 
 const SIZE: [u32; 2] = [96, 54];
-/// Error in depth that 99 of 100 pixels keep, in widths of a pixel.
+/// Largest error in depth (99th percentile), in widths of a pixel.
 const DEPTH: f64 = 0.1;
 
-/// Scenes that are uncertified: name and text.
+/// Uncertified scenes: name and text.
 const SCENES: [(&str, &str); 3] = [
     (
         "thin walls, the steeper the farther out",
@@ -46,8 +47,8 @@ const SCENES: [(&str, &str); 3] = [
     ),
 ];
 
-/// Scenes that are certified by what they state, which is not true.
-const LIES: [(&str, &str); 2] = [
+/// Scenes that are certified because of false clauses.
+const FALSE_CLAUSES: [(&str, &str); 2] = [
     (
         "a function that understates its slope",
         "fn steep(t) lipschitz 1 = if t > 0 { 4 * t } else { t }
@@ -72,7 +73,7 @@ fn main() {
         let same = move || agree::devices(&agree::scene(name, text)?).map(drop);
         trials.push(Trial::test(format!("same/{name}"), same).with_ignored_flag(without_gpu));
     }
-    for (name, text) in LIES {
+    for (name, text) in FALSE_CLAUSES {
         let seen = move || chart_shows(name, text);
         trials.push(Trial::test(format!("seen/{name}"), seen).with_ignored_flag(without_gpu));
     }
@@ -101,11 +102,12 @@ fn proven_is_right(name: &str, text: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Steps as long as the field lead through the surface, which the chart of a scene that counts as certified tells.
+/// Steps as long as the field pass through the surface; the chart of a scene that counts as
+/// certified shows it.
 fn chart_shows(name: &str, text: &str) -> Result<(), Failed> {
     let scene = agree::scene(name, text)?;
     if !scene.is_certified() {
-        return Err("the compiler knows that it lies".into());
+        return Err("the compiler knows that the clause is false".into());
     }
     let rows = rows(&scene, name, &[Method::Sphere])?;
     let [Row { missed, false_hits, depth_px, .. }] = &rows[..] else { return Err("no row".into()) };
@@ -115,7 +117,7 @@ fn chart_shows(name: &str, text: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The rows of these methods on the scene's chart.
+/// Returns the rows of these methods in the scene's chart.
 fn rows(scene: &Scene, name: &str, methods: &[Method]) -> Result<Vec<Row>, Failed> {
     let methods = methods.to_vec();
     let once = ChartOptions::new().repetitions(1).defaults_only(true);

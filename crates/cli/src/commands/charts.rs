@@ -134,8 +134,8 @@ fn command_line(args: &Chart, output: &str) -> String {
     text + if args.note.is_some() { " --note TEXT" } else { "" }
 }
 
-/// Returns a table with one line per scene: `auto` beside `sphere-cone`, and the methods on the Pareto
-/// front.
+/// Returns a table with one line per scene: `auto` beside `sphere-cone`, and the methods on the
+/// Pareto front.
 fn summary(charts: &[(String, Results)]) -> String {
     let mut text = "\nColumns for `auto`: evaluations and operations per pixel; wrong pixels (missed, false or NaN); rays\n\
         out of steps; 99th percentile of the error in depth (in pixel widths) and of the normal (in degrees,\n\

@@ -212,7 +212,8 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Draws one frame of a sequence. `position` is how many come before it, and how many there are.
+    /// Draws one frame of a sequence. `position` is how many come before it, and how many there
+    /// are.
     fn frame(
         &self,
         number: u32,

@@ -1,4 +1,4 @@
-//! Runs the binary in a folder of its own.
+//! Runs the binary in a temporary folder.
 
 #![allow(dead_code, reason = "not every test needs all of it")]
 
@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-/// A folder with these files.
+/// Creates a folder with these files.
 pub fn folder(files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
@@ -22,7 +22,7 @@ pub fn run(folder: &TempDir, args: &str) -> Output {
     run_with(folder.path(), args, b"")
 }
 
-/// Runs `sdfc` with arguments, split at spaces, and a text on stdin.
+/// Runs `sdfc` with arguments, split at spaces, and input on stdin.
 pub fn run_with(folder: &Path, args: &str, stdin: &[u8]) -> Output {
     run_in(folder, args, stdin, &[])
 }
@@ -38,17 +38,17 @@ pub fn run_in(folder: &Path, args: &str, stdin: &[u8], variables: &[(&str, &str)
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // A program that refuses its arguments may be gone before it reads.
+    // A program that refuses its arguments may exit before it reads.
     let _ = child.stdin.take().unwrap().write_all(stdin);
     child.wait_with_output().unwrap()
 }
 
-/// What it said on stderr.
+/// Returns the text on stderr.
 pub fn said(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// Names in a folder, so that stray files are seen.
+/// Returns the names of the files in a folder, including stray ones.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> =

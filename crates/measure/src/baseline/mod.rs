@@ -1,5 +1,5 @@
-//! Encodes scenes as tables for the interpreting baselines: shaders that read the scene from buffers
-//! at every evaluation.
+//! Encodes scenes as tables for the interpreting baselines: shaders that read the scene from
+//! buffers at every evaluation.
 //!
 //! [`units()`] recognises shapes by the names of the library, as the only code outside the library;
 //! [`tape()`] encodes the flat math.

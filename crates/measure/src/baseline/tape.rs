@@ -22,8 +22,8 @@ const LOCAL_COUNT: usize = 16;
 ///
 /// # Errors
 ///
-/// [`Inexpressible`] names the first operation that the machine lacks, or says that the stack is too
-/// small.
+/// [`Inexpressible`] names the first operation that the machine lacks, or says that the stack is
+/// too small.
 pub fn tape(
     program: &Program,
     leaves: usize,
@@ -34,13 +34,13 @@ pub fn tape(
     let mut encoder = Encoder::new(&program.graph, root, frame)?;
     encoder.compute(root)?;
     let mut bytes = Bytes::default();
-    for Instruction { operation, index, second, reversed } in &encoder.code {
-        let (place, constant) = match *second {
-            Second::Stack => (0, [0.0; 4]),
-            Second::Constant(value) => (1, value),
-            Second::Local(local) => (2 + local, [0.0; 4]),
+    for Instruction { operation, index, operand, reversed } in &encoder.code {
+        let (source, constant) = match *operand {
+            Operand::Stack => (0, [0.0; 4]),
+            Operand::Constant(value) => (1, value),
+            Operand::Local(local) => (2 + local, [0.0; 4]),
         };
-        bytes.words(&[*operation as u32, *index as u32, place as u32, u32::from(*reversed)]);
+        bytes.words(&[*operation as u32, *index as u32, source as u32, u32::from(*reversed)]);
         bytes.floats(&constant);
     }
     Ok(Encoded { tables: vec![bytes.0], turns: encoder.code.len(), leaves })
@@ -51,14 +51,14 @@ struct Instruction {
     operation: Operation,
     /// A lane, or a number of lanes.
     index: usize,
-    second: Second,
-    /// Whether the operands have changed places.
+    operand: Operand,
+    /// True if the operands are swapped.
     reversed: bool,
 }
 
-/// Where an instruction's second operand is, or its only one if it takes none from the stack.
+/// The operand operand of an instruction, or its only one if it takes none from the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Second {
+enum Operand {
     Stack,
     Constant([f32; 4]),
     Local(usize),
@@ -66,12 +66,12 @@ enum Second {
 
 struct Encoder<'a> {
     graph: &'a Graph,
-    /// What does not depend on the point.
-    known: BTreeMap<NodeId, [f32; 4]>,
-    /// How often each value that depends on the point is still to be used.
+    /// The values that do not depend on the point.
+    constants: BTreeMap<NodeId, [f32; 4]>,
+    /// Remaining uses of each value that depends on the point.
     uses: BTreeMap<NodeId, usize>,
-    /// How much of the stack each of them takes while it is computed.
-    room: BTreeMap<NodeId, usize>,
+    /// Number of stack entries that each of these values needs while it is computed.
+    stack_sizes: BTreeMap<NodeId, usize>,
     locals: BTreeMap<NodeId, usize>,
     taken: [bool; LOCAL_COUNT],
     depth: usize,
@@ -82,24 +82,25 @@ impl<'a> Encoder<'a> {
     fn new(graph: &'a Graph, root: NodeId, frame: &FrameValues) -> Result<Self, Inexpressible> {
         let varies = |id: NodeId| graph.stage(id) == Stage::Point;
         let reached = reachable_where(graph, &[root], varies);
-        let (varying, known): (Vec<NodeId>, Vec<NodeId>) =
+        let (varying, constants): (Vec<NodeId>, Vec<NodeId>) =
             reached.into_iter().partition(|&id| varies(id));
-        let values = evaluate_frame(graph, &known, frame);
-        let known = known.iter().zip(values).map(|(&id, lanes)| (id, packed(graph.ty(id), lanes)));
+        let values = evaluate_frame(graph, &constants, frame);
+        let constants =
+            constants.iter().zip(values).map(|(&id, lanes)| (id, packed(graph.ty(id), lanes)));
         let mut encoder = Self {
             graph,
-            known: known.collect(),
+            constants: constants.collect(),
             uses: BTreeMap::from([(root, 1)]),
-            room: BTreeMap::new(),
+            stack_sizes: BTreeMap::new(),
             locals: BTreeMap::new(),
             taken: [false; LOCAL_COUNT],
             depth: 0,
             code: Vec::new(),
         };
-        // Ids ascend from arguments to what uses them.
+        // Ids ascend from arguments to the nodes that use them.
         for id in varying {
             let steps = encoder.expansion(id)?;
-            encoder.room.insert(id, encoder.room_of(&steps));
+            encoder.stack_sizes.insert(id, encoder.stack_size_of_steps(&steps));
             for step in steps {
                 if let Step::Value(argument) = step {
                     *encoder.uses.entry(argument).or_default() += 1;
@@ -109,11 +110,11 @@ impl<'a> Encoder<'a> {
         Ok(encoder)
     }
 
-    /// The steps of a node that depends on the point.
+    /// Returns the steps of a node that depends on the point.
     fn expansion(&self, id: NodeId) -> Result<Vec<Step>, Inexpressible> {
         let mut steps = steps(self.graph, id)?;
         if let [Step::Value(a), Step::Value(b), Step::Do(operation, index)] = steps[..]
-            && self.room_for(b) > self.room_for(a)
+            && self.stack_size(b) > self.stack_size(a)
         {
             let reversed = Step::DoReversed(operation, index);
             steps = vec![Step::Value(b), Step::Value(a), reversed];
@@ -121,25 +122,25 @@ impl<'a> Encoder<'a> {
         Ok(steps)
     }
 
-    /// How much of the stack a value takes while it is computed. What is there already takes none as a second
-    /// operand.
-    fn room_for(&self, id: NodeId) -> usize {
-        let there = self.known.contains_key(&id) || self.locals.contains_key(&id);
-        if there { 0 } else { self.room.get(&id).copied().unwrap_or(1) }
+    /// Returns the number of stack entries that a value needs while it is computed. A constant or a
+    /// local needs none as a operand operand.
+    fn stack_size(&self, id: NodeId) -> usize {
+        let is_available = self.constants.contains_key(&id) || self.locals.contains_key(&id);
+        if is_available { 0 } else { self.stack_sizes.get(&id).copied().unwrap_or(1) }
     }
 
-    /// How much of the stack steps take, with all that they are computed from.
-    fn room_of(&self, steps: &[Step]) -> usize {
+    /// Returns the number of stack entries that steps need, including their arguments.
+    fn stack_size_of_steps(&self, steps: &[Step]) -> usize {
         let (mut depth, mut most) = (0, 0);
         for step in steps {
             let (taken, put, within) = match *step {
-                Step::Value(id) => (0, 1, self.room_for(id).max(1)),
+                Step::Value(id) => (0, 1, self.stack_size(id).max(1)),
                 Step::Number(_) => (0, 1, 1),
                 Step::Do(operation, _) | Step::DoReversed(operation, _) => {
-                    let (taken, put) = operation.traffic();
+                    let (taken, put) = operation.stack_effect();
                     (taken, put, put)
                 }
-                Step::Keep(_) => (0, 0, 0),
+                Step::Store(_) => (0, 0, 0),
             };
             most = most.max(depth + within);
             depth = (depth + put).saturating_sub(taken);
@@ -147,23 +148,23 @@ impl<'a> Encoder<'a> {
         most
     }
 
-    /// Leaves a value on the stack.
+    /// Pushes a value on the stack.
     fn compute(&mut self, id: NodeId) -> Result<(), Inexpressible> {
         let mut todo = vec![Step::Value(id)];
         while let Some(step) = todo.pop() {
             match step {
-                Step::Number(value) => self.push(Second::Constant([value as f32; 4]))?,
+                Step::Number(value) => self.push(Operand::Constant([value as f32; 4]))?,
                 Step::Do(operation, index) => self.emit(operation, index, false)?,
                 Step::DoReversed(operation, index) => self.emit(operation, index, true)?,
-                Step::Keep(id) => self.keep(id)?,
-                Step::Value(id) => match (self.known.get(&id), self.locals.get(&id)) {
-                    (Some(&value), _) => self.push(Second::Constant(value))?,
+                Step::Store(id) => self.store(id)?,
+                Step::Value(id) => match (self.constants.get(&id), self.locals.get(&id)) {
+                    (Some(&value), _) => self.push(Operand::Constant(value))?,
                     (None, Some(&local)) => {
-                        self.push(Second::Local(local))?;
+                        self.push(Operand::Local(local))?;
                         self.taken[local] = self.is_used_again(id);
                     }
                     (None, None) => {
-                        todo.push(Step::Keep(id));
+                        todo.push(Step::Store(id));
                         todo.extend(self.expansion(id)?.into_iter().rev());
                     }
                 },
@@ -172,16 +173,16 @@ impl<'a> Encoder<'a> {
         Ok(())
     }
 
-    /// Counts one use of a value.
+    /// Counts one use of a value. Returns true if more uses follow.
     fn is_used_again(&mut self, id: NodeId) -> bool {
         let uses = self.uses.entry(id).or_default();
         *uses = uses.saturating_sub(1);
         *uses > 0
     }
 
-    /// Copies the topmost value to a local, if it is used again. The point is not copied: it has an instruction
-    /// of its own.
-    fn keep(&mut self, id: NodeId) -> Result<(), Inexpressible> {
+    /// Copies the topmost value to a local if it is used again. The point is not copied: it has an
+    /// instruction of its own.
+    fn store(&mut self, id: NodeId) -> Result<(), Inexpressible> {
         if !self.is_used_again(id) || matches!(self.graph.node(id), Node::Point(..)) {
             return Ok(());
         }
@@ -190,14 +191,14 @@ impl<'a> Encoder<'a> {
         })?;
         self.taken[free] = true;
         self.locals.insert(id, free);
-        self.write(Operation::Store, 0, Second::Local(free), false);
+        self.write(Operation::Store, 0, Operand::Local(free), false);
         Ok(())
     }
 
-    /// Puts a value that is there on the stack.
-    fn push(&mut self, second: Second) -> Result<(), Inexpressible> {
-        self.deepen(1)?;
-        self.write(Operation::Push, 0, second, false);
+    /// Pushes a constant or a local on the stack.
+    fn push(&mut self, operand: Operand) -> Result<(), Inexpressible> {
+        self.grow_stack(1)?;
+        self.write(Operation::Push, 0, operand, false);
         Ok(())
     }
 
@@ -207,26 +208,26 @@ impl<'a> Encoder<'a> {
         index: usize,
         reversed: bool,
     ) -> Result<(), Inexpressible> {
-        let (taken, put) = operation.traffic();
+        let (taken, put) = operation.stack_effect();
         self.depth = self.depth.saturating_sub(taken);
-        self.deepen(put)?;
-        let mut second = Second::Stack;
+        self.grow_stack(put)?;
+        let mut operand = Operand::Stack;
         if let Some(last) = self.code.last()
             && taken > 1
             && last.operation == Operation::Push
         {
-            second = last.second;
+            operand = last.operand;
             self.code.pop();
         }
-        self.write(operation, index, second, reversed);
+        self.write(operation, index, operand, reversed);
         Ok(())
     }
 
-    fn write(&mut self, operation: Operation, index: usize, second: Second, reversed: bool) {
-        self.code.push(Instruction { operation, index, second, reversed });
+    fn write(&mut self, operation: Operation, index: usize, operand: Operand, reversed: bool) {
+        self.code.push(Instruction { operation, index, operand, reversed });
     }
 
-    fn deepen(&mut self, by: usize) -> Result<(), Inexpressible> {
+    fn grow_stack(&mut self, by: usize) -> Result<(), Inexpressible> {
         self.depth += by;
         if self.depth > STACK_SIZE {
             let message = format!("the tape needs a stack of more than {STACK_SIZE} values");
@@ -236,7 +237,7 @@ impl<'a> Encoder<'a> {
     }
 }
 
-/// As the machine holds it: a number in all lanes.
+/// Returns a value in the layout of the machine, which repeats a number in all lanes.
 fn packed(ty: Type, lanes: [f64; 4]) -> [f32; 4] {
     match ty {
         Type::Bool | Type::Scalar => [lanes[0] as f32; 4],

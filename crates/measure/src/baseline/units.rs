@@ -1,8 +1,8 @@
-//! Encodes scenes as op units: the nearest of many units, each an operation on two primitives.
+//! Encodes scenes as op units: the union of many units, each an operation on two primitives.
 //!
 //! Primitives and translations are recognised by the names of their definitions. Operations are
-//! recognised by what they compute: a formula of two samples is evaluated at many pairs of
-//! distances, so that `a - b`, `difference(a, b)` and a user's own operator are the same unit.
+//! recognised by their values: a formula of two samples is evaluated at many pairs of distances, so
+//! that `a - b`, `difference(a, b)` and a user's own operator are the same unit.
 
 use sdfc_graph::eval::{FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Arg, Dim, Graph, Node, NodeId, Scene, Shape, ShapeId, reachable};
@@ -11,8 +11,8 @@ use super::{Bytes, Encoded, Inexpressible};
 
 /// Number of distance pairs at which an operation is evaluated.
 const TRIALS: usize = 64;
-/// Operations whose values differ by less are the same.
-const SAME: f64 = 1e-9;
+/// Largest difference between the values of equal operations.
+const TOLERANCE: f64 = 1e-9;
 /// Bytes of a row of the largest table.
 const ROW: usize = 32;
 
@@ -25,12 +25,12 @@ const ROW: usize = 32;
 pub fn units(scene: &Scene, frame: &FrameValues) -> Result<Encoded, Inexpressible> {
     let root = scene.root.ok_or_else(|| Inexpressible("the scene draws nothing".to_owned()))?;
     let mut encoder = Encoder { graph: &scene.graph, frame, tables: Tables::default() };
-    // Alone in the nearest of all: paired up in the end.
-    let mut alone = Vec::new();
+    // Operands of the union itself, which are paired in the end.
+    let mut operands = Vec::new();
     let mut todo = vec![Placed { shape: root, offset: [0.0; 3] }];
     while let Some(placed) = todo.pop() {
         match encoder.meaning(placed)? {
-            Meaning::Leaf(operand) => alone.push(operand),
+            Meaning::Leaf(operand) => operands.push(operand),
             Meaning::Wrapped(inner) => todo.push(inner),
             Meaning::Nearest(parts) => todo.extend(parts.into_iter().rev()),
             Meaning::Pair(operation, [a, b]) => {
@@ -39,21 +39,21 @@ pub fn units(scene: &Scene, frame: &FrameValues) -> Result<Encoded, Inexpressibl
             }
         }
     }
-    for pair in alone.chunks(2) {
+    for pair in operands.chunks(2) {
         let operands = [pair[0], pair.last().copied().unwrap_or(pair[0])];
         encoder.tables.units.push(Unit { operands, operation: Operation::Union });
     }
     Ok(encoder.tables.encoded())
 }
 
-/// A shape, moved.
+/// A translated shape.
 #[derive(Clone, Copy)]
 struct Placed {
     shape: ShapeId,
     offset: [f64; 3],
 }
 
-/// Row of a table.
+/// A row of a table.
 #[derive(Clone, Copy)]
 struct Operand {
     kind: u32,
@@ -82,7 +82,8 @@ impl Operation {
         }
     }
 
-    /// Width of the blend; 1 where there is none, since shaders may compute what they do not select.
+    /// Returns the width of the blend, or 1 without one, since shaders may compute values that they
+    /// do not select.
     fn width(self) -> f64 {
         match self {
             Self::Union | Self::Subtraction | Self::Intersection => 1.0,
@@ -108,10 +109,10 @@ struct Unit {
     operation: Operation,
 }
 
-/// What a shape is to this encoder.
+/// The form of a shape in units.
 enum Meaning {
     Leaf(Operand),
-    /// The same field: painted, moved.
+    /// The same field, translated or with a material.
     Wrapped(Placed),
     Nearest(Vec<Placed>),
     Pair(Operation, [Placed; 2]),
@@ -124,7 +125,7 @@ struct Encoder<'a> {
 }
 
 impl Encoder<'_> {
-    /// The primitive behind paint and translations.
+    /// Returns the primitive inside of materials and translations.
     fn operand(&mut self, placed: Placed) -> Result<Operand, Inexpressible> {
         let mut inner = placed;
         loop {
@@ -148,7 +149,7 @@ impl Encoder<'_> {
                 "plane" => return self.plane(shape, placed.offset).map(Meaning::Leaf),
                 "sphere" => return self.sphere(shape, placed.offset).map(Meaning::Leaf),
                 "box" => return self.block(shape, placed.offset).map(Meaning::Leaf),
-                "translate" => return self.moved(shape, placed.offset).map(Meaning::Wrapped),
+                "translate" => return self.translated(shape, placed.offset).map(Meaning::Wrapped),
                 _ => {}
             }
         }
@@ -175,7 +176,7 @@ impl Encoder<'_> {
         Ok(push(&mut self.tables.boxes, BOX, [center, half_size]))
     }
 
-    /// The first arguments, which are numbers and vectors.
+    /// Returns the first arguments, which are numbers and vectors.
     fn arguments<const N: usize>(&self, shape: &Shape) -> Result<[[f64; 4]; N], Inexpressible> {
         let name = &shape.definition;
         let unknown = || Inexpressible(format!("an argument of `{name}` depends on the point"));
@@ -195,8 +196,8 @@ impl Encoder<'_> {
         Ok(values)
     }
 
-    /// What is moved, by what its point is at the origin.
-    fn moved(&self, shape: &Shape, offset: [f64; 3]) -> Result<Placed, Inexpressible> {
+    /// Returns the translated shape. Its offset is the negative of its sample point at the origin.
+    fn translated(&self, shape: &Shape, offset: [f64; 3]) -> Result<Placed, Inexpressible> {
         let unknown = || Inexpressible("a translation depends on the point".to_owned());
         let Node::Sample(inner, point) = self.graph.node(shape.formula) else {
             return Err(unknown());
@@ -208,7 +209,7 @@ impl Encoder<'_> {
         Ok(Placed { shape: inner, offset })
     }
 
-    /// What the formula computes of its samples, if they are all taken where it is asked.
+    /// Recognises the operation of a formula on samples that are all taken at the shape's point.
     fn operator(&self, shape: &Shape, offset: [f64; 3]) -> Result<Meaning, Inexpressible> {
         let name = &shape.definition;
         let samples = self.samples(shape).ok_or_else(|| {
@@ -217,7 +218,7 @@ impl Encoder<'_> {
         let parts: Vec<_> = shape.children.iter().map(|&shape| Placed { shape, offset }).collect();
         let probe = Probe::new(self.graph, shape.formula, &samples, self.frame)
             .ok_or_else(|| Inexpressible(format!("`{name}` is not a function of distances")))?;
-        if probe.is(1.0, |distances| distances.iter().copied().fold(f64::INFINITY, f64::min)) {
+        if probe.equals(1.0, |distances| distances.iter().copied().fold(f64::INFINITY, f64::min)) {
             return Ok(match parts[..] {
                 [only] => Meaning::Wrapped(only),
                 _ => Meaning::Nearest(parts),
@@ -232,14 +233,15 @@ impl Encoder<'_> {
         Ok(Meaning::Pair(operation, pair))
     }
 
-    /// The samples of the children, in their order; `None` unless each is sampled once, at the shape's point.
+    /// Returns the samples of the children, in their order; `None` unless each is sampled once, at
+    /// the shape's point.
     fn samples(&self, shape: &Shape) -> Option<Vec<NodeId>> {
         let mut samples = vec![None; shape.children.len()];
         for id in reachable(self.graph, &[shape.formula]) {
             let Node::Sample(child, point) = self.graph.node(id) else { continue };
-            let place = shape.children.iter().position(|&known| known == child)?;
+            let index = shape.children.iter().position(|&known| known == child)?;
             let here = self.graph.node(point) == Node::Point(shape.level, shape.dim);
-            if !here || samples[place].replace(id).is_some() {
+            if !here || samples[index].replace(id).is_some() {
                 return None;
             }
         }
@@ -278,24 +280,25 @@ impl<'a> Probe<'a> {
         self.tape.prepare::<f64>(&frame).scalar([f64::NAN; 3])
     }
 
-    /// Whether it computes the same as another function of distances, in units of a scale.
-    fn is(&self, scale: f64, other: impl Fn(&[f64]) -> f64) -> bool {
+    /// Returns true if it has the same values as another function of distances. `scale` is the unit
+    /// of the distances.
+    fn equals(&self, scale: f64, other: impl Fn(&[f64]) -> f64) -> bool {
         (0..TRIALS).all(|trial| {
             let distances: Vec<f64> =
                 (0..self.count).map(|index| scale * trial_distance(trial, index)).collect();
-            (self.at(&distances) - other(&distances)).abs() <= SAME * scale
+            (self.at(&distances) - other(&distances)).abs() <= TOLERANCE * scale
         })
     }
 
-    /// The operation on two distances that it is.
+    /// Returns the operation on two distances that has the same values.
     fn operation(&self) -> Option<Operation> {
         let hard = [Operation::Subtraction, Operation::Intersection].into_iter();
-        // Where both distances are 0 the blend lies a quarter of its width below.
+        // Where both distances are 0, a blend is lower by a quarter of its width.
         let width = -4.0 * self.at(&[0.0, 0.0]);
-        let smooth = (width > SAME).then_some((Operation::SmoothUnion(width), width));
+        let smooth = (width > TOLERANCE).then_some((Operation::SmoothUnion(width), width));
         let candidates = hard.map(|operation| (operation, 1.0)).chain(smooth);
         let mut fitting = candidates
-            .filter(|&(operation, scale)| self.is(scale, |d| operation.apply(d[0], d[1])));
+            .filter(|&(operation, scale)| self.equals(scale, |d| operation.apply(d[0], d[1])));
         fitting.next().map(|(operation, _)| operation)
     }
 }

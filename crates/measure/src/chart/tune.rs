@@ -3,9 +3,9 @@
 use super::{Chart, Row};
 
 impl Chart {
-    /// Returns the cheapest row whose depth error (99th percentile, in widths of a pixel) is at most
-    /// `error`, without wrong pixels and capped rays. Of equal rows the first, which is that of the
-    /// default method.
+    /// Returns the cheapest row whose depth error (99th percentile, in widths of a pixel) is at
+    /// most `error`, without wrong pixels and capped rays. Of equal rows the first, which is that
+    /// of the default method.
     pub fn cheapest(&self, error: f64) -> Option<&Row> {
         let good = self.methods.iter().filter(|row| row.keeps(error));
         good.min_by(|a, b| a.ops_per_pixel.total_cmp(&b.ops_per_pixel))

@@ -1,13 +1,13 @@
-//! The operations of the stack machine, and a node's meaning in them.
+//! The operations of the stack machine, and the translation of nodes to them.
 
 use sdfc_graph::{Binary, Graph, Node, NodeId, Ternary, Unary};
 
 use crate::baseline::Inexpressible;
 
-/// A length below this is taken for it where a vector is divided by its own.
+/// The smallest length by which a vector is divided to normalise it.
 const TINY: f64 = 1e-30;
 
-/// In the order of the shader's codes.
+/// The order is that of the shader's codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Operation {
     Point,
@@ -34,8 +34,8 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    /// Values that it takes from the stack, and puts there.
-    pub(super) fn traffic(self) -> (usize, usize) {
+    /// Returns the number of values that it takes from the stack, and that it pushes.
+    pub(super) fn stack_effect(self) -> (usize, usize) {
         match self {
             Self::Point | Self::Push => (0, 1),
             Self::Test => (1, 0),
@@ -61,19 +61,19 @@ impl Operation {
     }
 }
 
-/// Part of what a node means to the machine.
+/// A step of the translation of a node.
 #[derive(Clone, Copy)]
 pub(super) enum Step {
     Value(NodeId),
     Number(f64),
     Do(Operation, usize),
-    /// With its two operands the other way round.
+    /// With its two operands swapped.
     DoReversed(Operation, usize),
-    /// What was computed last is this node.
-    Keep(NodeId),
+    /// The topmost value is this node.
+    Store(NodeId),
 }
 
-/// A node in the machine's operations.
+/// Returns the steps that compute a node.
 pub(super) fn steps(graph: &Graph, id: NodeId) -> Result<Vec<Step>, Inexpressible> {
     use Step::{Do, Value};
     let node = graph.node(id);
@@ -174,7 +174,7 @@ fn unary(op: Unary, a: NodeId, width: usize) -> Result<Vec<Step>, Inexpressible>
 fn binary(op: Binary, a: NodeId, b: NodeId, width: usize) -> Result<Vec<Step>, Inexpressible> {
     use Step::{Do, Number, Value};
     let both = |operation, index| vec![Value(a), Value(b), Do(operation, index)];
-    // 1 where a number is not below another.
+    // 1 if a number is not below another, otherwise 0.
     let not_less = |a, b| {
         let (less, sub) = (Do(Operation::Less, 0), Do(Operation::Sub, 0));
         vec![Number(1.0), Value(a), Value(b), less, sub]
