@@ -1,7 +1,7 @@
 //! No line of a comment or of a Markdown page has more than 100 columns.
 
 use crate::files::texts;
-use crate::{Check, report};
+use crate::report;
 
 const MAX_COLUMNS: usize = 100;
 
@@ -94,7 +94,7 @@ fn prose_has_at_most_100_columns() {
     for (path, text) in texts(&["rs", "wgsl", "sdf"]) {
         found.extend(problems(&path, comments(&text)));
     }
-    report(Check::Columns, &found);
+    report(&found);
 }
 
 #[test]

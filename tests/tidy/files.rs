@@ -48,14 +48,6 @@ pub fn product(path: &Path) -> String {
     text.split("#[cfg(test)]").next().unwrap_or_default().to_owned()
 }
 
-/// Returns the crate or folder that a path below the repository belongs to, such as `crates/graph`,
-/// `docs` or `tests`; for files at the top, their own name.
-pub fn area(path: &str) -> &str {
-    let folders = if path.starts_with("crates/") { 2 } else { 1 };
-    let end = path.match_indices('/').nth(folders - 1).map_or(path.len(), |(at, _)| at);
-    &path[..end]
-}
-
 #[test]
 fn no_file_is_too_long() {
     for (path, text) in texts(&["rs", "wgsl", "sdf", "md"]) {

@@ -6,7 +6,7 @@ use sdfc_test_support::repository;
 
 use crate::cycles::{ModulePath, cycles};
 use crate::files::files;
-use crate::{Check, report};
+use crate::report;
 
 /// Returns the sources of the modules of a crate. A program beside a library is no part of it.
 fn modules(krate: &str) -> BTreeMap<ModulePath, String> {
@@ -44,5 +44,5 @@ fn modules_have_no_cycles() {
             found.push((format!("crates/{krate}/src"), names.join(", ")));
         }
     }
-    report(Check::Cycles, &found);
+    report(&found);
 }

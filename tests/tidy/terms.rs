@@ -1,7 +1,7 @@
 //! Words that the repository no longer uses, because a standard term exists.
 
 use crate::files::texts;
-use crate::{Check, report};
+use crate::report;
 
 /// Files that may name retired terms: this one, the changelog, which says what was renamed, and the
 /// words of other programs that users may type.
@@ -144,7 +144,7 @@ fn retired_terms_are_not_used() {
             }
         }
     }
-    report(Check::Terms, &found);
+    report(&found);
 }
 
 #[test]

@@ -26,20 +26,20 @@ pub use suite::{large_suite, suite};
 const REFERENCE: &str = "specialized";
 /// Hits whose depths differ by more tolerances than this are different. Rounding alone may make a
 /// ray take one step more, which is at most about one tolerance long.
-const TOLERANCES: f64 = 4.0;
+const MAX_DEPTH_TOLERANCES: f64 = 4.0;
 /// A picture that differs in a greater fraction of its pixels, without edges, is refused.
 const MAX_DIFFERING: f64 = 1e-3;
 /// A frame that takes longer, in milliseconds, is drawn in tiles, so that no driver resets the GPU.
-const ONE_TILE: f64 = 1000.0;
+const MAX_SINGLE_TILE_MS: f64 = 1000.0;
 /// Slow variants, and those that compile slowly, are not measured on scenes with more leaves.
-const MOST_INTERPRETED: usize = 300;
+const MAX_INTERPRETED_LEAVES: usize = 300;
 /// Loops without culling are not measured on scenes with more leaves.
-const MOST_FLAT: usize = 2000;
+const MAX_UNCULLED_LEAVES: usize = 2000;
 /// A field with more operations is not measured unrolled: with normals by its gradient, and by
 /// differences.
-const MOST_INLINED: [usize; 2] = [5000, 14_000];
+const MAX_UNROLLED_OPERATIONS: [usize; 2] = [5000, 14_000];
 /// A frame that takes longer, in milliseconds, is timed once.
-const LONG: f64 = 10_000.0;
+const MAX_REPEATED_MS: f64 = 10_000.0;
 
 /// Options of [`bench()`].
 #[derive(Clone, Debug, PartialEq)]
@@ -163,7 +163,7 @@ enum Kind {
     Units,
     Tape,
     Specialized,
-    Slots,
+    LiveLiterals,
     /// Loops over similar parts, with all iterations.
     Rolled,
     /// The same; primary rays use the active lists of their tiles.
@@ -171,16 +171,22 @@ enum Kind {
 }
 
 impl Kind {
-    /// In the order of a row.
-    const ALL: [Self; 6] =
-        [Self::Units, Self::Tape, Self::Specialized, Self::Slots, Self::Rolled, Self::Pruned];
+    /// The order is that of a row.
+    const ALL: [Self; 6] = [
+        Self::Units,
+        Self::Tape,
+        Self::Specialized,
+        Self::LiveLiterals,
+        Self::Rolled,
+        Self::Pruned,
+    ];
 
     fn name(self) -> &'static str {
         match self {
             Self::Units => "units",
             Self::Tape => "tape",
             Self::Specialized => REFERENCE,
-            Self::Slots => "specialized-slots",
+            Self::LiveLiterals => "specialized-slots",
             Self::Rolled => "rolled",
             Self::Pruned => "pruned",
         }
@@ -190,16 +196,18 @@ impl Kind {
         match self {
             Self::Units => FieldSource::Units,
             Self::Tape => FieldSource::Tape,
-            Self::Specialized | Self::Slots | Self::Rolled | Self::Pruned => match by_differences {
-                true => FieldSource::Distance,
-                false => FieldSource::Scene,
-            },
+            Self::Specialized | Self::LiveLiterals | Self::Rolled | Self::Pruned => {
+                match by_differences {
+                    true => FieldSource::Distance,
+                    false => FieldSource::Scene,
+                }
+            }
         }
     }
 }
 
 /// A variant that is measured.
-struct Contestant {
+struct Candidate {
     kind: Kind,
     pipeline: Pipeline,
     uniforms: Vec<[f32; 4]>,
@@ -210,45 +218,46 @@ struct Contestant {
     repetitions: u32,
     image: Image,
     leaf_evaluations: LeafEvaluations,
-    turns: Option<usize>,
+    iterations: Option<usize>,
     times: Vec<f64>,
     /// CPU time of each, for a software GPU.
     cpu: Vec<f64>,
 }
 
-/// The data of a variant beside the view.
+/// The data of a variant, without the view.
 enum Data {
     Encoded(Encoded),
     Uniforms(Vec<[f32; 4]>),
 }
 
-/// Everything that all variants of a row share.
-struct Heat<'a> {
+/// The data that all variants of a row share.
+struct Setup<'a> {
     scene: &'a Scene,
-    slots: &'a Scene,
+    live: &'a Scene,
     gpu: &'a Gpu,
     options: &'a BenchOptions,
     view: View,
     /// The unrolled field.
-    inline: Program,
+    unrolled: Program,
     /// The field with loops, without and with culling. `None` if no parts are similar.
     rolled: Option<Program>,
     pruned: Option<Program>,
-    /// The variant that [`LoopStrategy::Auto`] is.
+    /// The variant that [`LoopStrategy::Auto`] chooses.
     auto: Kind,
 }
 
-/// Measures the scene at its params' defaults. After a first frame of every variant, which is not
-/// timed, one frame of each in turn, then the next of each.
+/// Measures the scene at its params' defaults. First each variant draws one frame that is not
+/// timed. Then the variants draw one timed frame each in turn, as often as repetitions are asked
+/// for.
 ///
-/// `slots` is the same scene compiled with live literals.
+/// `live` is the same scene compiled with live literals.
 ///
 /// # Errors
 ///
 /// [`MeasureError::Scene`] for a failure of the scene or the machine.
 pub fn bench(
     scene: &Scene,
-    slots: &Scene,
+    live: &Scene,
     name: &str,
     gpu: &Gpu,
     options: &BenchOptions,
@@ -257,44 +266,46 @@ pub fn bench(
     if !scene.draws() {
         return Err(Error::NothingDrawn.into());
     }
-    let heat = Heat::new(scene, slots, gpu, options)?;
-    let rounds = options.repetitions.max(1);
-    let frames = u64::from(rounds + 1) * Kind::ALL.len() as u64;
-    let mut counted = Counted { frames, drawn: 0, progress };
-    // A variant that takes minutes to compile is no reference.
-    let first = if heat.is_inlined() { Kind::Specialized } else { Kind::Pruned };
-    let reference = match heat.enter(first, &mut counted)? {
-        Ok(contestant) => contestant,
+    let setup = Setup::new(scene, live, gpu, options)?;
+    let repetitions = options.repetitions.max(1);
+    let frames = u64::from(repetitions + 1) * Kind::ALL.len() as u64;
+    let mut counter = FrameCounter { frames, drawn: 0, progress };
+    // A variant that takes minutes to compile cannot be the reference.
+    let first = if setup.is_unrolled() { Kind::Specialized } else { Kind::Pruned };
+    let reference = match setup.draw_first(first, &mut counter)? {
+        Ok(candidate) => candidate,
         Err(Inexpressible(why)) => return Err(MeasureError::Inexpressible(why)),
     };
-    let (mut contestants, mut variants) = (Vec::new(), Vec::new());
+    let (mut candidates, mut variants) = (Vec::new(), Vec::new());
     for kind in Kind::ALL.into_iter().filter(|kind| *kind != first) {
-        match heat.enter(kind, &mut counted)? {
-            Ok(contestant) if heat.refusal(&contestant, &reference).is_none() => {
-                contestants.push(contestant);
+        match setup.draw_first(kind, &mut counter)? {
+            Ok(candidate) if setup.refusal(&candidate, &reference).is_none() => {
+                candidates.push(candidate);
                 continue;
             }
-            Ok(contestant) => variants.push(heat.result(&contestant, &reference)),
+            Ok(candidate) => variants.push(setup.result(&candidate, &reference)),
             Err(Inexpressible(why)) => variants.push(BenchVariant::missing(kind.name(), &why)),
         }
-        counted.frames -= u64::from(rounds);
+        counter.frames -= u64::from(repetitions);
     }
-    contestants.push(reference);
-    for round in 0..rounds {
-        for contestant in contestants.iter_mut().filter(|entered| round < entered.repetitions) {
+    candidates.push(reference);
+    for repetition in 0..repetitions {
+        for candidate in
+            candidates.iter_mut().filter(|candidate| repetition < candidate.repetitions)
+        {
             let start = ProcessTime::try_now().ok().filter(|_| gpu.info().software);
-            let frame = heat.draw(contestant, &mut counted)?;
-            contestant.times.push(frame.milliseconds);
+            let frame = setup.draw(candidate, &mut counter)?;
+            candidate.times.push(frame.milliseconds);
             let cpu = start.and_then(|start| start.try_elapsed().ok());
-            contestant.cpu.extend(cpu.map(|time| time.as_secs_f64() * 1e3));
+            candidate.cpu.extend(cpu.map(|time| time.as_secs_f64() * 1e3));
         }
     }
-    if let Some(reference) = contestants.last() {
-        variants.extend(contestants.iter().map(|entered| heat.result(entered, reference)));
+    if let Some(reference) = candidates.last() {
+        variants.extend(candidates.iter().map(|candidate| setup.result(candidate, reference)));
     }
-    let place = |name| Kind::ALL.iter().position(|kind| kind.name() == name);
-    variants.sort_by_key(|variant| place(variant.name));
-    let auto = heat.auto.name();
+    let index = |name| Kind::ALL.iter().position(|kind| kind.name() == name);
+    variants.sort_by_key(|variant| index(variant.name));
+    let auto = setup.auto.name();
     let frame =
         |variant: &BenchVariant| variant.cpu_ms.or(variant.frame_ms.map(|times| times.median));
     Ok(BenchRow {
@@ -313,47 +324,47 @@ pub fn bench(
 fn times_best(
     variants: &[BenchVariant],
     name: &str,
-    figure: impl Fn(&BenchVariant) -> Option<f64>,
+    metric: impl Fn(&BenchVariant) -> Option<f64>,
 ) -> Option<f64> {
-    let own = figure(variants.iter().find(|variant| variant.name == name)?)?;
-    let best = variants.iter().filter_map(&figure).reduce(f64::min)?;
+    let own = metric(variants.iter().find(|variant| variant.name == name)?)?;
+    let best = variants.iter().filter_map(&metric).reduce(f64::min)?;
     Some(own / best)
 }
 
-impl<'a> Heat<'a> {
+impl<'a> Setup<'a> {
     fn new(
         scene: &'a Scene,
-        slots: &'a Scene,
+        live: &'a Scene,
         gpu: &'a Gpu,
         options: &'a BenchOptions,
     ) -> Result<Self, MeasureError> {
-        let prepared = |writing| prepare_with(scene.graph(), [0.0; 3], writing);
-        let inline = prepared(LoopStrategy::Unrolled)?.program;
+        let prepared = |strategy| prepare_with(scene.graph(), [0.0; 3], strategy);
+        let unrolled = prepared(LoopStrategy::Unrolled)?.program;
         let found = prepared(LoopStrategy::Looped)?;
         let pruned = Some(found.program).filter(|_| !found.report.loops.is_empty());
         let rolled =
             pruned.clone().map(|program| Program { cullable_loops: Vec::new(), ..program });
         let pruned = pruned.filter(|program| !program.cullable_loops.is_empty());
         let frame = FrameValues::defaults(scene.params());
-        let seen = pruned.as_ref().unwrap_or(&inline);
+        let seen = pruned.as_ref().unwrap_or(&unrolled);
         let view = View::new(seen, &frame, scene.bounds_at(&frame), options.size)?;
         let auto = match (scene.report().loops.is_empty(), pruned.is_some()) {
             (true, _) => Kind::Specialized,
             (false, true) => Kind::Pruned,
             (false, false) => Kind::Rolled,
         };
-        Ok(Self { scene, slots, gpu, options, view, inline, rolled, pruned, auto })
+        Ok(Self { scene, live, gpu, options, view, unrolled, rolled, pruned, auto })
     }
 
-    /// True if the unrolled field compiles in reasonable time.
-    fn is_inlined(&self) -> bool {
+    /// Returns true if the unrolled field compiles in reasonable time.
+    fn is_unrolled(&self) -> bool {
         self.pruned.is_none()
-            || cost(&self.inline.graph, self.inline.distance.as_slice()).operations
-                <= self.most_inlined()
+            || cost(&self.unrolled.graph, self.unrolled.distance.as_slice()).operations
+                <= self.max_operations()
     }
 
-    fn most_inlined(&self) -> usize {
-        MOST_INLINED[usize::from(self.options.baselines)]
+    fn max_operations(&self) -> usize {
+        MAX_UNROLLED_OPERATIONS[usize::from(self.options.baselines)]
     }
 
     /// Returns the program that a variant is compiled from.
@@ -364,22 +375,23 @@ impl<'a> Heat<'a> {
         }
         let leaves = self.scene.report().leaves;
         match kind {
-            Kind::Units | Kind::Tape | Kind::Slots if !self.options.baselines => {
+            Kind::Units | Kind::Tape | Kind::LiveLiterals if !self.options.baselines => {
                 Err(Inexpressible("left out".to_owned()))
             }
-            Kind::Units | Kind::Tape | Kind::Slots if leaves > MOST_INTERPRETED => {
-                let why = format!("over {MOST_INTERPRETED} leaves, which take it minutes");
+            Kind::Units | Kind::Tape | Kind::LiveLiterals if leaves > MAX_INTERPRETED_LEAVES => {
+                let why = format!("over {MAX_INTERPRETED_LEAVES} leaves, which take it minutes");
                 Err(Inexpressible(why))
             }
-            Kind::Specialized if !self.is_inlined() => {
-                let most = self.most_inlined();
+            Kind::Specialized if !self.is_unrolled() => {
+                let most = self.max_operations();
                 let why = format!("over {most} operations, which take minutes to compile");
                 Err(Inexpressible(why))
             }
-            Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.inline),
-            Kind::Slots => Ok(self.slots.program()),
-            Kind::Rolled if leaves > MOST_FLAT => {
-                let why = format!("over {MOST_FLAT} leaves, all of which it visits each time");
+            Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.unrolled),
+            Kind::LiveLiterals => Ok(self.live.program()),
+            Kind::Rolled if leaves > MAX_UNCULLED_LEAVES => {
+                let why =
+                    format!("over {MAX_UNCULLED_LEAVES} leaves, all of which it visits each time");
                 Err(Inexpressible(why))
             }
             Kind::Rolled => alike(&self.rolled),
@@ -387,13 +399,14 @@ impl<'a> Heat<'a> {
         }
     }
 
-    /// Compiles a variant and draws its first frame, unless it cannot express the scene.
-    fn enter(
+    /// Compiles a variant and draws its first frame. Returns [`Inexpressible`] if the variant
+    /// cannot express the scene.
+    fn draw_first(
         &self,
         kind: Kind,
-        counted: &mut Counted<'_, '_>,
-    ) -> Result<Result<Contestant, Inexpressible>, MeasureError> {
-        let scene = if kind == Kind::Slots { self.slots } else { self.scene };
+        counter: &mut FrameCounter<'_, '_>,
+    ) -> Result<Result<Candidate, Inexpressible>, MeasureError> {
+        let scene = if kind == Kind::LiveLiterals { self.live } else { self.scene };
         let start = Instant::now();
         let program = match self.program(kind) {
             Ok(program) => program,
@@ -410,7 +423,7 @@ impl<'a> Heat<'a> {
         )?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
-        let (tables, uniforms, turns) = match &data {
+        let (tables, uniforms, iterations) = match &data {
             Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.turns)),
             Data::Uniforms(uniforms) => (&[][..], uniforms.clone(), None),
         };
@@ -429,15 +442,16 @@ impl<'a> Heat<'a> {
             compile.why.insert("analyze", "units are read off the shapes".to_owned());
         }
         let options = RenderOptions::default();
-        let first = counted.draw(&pipeline, &self.view, &uniforms, &options)?;
+        let first = counter.draw(&pipeline, &self.view, &uniforms, &options)?;
         let first_picture =
             times.front + compile.analyze.unwrap_or(0.0) + milliseconds_since(start);
         let of_all =
             |leaves| LeafEvaluations::of_all_leaves(EvaluationCounts::of(&first.image), leaves);
         let whole = TileSize::Fixed(self.options.size);
-        let tile_size = if first.milliseconds < ONE_TILE { whole } else { options.tile_size };
-        let once = first.milliseconds > LONG;
-        Ok(Ok(Contestant {
+        let tile_size =
+            if first.milliseconds < MAX_SINGLE_TILE_MS { whole } else { options.tile_size };
+        let once = first.milliseconds > MAX_REPEATED_MS;
+        Ok(Ok(Candidate {
             kind,
             pipeline,
             uniforms,
@@ -447,37 +461,37 @@ impl<'a> Heat<'a> {
             repetitions: if once { 1 } else { self.options.repetitions.max(1) },
             leaf_evaluations: match &data {
                 Data::Uniforms(uniforms) if kind == Kind::Pruned => {
-                    self.counted(program, uniforms, counted)?
+                    self.count_leaf_evaluations(program, uniforms, counter)?
                 }
                 Data::Uniforms(_) => of_all(scene.report().leaves),
                 Data::Encoded(encoded) => of_all(encoded.leaves),
             },
             image: first.image,
-            turns,
+            iterations,
             times: Vec::new(),
             cpu: Vec::new(),
         }))
     }
 
-    /// Counts leaf evaluations with culling, including those of the culling pass, with an
+    /// Counts leaf evaluations with culling, including those of the culling pass, by an
     /// instrumented shader.
-    fn counted(
+    fn count_leaf_evaluations(
         &self,
         program: &Program,
         uniforms: &[[f32; 4]],
-        counted: &mut Counted<'_, '_>,
+        counter: &mut FrameCounter<'_, '_>,
     ) -> Result<LeafEvaluations, MeasureError> {
         let iterations = program.cullable_loops.iter().map(|one| one.iterations as usize);
-        let rounds = iterations.sum::<usize>();
-        if rounds != self.scene.report().leaves {
+        let iterations = iterations.sum::<usize>();
+        if iterations != self.scene.report().leaves {
             return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
         }
         let shader = instrumented_module(program, self.options.method.name())?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
-        // In one piece: lists of parts of a picture repeat what is asked for wide tiles.
+        // A single tile, because the lists of each tile would evaluate the wide tiles again.
         let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
-        let frame = counted.draw(&pipeline, &self.view, uniforms, &options)?;
-        counted.drawn -= 1;
+        let frame = counter.draw(&pipeline, &self.view, uniforms, &options)?;
+        counter.drawn -= 1;
         let visited = EvaluationCounts::of(&frame.image).mean;
         let before = frame.culling_evaluations as f64 / frame.image.pixels().len() as f64;
         Ok(LeafEvaluations { mean: Some(visited + before), ..LeafEvaluations::default() })
@@ -485,53 +499,53 @@ impl<'a> Heat<'a> {
 
     fn draw(
         &self,
-        contestant: &Contestant,
-        counted: &mut Counted<'_, '_>,
+        candidate: &Candidate,
+        counter: &mut FrameCounter<'_, '_>,
     ) -> Result<Frame, MeasureError> {
-        let Contestant { pipeline, uniforms, options, .. } = contestant;
-        counted.draw(pipeline, &self.view, uniforms, options)
+        let Candidate { pipeline, uniforms, options, .. } = candidate;
+        counter.draw(pipeline, &self.view, uniforms, options)
     }
 
     /// Returns the results of a variant; null if its picture differs from the reference.
-    fn result(&self, contestant: &Contestant, reference: &Contestant) -> BenchVariant {
+    fn result(&self, candidate: &Candidate, reference: &Candidate) -> BenchVariant {
         let clock = if self.gpu.has_timestamps() {
             sdfc_render::Clock::Gpu
         } else {
             sdfc_render::Clock::Wall
         };
-        let frame_ms = FrameTimes::of(&contestant.times, clock);
+        let frame_ms = FrameTimes::of(&candidate.times, clock);
         let median = |times: &[f64]| FrameTimes::of(times, clock).map(|times| times.median);
         let ratio =
-            |of: fn(&Contestant) -> &[f64]| Some(median(of(contestant))? / median(of(reference))?);
-        let evals = EvaluationCounts::of(&contestant.image);
+            |of: fn(&Candidate) -> &[f64]| Some(median(of(candidate))? / median(of(reference))?);
+        let evals = EvaluationCounts::of(&candidate.image);
         let mut variant = BenchVariant {
-            name: contestant.kind.name(),
+            name: candidate.kind.name(),
             frame_ms,
-            times_specialized: ratio(|entered| &entered.times),
-            cpu_ms: median(&contestant.cpu),
-            cpu_times_specialized: ratio(|entered| &entered.cpu),
-            compile_ms: Some(contestant.compile.clone()),
-            first_picture_ms: Some(contestant.first_picture),
+            times_specialized: ratio(|candidate| &candidate.times),
+            cpu_ms: median(&candidate.cpu),
+            cpu_times_specialized: ratio(|candidate| &candidate.cpu),
+            compile_ms: Some(candidate.compile.clone()),
+            first_picture_ms: Some(candidate.first_picture),
             evals_per_pixel: Some(evals),
-            leaf_evals_per_pixel: Some(contestant.leaf_evaluations.clone()),
-            turns_per_eval: contestant.turns,
-            slots: (contestant.kind == Kind::Slots).then(|| self.slots.live_literals().len()),
-            differing_pixels: Some(self.differing(contestant, reference)),
+            leaf_evals_per_pixel: Some(candidate.leaf_evaluations.clone()),
+            turns_per_eval: candidate.iterations,
+            slots: (candidate.kind == Kind::LiveLiterals).then(|| self.live.live_literals().len()),
+            differing_pixels: Some(self.differing(candidate, reference)),
             why: Why::new(),
         };
-        if contestant.turns.is_none() {
+        if candidate.iterations.is_none() {
             variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
         }
-        if let Some(reason) = self.refusal(contestant, reference) {
+        if let Some(reason) = self.refusal(candidate, reference) {
             variant.refuse(&reason);
         }
         variant
     }
 
     /// Returns why the time of a variant is meaningless, if its picture differs from the reference.
-    fn refusal(&self, contestant: &Contestant, reference: &Contestant) -> Option<String> {
-        let differing = self.differing(contestant, reference);
-        let pixels = contestant.image.pixels().len();
+    fn refusal(&self, candidate: &Candidate, reference: &Candidate) -> Option<String> {
+        let differing = self.differing(candidate, reference);
+        let pixels = candidate.image.pixels().len();
         if differing as f64 <= MAX_DIFFERING * pixels as f64 {
             return None;
         }
@@ -542,13 +556,13 @@ impl<'a> Heat<'a> {
     }
 
     /// Counts pixels that differ and are no edge in either picture.
-    fn differing(&self, contestant: &Contestant, reference: &Contestant) -> usize {
-        let (a, b) = (&contestant.image, &reference.image);
-        let near = (TOLERANCES * self.view.epsilon) as f32;
+    fn differing(&self, candidate: &Candidate, reference: &Candidate) -> usize {
+        let (a, b) = (&candidate.image, &reference.image);
+        let near = (MAX_DEPTH_TOLERANCES * self.view.epsilon) as f32;
         let edges = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b);
         let pairs = a.pixels().iter().zip(b.pixels()).zip(edges);
         let differ = pairs.filter(|((a, b), edge)| match [a, b].map(|pixel| pixel.status == HIT) {
-            // NaN and infinities are not near.
+            // NaN and infinities count as different.
             [true, true] if (a.depth - b.depth).abs() <= near => false,
             [false, false] => false,
             [true, true] | [true, false] | [false, true] => !edge,
@@ -565,21 +579,21 @@ fn data(kind: Kind, scene: &Scene, program: &Program) -> Result<Data, Inexpressi
         Kind::Units => baseline::units(scene.graph(), &frame).map(Data::Encoded),
         Kind::Tape => baseline::tape(program, scene.report().leaves, &frame).map(Data::Encoded),
         Kind::Specialized | Kind::Rolled | Kind::Pruned => Ok(uniforms()),
-        Kind::Slots if scene.live_literals().is_empty() => {
+        Kind::LiveLiterals if scene.live_literals().is_empty() => {
             Err(Inexpressible("no number of the scene can move".to_owned()))
         }
-        Kind::Slots => Ok(uniforms()),
+        Kind::LiveLiterals => Ok(uniforms()),
     }
 }
 
 /// Counts frames for the progress report.
-struct Counted<'a, 'b> {
+struct FrameCounter<'a, 'b> {
     frames: u64,
     drawn: u64,
     progress: &'a mut OnProgress<'b>,
 }
 
-impl Counted<'_, '_> {
+impl FrameCounter<'_, '_> {
     fn draw(
         &mut self,
         pipeline: &Pipeline,
@@ -588,8 +602,8 @@ impl Counted<'_, '_> {
         options: &RenderOptions,
     ) -> Result<Frame, MeasureError> {
         let Self { frames, drawn, progress } = self;
-        let frame = pipeline.render(view, uniforms, options, &mut |part| {
-            let Progress { done, total } = part;
+        let frame = pipeline.render(view, uniforms, options, &mut |tile_progress| {
+            let Progress { done, total } = tile_progress;
             progress(Progress { done: *drawn * total + done, total: *frames * total })
         })?;
         self.drawn += 1;
@@ -598,7 +612,7 @@ impl Counted<'_, '_> {
 }
 
 impl BenchVariant {
-    /// A variant without results, for one reason.
+    /// Returns a variant without results, for one reason.
     fn missing(name: &'static str, reason: &str) -> Self {
         let keys = [
             "frame_ms",
@@ -627,7 +641,7 @@ impl BenchVariant {
         }
     }
 
-    /// Removes results that are meaningless.
+    /// Removes meaningless results.
     fn refuse(&mut self, reason: &str) {
         (self.frame_ms, self.times_specialized, self.first_picture_ms) = (None, None, None);
         (self.cpu_ms, self.cpu_times_specialized) = (None, None);

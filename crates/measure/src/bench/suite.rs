@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 /// Leaves of the generated scenes: a floor, then pairs, then one more if the number is even.
 const LEAVES: [usize; 4] = [3, 33, 100, 300];
-/// Where the generator of pseudo-random numbers starts.
+/// The seed of the pseudo-random numbers.
 const SEED: u64 = 7;
 
-/// Names and texts of the suite's scenes.
+/// Returns names and sources of the suite's scenes.
 pub fn suite() -> Vec<(String, String)> {
     let files = [
         ("course/union.sdf", include_str!("../../../../examples/course/union.sdf")),
@@ -22,38 +22,39 @@ pub fn suite() -> Vec<(String, String)> {
     files.into_iter().chain(generated).collect()
 }
 
-/// Blocks of the scene of trees: so many as in scenes that pruning is measured by elsewhere.
+/// Number of trees; the scene has as many blocks as scenes that are used elsewhere to measure
+/// pruning.
 const TREES: usize = 6;
-const BOXES_OF_A_TREE: usize = 31;
+const BOXES_PER_TREE: usize = 31;
 /// Leaves of the scene of many kinds.
 const MIXED: usize = 300;
 /// Leaves of the large scenes.
 const SCATTERED: [usize; 6] = [100, 300, 1000, 3000, 6000, 20_000];
 const CHAINED: [usize; 2] = [301, 1001];
 
-/// Names and texts of scenes that are too large for interpreters.
+/// Returns names and sources of scenes that are too large for interpreters.
 pub fn large_suite() -> Vec<(String, String)> {
-    let trees = (format!("trees {}", TREES * BOXES_OF_A_TREE), trees());
+    let trees = (format!("trees {}", TREES * BOXES_PER_TREE), trees());
     let mixed = (format!("mixed {MIXED}"), mixed(MIXED));
     let chained = CHAINED.map(|leaves| (format!("chain {leaves}"), chained(leaves)));
     let scattered = SCATTERED.map(|leaves| (format!("scattered {leaves}"), scattered(leaves)));
     [trees, mixed].into_iter().chain(chained).chain(scattered).collect()
 }
 
-/// Trees of turned blocks on a lawn: each a stem, and boughs that wind up around it.
+/// Returns trees of rotated boxes, each with a trunk and branches that wind up around it.
 fn trees() -> String {
     let mut numbers = Numbers(SEED);
     let mut text = String::new();
     for tree in 0..TREES {
         let [x, z] = [tree % 3, tree / 3]
-            .map(|place| 2.6 * (place as f64 - 0.5) + numbers.between(-0.4, 0.4));
+            .map(|index| 2.6 * (index as f64 - 0.5) + numbers.between(-0.4, 0.4));
         let _ = writeln!(text, "box([0.2, 2.4, 0.2]).translate([{x:.3}, 0, {z:.3}])");
-        for bough in 1..BOXES_OF_A_TREE {
-            let part = bough as f64 / BOXES_OF_A_TREE as f64;
-            let turn = 137.5 * bough as f64 + numbers.between(-15.0, 15.0);
-            let tilt = 55.0 - 50.0 * part + numbers.between(-8.0, 8.0);
-            let (length, wide) = (1.3 * (1.1 - part), 0.1 * (1.2 - part));
-            let high = 1.8 * part - 0.5;
+        for branch in 1..BOXES_PER_TREE {
+            let fraction = branch as f64 / BOXES_PER_TREE as f64;
+            let turn = 137.5 * branch as f64 + numbers.between(-15.0, 15.0);
+            let tilt = 55.0 - 50.0 * fraction + numbers.between(-8.0, 8.0);
+            let (length, wide) = (1.3 * (1.1 - fraction), 0.1 * (1.2 - fraction));
+            let high = 1.8 * fraction - 0.5;
             let _ = writeln!(
                 text,
                 "box([{length:.3}, {wide:.3}, {wide:.3}]).translate(x: {:.3}).rotate(z: {tilt:.1}deg)\
@@ -65,7 +66,7 @@ fn trees() -> String {
     text + &seen_from(3.0)
 }
 
-/// Shapes of six kinds, strewn evenly in a cube, as many as there are units of volume.
+/// Returns shapes of six kinds, scattered evenly in a cube, one per unit of volume.
 fn mixed(leaves: usize) -> String {
     let reach = 0.5 * (leaves as f64).cbrt();
     let mut numbers = Numbers(SEED);
@@ -86,7 +87,7 @@ fn mixed(leaves: usize) -> String {
     text + &seen_from(reach)
 }
 
-/// Balls and blocks strewn evenly in a cube, as many as there are units of volume.
+/// Returns balls and boxes, scattered evenly in a cube, one per unit of volume.
 fn scattered(leaves: usize) -> String {
     let reach = 0.5 * (leaves as f64).cbrt();
     let mut numbers = Numbers(SEED);
@@ -94,7 +95,7 @@ fn scattered(leaves: usize) -> String {
     for index in 0..leaves {
         let [x, y, z] = [0.0; 3].map(|_| numbers.between(-reach, reach));
         let [a, b, c] = [0.0; 3].map(|_| numbers.between(0.2, 0.5));
-        // LoopStrategy to a String cannot fail.
+        // Writing to a `String` cannot fail.
         let _ = match index % 2 {
             0 => {
                 writeln!(text, "box([{a:.3}, {b:.3}, {c:.3}]).translate([{x:.3}, {y:.3}, {z:.3}])")
@@ -105,7 +106,7 @@ fn scattered(leaves: usize) -> String {
     text + &seen_from(reach)
 }
 
-/// Balls on a winding path, each blended with all before it.
+/// Returns balls on a winding path, each blended with all before it.
 fn chained(leaves: usize) -> String {
     let mut numbers = Numbers(SEED);
     let mut text = "union(\n".to_owned();
@@ -123,22 +124,23 @@ fn chained(leaves: usize) -> String {
 }
 
 fn seen_from(reach: f64) -> String {
-    let [x, y, z] = [1.5, 1.2, 2.4].map(|part| part * reach);
+    let [x, y, z] = [1.5, 1.2, 2.4].map(|factor| factor * reach);
     format!("camera(eye: [{x:.2}, {y:.2}, {z:.2}], target: 0, fov: 40deg)\n")
         + "march(steps: 255, epsilon: 0.001)\n"
 }
 
-/// A floor with a square of pairs on it, each a ball and a block under one of four operations.
+/// Returns a floor with a square of pairs on it, each a ball and a box joined by one of four
+/// operations.
 fn generated(leaves: usize) -> String {
     let pairs = leaves.saturating_sub(1) / 2;
     let side = (1..).find(|side| side * side >= pairs).unwrap_or(1);
     let reach = side as f64;
     let mut numbers = Numbers(SEED);
-    // LoopStrategy to a String cannot fail.
+    // Writing to a `String` cannot fail.
     let mut text = "plane(y: -0.5)\n".to_owned();
     for index in 0..pairs {
         let [column, row] = [index % side, index / side]
-            .map(|place| 1.6 * (place as f64 - (reach - 1.0) / 2.0) + numbers.between(-0.1, 0.1));
+            .map(|index| 1.6 * (index as f64 - (reach - 1.0) / 2.0) + numbers.between(-0.1, 0.1));
         let radius = numbers.between(0.35, 0.5);
         let [x, y, z] = [0.0; 3].map(|_| numbers.between(0.5, 0.9));
         let [dx, dy, dz] = [0.0; 3].map(|_| numbers.between(0.15, 0.35));
@@ -162,7 +164,7 @@ fn generated(leaves: usize) -> String {
             march(steps: 255, epsilon: 0.001, distance: 40)\n"
 }
 
-/// Knuth's linear congruential generator; its upper bits.
+/// The upper bits of Knuth's linear congruential generator.
 struct Numbers(u64);
 
 impl Numbers {
