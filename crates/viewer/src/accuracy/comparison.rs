@@ -46,7 +46,7 @@ impl ComparisonJob {
     }
 
     /// Width and height at which the picture is compared: the same aspect ratio with at most
-    /// [`MAX_PIXELS`].
+    /// `MAX_PIXELS`.
     pub fn compared_size(&self) -> [u32; 2] {
         let [width, height] = self.size.map(f64::from);
         let scale = (MAX_PIXELS / (width * height).max(1.0)).sqrt().min(1.0);

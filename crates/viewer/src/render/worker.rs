@@ -4,7 +4,7 @@
 //! [`PASS_BUDGET_MS`]. When the camera rests, passes up to the full resolution follow, then more
 //! samples per pixel. A newer request interrupts a finer pass at its next tile. It does not
 //! interrupt the first pass, or a camera that never rests would never be seen to move, unless that
-//! pass takes longer than [`FIRST_PASS_LIMIT`].
+//! pass takes longer than `FIRST_PASS_LIMIT`.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
