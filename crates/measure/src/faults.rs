@@ -21,7 +21,7 @@ const REFERENCE_STEPS: u32 = 1_000_000;
 /// A colour that differs by more sRGB steps of 1/255 counts as wrong.
 const COLOR_STEPS: u8 = 8;
 
-/// What `bench --faults --json` writes.
+/// The results, as `bench --faults --json` writes them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultReport {
     /// Name of the GPU.

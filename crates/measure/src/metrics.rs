@@ -67,7 +67,7 @@ pub struct Evaluations {
 pub struct Depth {
     /// In widths of a pixel at the hit.
     pub pixels: Quantiles,
-    /// As a fraction of the distance.
+    /// Relative to the distance.
     pub relative: Quantiles,
 }
 

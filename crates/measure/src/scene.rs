@@ -1,4 +1,4 @@
-//! Where the rays of a view meet a scene, according to the oracle.
+//! The hits of a view's rays with a scene, found by the oracle.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -19,7 +19,7 @@ use crate::truth::Truth;
 pub struct OracleOptions<'a> {
     /// Called with the number of finished pixels, from any thread. It cannot cancel.
     pub progress: &'a (dyn Fn(Progress) + Sync),
-    /// Where answers are stored between runs. `None` asks the oracle about every pixel again.
+    /// Storage of truths between runs. With `None` the oracle computes every pixel again.
     pub store: Option<&'a dyn TruthStore>,
 }
 

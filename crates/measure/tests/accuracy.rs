@@ -50,7 +50,11 @@ const EVALUATIONS: f64 = 0.5;
 const EXPENSIVE: &[(&str, &str, f64)] = &[
     ("terrain.sdf", "hills of noise: nothing is analytic, and every ray grazes it", 0.8),
     ("bench/thirty.sdf", "one chain of blends without a floor: nothing is analytic", 0.8),
-    ("pawn.sdf", "the board is a rounded box, cheaper to march than to intersect analytically", 0.55),
+    (
+        "pawn.sdf",
+        "the board is a rounded box, cheaper to march than to intersect analytically",
+        0.55,
+    ),
 ];
 
 /// A scene of hundreds of leaves, unlike any example. Drivers take long for its shaders, so only

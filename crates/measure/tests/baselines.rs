@@ -68,7 +68,7 @@ steps()",
         "`union` of 3",
     ),
     (
-        "turned",
+        "rotated",
         "param a = 30deg in 0deg..90deg
 box([1, 0.4, 0.6]).rotate(y: a).twist(40deg)",
         "is not",

@@ -14,7 +14,7 @@ const RUNS: usize = 21;
 const FEW_RUNS: usize = 6;
 
 /// Rotated leaves.
-const TURNED: &str = "box([0.2, 0.3, 0.1]).rotate(x: i * 1deg, y: i * 2deg, z: i * 3deg).round(";
+const ROTATED: &str = "box([0.2, 0.3, 0.1]).rotate(x: i * 1deg, y: i * 2deg, z: i * 3deg).round(";
 
 fn main() {
     // `cargo test --benches` passes no `--bench`: then nothing is measured.
@@ -29,7 +29,7 @@ fn main() {
         ("100 hard", many(100, "min")),
         ("1000 hard", many(1000, "min")),
         ("1000 smooth", many(1000, "smooth(0.05)")),
-        ("1000 turned", many(1000, "smooth(0.05)").replace("sphere(", TURNED)),
+        ("1000 rotated", many(1000, "smooth(0.05)").replace("sphere(", ROTATED)),
         ("10000 hard", many(10_000, "min")),
         ("10000 smooth", many(10_000, "smooth(0.05)")),
     ];

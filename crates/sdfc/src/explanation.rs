@@ -86,7 +86,7 @@ pub struct Input {
     pub used: bool,
 }
 
-/// What is known of the field of one shape.
+/// The properties of the field of one shape.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct QualityRow {

@@ -25,7 +25,7 @@ pub enum ParamError {
         name: String,
         /// The value as text.
         text: String,
-        /// What the param takes.
+        /// The values that the param takes.
         expected: String,
     },
     /// The value lies outside the param's range.

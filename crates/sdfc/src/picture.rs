@@ -48,7 +48,7 @@ pub struct PictureOptions {
     /// Rays per pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes the
     /// scene's, or 1.
     pub samples: Option<u32>,
-    /// How often the frame is drawn, to time it; at least 1.
+    /// Number of times that the frame is drawn, to time it; at least 1.
     pub repetitions: u32,
 }
 
@@ -262,7 +262,7 @@ pub struct Painter<'s> {
     size: [u32; 2],
     pose: Option<Pose>,
     tolerance: f64,
-    /// Where the rays pass through a pixel.
+    /// The points at which rays pass through a pixel.
     samples: Vec<[f64; 2]>,
     compile: CompileTimes,
     note: Option<String>,

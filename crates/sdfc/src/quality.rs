@@ -1,4 +1,4 @@
-//! What is known of each shape of a scene, with the call that made it.
+//! The properties of each shape of a scene, with the call that made it.
 
 use sdfc_analyze::{Lipschitz, ShapeReport};
 use sdfc_graph::eval::evaluate_frame;

@@ -26,7 +26,7 @@ impl Scene {
         rebased.as_ref().unwrap_or(&self.program)
     }
 
-    /// What the camera looks at by default, if that is far from the origin.
+    /// Returns the default target of the camera, if it is far from the origin.
     fn camera_target(&self) -> Option<[f64; 3]> {
         let frame = self.defaults();
         let (target, extent) = match &self.program.settings.camera {

@@ -23,11 +23,11 @@ const SCENES: &[(&str, &str)] = &[
     ("twist under hard union", "box([0.6, 2, 0.6]).twist(120deg) | sphere(0.5).translate(x: 1)"),
     ("twist cut out", "sphere(1.2) - box([0.6, 4, 0.6]).twist(120deg)"),
     (
-        "twist turned and scaled",
+        "twist rotated and scaled",
         "box([0.6, 2, 0.6]).twist(120deg).rotate(x: 40deg, z: 10deg).scale(0.7)",
     ),
     (
-        "twist turned by a param",
+        "twist rotated by a param",
         "param a = 20deg in 0deg..90deg\nbox([0.6, 2, 0.6]).twist(120deg).rotate(y: a, x: a)",
     ),
     // The constant holds within the bounds; outside of them the field is continued.
@@ -63,7 +63,7 @@ const SCENES: &[(&str, &str)] = &[
          spacing: 0.8)",
     ),
     (
-        "copies turned and sized",
+        "copies rotated and scaled",
         "solid pebble(c: vec3)\n  bounds -0.3 .. 0.3\n\
          = ellipsoid([0.2, 0.1, 0.15] * (0.5 + 0.5 * hash(1, c))).rotate(y: hash(2, c) * 1turn)(p)\n\
          repeat(fn(c) = pebble(c), spacing: 0.8)",

@@ -5,7 +5,7 @@ use sdfc::{Compiler, Diagnostic, Severity};
 
 /// Returns each diagnostic's code, the source at its span, and its severity.
 fn diagnostics(text: &str) -> Vec<(String, String, Severity)> {
-    let found = Compiler::new().verify(true).check("lie.sdf", text);
+    let found = Compiler::new().verify(true).check("wrong.sdf", text);
     let located = |diagnostic: &Diagnostic| {
         let span = diagnostic.span;
         let source = text.get(span.start as usize..span.end as usize).unwrap_or_default();

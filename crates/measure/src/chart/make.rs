@@ -128,7 +128,10 @@ pub fn chart(
             let frame_ms = timed(&pipeline, &view, &uniforms, options.repetitions)?;
             let samples = sampler.samples(&view, &frame)?;
             let metrics = compare(&oracle, &frame, &truth, &samples);
-            let set = method.definition().parameter.map(|knob| (knob.name(), view.parameter(knob)));
+            let set = method
+                .definition()
+                .parameter
+                .map(|parameter| (parameter.name(), view.parameter(parameter)));
             let settings = BTreeMap::from_iter(set);
             let operations = operations(scene, &marched, metrics.evaluations.mean);
             let default = part == 1.0;

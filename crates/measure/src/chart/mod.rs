@@ -140,8 +140,8 @@ impl Row {
 
     /// Returns true if the row is at least as good in every respect, and better in one.
     fn beats(&self, other: &Self) -> bool {
-        let figures = |row: &Self| [row.ops_per_pixel, row.failed() as f64, row.depth_px.p99];
-        is_less(figures(self), figures(other))
+        let costs = |row: &Self| [row.ops_per_pixel, row.failed() as f64, row.depth_px.p99];
+        is_less(costs(self), costs(other))
     }
 
     /// Returns true if the row takes fewer operations and has smaller errors: no more failed pixels
@@ -153,8 +153,8 @@ impl Row {
 }
 
 /// Returns true if no number is greater than in `others`, and one is less.
-fn is_less<const N: usize>(figures: [f64; N], others: [f64; N]) -> bool {
-    figures.iter().zip(&others).all(|(a, b)| a <= b) && figures != others
+fn is_less<const N: usize>(numbers: [f64; N], others: [f64; N]) -> bool {
+    numbers.iter().zip(&others).all(|(a, b)| a <= b) && numbers != others
 }
 
 impl Chart {

@@ -106,7 +106,7 @@ pub struct DiagnosticRow {
     pub code: &'static str,
     /// `error` or `warning`.
     pub severity: &'static str,
-    /// What is wrong.
+    /// The problem, in one sentence.
     pub message: String,
     /// Name of the file.
     pub file: String,
