@@ -13,7 +13,7 @@ use sdfc_graph::{Binary, FrameInput, Graph, NodeId, Ternary, Type, Unary};
 const NUMBERS: [Type; 4] = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4];
 const VECTORS: [Type; 3] = [Type::Vec2, Type::Vec3, Type::Vec4];
 
-const COMPONENTWISE: [Unary; 24] = [
+const COMPONENTWISE: &[Unary] = &[
     Unary::Neg,
     Unary::Abs,
     Unary::Sign,
@@ -40,7 +40,7 @@ const COMPONENTWISE: [Unary; 24] = [
     Unary::Saturate,
 ];
 
-const ARITHMETIC: [Binary; 11] = [
+const ARITHMETIC: &[Binary] = &[
     Binary::Add,
     Binary::Sub,
     Binary::Mul,
@@ -110,7 +110,7 @@ fn line(out: &mut String, label: String, text: Result<String, Error>) {
 #[test]
 fn operations_on_one_argument() {
     let mut out = String::new();
-    for op in COMPONENTWISE {
+    for &op in COMPONENTWISE {
         for ty in NUMBERS {
             let text = written(|graph| {
                 let a = value(graph, ty, 0);
@@ -139,7 +139,7 @@ fn operations_on_one_argument() {
 #[test]
 fn operations_on_two_arguments() {
     let mut cases = Vec::new();
-    for op in ARITHMETIC {
+    for &op in ARITHMETIC {
         cases.extend(NUMBERS.map(|ty| (op, ty)));
     }
     cases.extend(VECTORS.map(|ty| (Binary::Dot, ty)));

@@ -153,7 +153,10 @@ mod tests {
         let known = ["a", "x", "if", "[for", "fn", "let", "param", "import"];
         for (here, _) in ROWS.iter().filter(|(here, _)| !here.starts_with('#')) {
             let first = here.split([' ', '(']).next().unwrap_or_default();
-            assert!(known.contains(&first) || entries.iter().any(|e| e.name == first), "{here}");
+            assert!(
+                known.contains(&first) || entries.iter().any(|e| e.name == first),
+                "unknown: {here}"
+            );
         }
     }
 
@@ -163,7 +166,8 @@ mod tests {
         let mut all: Vec<&str> = ROWS.iter().flat_map(|(_, others)| others.split(' ')).collect();
         for name in &all {
             assert_eq!(plain(name), *name);
-            assert!(entries.iter().all(|entry| plain(&entry.name) != *name), "{name}");
+            let is_free = entries.iter().all(|entry| plain(&entry.name) != *name);
+            assert!(is_free, "`{name}` exists here now: remove it from the names of other tools");
         }
         let count = all.len();
         all.sort_unstable();

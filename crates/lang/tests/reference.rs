@@ -29,14 +29,16 @@ fn every_example_compiles() {
 #[test]
 fn every_example_uses_its_entry() {
     for entry in reference::entries() {
-        assert!(entry.example.contains(&entry.name), "{}: {}", entry.name, entry.example);
+        let (name, example) = (&entry.name, &entry.example);
+        assert!(example.contains(name), "the example of `{name}` does not use it: {example:?}");
     }
 }
 
 #[test]
 fn every_summary_is_a_sentence() {
     for entry in reference::entries() {
-        assert!(entry.summary.ends_with('.'), "{}: {}", entry.name, entry.summary);
+        let (name, summary) = (&entry.name, &entry.summary);
+        assert!(summary.ends_with('.'), "the first line on `{name}` has no full stop: {summary:?}");
         assert!(!entry.signature.is_empty() && !entry.topic.is_empty(), "{}", entry.name);
     }
 }
@@ -44,7 +46,7 @@ fn every_summary_is_a_sentence() {
 #[test]
 fn every_library_entry_names_its_source() {
     for entry in library::entries() {
-        assert!(!entry.source.is_empty(), "{}", entry.name);
+        assert!(!entry.source.is_empty(), "`{}` needs a line `source: ...`", entry.name);
     }
 }
 

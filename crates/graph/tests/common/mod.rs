@@ -6,7 +6,8 @@ use sdfc_graph::{
     Binary, Const, Dim, FrameInput, Graph, Node, NodeId, Stage, Ternary, Type, Unary,
 };
 
-pub const UNARY: [Unary; 25] = [
+/// Operations on one argument. `Normalize`, which takes vectors only, is the last.
+pub const UNARY: &[Unary] = &[
     Unary::Neg,
     Unary::Abs,
     Unary::Sign,
@@ -34,7 +35,11 @@ pub const UNARY: [Unary; 25] = [
     Unary::Normalize,
 ];
 
-pub const BINARY: [Binary; 11] = [
+/// Number of operations in [`UNARY`] that take a number.
+const COMPONENTWISE: usize = UNARY.len() - 1;
+
+/// Operations on two numbers or two vectors.
+pub const BINARY: &[Binary] = &[
     Binary::Add,
     Binary::Sub,
     Binary::Mul,
@@ -50,7 +55,7 @@ pub const BINARY: [Binary; 11] = [
 
 const COMPARISONS: [Binary; 4] = [Binary::Lt, Binary::Le, Binary::Eq, Binary::Ne];
 
-const CONSTANTS: [f64; 16] = [
+const CONSTANTS: &[f64] = &[
     0.0,
     1.0,
     -1.0,
@@ -120,13 +125,13 @@ impl Build {
         let t = [0, 1].map(|i| pick(&self.truths, i));
         let graph = &mut self.graph;
         match kind {
-            0 | 1 => self.scalars.push(graph.unary(UNARY[op % 24], s[0])),
-            2 | 3 => self.scalars.push(graph.binary(BINARY[op % 11], s[0], s[1])),
-            4 => self.scalars.push(graph.number(CONSTANTS[op % 16])),
-            5 => self.vectors.push(graph.unary(UNARY[op % 25], v[0])),
+            0 | 1 => self.scalars.push(graph.unary(UNARY[op % COMPONENTWISE], s[0])),
+            2 | 3 => self.scalars.push(graph.binary(BINARY[op % BINARY.len()], s[0], s[1])),
+            4 => self.scalars.push(graph.number(CONSTANTS[op % CONSTANTS.len()])),
+            5 => self.vectors.push(graph.unary(UNARY[op % UNARY.len()], v[0])),
             6 => self.vectors.push(match op % 3 {
-                0 => graph.binary(BINARY[op % 11], v[0], s[1]),
-                1 => graph.binary(BINARY[op % 11], v[0], v[1]),
+                0 => graph.binary(BINARY[op % BINARY.len()], v[0], s[1]),
+                1 => graph.binary(BINARY[op % BINARY.len()], v[0], v[1]),
                 _ => graph.binary(Binary::Cross, v[0], v[1]),
             }),
             7 => self.scalars.push(match op % 4 {
@@ -148,7 +153,7 @@ impl Build {
                 0 => graph.binary(Binary::And, t[0], t[1]),
                 1 => graph.binary(Binary::Or, t[0], t[1]),
                 2 => graph.unary(Unary::Not, t[0]),
-                _ => graph.binary(COMPARISONS[op % 4], s[0], s[1]),
+                _ => graph.binary(COMPARISONS[op % COMPARISONS.len()], s[0], s[1]),
             }),
             11 => {
                 // A product for which intervals have a rule of their own: c x (1 - x).
