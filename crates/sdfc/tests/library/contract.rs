@@ -43,7 +43,7 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
     let mut outcome = Outcome::default();
     let scene = scene(&entry.example).ok_or("the example does not compile")?;
     if !of_entry(&scene, entry).any(|_| true) {
-        return Err("its example lacks it".into());
+        return Err("the example contains no shape that this entry makes".into());
     }
     // All shapes of the example are checked, but of the variants only those of the entry.
     for id in scene.graph.shape_ids() {
@@ -68,7 +68,12 @@ pub fn check(entry: &Entry) -> Result<Outcome, String> {
 /// Returns a mutant that no scene refutes, or a condition that holds in every scene.
 fn missing(entry: &Entry, outcome: &Outcome) -> Option<String> {
     let missed: Vec<&String> = outcome.mutants.iter().filter(|it| !it.1).map(|it| it.0).collect();
-    let missed = (!missed.is_empty()).then(|| format!("no sample refutes: {missed:?}"));
+    let missed = (!missed.is_empty()).then(|| {
+        format!(
+            "no sample refutes these stronger promises: {missed:?}; state them, or use an example \
+             in which they are false"
+        )
+    });
     missed.or_else(|| condition_unseen(entry, outcome))
 }
 
@@ -165,5 +170,7 @@ fn condition_unseen(entry: &Entry, outcome: &Outcome) -> Option<String> {
         .filter(|(promise, side)| says(&conditional, *promise, side))
         .map(|(promise, side)| mutants::without_condition(promise, side));
     let unseen = labels.find(|label| !outcome.mutants.contains_key(label))?;
-    Some(format!("in no variant of the example it would be wrong to say `{unseen}`"))
+    Some(format!(
+        "`{unseen}` is true in all variants of the example; use one in which the condition is false"
+    ))
 }
