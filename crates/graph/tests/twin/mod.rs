@@ -118,7 +118,7 @@ impl Case {
     }
 
     fn unary(&mut self, op: usize, a: Twin<1>) {
-        const OPS: [(Unary, Function); 8] = [
+        const OPS: &[(Unary, Function)] = &[
             (Unary::Neg, Number::neg),
             (Unary::Neg, Number::neg),
             (Unary::Abs, Number::abs),
