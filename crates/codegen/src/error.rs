@@ -1,7 +1,6 @@
 //! Why a program cannot become a shader.
 
 use sdfc_graph::NodeId;
-use sdfc_march::UnknownMethod;
 use thiserror::Error as ThisError;
 
 use crate::target::Target;
@@ -16,9 +15,6 @@ pub enum Error {
     /// The program has no root for a function that was requested.
     #[error("the program has no {0}")]
     MissingRoot(&'static str),
-    /// No ray method has this name.
-    #[error("{}", UnknownMethod(.0.clone()))]
-    UnknownMethod(String),
     /// A prefix is not the start of a WGSL identifier.
     #[error("`{0}` cannot start a name: expected letters, digits and single `_`, no digit first")]
     BadPrefix(String),
@@ -82,10 +78,7 @@ impl Error {
     /// Returns true if the request is the cause, not the scene.
     pub fn is_call(&self) -> bool {
         match self {
-            Self::UnknownMethod(_)
-            | Self::BadPrefix(_)
-            | Self::Unsupported { .. }
-            | Self::BindingTooLarge { .. } => true,
+            Self::BadPrefix(_) | Self::Unsupported { .. } | Self::BindingTooLarge { .. } => true,
             Self::NothingDrawn
             | Self::MissingRoot(_)
             | Self::NotFinite { .. }

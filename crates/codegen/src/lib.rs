@@ -69,8 +69,8 @@ pub use assemble::shadertoy::shadertoy_module;
 pub use error::Error;
 pub use options::{FieldOptions, Lists, MAX_CONSTANT_LIST, PictureOptions, Stage};
 pub use reflection::{
-    Buffer, BufferRole, Entry, FunctionInfo, Member, Reflection, Role, Structure, StructureMember,
-    Uniform,
+    Buffer, BufferRole, Entry, EntryStage, FunctionInfo, Member, Reflection, Role, Structure,
+    StructureMember, Uniform,
 };
 pub use sdfc_march::{Features, FieldSource};
 pub use shader::{Culling, Shader, Written};

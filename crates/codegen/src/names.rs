@@ -1,7 +1,7 @@
 //! Names of the parts of a module.
 
 use naga::proc::{CaseInsensitiveKeywordSet, NameKey, Namer};
-use naga::{FastHashMap, Module, ShaderStage, TypeInner};
+use naga::{FastHashMap, Module, TypeInner};
 
 use crate::error::Error;
 use crate::reflection::ModuleParts;
@@ -53,17 +53,6 @@ pub(crate) fn make_public(module: &mut Module, parts: &ModuleParts, prefix: &str
 
 /// Names as naga's WGSL writer gives them: valid identifiers, no keywords, all different.
 pub(crate) type Names = FastHashMap<NameKey, String>;
-
-/// The name of a stage. The files of `sdfc-march` have no other stages.
-pub(crate) fn stage_name(stage: ShaderStage) -> &'static str {
-    if stage == ShaderStage::Vertex {
-        "vertex"
-    } else if stage == ShaderStage::Fragment {
-        "fragment"
-    } else {
-        "compute"
-    }
-}
 
 /// Returns the names that naga's WGSL writer gives.
 pub(crate) fn final_names(module: &Module) -> Names {

@@ -1,5 +1,7 @@
 //! Options of shaders for other engines.
 
+use sdfc_march::Method;
+
 /// The stages of a picture's shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -65,8 +67,8 @@ impl Default for FieldOptions {
 /// The form and the names of a picture's shader for another engine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureOptions {
-    /// Name of the ray method.
-    pub method: String,
+    /// The ray method.
+    pub method: Method,
     /// The stages.
     pub stage: Stage,
     /// True if the first row of the target is the lowest, as in OpenGL. Used for

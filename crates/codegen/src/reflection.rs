@@ -1,6 +1,6 @@
 //! The description of a shader for hosts: functions, buffers, structures and their names.
 
-use naga::{GlobalVariable, Handle};
+use naga::{GlobalVariable, Handle, ShaderStage};
 use sdfc_graph::{FrameInput, Type};
 
 /// The role of a function of a shader.
@@ -138,11 +138,44 @@ pub struct StructureMember {
     pub offset: u32,
 }
 
+/// The pipeline stage of an entry point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EntryStage {
+    /// A vertex stage.
+    Vertex,
+    /// A fragment stage.
+    Fragment,
+    /// A compute stage.
+    Compute,
+}
+
+impl EntryStage {
+    /// Returns the stage of naga's name. The files of `sdfc-march` have no other stages.
+    pub(crate) fn of(stage: ShaderStage) -> Self {
+        if stage == ShaderStage::Vertex {
+            Self::Vertex
+        } else if stage == ShaderStage::Fragment {
+            Self::Fragment
+        } else {
+            Self::Compute
+        }
+    }
+
+    /// `vertex`, `fragment` or `compute`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Fragment => "fragment",
+            Self::Compute => "compute",
+        }
+    }
+}
+
 /// An entry point.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// `vertex`, `fragment` or `compute`.
-    pub stage: &'static str,
+    /// The stage that it is for.
+    pub stage: EntryStage,
     /// Its name in the written source.
     pub name: String,
 }

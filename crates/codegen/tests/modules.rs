@@ -15,7 +15,7 @@ use sdfc_codegen::{
     picture_module, render_module, shadertoy_module,
 };
 use sdfc_graph::{FrameInput, Graph, Program, Shadow, Type, Unary};
-use sdfc_march::{LightBlock, METHODS, PixelBlock, ViewBlock};
+use sdfc_march::{LightBlock, METHODS, Method, PixelBlock, ViewBlock};
 
 fn scenes() -> Vec<Program> {
     let mut scenes = Vec::new();
@@ -38,11 +38,11 @@ fn every_method_links_with_every_kind_of_scene() {
     for method in METHODS {
         for scene in scenes() {
             let scene = scene.with_segment_bounds(true, true);
-            let shader = render_module(&scene, method.name).expect("links");
+            let shader = render_module(&scene, method.method).expect("links");
             common::check(&shader.wgsl().expect("is written"));
             common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
             for stage in Stage::ALL {
-                let (method, prefix) = (method.name.to_owned(), "a_".to_owned());
+                let (method, prefix) = (method.method, "a_".to_owned());
                 let (rows_up, group, binding, lists) = (true, 0, 3, Lists::Buffer);
                 let options =
                     PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
@@ -51,8 +51,8 @@ fn every_method_links_with_every_kind_of_scene() {
                 common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
             }
             let view = vec![0; size_of::<ViewBlock>()];
-            shadertoy_module(&scene, method.name, &view).expect("links");
-            let shader = march_module(&scene, method.name, &FieldOptions::default());
+            shadertoy_module(&scene, method.method, &view).expect("links");
+            let shader = march_module(&scene, method.method, &FieldOptions::default());
             common::check(&shader.expect("links").wgsl().expect("is written"));
         }
     }
@@ -64,7 +64,8 @@ fn any_two_features_and_all_but_one_link_together() {
     let bits = (0..FEATURES as u32).map(|bit| 1 << bit);
     let pairs = bits.clone().flat_map(|one| bits.clone().map(move |other| one | other));
     for chosen in pairs.chain(bits.clone().map(|one| all & !one)).chain([none, all]) {
-        let shader = render_module(&featured(with_material(), chosen), "auto").expect("links");
+        let shader =
+            render_module(&featured(with_material(), chosen), Method::Auto).expect("links");
         common::check(&shader.wgsl().expect("is written"));
         common::check_spirv(&shader.spirv().expect("is written"), "vulkan1.1");
         assert!(shader.module().overrides.is_empty());
@@ -97,7 +98,7 @@ fn layout(module: &naga::Module, name: &str) -> (Vec<u32>, u32) {
 
 #[test]
 fn blocks_have_the_layout_of_the_shader() {
-    let shader = render_module(&sphere(), "fixed").expect("links");
+    let shader = render_module(&sphere(), Method::Fixed).expect("links");
     let module = shader.module();
     let offsets = |list: &[usize]| list.iter().map(|&offset| offset as u32).collect::<Vec<_>>();
     macro_rules! block {
@@ -172,7 +173,7 @@ fn names_that_wgsl_does_not_allow_are_changed() {
         scene.params[0].name = name.to_owned();
         let shader = field_module(&scene, &FieldOptions::default()).expect("lowers");
         common::check(&shader.wgsl().expect("is written"));
-        let shader = render_module(&scene, "auto").expect("links");
+        let shader = render_module(&scene, Method::Auto).expect("links");
         common::check(&shader.wgsl().expect("is written"));
     }
 }
@@ -188,7 +189,7 @@ fn instructions_are_counted() {
         (costs[1].role, costs[1].instructions, costs[1].arithmetic),
         (Role::Gradient, 11, 6)
     );
-    let linked = render_module(&sphere(), "auto").expect("links").instructions();
+    let linked = render_module(&sphere(), Method::Auto).expect("links").instructions();
     let linked = linked.expect("is written");
     assert_eq!(linked[0], costs[0]);
     // normalize(p - c): subtract, dot, max, inverseSqrt, multiply, return.
@@ -205,7 +206,10 @@ fn a_long_chain_needs_little_stack() {
         let shader = field_module(&chain(1000), &FieldOptions::default()).expect("lowers");
         common::check(&shader.wgsl().expect("is written"));
         common::check_spirv(&shader.spirv().expect("is written"), "spv1.3");
-        render_module(&chain(1000), "auto").expect("links").instructions().expect("is written")
+        render_module(&chain(1000), Method::Auto)
+            .expect("links")
+            .instructions()
+            .expect("is written")
     });
     let costs = worker.expect("starts").join().expect("does not overflow");
     assert!(costs[0].arithmetic > 8000, "{costs:?}");
@@ -240,8 +244,7 @@ fn what_cannot_be_lowered_is_an_error() {
     let mut no_gradient = sphere();
     no_gradient.gradient = None;
     assert_eq!(field(&no_gradient), Some(Error::MissingRoot("gradient")));
-    assert!(render_module(&no_gradient, "auto").is_err());
-    assert!(matches!(render_module(&sphere(), "fast"), Err(Error::UnknownMethod(_))));
+    assert!(render_module(&no_gradient, Method::Auto).is_err());
 
     for prefix in ["2d", "a__b", "a-b", "é"] {
         let options = FieldOptions { prefix: prefix.to_owned(), ..FieldOptions::default() };
@@ -258,7 +261,7 @@ fn what_cannot_be_lowered_is_an_error() {
     // Without a uniform slot a picture cannot read a per-frame input.
     let mut unbound = blend();
     unbound.uniforms.clear();
-    assert!(matches!(render_module(&unbound, "auto"), Err(Error::UnboundInput(_))));
+    assert!(matches!(render_module(&unbound, Method::Auto), Err(Error::UnboundInput(_))));
 
     let mut graph = Graph::new();
     let other = graph.point(1, sdfc_graph::Dim::Three);

@@ -10,7 +10,7 @@ use sdfc_codegen::{
     Target, field_module, march_module, picture_module, render_module, shadertoy_module,
 };
 use sdfc_graph::{Const, Dim, Graph, Program, Shadow, Table, Type};
-use sdfc_march::{METHODS, ViewBlock, stubs};
+use sdfc_march::{METHODS, Method, ViewBlock, stubs};
 
 fn field(program: &Program) -> String {
     let options = FieldOptions::default();
@@ -47,31 +47,31 @@ fn a_twisted_box() {
 
 #[test]
 fn a_picture_with_slots() {
-    let shader = render_module(&blend(), "sphere").expect("links");
+    let shader = render_module(&blend(), Method::Sphere).expect("links");
     insta::assert_snapshot!(shader.wgsl().expect("is written"));
 }
 
 #[test]
 fn the_least_picture_links_no_shadow_no_material_no_slots() {
-    let shader = render_module(&lit(sphere(), Shadow::Off), "auto").expect("links");
+    let shader = render_module(&lit(sphere(), Shadow::Off), Method::Auto).expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
 
 #[test]
 fn a_shadow_links_the_shadow_ray_alone() {
-    let shader = render_module(&lit(sphere(), Shadow::Hard), "auto").expect("links");
+    let shader = render_module(&lit(sphere(), Shadow::Hard), Method::Auto).expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
 
 #[test]
 fn a_material_links_its_shading() {
-    let shader = render_module(&with_material(), "fixed").expect("links");
+    let shader = render_module(&with_material(), Method::Fixed).expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
 
 #[test]
 fn a_mirror_links_the_reflected_ray_and_no_shadow() {
-    let shader = render_module(&mirrored(sphere()), "auto").expect("links");
+    let shader = render_module(&mirrored(sphere()), Method::Auto).expect("links");
     insta::assert_snapshot!(outline(&shader));
 }
 
@@ -83,7 +83,7 @@ fn rays_of_all_kinds_pass_through_one_call_of_the_field() {
         [(method, shadowed.clone()), (method, featured(with_material(), unoccluded))]
     }) {
         let all = all.with_segment_bounds(true, true);
-        let shader = render_module(&all, method.name).expect("links");
+        let shader = render_module(&all, method.method).expect("links");
         let text = shader.wgsl().expect("is written");
         let calls = |name: &str| text.matches(&format!("= {name}(")).count();
         let differences = usize::from(method.gradient.is_some());
@@ -121,7 +121,7 @@ fn a_small_scene_in_every_language() {
 #[test]
 fn a_march_in_every_language() {
     let options = FieldOptions { gradient: false, ..FieldOptions::default() };
-    let shader = march_module(&blend(), "auto", &options).expect("links");
+    let shader = march_module(&blend(), Method::Auto, &options).expect("links");
     for target in FUNCTIONS {
         let written = shader.write(target, "a").expect("is written");
         let Code::Text(text) = written.code else { continue };
@@ -165,14 +165,14 @@ fn long_lists_are_in_a_buffer_where_the_language_has_such_buffers() {
             assert_eq!(reflection.lists[5], [1.25, 0.0, 0.0, 0.0]);
         }
     }
-    let shader = render_module(&lit(looked_up(2), Shadow::Off), "sphere");
+    let shader = render_module(&lit(looked_up(2), Shadow::Off), Method::Sphere);
     assert_eq!(shader.expect("links").lists().len(), 2, "the renderer keeps short ones there too");
 }
 
 #[test]
 fn the_fragment_form_uses_the_given_group_and_binding() {
     let options = PictureOptions {
-        method: "sphere".to_owned(),
+        method: Method::Sphere,
         stage: Stage::Fragment,
         rows_up: true,
         prefix: "a_".to_owned(),
@@ -191,12 +191,12 @@ fn the_fragment_form_uses_the_given_group_and_binding() {
 #[test]
 fn a_picture_for_shadertoy() {
     let view = vec![0; size_of::<ViewBlock>()];
-    let shader = shadertoy_module(&blend(), "sphere", &view).expect("links");
+    let shader = shadertoy_module(&blend(), Method::Sphere, &view).expect("links");
     let written = shader.write(Target::Shadertoy, "a").expect("is written");
     let Code::Text(text) = written.code else { panic!("no text") };
     insta::assert_snapshot!(text);
 
-    let short = shadertoy_module(&blend(), "sphere", &view[4..]);
+    let short = shadertoy_module(&blend(), Method::Sphere, &view[4..]);
     assert!(matches!(short, Err(Error::ViewBytes { .. })));
 }
 
@@ -233,7 +233,7 @@ fn keywords_of_a_language_are_reflected_as_they_are_written() {
 
 #[test]
 fn what_a_language_cannot_hold_is_refused() {
-    let picture = render_module(&sphere(), "auto").expect("links");
+    let picture = render_module(&sphere(), Method::Auto).expect("links");
     let target = Target::GlslEs;
     let refused = Error::Unsupported { target, what: "compute stage" };
     assert_eq!(picture.write(target, ""), Err(refused));

@@ -37,10 +37,7 @@ pub use blocks::{
     SHADOW_OFF, SHADOW_SOFT, SPOT, SUN, ViewBlock,
 };
 pub use features::Features;
-pub use methods::{
-    Audience, FALLBACK_METHOD, METHODS, Method, MethodDefinition, MethodParameter, UnknownMethod,
-    method,
-};
+pub use methods::{Audience, METHODS, Method, MethodDefinition, MethodParameter, UnknownMethod};
 pub use source::{
     FieldSource, Form, SHADERTOY_HEAD, SHADERTOY_TAIL, culling_source, ray_source, source,
     source_with,

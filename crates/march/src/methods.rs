@@ -312,14 +312,6 @@ pub static METHODS: [MethodDefinition; 10] = [
     },
 ];
 
-/// The name of [`Method::FALLBACK`].
-pub const FALLBACK_METHOD: &str = "interval";
-
-/// Returns the row of the method of that name.
-pub fn method(name: &str) -> Option<&'static MethodDefinition> {
-    METHODS.iter().find(|method| method.name == name)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -345,7 +337,6 @@ mod tests {
     fn users_choose_from_the_default_the_fallback_and_what_is_no_comparison() {
         let names: Vec<_> = Method::for_users().map(Method::name).collect();
         assert_eq!(names, ["auto", "fixed", "sphere", "segment", "interval"]);
-        assert_eq!(Method::FALLBACK.name(), FALLBACK_METHOD);
         assert_eq!(METHODS[0].method, Method::default());
     }
 }

@@ -82,7 +82,7 @@ impl Comparison {
 mod tests {
     use std::sync::atomic::AtomicU64;
 
-    use sdfc_march::MethodParameter;
+    use sdfc_march::{Method, MethodParameter};
     use sdfc_render::{CpuScene, RenderOptions, no_progress};
 
     use super::*;
@@ -108,7 +108,8 @@ mod tests {
         let error = |epsilon: f64| {
             let view = compared.view().with_parameter(MethodParameter::Epsilon, epsilon);
             let options = RenderOptions::default();
-            let drawn = cpu.render(&view, compared.frame(), "sphere", &options, &mut no_progress);
+            let method = Method::Sphere;
+            let drawn = cpu.render(&view, compared.frame(), method, &options, &mut no_progress);
             compared.metrics(&drawn.expect("a picture").image)
         };
         let (fine, coarse) = (error(1e-4), error(0.1));

@@ -1,7 +1,7 @@
 //! Counts the wrong pixels of a naive ray marcher on the scenes of `examples/faults`, and those of
 //! sdfc.
 
-use sdfc::Scene;
+use sdfc::{Method, Scene};
 use sdfc_codegen::{FieldSource, benchmark_module};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
@@ -75,10 +75,10 @@ pub fn fault_scenes() -> [(&'static str, &'static str); 4] {
 }
 
 /// Name, field and ray method of the compared pictures.
-const VARIANTS: [(&str, FieldSource, &str); 3] = [
-    ("units, practical", FieldSource::Units, "practical"),
-    ("units, sphere", FieldSource::Units, "sphere"),
-    ("scene, auto", FieldSource::Scene, "auto"),
+const VARIANTS: [(&str, FieldSource, Method); 3] = [
+    ("units, practical", FieldSource::Units, Method::Practical),
+    ("units, sphere", FieldSource::Units, Method::Sphere),
+    ("scene, auto", FieldSource::Scene, Method::Auto),
 ];
 
 /// Draws the scene without materials in three ways, and compares each picture with one drawn in f64
@@ -126,7 +126,7 @@ fn reference(program: &Program, frame: &FrameValues, view: &View) -> Result<Imag
     let view = View { epsilon, steps, ..view.clone() };
     let scene = CpuScene::new(program)?;
     let options = RenderOptions::default();
-    Ok(scene.render_in::<f64>(&view, frame, "sphere", &options, &mut no_progress)?.image)
+    Ok(scene.render_in::<f64>(&view, frame, Method::Sphere, &options, &mut no_progress)?.image)
 }
 
 fn compared(name: &'static str, image: &Image, reference: &Image) -> FaultVariant {

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test stops where it fails")]
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Compiler, FrameValues, LoopStrategy, Scene};
+use sdfc::{Compiler, FrameValues, LoopStrategy, Method, Scene};
 use sdfc_codegen::{FieldSource, benchmark_module};
 use sdfc_measure::baseline::{Encoded, Inexpressible, tape, units};
 use sdfc_measure::{BenchOptions, bench, suite};
@@ -127,7 +127,7 @@ fn picture(scene: &Scene, field: FieldSource) -> Result<Image, Failed> {
         FieldSource::Units => (in_units(scene).map_err(|e| e.0)?.tables, Vec::new()),
         FieldSource::Tape => (on_tape(scene).map_err(|e| e.0)?.tables, Vec::new()),
     };
-    let shader = benchmark_module(scene.program(), "sphere", field)?;
+    let shader = benchmark_module(scene.program(), Method::Sphere, field)?;
     let pipeline = Pipeline::with_tables(&gpu, shader, uniforms.len(), &tables)?;
     Ok(pipeline.render(&view, &uniforms, &RenderOptions::default(), &mut no_progress)?.image)
 }

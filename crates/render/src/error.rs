@@ -1,5 +1,6 @@
 //! Why a picture could not be drawn.
 
+use sdfc_march::Method;
 use thiserror::Error;
 
 use crate::cpu::method::CpuMethod;
@@ -76,9 +77,9 @@ pub enum RenderError {
     /// The method is none of [`CpuScene::METHODS`](crate::CpuScene::METHODS).
     #[error(
         "the CPU renderer has no method `{0}`; it has `{known}`",
-        known = CpuMethod::NAMES.join("`, `")
+        known = CpuMethod::METHODS.map(Method::name).join("`, `")
     )]
-    MethodNotOnCpu(String),
+    MethodNotOnCpu(Method),
     /// The CPU evaluator refused the scene; contains its message.
     #[error("the CPU evaluator refused the scene: {0}")]
     Evaluator(String),

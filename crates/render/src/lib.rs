@@ -9,6 +9,7 @@
 //!
 //! ```
 //! use sdfc_graph::{Dim, Program, Unary, eval::FrameValues};
+//! use sdfc_march::Method;
 //! use sdfc_render::{CpuScene, HIT, RenderOptions, View, no_progress};
 //!
 //! // A unit sphere: |p| - 1, with the gradient p / |p|.
@@ -22,7 +23,8 @@
 //! let frame = FrameValues::defaults(&program.params);
 //! let view = View::new(&program, &frame, Some([[-1.0; 3], [1.0; 3]]), [32, 24])?;
 //! let scene = CpuScene::new(&program)?;
-//! let drawn = scene.render(&view, &frame, "auto", &RenderOptions::default(), &mut no_progress)?;
+//! let options = RenderOptions::default();
+//! let drawn = scene.render(&view, &frame, Method::Auto, &options, &mut no_progress)?;
 //! assert_eq!(drawn.image.pixel(16, 12).map(|pixel| pixel.status), Some(HIT));
 //! let png: Vec<u8> = drawn.image.to_png()?;
 //! # assert!(png.starts_with(b"\x89PNG"));

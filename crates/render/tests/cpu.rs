@@ -6,12 +6,13 @@ mod common;
 use std::ops::ControlFlow;
 
 use sdfc_graph::{Program, Shadow, eval::FrameValues};
+use sdfc_march::Method;
 use sdfc_render::{
     CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
     TileSize, compare, edges, no_progress,
 };
 
-fn draw(program: &Program, size: [u32; 2], method: &str, tile_size: TileSize) -> Frame {
+fn draw(program: &Program, size: [u32; 2], method: Method, tile_size: TileSize) -> Frame {
     let view = common::view(program, size);
     let options = RenderOptions { tile_size };
     CpuScene::new(program)
@@ -20,7 +21,7 @@ fn draw(program: &Program, size: [u32; 2], method: &str, tile_size: TileSize) ->
         .unwrap()
 }
 
-fn depths<T: Real>(program: &Program, size: [u32; 2], method: &str) -> Image {
+fn depths<T: Real>(program: &Program, size: [u32; 2], method: Method) -> Image {
     let view = common::view(program, size);
     let scene = CpuScene::new(program).unwrap();
     scene.depth_map::<T>(&view, &FrameValues::default(), method).unwrap()
@@ -30,7 +31,7 @@ fn depths<T: Real>(program: &Program, size: [u32; 2], method: &str) -> Image {
 fn a_sphere_lies_where_the_quadratic_formula_says() {
     let program = common::sphere();
     let view = common::view(&program, [64, 64]);
-    for method in ["sphere", "auto"] {
+    for method in [Method::Sphere, Method::Auto] {
         for image in
             [depths::<f32>(&program, [64, 64], method), depths::<f64>(&program, [64, 64], method)]
         {
@@ -42,7 +43,7 @@ fn a_sphere_lies_where_the_quadratic_formula_says() {
                 let Some(depth) = expected else { continue };
                 // `auto` promises a quarter of a pixel, `sphere` the tolerance of the view.
                 let quarter = 0.5 * view.footprint().at(depth);
-                let limit = if method == "auto" { quarter } else { 1e-3 };
+                let limit = if method == Method::Auto { quarter } else { 1e-3 };
                 let error = (f64::from(pixel.depth) - depth).abs();
                 assert!(error < limit, "{method}: off by {error}");
             }
@@ -53,7 +54,7 @@ fn a_sphere_lies_where_the_quadratic_formula_says() {
 #[test]
 fn f32_and_f64_agree_outside_edges() {
     for program in [common::sphere(), common::sphere_above_floor()] {
-        for method in ["sphere", "auto"] {
+        for method in [Method::Sphere, Method::Auto] {
             let single = depths::<f32>(&program, [64, 64], method);
             let double = depths::<f64>(&program, [64, 64], method);
             let difference = compare(&single, &double).unwrap();
@@ -66,10 +67,10 @@ fn f32_and_f64_agree_outside_edges() {
 #[test]
 fn tiles_of_any_size_give_the_same_picture() {
     let program = common::sphere_above_floor();
-    let whole = draw(&program, [61, 47], "auto", TileSize::Fixed([61, 47]));
+    let whole = draw(&program, [61, 47], Method::Auto, TileSize::Fixed([61, 47]));
     assert_eq!(whole.tiles, 1);
     for tile in [[7, 5], [61, 1], [1, 47], [64, 3]] {
-        let tiled = draw(&program, [61, 47], "auto", TileSize::Fixed(tile));
+        let tiled = draw(&program, [61, 47], Method::Auto, TileSize::Fixed(tile));
         assert!(tiled.tiles > 1);
         assert_eq!(tiled.image, whole.image, "{tile:?}");
     }
@@ -77,7 +78,7 @@ fn tiles_of_any_size_give_the_same_picture() {
 
 #[test]
 fn a_light_overhead_casts_the_spheres_shadow_on_the_floor() {
-    let frame = draw(&common::sphere_above_floor(), [96, 64], "auto", TileSize::default());
+    let frame = draw(&common::sphere_above_floor(), [96, 64], Method::Auto, TileSize::default());
     let view = common::view(&common::sphere_above_floor(), [96, 64]);
     let (mut lit, mut shadowed) = (0, 0);
     for (index, pixel) in frame.image.pixels().iter().enumerate() {
@@ -106,7 +107,7 @@ fn a_light_overhead_casts_the_spheres_shadow_on_the_floor() {
 /// The floor's pixels: their positions and colours.
 fn floor_pixels(program: &Program) -> Vec<(glam::DVec3, f64, [f32; 4])> {
     let view = common::view(program, [96, 64]);
-    let frame = draw(program, [96, 64], "auto", TileSize::default());
+    let frame = draw(program, [96, 64], Method::Auto, TileSize::default());
     let pixels = frame.image.pixels().iter().enumerate().map(|(index, pixel)| {
         let direction = view.ray(index as u32 % 96, index as u32 / 96)[1];
         let depth = f64::from(pixel.depth);
@@ -187,7 +188,7 @@ fn fog_turns_what_is_far_into_the_sky_behind_it() {
             assert!((color[channel] - expected).abs() < 1e-4, "{point}: {color:?}");
         }
     }
-    let frame = draw(&program, [96, 64], "auto", TileSize::default());
+    let frame = draw(&program, [96, 64], Method::Auto, TileSize::default());
     let top = frame.image.pixel(48, 0).unwrap();
     let up = common::view(&program, [96, 64]).ray(48, 0)[1].y;
     assert!(up > 0.1 && (f64::from(top.color[0]) - (1.0 - up).powi(3)).abs() < 1e-4, "{top:?}");
@@ -217,7 +218,7 @@ fn the_floor_is_dark_under_the_sphere_and_open_away_from_it() {
 #[test]
 fn parallel_rays_see_the_sphere_as_a_disc_of_its_size() {
     let program = common::parallel(4.0);
-    let frame = draw(&program, [80, 80], "auto", TileSize::default());
+    let frame = draw(&program, [80, 80], Method::Auto, TileSize::default());
     // 20 pixels per unit.
     let disc = std::f64::consts::PI * 400.0;
     let hits = frame.image.counts().hit as f64;
@@ -234,8 +235,9 @@ fn parallel_rays_see_the_sphere_as_a_disc_of_its_size() {
 fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
     let program = common::mirrors();
     let view = common::view(&program, [96, 64]);
-    let plain = draw(&common::sphere_above_floor(), [96, 64], "auto", TileSize::default()).image;
-    let mirrored = draw(&program, [96, 64], "auto", TileSize::default()).image;
+    let plain =
+        draw(&common::sphere_above_floor(), [96, 64], Method::Auto, TileSize::default()).image;
+    let mirrored = draw(&program, [96, 64], Method::Auto, TileSize::default()).image;
     let center = glam::DVec3::new(0.0, 0.5, 0.0);
     let (mut spheres, mut skies) = (0, 0);
     for (index, (with, without)) in mirrored.pixels().iter().zip(plain.pixels()).enumerate() {
@@ -272,13 +274,14 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
 
 #[test]
 fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
-    let frame = draw(&common::sphere_above_floor(), [16, 16], "sphere", TileSize::default());
+    let frame = draw(&common::sphere_above_floor(), [16, 16], Method::Sphere, TileSize::default());
     let sky = frame.image.pixel(0, 0).unwrap();
     assert_eq!((sky.status, sky.color), (MISS, [0.0, 0.0, 1.0, 1.0]));
 
     // Facing the headlight: half of it dielectric, half metal. At n = l = v = h the highlight is F
     // D / 4 with pi D = 1 / alpha^2, and 0.96 squared of the diffuse colour comes back.
-    let frame = draw(&common::sphere_with_material(), [33, 33], "sphere", TileSize::default());
+    let frame =
+        draw(&common::sphere_with_material(), [33, 33], Method::Sphere, TileSize::default());
     let middle = frame.image.pixel(16, 16).unwrap();
     let peak = 0.25 / 0.3f64.powi(4);
     let expected = [0.8, 0.1].map(|c| c * 0.5 * 0.96 * 0.96 + (0.04 + c) / 2.0 * peak);
@@ -289,7 +292,7 @@ fn a_ray_that_misses_shows_the_background_and_a_hit_the_paint() {
 
 #[test]
 fn a_field_that_is_not_a_number_is_counted() {
-    for method in ["sphere", "auto"] {
+    for method in [Method::Sphere, Method::Auto] {
         let counts = draw(&common::half_undefined(), [40, 40], method, TileSize::default());
         let counts = counts.image.counts();
         assert_eq!(counts.nan, 800, "{method}: {counts:?}");
@@ -301,7 +304,7 @@ fn a_field_that_is_not_a_number_is_counted() {
 fn rays_out_of_steps_are_capped() {
     let mut program = common::sphere_above_floor();
     program.settings.march.steps = Some(3);
-    let frame = draw(&program, [32, 32], "sphere", TileSize::default());
+    let frame = draw(&program, [32, 32], Method::Sphere, TileSize::default());
     let counts = frame.image.counts();
     assert!(counts.capped > 100, "{counts:?}");
     let longest = frame.image.pixels().iter().map(|pixel| pixel.primary_evaluations).max();
@@ -313,7 +316,7 @@ fn rays_out_of_steps_are_capped() {
 #[test]
 fn odd_sizes_are_drawn_and_impossible_ones_refused() {
     for size in [[1, 1], [4097, 3]] {
-        let frame = draw(&common::sphere(), size, "sphere", TileSize::default());
+        let frame = draw(&common::sphere(), size, Method::Sphere, TileSize::default());
         assert_eq!(frame.image.size(), size);
         let pixel = frame.image.pixel(size[0] / 2, size[1] / 2).unwrap();
         assert_eq!(pixel.status, HIT);
@@ -321,7 +324,7 @@ fn odd_sizes_are_drawn_and_impossible_ones_refused() {
     let program = common::sphere();
     let scene = CpuScene::new(&program).unwrap();
     let view = common::view(&program, [0, 4]);
-    let error = scene.depth_map::<f32>(&view, &FrameValues::default(), "sphere").unwrap_err();
+    let error = scene.depth_map::<f32>(&view, &FrameValues::default(), Method::Sphere).unwrap_err();
     assert_eq!(error, RenderError::Size([0, 4]));
 }
 
@@ -331,8 +334,8 @@ fn faults_of_the_call_are_errors() {
     let (view, frame) = (common::view(&program, [64, 64]), FrameValues::default());
     let scene = CpuScene::new(&program).unwrap();
     let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
-    let error = scene.render(&view, &frame, "fixed", &options, &mut no_progress).unwrap_err();
-    assert_eq!(error, RenderError::MethodNotOnCpu("fixed".to_owned()));
+    let error = scene.render(&view, &frame, Method::Fixed, &options, &mut no_progress).unwrap_err();
+    assert_eq!(error, RenderError::MethodNotOnCpu(Method::Fixed));
 
     let mut calls = 0;
     let mut stop = |progress: Progress| {
@@ -340,7 +343,7 @@ fn faults_of_the_call_are_errors() {
         assert_eq!(progress.total, 64 * 64);
         if progress.done >= 512 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let error = scene.render(&view, &frame, "sphere", &options, &mut stop).unwrap_err();
+    let error = scene.render(&view, &frame, Method::Sphere, &options, &mut stop).unwrap_err();
     assert_eq!((error, calls), (RenderError::Cancelled, 2));
 
     let nothing = CpuScene::new(&Program::default()).unwrap_err();

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_graph::{Program, Shadow, eval::FrameValues};
-use sdfc_march::METHODS;
+use sdfc_march::Method;
 use sdfc_render::{
     Clock, CpuScene, Frame, Gpu, Image, Pipeline, Progress, RenderError, RenderOptions, TileSize,
     View, compare, no_progress, testing, uniform_values,
@@ -53,7 +53,7 @@ fn draw(
     program: &Program,
     frame: &FrameValues,
     size: [u32; 2],
-    method: &str,
+    method: Method,
     tile_size: TileSize,
 ) -> Result<Frame, Failed> {
     let shader = sdfc_codegen::render_module(program, method)?;
@@ -83,7 +83,7 @@ fn gpu_and_cpu_agree() -> Outcome {
         let program = program.with_segment_bounds(true, false);
         let view = common::view(&program, size);
         let scene = CpuScene::new(&program)?;
-        for method in ["sphere", "auto", "interval"] {
+        for method in [Method::Sphere, Method::Auto, Method::Interval] {
             let tiles = TileSize::default();
             let on_gpu = draw(&gpu, &program, &frame, size, method, tiles)?.image;
             let options = RenderOptions::default();
@@ -94,7 +94,7 @@ fn gpu_and_cpu_agree() -> Outcome {
             assert!(close.compared > 3000, "{method}: {close:?}");
             // Rounding ends a few rays a step earlier or later; it moves the cuts of `interval`, so
             // that one more or one less of its many segments is examined.
-            let slack = |count: u32| if method == "interval" { 1 + count / 16 } else { 0 };
+            let slack = |count: u32| if method == Method::Interval { 1 + count / 16 } else { 0 };
             let pairs = on_gpu.pixels().iter().zip(on_cpu.pixels());
             let differing = pairs.filter(|(one, other)| {
                 one.evaluations.abs_diff(other.evaluations) > slack(one.evaluations)
@@ -117,20 +117,20 @@ fn soft_shadows_are_the_same() -> Outcome {
     let picture = |method| {
         Ok::<_, Failed>(draw(&gpu, &program, &frame, size, method, TileSize::default())?.image)
     };
-    let plain = picture("sphere")?;
+    let plain = picture(Method::Sphere)?;
     let is_same = |image: &Image, what: &str| {
         let close = compare(image, &plain).ok_or("different sizes")?;
         assert!(close.mean_color < 0.5, "{what}: {close:?}");
         Ok::<_, Failed>(())
     };
     // Neither of these finds what the others do.
-    let walks = |name: &str| !["fixed", "practical"].contains(&name);
-    for method in METHODS.iter().filter(|method| walks(method.name)) {
-        is_same(&picture(method.name)?, method.name)?;
+    let walks = |method: &Method| ![Method::Fixed, Method::Practical].contains(method);
+    for method in Method::all().filter(walks) {
+        is_same(&picture(method)?, method.name())?;
     }
     let view = common::view(&program, size);
     let (scene, options) = (CpuScene::new(&program)?, RenderOptions::default());
-    for method in ["auto", "interval"] {
+    for method in [Method::Auto, Method::Interval] {
         let on_cpu = scene.render(&view, &frame, method, &options, &mut no_progress)?.image;
         is_same(&on_cpu, &format!("{method} on the CPU"))?;
     }
@@ -140,7 +140,8 @@ fn soft_shadows_are_the_same() -> Outcome {
 fn tiles_give_the_picture_of_one_tile() -> Outcome {
     let (gpu, program) = (Gpu::new()?, common::sphere_above_floor());
     let frame = FrameValues::default();
-    let picture = |tile| draw(&gpu, &program, &frame, [61, 47], "auto", TileSize::Fixed(tile));
+    let picture =
+        |tile| draw(&gpu, &program, &frame, [61, 47], Method::Auto, TileSize::Fixed(tile));
     let whole = picture([61, 47])?;
     assert_eq!(whole.tiles, 1);
     for tile in [[7, 5], [61, 1], [1, 47], [64, 3]] {
@@ -154,7 +155,7 @@ fn a_param_moves_the_surface() -> Outcome {
     for radius in [1.0, 0.5] {
         let params = vec![[radius, 0.0, 0.0, 0.0]];
         let frame = FrameValues { params, time: 0.0, frame: 0.0 };
-        let drawn = draw(&gpu, &program, &frame, [33, 33], "sphere", TileSize::default())?;
+        let drawn = draw(&gpu, &program, &frame, [33, 33], Method::Sphere, TileSize::default())?;
         let depth = drawn.image.pixel(16, 16).ok_or("no such pixel")?.depth;
         assert!((f64::from(depth) - (5.0 - radius)).abs() < 1e-3, "{depth}");
     }
@@ -164,7 +165,7 @@ fn a_param_moves_the_surface() -> Outcome {
 fn not_a_number_is_counted() -> Outcome {
     let (gpu, program) = (Gpu::new()?, common::half_undefined());
     let frame = FrameValues::default();
-    for method in ["sphere", "auto"] {
+    for method in [Method::Sphere, Method::Auto] {
         let drawn = draw(&gpu, &program, &frame, [40, 40], method, TileSize::default())?;
         let counts = drawn.image.counts();
         assert_eq!(counts.nan, 800, "{method}: {counts:?}");

@@ -18,14 +18,14 @@ pub struct Explanation {
     pub ops_per_gradient: usize,
     /// Arithmetic operations per frame, on the CPU.
     pub ops_per_frame: usize,
-    /// `rolled` if similar parts are loops, `inline` if the code is unrolled.
-    pub writing: &'static str,
+    /// `loops` if similar parts are loops, otherwise `unrolled`.
+    pub code: &'static str,
     /// Why that was chosen.
-    pub writing_why: String,
+    pub code_why: String,
     /// Number of parts in each loop.
     pub loops: Vec<usize>,
     /// Shapes that `auto` intersects analytically.
-    pub closed: Vec<String>,
+    pub analytic: Vec<String>,
     /// Shapes that `auto` marches.
     pub marched: Vec<String>,
     /// Arithmetic operations of the analytic pre-intersection, per ray.
@@ -50,7 +50,6 @@ pub struct Explanation {
     /// Bounds of the scene.
     pub bounds: Bounds,
     /// Params, and `time` and `frame` if they are used.
-    #[serde(rename = "knobs")]
     pub inputs: Vec<Input>,
     /// The shapes that calls in the scene made, in source order.
     pub quality: Vec<QualityRow>,
@@ -124,10 +123,9 @@ impl std::fmt::Display for Explanation {
         writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
         writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
         writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
-        let code = if self.loops.is_empty() { "unrolled" } else { "loops" };
-        writeln!(f, "code                {code} ({})", self.writing_why)?;
-        if !self.closed.is_empty() {
-            writeln!(f, "analytic            {}", listed(&self.closed))?;
+        writeln!(f, "code                {} ({})", self.code, self.code_why)?;
+        if !self.analytic.is_empty() {
+            writeln!(f, "analytic            {}", listed(&self.analytic))?;
             writeln!(f, "marched             {}", listed(&self.marched))?;
         }
         if self.ops_per_ray > 0 {

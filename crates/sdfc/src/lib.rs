@@ -77,8 +77,8 @@ pub use params::{ParamError, Value};
 #[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
 pub use reflection::{
-    BufferRow, Certificate, EntryRow, EntryStage, FunctionRow, MemberRow, ParamRow,
-    ShaderReflection, Sides, StructRow, UniformRow,
+    BufferRow, Certificate, EntryRow, FunctionRow, MemberRow, ParamRow, ShaderReflection, Sides,
+    StructRow, UniformRow,
 };
 pub use scene::{FrontTimes, Scene};
 pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
@@ -86,8 +86,8 @@ pub use uniforms::uniform_bytes;
 
 pub use sdfc_analyze::LoopStrategy;
 pub use sdfc_codegen::{
-    Buffer, BufferRole, Code, FieldOptions, Lists, Member, Reflection, Shader, Stage, Target,
-    Written,
+    Buffer, BufferRole, Code, EntryStage, FieldOptions, Lists, Member, Reflection, Shader, Stage,
+    Target, Written,
 };
 pub use sdfc_diagnostics::{Diagnostic, FileId, LineColumn, Located, Severity, Sources, Span};
 pub use sdfc_graph::eval::{FieldSample, FrameValues};

@@ -46,7 +46,7 @@ impl Scene {
     /// The program and the method that draw pictures on the CPU if `method` is requested. `auto`
     /// replaces the methods that the CPU renderer does not have.
     pub fn marched_on_cpu(&self, method: Method) -> Marched<'_> {
-        let (known, other) = if CpuScene::METHODS.contains(&method.name()) {
+        let (known, other) = if CpuScene::METHODS.contains(&method) {
             (method, None)
         } else {
             let auto = Method::Auto;
@@ -99,8 +99,7 @@ impl Scene {
         let view = self.view(&frame, TRIAL_SIZE)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
         let program = with_segment_bounds(self.drawn(), Method::FALLBACK);
-        let depths =
-            CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, Method::FALLBACK.name())?;
+        let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, Method::FALLBACK)?;
         let ended = |status: u32| status == HIT || status == MISS;
         Ok(depths.pixels().iter().filter(|pixel| !ended(pixel.status)).count())
     }

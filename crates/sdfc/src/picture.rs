@@ -217,8 +217,8 @@ impl Scene {
     ) -> Result<(Engine, CompileTimes), Error> {
         let start = Instant::now();
         let shader = match parallel {
-            Some(parallel) => render_module_with_camera(program, method.name(), parallel)?,
-            None => render_module(program, method.name())?,
+            Some(parallel) => render_module_with_camera(program, method, parallel)?,
+            None => render_module(program, method)?,
         };
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
@@ -364,9 +364,7 @@ impl Painter<'_> {
                 let uniforms = uniform_values(&self.program, values);
                 pipeline.render(view, &uniforms, &options, progress)
             }
-            Engine::Cpu(scene) => {
-                scene.render(view, values, self.method.name(), &options, progress)
-            }
+            Engine::Cpu(scene) => scene.render(view, values, self.method, &options, progress),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The interface of a written shader and the properties of its field, as data.
 
 use sdfc_analyze::{Promise, Sides as ShapeSides};
-use sdfc_codegen::{Buffer, BufferRole, Member, Structure, Written};
+use sdfc_codegen::{Buffer, BufferRole, EntryStage, Member, Structure, Written};
 use sdfc_graph::{FrameInput, Param, ParamKind, Type};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::explanation::{Bounds, QualityRow};
 use crate::scene::Scene;
@@ -150,26 +150,19 @@ pub struct MemberRow {
     pub offset: u32,
 }
 
-/// A stage of the graphics or compute pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum EntryStage {
-    /// A vertex stage.
-    Vertex,
-    /// A fragment stage.
-    Fragment,
-    /// A compute stage.
-    Compute,
-}
-
 /// An entry point.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct EntryRow {
     /// The stage that it is for.
+    #[serde(serialize_with = "stage_name")]
     pub stage: EntryStage,
     /// Name in the shader.
     pub name: String,
+}
+
+fn stage_name<S: Serializer>(stage: &EntryStage, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(stage.name())
 }
 
 /// Properties of the emitted field, at the params' defaults.
@@ -218,8 +211,7 @@ impl Scene {
             block: uniform.block.clone(),
         });
         let entries = found.entries.iter();
-        let entries =
-            entries.map(|e| EntryRow { stage: entry_stage(e.stage), name: e.name.clone() });
+        let entries = entries.map(|e| EntryRow { stage: e.stage, name: e.name.clone() });
         ShaderReflection {
             sdfc: env!("CARGO_PKG_VERSION"),
             source_hash: self.source_hash(),
@@ -294,14 +286,6 @@ impl Scene {
             step_scale: 1.0,
             parts: self.quality_rows(),
         }
-    }
-}
-
-fn entry_stage(name: &str) -> EntryStage {
-    match name {
-        "vertex" => EntryStage::Vertex,
-        "fragment" => EntryStage::Fragment,
-        _ => EntryStage::Compute,
     }
 }
 

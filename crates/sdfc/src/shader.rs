@@ -162,7 +162,7 @@ impl Scene {
     /// [`Error::Codegen`].
     pub fn picture_shader(&self, method: Method) -> Result<Shader, Error> {
         let method = self.marched_by(method);
-        Ok(render_module(&with_segment_bounds(&self.program, method), method.name())?)
+        Ok(render_module(&with_segment_bounds(&self.program, method), method)?)
     }
 
     /// Writes the shader in the language of `options`.
@@ -209,13 +209,12 @@ impl Scene {
         let program = with_segment_bounds(&self.program, method);
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
-            Emit::March => march_module(&program, method.name(), &functions())?,
+            Emit::March => march_module(&program, method, &functions())?,
             Emit::Render if target == Target::Shadertoy => {
-                shadertoy_module(&program, method.name(), &self.default_view()?)?
+                shadertoy_module(&program, method, &self.default_view()?)?
             }
             Emit::Render => {
                 let rows_up = target.counts_rows_upwards();
-                let method = method.name().to_owned();
                 let options =
                     PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
                 picture_module(&program, &options)?

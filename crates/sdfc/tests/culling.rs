@@ -163,7 +163,7 @@ fn scene(text: &str) -> Scene {
 
 /// Draws a program in tiles that need not begin at a multiple of a culling tile.
 fn picture(scene: &Scene, program: &Program) -> Result<Image, Failed> {
-    Ok(frame(scene, program, render_module(program, "auto")?)?.image)
+    Ok(frame(scene, program, render_module(program, Method::Auto)?)?.image)
 }
 
 fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Failed> {
@@ -249,7 +249,7 @@ fn broken_lists_change_the_picture() -> Result<(), Failed> {
     for (constant, number, text) in mutants {
         let scene = scene(text);
         let program = scene.program();
-        let shader = render_module(program, "auto")?.with_broken_culling(constant, number);
+        let shader = render_module(program, Method::Auto)?.with_broken_culling(constant, number);
         let shader = shader.ok_or_else(|| format!("there is no `{constant}`"))?;
         let broken = frame(&scene, program, shader)?.image;
         if differ(&broken, &picture(&scene, &whole(program))?)?.0 == 0 {
@@ -269,9 +269,9 @@ fn visited_iterations_are_counted() -> Result<(), Failed> {
         let near = all.graph.splat(Type::Vec3, near);
         cullable.culling_bounds = all.graph.add(cullable.culling_bounds, near);
     }
-    let plain = benchmark_module(&all, "sphere", FieldSource::Distance)?;
+    let plain = benchmark_module(&all, Method::Sphere, FieldSource::Distance)?;
     let plain = frame(&scene, &all, plain)?.image;
-    let counted = frame(&scene, &all, instrumented_module(&all, "sphere")?)?;
+    let counted = frame(&scene, &all, instrumented_module(&all, Method::Sphere)?)?;
     for (plain, counted) in plain.pixels().iter().zip(counted.image.pixels()) {
         let normals = if plain.status == HIT { 4 } else { 0 };
         let expected = PARTS as u32 * (plain.evaluations + normals);
@@ -280,7 +280,7 @@ fn visited_iterations_are_counted() -> Result<(), Failed> {
         }
     }
     let program = scene.program();
-    let few = frame(&scene, program, instrumented_module(program, "sphere")?)?;
+    let few = frame(&scene, program, instrumented_module(program, Method::Sphere)?)?;
     let sum = |image: &Image| -> u64 {
         image.pixels().iter().map(|pixel| u64::from(pixel.evaluations)).sum()
     };
@@ -317,7 +317,7 @@ fn cells_are_kept() -> Result<(), Failed> {
     let scene = scene(&text.replace("sphere(0.2)", "sphere(s)"));
     let (gpu, program) = (Gpu::new()?, scene.program());
     let pipeline = || {
-        let shader = instrumented_module(program, "sphere")?;
+        let shader = instrumented_module(program, Method::Sphere)?;
         Ok::<_, Failed>(Pipeline::new(&gpu, shader, program.uniforms.len())?)
     };
     let draw = |pipeline: &Pipeline, s: f64, width: u32| {
@@ -352,7 +352,7 @@ fn limits_are_reported() -> Result<(), Failed> {
     let program = scene.program();
     for (bytes, part) in [(1 << 10, "the scene's lists"), (6 << 10, "a tile of the picture")] {
         let gpu = testing::with_storage(bytes)?;
-        let shader = render_module(program, "auto")?;
+        let shader = render_module(program, Method::Auto)?;
         let made = Pipeline::new(&gpu, shader, program.uniforms.len());
         let Err(error) = made else { return Err(format!("{bytes} bytes are enough").into()) };
         let message = error.to_string();
@@ -361,6 +361,6 @@ fn limits_are_reported() -> Result<(), Failed> {
         }
     }
     let gpu = testing::with_storage(1 << 20)?;
-    Pipeline::new(&gpu, render_module(program, "auto")?, program.uniforms.len())?;
+    Pipeline::new(&gpu, render_module(program, Method::Auto)?, program.uniforms.len())?;
     Ok(())
 }

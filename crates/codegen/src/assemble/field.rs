@@ -2,10 +2,10 @@
 
 use naga::{Function, Handle, Module, ResourceBinding, Span, StructMember, TypeInner};
 use sdfc_graph::{Graph, MaterialField, NodeId, Program, Type};
-use sdfc_march::{Features, MethodDefinition, ray_source, stubs};
+use sdfc_march::{Features, Method, MethodDefinition, ray_source, stubs};
 
 use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
-use super::template::{known_method, ray_features};
+use super::template::ray_features;
 use crate::error::Error;
 use crate::link::template::{bind, find_function, parse_template};
 use crate::lower::inputs::{declare_members, raw_inputs};
@@ -36,13 +36,13 @@ pub fn field_module(program: &Program, options: &FieldOptions) -> Result<Shader,
 ///
 /// # Errors
 ///
-/// [`Error::UnknownMethod`]; others as [`field_module`].
+/// As [`field_module`].
 pub fn march_module(
     program: &Program,
-    method_name: &str,
+    method: Method,
     options: &FieldOptions,
 ) -> Result<Shader, Error> {
-    functions(program, Some(known_method(method_name)?), options)
+    functions(program, Some(method.definition()), options)
 }
 
 fn functions(

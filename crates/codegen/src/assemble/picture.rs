@@ -2,12 +2,12 @@
 
 use naga::ResourceBinding;
 use sdfc_graph::{Program, Settings};
-use sdfc_march::{Features, FieldSource, Form, MethodDefinition, source_with, stubs};
+use sdfc_march::{Features, FieldSource, Form, Method, MethodDefinition, source_with, stubs};
 
 use super::bindings::{LISTS, SLOTS, StubBinding};
 use super::culling::culling;
 use super::linker::PictureLinker;
-use super::template::{features, is_culled, known_method, template, used_slots};
+use super::template::{features, is_culled, template, used_slots};
 use crate::error::Error;
 use crate::link::template::bind;
 use crate::lower::active_lists::ActiveLists;
@@ -34,11 +34,10 @@ use crate::shader::Shader;
 ///
 /// # Errors
 ///
-/// [`Error::UnknownMethod`]; [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has
-/// no distance or no gradient; others if its nodes cannot be lowered.
-pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
-    let method = known_method(method_name)?;
-    link_picture(program, Form::Compute, method, None)
+/// [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has no distance or no gradient;
+/// others if its nodes cannot be lowered.
+pub fn render_module(program: &Program, method: Method) -> Result<Shader, Error> {
+    link_picture(program, Form::Compute, method.definition(), None)
 }
 
 /// Makes the same shader as [`render_module`] for another camera than the scene's, whose rays are
@@ -49,11 +48,10 @@ pub fn render_module(program: &Program, method_name: &str) -> Result<Shader, Err
 /// As [`render_module`].
 pub fn render_module_with_camera(
     program: &Program,
-    method_name: &str,
+    method: Method,
     parallel: bool,
 ) -> Result<Shader, Error> {
-    let method = known_method(method_name)?;
-    link_picture(program, Form::Compute, method, Some(parallel))
+    link_picture(program, Form::Compute, method.definition(), Some(parallel))
 }
 
 /// Makes a shader whose pixels hold the position and unit normal of the hit in place of a colour,
@@ -80,10 +78,10 @@ pub fn normals_module(program: &Program, method: &MethodDefinition) -> Result<Sh
 /// As [`render_module`].
 pub fn benchmark_module(
     program: &Program,
-    method_name: &str,
+    method: Method,
     field: FieldSource,
 ) -> Result<Shader, Error> {
-    link_benchmark(program, method_name, field, false)
+    link_benchmark(program, method, field, false)
 }
 
 /// Makes the same shader as [`benchmark_module`] for the scene's distance, instrumented: if
@@ -93,17 +91,17 @@ pub fn benchmark_module(
 /// # Errors
 ///
 /// As [`render_module`].
-pub fn instrumented_module(program: &Program, method_name: &str) -> Result<Shader, Error> {
-    link_benchmark(program, method_name, FieldSource::Distance, true)
+pub fn instrumented_module(program: &Program, method: Method) -> Result<Shader, Error> {
+    link_benchmark(program, method, FieldSource::Distance, true)
 }
 
 fn link_benchmark(
     program: &Program,
-    method_name: &str,
+    method: Method,
     field: FieldSource,
     instrumented: bool,
 ) -> Result<Shader, Error> {
-    let method = known_method(method_name)?;
+    let method = method.definition();
     let distance = match field {
         FieldSource::Scene => return link_picture(program, Form::Compute, method, None),
         FieldSource::Distance => Some(program.distance.ok_or(Error::NothingDrawn)?),
@@ -147,7 +145,7 @@ fn link_benchmark(
 /// [`Error::BadPrefix`]; others as [`render_module`].
 pub fn picture_module(program: &Program, options: &PictureOptions) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
-    let method = known_method(&options.method)?;
+    let method = options.method.definition();
     let form = match options.stage {
         Stage::Compute => Form::Compute,
         Stage::Fragment if options.rows_up => Form::FragmentUp,

@@ -6,10 +6,9 @@ use naga::{
 };
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Camera, FrameInput, Lens, Node, NodeId, Program, Type};
-use sdfc_march::{Form, stubs};
+use sdfc_march::{Form, Method, stubs};
 
 use super::linker::PictureLinker;
-use super::template::known_method;
 use crate::error::Error;
 use crate::link::template::{bind, find_function, find_variable};
 use crate::lower::body::Body;
@@ -28,14 +27,15 @@ const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "siz
 /// # Errors
 ///
 /// As [`crate::render_module`]; [`Error::ViewBytes`].
-pub fn shadertoy_module(
-    program: &Program,
-    method_name: &str,
-    view: &[u8],
-) -> Result<Shader, Error> {
-    let method = known_method(method_name)?;
-    let mut picture =
-        PictureLinker::new(program, Form::Shadertoy, method, None, &unused_loads(program), false)?;
+pub fn shadertoy_module(program: &Program, method: Method, view: &[u8]) -> Result<Shader, Error> {
+    let mut picture = PictureLinker::new(
+        program,
+        Form::Shadertoy,
+        method.definition(),
+        None,
+        &unused_loads(program),
+        false,
+    )?;
     picture.module.entry_points.clear();
 
     let camera = program.settings.camera.as_ref().map(camera_nodes);

@@ -3,15 +3,10 @@
 use naga::Module;
 use rustc_hash::FxHashSet;
 use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, reachable_where};
-use sdfc_march::{Features, MethodDefinition, method, stubs};
+use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
 use crate::link::template::parse_template;
-
-/// Returns the ray method of that name.
-pub(crate) fn known_method(name: &str) -> Result<&'static MethodDefinition, Error> {
-    method(name).ok_or_else(|| Error::UnknownMethod(name.to_owned()))
-}
 
 /// Parses files of `sdfc-march` without the parts that these features and uniform slots do not
 /// need, and without calls to `unused` functions.

@@ -7,10 +7,10 @@ use naga::{
     AddressSpace, ArraySize, GlobalVariable, Handle, Module, Scalar, StorageAccess, TypeInner,
 };
 
-use crate::names::{Names, final_names, stage_name};
+use crate::names::{Names, final_names};
 use crate::reflection::{
-    Buffer, BufferRole, Entry, FunctionInfo, ModuleParts, Reflection, Structure, StructureMember,
-    Uniform,
+    Buffer, BufferRole, Entry, EntryStage, FunctionInfo, ModuleParts, Reflection, Structure,
+    StructureMember, Uniform,
 };
 use crate::target::Code;
 use crate::write::WrittenModule;
@@ -97,7 +97,7 @@ fn describe(module: &Module, parts: &ModuleParts, names: &Names) -> Reflection {
         .iter()
         .zip(0..)
         .map(|(entry, index)| Entry {
-            stage: stage_name(entry.stage),
+            stage: EntryStage::of(entry.stage),
             name: name(NameKey::EntryPoint(index)),
         })
         .collect();

@@ -11,8 +11,8 @@ use sdfc_march::{SHADERTOY_HEAD, SHADERTOY_TAIL, stubs};
 use super::common::{WrittenModule, bindings, checked_u8, one_line, refused, validate};
 use crate::error::Error;
 use crate::link::template::find_function;
-use crate::names::{final_names, stage_name};
-use crate::reflection::Entry;
+use crate::names::final_names;
+use crate::reflection::{Entry, EntryStage};
 use crate::target::{Code, Target};
 
 /// Writes all functions and an empty fragment stage if there is no entry point, else the last entry
@@ -71,7 +71,7 @@ fn glsl_stage(
     // The version must come first.
     let (version, rest) = text.split_once('\n').unwrap_or((&text, ""));
     let code = Code::Text(format!("{version}\n// {}\n{rest}", one_line(comment)));
-    let entry = Entry { stage: stage_name(entry.stage), name: "main".to_owned() };
+    let entry = Entry { stage: EntryStage::of(entry.stage), name: "main".to_owned() };
     Ok(WrittenModule { code, blocks, entries: Some(vec![entry]) })
 }
 
@@ -120,7 +120,7 @@ fn rename_blocks(
 ) -> Vec<(Handle<GlobalVariable>, String)> {
     let names = final_names(module);
     // naga's suffix of these names: `vs`, `fs`, `cs`.
-    let suffix = format!("{}s", &stage_name(stage)[..1]);
+    let suffix = format!("{}s", &EntryStage::of(stage).name()[..1]);
     let rename = |(handle, block): (Handle<GlobalVariable>, String)| {
         let binding = module.global_variables[handle].binding;
         let name = names.get(&NameKey::GlobalVariable(handle));

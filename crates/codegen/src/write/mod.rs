@@ -13,8 +13,7 @@ use naga::{Module, back};
 pub(crate) use common::{WrittenModule, validate};
 
 use crate::error::Error;
-use crate::names::stage_name;
-use crate::reflection::Entry;
+use crate::reflection::{Entry, EntryStage};
 use crate::target::{Code, Target};
 use common::{one_line, refused};
 use glsl::{glsl, shadertoy};
@@ -47,7 +46,7 @@ pub(crate) fn write(
 /// The module's entry points with other names.
 fn renamed(module: &Module, names: Vec<String>) -> Vec<Entry> {
     let entries = module.entry_points.iter().zip(names);
-    entries.map(|(entry, name)| Entry { stage: stage_name(entry.stage), name }).collect()
+    entries.map(|(entry, name)| Entry { stage: EntryStage::of(entry.stage), name }).collect()
 }
 
 pub(crate) fn wgsl(module: &Module, info: &ModuleInfo) -> Result<String, Error> {

@@ -370,7 +370,7 @@ impl<'a> Setup<'a> {
     /// Returns the program that a variant is compiled from.
     fn program(&self, kind: Kind) -> Result<&Program, Inexpressible> {
         fn alike(program: &Option<Program>) -> Result<&Program, Inexpressible> {
-            let why = "few of its parts are alike, or have no Lipschitz constant";
+            let why = "few of its parts are similar, or have no Lipschitz constant";
             program.as_ref().ok_or_else(|| Inexpressible(why.to_owned()))
         }
         let leaves = self.scene.report().leaves;
@@ -416,11 +416,8 @@ impl<'a> Setup<'a> {
             Ok(data) => data,
             Err(inexpressible) => return Ok(Err(inexpressible)),
         };
-        let shader = benchmark_module(
-            program,
-            self.options.method.name(),
-            kind.field(self.options.baselines),
-        )?;
+        let shader =
+            benchmark_module(program, self.options.method, kind.field(self.options.baselines))?;
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, iterations) = match &data {
@@ -484,9 +481,9 @@ impl<'a> Setup<'a> {
         let iterations = program.cullable_loops.iter().map(|one| one.iterations as usize);
         let iterations = iterations.sum::<usize>();
         if iterations != self.scene.report().leaves {
-            return Ok(LeafEvaluations::unknown("not each leaf is a round of a loop"));
+            return Ok(LeafEvaluations::unknown("not every leaf is an iteration of a loop"));
         }
-        let shader = instrumented_module(program, self.options.method.name())?;
+        let shader = instrumented_module(program, self.options.method)?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
         // A single tile, because the lists of each tile would evaluate the wide tiles again.
         let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
@@ -551,7 +548,7 @@ impl<'a> Setup<'a> {
         }
         Some(format!(
             "another picture: {differing} of {pixels} pixels differ; software drivers end the loops of \
-             an invocation after a number of turns, Mesa 22.3 after 65,535"
+             an invocation after a number of iterations, Mesa 22.3 after 65,535"
         ))
     }
 

@@ -119,7 +119,7 @@ pub fn chart(
     for method in methods {
         let marched = scene.marched(method);
         let program = &marched.program;
-        let shader = render_module(program, marched.method.name())?;
+        let shader = render_module(program, marched.method)?;
         let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
         let uniforms = uniform_values(program, &frame);
         let sampler = Sampler::new(scene, gpu, method)?;

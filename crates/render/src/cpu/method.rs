@@ -1,5 +1,7 @@
 //! The ray methods that the CPU has.
 
+use sdfc_march::Method;
+
 /// The ray methods that the CPU has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CpuMethod {
@@ -13,17 +15,23 @@ pub(crate) enum CpuMethod {
 }
 
 impl CpuMethod {
-    pub(crate) const ALL: [(&'static str, Self); 3] =
-        [("auto", Self::Auto), ("sphere", Self::Sphere), ("interval", Self::Interval)];
+    /// The methods that the CPU has, the default first.
+    pub(crate) const METHODS: [Method; 3] = [Method::Auto, Method::Sphere, Method::Interval];
 
-    /// The names of all, the default first.
-    pub(crate) const NAMES: [&'static str; Self::ALL.len()] =
-        [Self::ALL[0].0, Self::ALL[1].0, Self::ALL[2].0];
-
-    /// Returns the method of that name.
-    pub(crate) fn from_name(name: &str) -> Option<Self> {
-        let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
-        found.map(|(_, method)| method)
+    /// Returns the CPU's form of a method, or `None` if it has none.
+    pub(crate) fn of(method: Method) -> Option<Self> {
+        match method {
+            Method::Auto => Some(Self::Auto),
+            Method::Sphere => Some(Self::Sphere),
+            Method::Interval => Some(Self::Interval),
+            Method::Fixed
+            | Method::SphereCone
+            | Method::Relaxed
+            | Method::Accelerated
+            | Method::AutoRelaxed
+            | Method::Segment
+            | Method::Practical => None,
+        }
     }
 
     /// Factor of the view's step budget.

@@ -21,7 +21,7 @@ use sdfc_graph::{
     Program,
     eval::{FrameValues, Packet, Tape, TapeError},
 };
-use sdfc_march::PixelBlock;
+use sdfc_march::{Method, PixelBlock};
 
 use crate::clock::{Clock, milliseconds_since};
 use crate::error::RenderError;
@@ -55,8 +55,8 @@ pub struct CpuScene {
 }
 
 impl CpuScene {
-    /// Names of the ray methods that it has.
-    pub const METHODS: [&'static str; CpuMethod::NAMES.len()] = CpuMethod::NAMES;
+    /// The ray methods that it has, the default first.
+    pub const METHODS: [Method; 3] = CpuMethod::METHODS;
 
     /// Compiles a program.
     ///
@@ -88,7 +88,7 @@ impl CpuScene {
         &self,
         view: &View,
         frame: &FrameValues,
-        method: &str,
+        method: Method,
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
@@ -104,7 +104,7 @@ impl CpuScene {
         &self,
         view: &View,
         frame: &FrameValues,
-        method: &str,
+        method: Method,
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
@@ -125,15 +125,14 @@ impl CpuScene {
         &self,
         view: &View,
         frame: &FrameValues,
-        method: &str,
+        method: Method,
     ) -> Result<Image, RenderError> {
         let wave = self.wave::<T>(view, frame, self.method(method)?, false);
         Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
     }
 
-    fn method(&self, name: &str) -> Result<CpuMethod, RenderError> {
-        let method = CpuMethod::from_name(name)
-            .ok_or_else(|| RenderError::MethodNotOnCpu(name.to_owned()))?;
+    fn method(&self, method: Method) -> Result<CpuMethod, RenderError> {
+        let method = CpuMethod::of(method).ok_or(RenderError::MethodNotOnCpu(method))?;
         if method == CpuMethod::Interval && self.range.is_none() {
             return Err(RenderError::Evaluator("the program has no range".to_owned()));
         }

@@ -65,11 +65,11 @@ impl Depths {
         let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), [SIDE; 2])?;
         let method = scene.marched_by(METHOD);
         let cpu = CpuScene::new(&scene.program().with_segment_bounds(true, false))?;
-        let double = cpu.depth_map::<f64>(&view, &frame, method.name())?;
+        let double = cpu.depth_map::<f64>(&view, &frame, method)?;
         let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
         let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
         let limit = DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING);
-        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method.name())?, double, limit })
+        Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method)?, double, limit })
     }
 }
 

@@ -194,7 +194,7 @@ impl ComparisonRunner {
             Engine::Cpu(scene) => {
                 let options = RenderOptions::default();
                 let mut progress = |progress| self.update(progress);
-                scene.render(&view, &job.frame, model.method.name(), &options, &mut progress)?
+                scene.render(&view, &job.frame, model.method, &options, &mut progress)?
             }
         };
         let setting = (model.method, job.tolerance);
@@ -259,7 +259,7 @@ impl ComparisonRunner {
         // A result of `auto` has that name even if `auto` chose another method.
         let marched = scene.marched(method);
         let shader =
-            render_module_with_camera(&marched.program, marched.method.name(), job.pose.parallel)?;
+            render_module_with_camera(&marched.program, marched.method, job.pose.parallel)?;
         let pipeline = Pipeline::new(gpu, shader, marched.program.uniforms.len())?;
         let uniforms = uniform_values(&marched.program, &job.frame);
         for setting in method.definition().chart_factors {

@@ -102,7 +102,7 @@ impl Engines {
     ) -> Result<Option<PreparedEngine>, Error> {
         let start = Instant::now();
         let marched = scene.marched(method);
-        let shader = render_module_with_camera(&marched.program, marched.method.name(), parallel);
+        let shader = render_module_with_camera(&marched.program, marched.method, parallel);
         let shader = shader.map_err(Error::Codegen)?;
         let (sources, lists) = (ShaderSources::new(&shader)?, ShaderLists::new(&shader));
         build_times.lower = milliseconds_since(start);

@@ -216,9 +216,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
                 let uniforms = uniform_values(model.marched(), values);
                 pipeline.render(view, &uniforms, &options, &mut progress)
             }
-            Engine::Cpu(scene) => {
-                scene.render(view, values, model.method.name(), &options, &mut progress)
-            }
+            Engine::Cpu(scene) => scene.render(view, values, model.method, &options, &mut progress),
         };
         result.map_err(|error| {
             if error != RenderError::Cancelled {

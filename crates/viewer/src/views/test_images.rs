@@ -1,6 +1,6 @@
 //! Small pictures for the tests of views, drawn on the CPU.
 
-use sdfc::FrameValues;
+use sdfc::{FrameValues, Method};
 use sdfc_render::{CpuScene, Image, RenderOptions, View, no_progress};
 
 use crate::scene::field_probe::FieldProbe;
@@ -37,7 +37,8 @@ pub fn view_of(
     let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE).unwrap();
     let cpu = CpuScene::new(program).unwrap();
     let options = RenderOptions::default();
-    let mut image = cpu.render(&view, &frame, "auto", &options, &mut no_progress).unwrap().image;
+    let mut image =
+        cpu.render(&view, &frame, Method::Auto, &options, &mut no_progress).unwrap().image;
     change(&mut image);
     let input = ViewInput {
         colors: &image,
