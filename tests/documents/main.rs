@@ -124,6 +124,20 @@ fn every_block_compiles_or_has_the_code_that_it_names() {
 }
 
 #[test]
+fn formatting_the_formatted_blocks_changes_nothing() {
+    let mut count = 0;
+    for (page, text) in pages() {
+        for (line, _, block) in blocks(&text) {
+            let Ok(once) = sdfc::format(&page, &block) else { continue };
+            count += 1;
+            let twice = sdfc::format(&page, &once).map_err(|errors| errors.to_string());
+            assert_eq!(twice.as_ref(), Ok(&once), "{page}:{line}");
+        }
+    }
+    assert!(count > 100, "the blocks were not found");
+}
+
+#[test]
 fn every_expression_gives_what_is_said() {
     let mut wrong = Vec::new();
     let mut count = 0;

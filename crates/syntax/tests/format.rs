@@ -174,9 +174,13 @@ fn expression() -> impl Strategy<Value = String> {
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a}) .. ({b})")),
             several.clone().prop_map(|all| format!("union( {} )", all.join(" ,\n"))),
             several.clone().prop_map(|all| format!("[{}]", all.join(","))),
-            (inner.clone(), several).prop_map(|(a, all)| format!("({a}).g({})", all.join(", "))),
+            (inner.clone(), several.clone())
+                .prop_map(|(a, all)| format!("({a}).g({})", all.join(", "))),
             inner.clone().prop_map(|a| format!("-{a}")),
             inner.clone().prop_map(|a| format!("h(fn(q)= {a}, x: {a})")),
+            (inner.clone(), several, inner.clone()).prop_map(|(a, all, b)| {
+                format!("{a}.k({}, size: {{ let t = {b}; {b} }})", all.join(", "))
+            }),
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("{{ let v = {a}\n\n{b} }}")),
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("{{let v={a};-{b}}}")),
             (inner.clone(), inner.clone())

@@ -34,6 +34,10 @@ use crate::ast::Item;
 use crate::lexer::lex;
 use crate::token::TokenKind;
 
+/// The greatest number of times that a layout is formatted again. Each time, one more level of
+/// nested blocks keeps its lines, so few are needed.
+const MAX_PASSES: usize = 32;
+
 /// Formats a file. Formatting the result again changes nothing, and it parses to the same tree
 /// except for spans.
 ///
@@ -48,6 +52,22 @@ use crate::token::TokenKind;
 /// assert_eq!(text.as_deref(), Ok("let r = 1\nsphere(r).color(#fff)\n"));
 /// ```
 pub fn format(sources: &Sources, file: FileId) -> Result<String, Vec<Diagnostic>> {
+    let mut text = laid_out(sources, file)?;
+    // A block that gets lines of its own keeps them, so the layout around it may change once more.
+    for _ in 0..MAX_PASSES {
+        let mut own = Sources::new();
+        let file = own.add("", text.as_str());
+        let next = laid_out(&own, file)?;
+        if next == text {
+            break;
+        }
+        text = next;
+    }
+    Ok(text)
+}
+
+/// Formats a file once.
+fn laid_out(sources: &Sources, file: FileId) -> Result<String, Vec<Diagnostic>> {
     let (tree, found) = crate::parse(sources, file);
     if has_errors(&found) {
         return Err(found);
