@@ -46,6 +46,7 @@
 //! stops at [`NODE_LIMIT`] nodes. Passes over nodes do not recurse. Passes over shapes recurse as
 //! deep as shapes are nested, on a stack that grows.
 
+mod at_frame;
 mod blend;
 mod bounds;
 mod builders;

@@ -20,6 +20,14 @@ impl DerivedBounds {
         Some(Self { graph: extract.graph, corners })
     }
 
+    /// Derives the corners of a scene at one frame alone. They may be tighter than those that hold
+    /// for all values of the params.
+    pub(crate) fn at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
+        let (mut graph, root) = scene.shapes_at(frame)?;
+        let corners = bounds(&mut graph, root, &[]);
+        Self { graph, corners }.at(frame)
+    }
+
     /// Returns the corners at a frame, infinite where the scene has no limit.
     pub(crate) fn at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
         let values = evaluate_frame(&self.graph, &self.corners, frame);

@@ -96,7 +96,7 @@ pub use sdfc_lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
 pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "render")]
-pub use sdfc_render::{Animation, Image, Pose, Progress, Stats, no_progress};
-pub use sdfc_render::{RenderError, View, ViewError};
+pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};
+pub use sdfc_render::{Pose, RenderError, View, ViewError};
 #[cfg(feature = "wgpu")]
 pub use wgpu;

@@ -307,10 +307,12 @@ impl Painter<'_> {
     }
 
     fn view(&self, values: &FrameValues) -> Result<View, Error> {
-        let (program, bounds) = (self.scene.drawn(), self.scene.bounds_at(values));
         let view = match &self.pose {
-            Some(pose) => View::from_pose(program, values, bounds, self.size, pose)?,
-            None => View::new(program, values, bounds, self.size)?,
+            Some(pose) => {
+                let (program, bounds) = (self.scene.drawn(), self.scene.bounds_at(values));
+                View::from_pose(program, values, bounds, self.size, pose)?
+            }
+            None => self.scene.view(values, self.size)?,
         };
         Ok(view.with_scaled_parameter(self.method.definition().parameter, self.tolerance))
     }

@@ -8,7 +8,7 @@ use sdfc_graph::eval::{FrameValues, TapeError};
 use sdfc_graph::{Param, Program};
 use sdfc_lang::live_literals::LiveLiteral;
 use sdfc_lang::{Elaborated, Site};
-use sdfc_render::View;
+use sdfc_render::{Pose, View};
 
 use crate::derived_bounds::DerivedBounds;
 use crate::diagnostics::Diagnostics;
@@ -119,13 +119,29 @@ impl Scene {
         self.bounds.get_or_init(derive).as_ref()?.at(frame)
     }
 
+    /// The camera of a frame, for a picture whose width is `aspect` times its height: the scene's,
+    /// or one that sees the whole scene. It is the same with and without live literals.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::View`].
+    pub fn pose(&self, frame: &FrameValues, aspect: f64) -> Result<Pose, Error> {
+        // Bounds for all values of the params would be wider, and so would be the picture.
+        let bounds = match self.program.settings.camera {
+            Some(_) => None,
+            None => DerivedBounds::at_one_frame(&self.elaborated.scene, frame),
+        };
+        Ok(Pose::new(self.drawn(), frame, bounds, aspect)?)
+    }
+
     /// The view of a picture of `size` pixels at a frame.
     ///
     /// # Errors
     ///
     /// [`Error::View`].
     pub fn view(&self, frame: &FrameValues, size: [u32; 2]) -> Result<View, Error> {
-        Ok(View::new(self.drawn(), frame, self.bounds_at(frame), size)?)
+        let pose = self.pose(frame, f64::from(size[0]) / f64::from(size[1].max(1)))?;
+        Ok(View::from_pose(self.drawn(), frame, self.bounds_at(frame), size, &pose)?)
     }
 
     /// Time spent so far.

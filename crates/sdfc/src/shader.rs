@@ -226,7 +226,9 @@ impl Scene {
     /// The contents of the view buffer at the params' defaults, for a picture of [`VIEW_SIZE`].
     pub(crate) fn default_view(&self) -> Result<Vec<u8>, Error> {
         let frame = self.defaults();
-        let view = View::new(&self.program, &frame, self.bounds_at(&frame), VIEW_SIZE)?;
+        let [width, height] = VIEW_SIZE.map(f64::from);
+        let (bounds, pose) = (self.bounds_at(&frame), self.pose(&frame, width / height)?);
+        let view = View::from_pose(&self.program, &frame, bounds, VIEW_SIZE, &pose)?;
         Ok(view_bytes(&view.block(Tile { origin: [0, 0], size: VIEW_SIZE })))
     }
 }

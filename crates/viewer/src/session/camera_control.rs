@@ -52,8 +52,7 @@ impl Session {
     fn scene_pose(&self) -> Option<Pose> {
         let model = self.model.as_ref()?;
         let values = self.values(model);
-        let (program, bounds) = (model.scene.program(), model.scene.bounds_at(&values));
-        Pose::new(program, &values, bounds, self.aspect()).ok()
+        model.scene.pose(&values, self.aspect()).ok()
     }
 
     /// Updates the camera from the scene unless it was moved by hand.

@@ -1,0 +1,35 @@
+//! The camera of a scene: stated by distances, or fitted to what is drawn.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use sdfc::{Compiler, FrameValues, Pose, Scene};
+
+fn compiled(compiler: Compiler<'_>, text: &str) -> Scene {
+    compiler.compile("a.sdf", text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn pose(scene: &Scene) -> Pose {
+    scene.pose(&FrameValues::defaults(scene.params()), 1.5).unwrap()
+}
+
+#[test]
+fn a_setting_may_sample_a_distance() {
+    let text = "sphere(1)\ncamera(eye: [0, 0, 4], target: [0, sphere(1)([0, 1.5, 0]), 0])";
+    assert_eq!(pose(&compiled(Compiler::new(), text)).target.to_array(), [0.0, 0.5, 0.0]);
+}
+
+#[test]
+fn a_fitted_camera_does_not_depend_on_what_may_change() {
+    // The bounds of these scenes are wider if they hold for all values of the numbers.
+    for text in [
+        "shape op(a: shape, k: number) = a(p) + k * sin(3 * p.x)\nsphere(0.5).op(0.1)",
+        "solid egg(k: number) = length(p * [1, k, 1]) - 1\negg(0.7)",
+        "box([1, 0.5, 2]).twist(rate: 20deg).translate(x: 0.5)",
+        "union(sphere(0.5), box(0.7).translate(x: 0.4), blend: smooth(0.2))",
+    ] {
+        let plain = pose(&compiled(Compiler::new(), text));
+        let live = pose(&compiled(Compiler::new().live_literals(None), text));
+        assert!((plain.eye - live.eye).length() < 1e-6 * plain.eye.length(), "{text}");
+        assert!((plain.target - live.target).length() < 1e-6, "{text}");
+    }
+}
