@@ -76,6 +76,18 @@ fn exponentially_many_shapes_are_refused() {
 }
 
 #[test]
+fn shared_shapes_at_few_points_are_compiled() {
+    let shapes: String =
+        (1..=40).map(|i| format!("let s{i} = s{0} | s{0}.translate(x: {i})\n", i - 1)).collect();
+    let compiled =
+        Compiler::new().compile("shared.sdf", &format!("let s0 = sphere(1)\n{shapes}s40"));
+    let scene = compiled.unwrap_or_else(|errors| panic!("{errors}"));
+    // The copies stand at 0, 1, ..., 820, in far more ways than there are copies.
+    let report = scene.report();
+    assert_eq!((report.leaves, report.analytic.len() + report.marched.len()), (821, 821));
+}
+
+#[test]
 fn long_sequences_are_refused() {
     stopped("let a = [for i in 0..1000000000: i]\nsphere(a[0])", "E0406", "the limit is 1000000");
     let cube = "union(for i in 0..1000: union(for j in 0..1000: union(for k in 0..1000: sphere(i + j + k))))";

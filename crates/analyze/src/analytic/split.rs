@@ -41,14 +41,15 @@ pub(crate) fn split_analytic(
 ) -> Result<Operands, ExpandError> {
     let direction = graph.point(1, Dim::Three);
     let scale = graph.number(1.0);
-    let mut splitter = Splitter { graph, expander, qualities, bounds, blends: Blends::default() };
+    let (blends, plain_unions) = Default::default();
+    let mut splitter = Splitter { graph, expander, qualities, bounds, blends, plain_unions };
     let ray = LocalRay { outer: Vec::new(), point, direction, scale };
     splitter.shape(root, &ray).map(Operands::with_local_marched)
 }
 
 /// The ray in the coordinates of a shape. Lengths along it are multiplied by `scale` to get lengths
 /// in the scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct LocalRay {
     /// The points of the enclosing formulas, all at the ray's origin. Only shapes whose arguments
     /// depend on them have any.
@@ -87,6 +88,12 @@ struct Formula {
     intervals: FxHashMap<(NodeId, bool), Option<RayIntervals>>,
 }
 
+impl Formula {
+    fn new(level: u16, ray: LocalRay) -> Self {
+        Self { maps: Maps::new(level), ray, intervals: FxHashMap::default() }
+    }
+}
+
 /// The pass and what it builds on.
 pub(super) struct Splitter<'a> {
     pub(super) graph: &'a mut Graph,
@@ -94,6 +101,8 @@ pub(super) struct Splitter<'a> {
     qualities: &'a Qualities,
     bounds: &'a mut Bounds,
     blends: Blends,
+    /// Shapes whose formulas are minima of samples and nothing else.
+    plain_unions: FxHashMap<ShapeId, bool>,
 }
 
 impl Splitter<'_> {
@@ -145,8 +154,7 @@ impl Splitter<'_> {
         if dim != Dim::Three || !is_own || is_bounded(self.graph, self.bounds, shape) {
             return Ok(None);
         }
-        let mut formula =
-            Formula { maps: Maps::new(level), ray: ray.clone(), intervals: FxHashMap::default() };
+        let mut formula = Formula::new(level, ray.clone());
         let (mut node, mut chain) = (root, Vec::new());
         let analytic = loop {
             let Some(blend) = blend_at(self.graph, &mut self.blends, node) else { return Ok(None) };
@@ -253,20 +261,33 @@ impl Splitter<'_> {
         if dim != Dim::Three || !ray.has_level(level) {
             return Ok(None);
         }
-        let mut formula =
-            Formula { maps: Maps::new(level), ray: ray.clone(), intervals: FxHashMap::default() };
+        let mut formulas = vec![Formula::new(level, ray.clone())];
         let (mut operands, mut others) = (Operands::default(), Vec::new());
-        let (mut seen, mut pending) = (FxHashSet::default(), vec![root]);
-        while let Some(node) = pending.pop() {
-            if !seen.insert(node) {
+        let (mut seen, mut pending) = (FxHashSet::default(), vec![(0, root)]);
+        // A shape that is sampled twice at one point counts once. Where unions share operands,
+        // there are far more ways to an operand than operands.
+        let mut sampled = FxHashSet::default();
+        while let Some((place, node)) = pending.pop() {
+            if !seen.insert((place, node)) {
                 continue;
             }
+            let Some(formula) = formulas.get_mut(place) else { continue };
             if let Form::Min(a, b) = form(self.graph, node, &mut formula.maps) {
-                pending.extend([b, a]);
-            } else if let Some(sample) = self.split_sample(&mut formula, node)? {
-                operands.analytic.extend(sample.analytic);
-                operands.marched.extend(sample.marched);
-            } else if let Some(intervals) = self.intervals(&mut formula, node, false)? {
+                pending.extend([(place, b), (place, a)]);
+            } else if let Some((child, ray)) = self.sample(formula, node)? {
+                if !sampled.insert((child, ray.clone())) {
+                    continue;
+                }
+                let Shape { formula: root, level, .. } = *self.graph.shape(child);
+                if ray.has_level(level) && self.is_plain_union(child) {
+                    pending.push((formulas.len(), root));
+                    formulas.push(Formula::new(level, ray));
+                } else {
+                    let sample = self.shape(child, &ray)?;
+                    operands.analytic.extend(sample.analytic);
+                    operands.marched.extend(sample.marched);
+                }
+            } else if let Some(intervals) = self.intervals(formula, node, false)? {
                 others.push(intervals);
             } else {
                 return Ok(None);
@@ -277,6 +298,41 @@ impl Splitter<'_> {
         }
         others.extend(operands.analytic.into_iter().map(|operand| operand.intervals));
         Ok(operands.marched.is_empty().then(|| Split::Intervals(union(self.graph, others))))
+    }
+
+    /// True if the formula of a shape is a minimum of samples, and no clause says anything else:
+    /// then its operands are operands of any union that samples it.
+    fn is_plain_union(&mut self, shape: ShapeId) -> bool {
+        if let Some(&known) = self.plain_unions.get(&shape) {
+            return known;
+        }
+        let Shape { formula, dim, level, ref intersect, contract, .. } = *self.graph.shape(shape);
+        let is_silent = intersect.is_empty() && !contract.copies && self.is_splittable(shape);
+        let is_plain = dim == Dim::Three && is_silent && self.has_samples_only(formula, level);
+        self.plain_unions.insert(shape, is_plain);
+        is_plain
+    }
+
+    /// True if a formula of a level is a minimum of samples.
+    fn has_samples_only(&mut self, root: NodeId, level: u16) -> bool {
+        let mut maps = Maps::new(level);
+        let (mut seen, mut pending) = (FxHashSet::default(), vec![root]);
+        while let Some(node) = pending.pop() {
+            if !seen.insert(node) {
+                continue;
+            }
+            match form(self.graph, node, &mut maps) {
+                Form::Min(a, b) => pending.extend([a, b]),
+                Form::Sample(child, _) if self.graph.shape(child).level <= level => {}
+                Form::Sample(..)
+                | Form::ScaledSample(..)
+                | Form::Max(..)
+                | Form::Neg(_)
+                | Form::Select(..)
+                | Form::Other => return false,
+            }
+        }
+        true
     }
 
     /// The intervals of a node of a formula, or of its complement; `None` if they are unknown or
@@ -337,6 +393,19 @@ impl Splitter<'_> {
         formula: &mut Formula,
         node: NodeId,
     ) -> Result<Option<Operands>, ExpandError> {
+        match self.sample(formula, node)? {
+            Some((child, ray)) => self.shape(child, &ray).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// The child that a node samples at a rigid map of the point, scaled or not, and the ray in the
+    /// child's coordinates; `None` for any other node.
+    fn sample(
+        &mut self,
+        formula: &mut Formula,
+        node: NodeId,
+    ) -> Result<Option<(ShapeId, LocalRay)>, ExpandError> {
         let Formula { maps, ray, .. } = formula;
         let (child, q, factor) = match form(self.graph, node, maps) {
             Form::Sample(child, q) => (child, q, None),
@@ -369,6 +438,6 @@ impl Splitter<'_> {
             inner.direction = self.graph.mul(inner.direction, factor);
             inner.scale = self.graph.mul(ray.scale, factor);
         }
-        self.shape(child, &inner).map(Some)
+        Ok(Some((child, inner)))
     }
 }
