@@ -19,8 +19,16 @@ const DEFAULT_CONE: f64 = 30.0 * std::f64::consts::PI / 180.0;
 impl<'p> Elaborator<'p> {
     pub(super) fn sun(&mut self, setting: &'p Setting) -> Outcome<LightSource> {
         let direction = self.setting_number(setting, 0)?;
-        let default = || self.graph.constant(Type::Vec3, &DEFAULT_SUN);
-        Ok(LightSource::Sun { direction: direction.unwrap_or_else(default) })
+        let direction = match direction {
+            Some(direction) => direction,
+            None => self.graph.constant(Type::Vec3, &DEFAULT_SUN),
+        };
+        if self.constant_vector(direction) == Some([0.0; 3]) {
+            let message = "this direction is [0, 0, 0], which points nowhere";
+            let help = "write a vector towards the light, of any length";
+            return Err(self.refuse_vector(setting, 0, message, help));
+        }
+        Ok(LightSource::Sun { direction })
     }
 
     pub(super) fn point_light(&mut self, setting: &'p Setting) -> Outcome<LightSource> {
@@ -32,9 +40,15 @@ impl<'p> Elaborator<'p> {
         let position = self.setting_number(setting, 0)?.ok_or(Poison)?;
         let target = self.setting_number(setting, 1);
         let angle = self.argument(setting, 2).map(|expr| self.cone(expr));
+        let target = target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3]));
+        let [from, to] = [position, target].map(|node| self.constant_vector(node));
+        if from.is_some() && from == to {
+            let message = "this spot light stands at its target";
+            return Err(self.refuse_vector(setting, 0, message, "move one of them"));
+        }
         Ok(LightSource::Spot {
             position,
-            target: target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3])),
+            target,
             angle: angle.transpose()?.unwrap_or_else(|| self.graph.number(DEFAULT_CONE)),
         })
     }

@@ -1,7 +1,9 @@
 //! Settings, such as camera, background and ray method. Lights are in [`super::lights`].
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
-use sdfc_graph::{Camera, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky, Type};
+use sdfc_graph::{
+    Camera, Expander, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky, Type,
+};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::value::Value;
@@ -93,7 +95,42 @@ impl<'p> Elaborator<'p> {
         index: usize,
     ) -> Outcome<Option<NodeId>> {
         let mut env = Env::new(self.program.locals);
-        self.argument(setting, index).map(|expr| self.number(&mut env, expr)).transpose()
+        let Some(expr) = self.argument(setting, index) else { return Ok(None) };
+        let node = self.number(&mut env, expr)?;
+        self.setting_value(expr, node).map(Some)
+    }
+
+    /// The value of a setting's argument, with the distances that it samples expanded. A constant
+    /// must be finite.
+    fn setting_value(&mut self, expr: &'p Expr, node: NodeId) -> Outcome<NodeId> {
+        let expanded = Expander::new().node(&mut self.graph, node, &[]);
+        let node = expanded.map_err(|error| {
+            self.fail(ErrorCode::TOO_MANY_NODES, expr.span, format!("this value: {error}"))
+        })?;
+        let node = self.settled(node);
+        let constant = self.graph.as_const(node);
+        if constant.is_none_or(|value| value.lanes().iter().all(|lane| lane.is_finite())) {
+            return Ok(node);
+        }
+        Err(self.fail(ErrorCode::NOT_FINITE, expr.span, "this value is not a finite number"))
+    }
+
+    /// The components of a constant vector; `None` if it is known only when a frame is drawn.
+    pub(super) fn constant_vector(&self, node: NodeId) -> Option<[f64; 3]> {
+        let [x, y, z, _] = self.graph.as_const(node)?.lanes();
+        Some([x, y, z])
+    }
+
+    /// Reports a vector of a setting that makes no picture.
+    pub(super) fn refuse_vector(
+        &mut self,
+        setting: &'p Setting,
+        index: usize,
+        message: &str,
+        help: &str,
+    ) -> Poison {
+        let span = self.argument(setting, index).map_or(setting.span, |expr| expr.span);
+        self.report(Diagnostic::error(ErrorCode::OUT_OF_RANGE, span, message).help(help))
     }
 
     /// A colour without its alpha.
@@ -133,9 +170,15 @@ impl<'p> Elaborator<'p> {
         let eye = self.setting_number(setting, 0)?.ok_or(Poison)?;
         let [target, up, fov] = [1, 2, 3].map(|index| self.setting_number(setting, index));
         let height = self.setting_within(setting, 4, "`height`", POSITIVE);
+        let target = target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3]));
+        let [from, to] = [eye, target].map(|node| self.constant_vector(node));
+        if from.is_some() && from == to {
+            let message = "the camera's eye and target are one point";
+            return Err(self.refuse_vector(setting, 0, message, "move one of them"));
+        }
         Ok(Camera {
             eye,
-            target: target?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0; 3])),
+            target,
             up: up?.unwrap_or_else(|| self.graph.constant(Type::Vec3, &[0.0, 1.0, 0.0])),
             lens: match (height?, fov?) {
                 (Some(height), _) => Lens::Height(height),
