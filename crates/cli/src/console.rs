@@ -45,6 +45,12 @@ impl Console {
         self.text(&format!("{word}: {message}\n"));
     }
 
+    /// Prints a warning that has no location in a scene, except with `-q`.
+    pub fn warning(&self, message: &str) {
+        let word = if self.color { "\x1b[1;33mwarning\x1b[0m" } else { "warning" };
+        self.note(&format!("{word}: {message}"));
+    }
+
     /// Prints one line about the result, except with `-q`.
     pub fn note(&self, line: &str) {
         if !self.quiet {

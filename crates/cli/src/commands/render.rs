@@ -27,7 +27,7 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// the outputs and the scene are the same file; the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
-    let compiler = super::compiler(args.live_literals).loops(args.loops.into());
+    let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
     let scene = super::scene(&args.file, compiler, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
@@ -262,8 +262,18 @@ impl Job<'_> {
         output.write(&file.map_err(|e| super::lowering(&e.into(), self.console))?)
     }
 
-    /// Prints why the device or the method differs from the options and, with `-v`, statistics.
+    /// Prints why the device or the method differs from the options, a warning about pixels that
+    /// are not finite and, with `-v`, statistics.
     fn print_notes(&self, picture: &Picture) {
+        let counts = &picture.stats.pixels;
+        if counts.nan > 0 {
+            let all = counts.hit + counts.miss + counts.capped + counts.nan;
+            self.console.warning(&format!(
+                "{} of {all} pixels are not finite numbers, and are drawn in magenta: a formula \
+                 divides by 0 or overflows",
+                counts.nan
+            ));
+        }
         if let Some(note) = &picture.note {
             self.console.note(note);
         }

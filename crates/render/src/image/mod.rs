@@ -21,6 +21,9 @@ pub const HIT: u32 = 1;
 /// [`PixelBlock::status`] of a ray that ran out of steps.
 pub const CAPPED: u32 = 2;
 
+/// The colour, in sRGB, of pixels whose colour or depth is not a finite number.
+pub const NOT_FINITE_COLOR: [u8; 3] = [255, 0, 255];
+
 /// A picture: linear colours, depths, and how each ray ended, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
@@ -115,9 +118,13 @@ impl Image {
         counts
     }
 
-    /// Red, green, blue of every pixel in sRGB, 8 bits each.
+    /// Red, green, blue of every pixel in sRGB, 8 bits each. Pixels that are not finite are
+    /// [`NOT_FINITE_COLOR`].
     pub fn to_srgb8(&self) -> Vec<u8> {
         let channels = |pixel: &PixelBlock| {
+            if !is_finite(pixel) {
+                return NOT_FINITE_COLOR;
+            }
             let [red, green, blue, _] = pixel.color;
             [red, green, blue].map(linear_to_srgb8)
         };
@@ -181,6 +188,14 @@ mod tests {
         image.pixels_mut()[3].depth = f32::NAN;
         image.pixels_mut()[4].color[1] = f32::INFINITY;
         assert_eq!(image.counts(), PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2 });
+    }
+
+    #[test]
+    fn pixels_that_are_not_finite_are_magenta() {
+        let mut image = Image::new([3, 1], Footprint::default()).unwrap();
+        image.pixels_mut()[0].color = [f32::NAN, 1.0, 1.0, 1.0];
+        image.pixels_mut()[1].depth = f32::INFINITY;
+        assert_eq!(image.to_srgb8(), [255, 0, 255, 255, 0, 255, 0, 0, 0]);
     }
 
     #[test]
