@@ -15,7 +15,8 @@ use crate::sequence::{self, Frames};
 #[command(name = "sdfc", version, propagate_version = true, max_term_width = 100)]
 #[command(
     after_help = "Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the \
-                  machine cannot do it (no GPU, I/O error); 130, stopped by Ctrl-C."
+                  machine cannot do it (no GPU, or a file that cannot be read or written); 130, \
+                  stopped by Ctrl-C."
 )]
 pub struct Args {
     /// Options of all commands.

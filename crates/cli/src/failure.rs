@@ -7,9 +7,9 @@ use std::process::ExitCode;
 pub enum Failure {
     /// Error in the scene; its diagnostics have been printed.
     Scene,
-    /// Invalid command line: an unreadable input, or an option that does not apply.
+    /// Invalid command line: an unknown option, or one that does not apply.
     Call(String),
-    /// The machine cannot do it: no GPU, a lost device, an output that cannot be written.
+    /// The machine cannot do it: no GPU, a lost device, a file that cannot be read or written.
     Machine(String),
     /// Ctrl-C was pressed; the text says what was done before.
     Interrupted(String),
@@ -40,6 +40,6 @@ impl std::fmt::Display for Failure {
 
 impl From<sdfc_files::ReadError> for Failure {
     fn from(error: sdfc_files::ReadError) -> Self {
-        Self::Call(error.to_string())
+        Self::Machine(error.to_string())
     }
 }

@@ -1,7 +1,7 @@
 //! The command line of sdfc: arguments, files and exit codes around the `sdfc` library.
 //!
 //! Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the machine cannot do
-//! it (no GPU, I/O error); 130, stopped by Ctrl-C.
+//! it (no GPU, or a file that cannot be read or written); 130, stopped by Ctrl-C.
 //!
 //! Only this crate, the viewer and `sdfc-build` print, and only the first two end the process.
 

@@ -92,20 +92,20 @@ fn json_diagnostics_have_all_keys() {
 }
 
 #[test]
-fn a_missing_file_exits_with_2_and_other_files_are_checked() {
+fn a_missing_file_exits_with_3_and_other_files_are_checked() {
     let folder = folder();
     let output = run(&folder, &["check", "missing.sdf", "wrong.sdf"]);
     let shown = text(&output.stderr);
-    assert_eq!(status(&output), 2);
+    assert_eq!(status(&output), 3);
     assert!(shown.contains("missing.sdf") && shown.contains("wrong.sdf:1:1"), "{shown}");
 }
 
 #[test]
-fn a_file_that_is_no_text_exits_with_2() {
+fn a_file_that_is_no_text_exits_with_3() {
     let folder = folder();
     std::fs::write(folder.path().join("picture.sdf"), b"\x89PNG\xff").unwrap();
     let output = run(&folder, &["check", "picture.sdf"]);
-    assert_eq!(status(&output), 2);
+    assert_eq!(status(&output), 3);
     assert!(text(&output.stderr).contains("not UTF-8"));
 }
 

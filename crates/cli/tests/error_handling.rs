@@ -41,7 +41,7 @@ fn wrong(scene: &str, words: &[&str]) {
 /// Checks an input that is no scene, with every command that reads scenes.
 fn unreadable(folder: &Path, name: &str, words: &[&str]) {
     for command in ["check", "compile", "render", "explain", "fmt", "bench"] {
-        ends(folder, &format!("{command} {name}"), b"", 2, words);
+        ends(folder, &format!("{command} {name}"), b"", 3, words);
     }
 }
 
@@ -135,13 +135,28 @@ fn division_by_a_constant_zero_is_reported() {
     wrong("let a = 0\nsphere(1 % a)\n", &["shaders need finite numbers"]);
 }
 
+/// No command accepts a scene that another one refuses.
+#[test]
+fn a_violated_clause_is_reported() {
+    wrong("solid egg() exact = length(p * [1, 0.7, 1]) - 1\negg()\n", &["E0502", "`exact`"]);
+}
+
+#[test]
+fn settings_without_a_value_are_reported() {
+    wrong("sun(direction: [1, 0, 0] / sphere(1)([1, 0, 0]))\nsphere(1)\n", &["E0311", "1:16"]);
+    wrong("sun(direction: 0)\nsphere(1)\n", &["E0309", "1:16"]);
+    wrong("camera(eye: [0, 0, 1], target: [0, 0, 1])\nsphere(1)\n", &["E0309", "one point"]);
+    let spot = "spot_light([0, 2, 0], target: [0, 2, 0])\nsphere(1)\n";
+    wrong(spot, &["E0309", "stands at its target"]);
+}
+
 #[test]
 fn values_that_make_no_shape_are_reported() {
     wrong("plane(normal: [0, 0, 0])\n", &["normal"]);
     wrong("sphere(-1)\n", &["E0309", "`r` is -1"]);
     wrong("sphere(1).scale(0)\n", &["E0"]);
     // Cameras may depend on time, so this is known only when a frame is drawn.
-    let blind = b"camera(eye: [0, 0, 0], target: [0, 0, 0])\nsphere(1)\n";
+    let blind = b"camera(eye: [0, 0, time], target: [0, 0, 0])\nsphere(1)\n";
     let args = "render - -o out.png --backend cpu";
     ends(folder(&[]).path(), args, blind, 1, &["eye and target are one point"]);
 }

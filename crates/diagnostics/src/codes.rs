@@ -207,7 +207,7 @@ codes! {
         "write letters that the font has, or name a font file that has them";
 
     PROMISE_BROKEN "E0502" "Violated clause"
-        "`sdfc check` tests the clauses of the scene's own shapes and functions at a fixed number \
+        "Every command tests the clauses of the scene's own shapes and functions at a fixed number \
          of samples: `exact` and `bound` against the surface, `lipschitz` against pairs of points \
          within the bounds, `bounds` against points outside them, `intersect` against the field \
          along rays, `copies` against balls around points, and `lipschitz` of a function against \

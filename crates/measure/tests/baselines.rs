@@ -213,7 +213,7 @@ fn a_row_has_metrics_or_reasons() -> Result<(), Failed> {
     let torus = scene(&text);
     let moving = Compiler::new().live_literals(None).compile("test.sdf", &text)?;
     let gpu = Gpu::new()?;
-    let row = bench(&torus, &moving, "torus", &gpu, &options, &mut no_progress)?;
+    let row = bench(&torus, Ok(&moving), "torus", &gpu, &options, &mut no_progress)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
     assert_eq!(names, ["units", "tape", "specialized", "specialized-slots", "rolled", "pruned"]);
     let [units, tape, specialized, slots, rolled, pruned] = &row.variants[..] else {
@@ -230,7 +230,7 @@ fn a_row_has_metrics_or_reasons() -> Result<(), Failed> {
     assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
     // No literal of this scene can become live.
-    let row = bench(&torus, &torus, "torus", &gpu, &options, &mut no_progress)?;
+    let row = bench(&torus, Ok(&torus), "torus", &gpu, &options, &mut no_progress)?;
     assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::{Compiler, Scene};
+use sdfc::{Compiler, Diagnostics, Scene};
 use sdfc_measure::chart::{Font, Growth, growth_svg};
 use sdfc_measure::{BenchOptions, BenchReport, BenchRow, BenchVariant, bench, large_suite, suite};
 
@@ -47,6 +47,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         let (size, baselines) = (args.size, *baselines);
         let options = BenchOptions::new().size(size).baselines(baselines);
         let progress = console.progress(name);
+        let live = live.as_ref().map_err(String::as_str);
         let row = bench(scene, live, name, &gpu, &options, &mut |part| {
             progress.set(part.done, part.total);
             ControlFlow::Continue(())
@@ -91,8 +92,8 @@ fn growth(report: &BenchReport) -> Growth {
 struct Entry {
     name: String,
     scene: Scene,
-    /// The same scene with its numbers as params.
-    live: Scene,
+    /// The same scene with its numbers as params, or why it does not compile with them.
+    live: Result<Scene, String>,
     /// True if interpreters and live literals are measured. They take minutes on large scenes.
     baselines: bool,
 }
@@ -101,10 +102,10 @@ impl Entry {
     fn from_file(file: &Path, console: &Console) -> Result<Self, Failure> {
         let input = sdfc_files::read(file)?;
         let folder = sdfc_files::Folder::of(file);
-        let compiler = Compiler::new().resolver(&folder);
+        let compiler = super::compiler().resolver(&folder);
         let scene = super::shown(compiler.compile(&input.name, &input.text), console)?;
         let live = compiler.live_literals(None).compile(&input.name, &input.text);
-        let live = live.map_err(|_| Failure::Scene)?;
+        let live = live.map_err(|errors| without_live_literals(&errors));
         if !scene.draws() {
             return Err(super::lowering(&sdfc::Error::NothingDrawn, console));
         }
@@ -119,8 +120,15 @@ impl Entry {
         };
         let (scene, live) =
             (compile(Compiler::new())?, compile(Compiler::new().live_literals(None))?);
-        Ok(Self { name, scene, live, baselines })
+        Ok(Self { name, scene, live: Ok(live), baselines })
     }
+}
+
+/// Says why a scene that compiles does not compile with its numbers as params.
+fn without_live_literals(errors: &Diagnostics) -> String {
+    let error = errors.iter().find(|diagnostic| diagnostic.is_error());
+    let message = error.map_or("", |error| &error.message);
+    format!("the scene does not compile with its numbers as params: {message}")
 }
 
 /// Formats the report: times in milliseconds, and ratios to the specialised shader. CPU time is

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use sdfc::{Compiler, Error, Scene};
+use sdfc::{Error, Scene};
 use sdfc_measure::chart::{Chart as Results, Font, Row, Theme, png, svg};
 use sdfc_measure::{ChartOptions, OracleOptions, Quantiles, TruthStore};
 use sdfc_render::Gpu;
@@ -43,7 +43,7 @@ pub(super) fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Fa
 
 /// Returns the chart of a scene.
 pub(super) fn charted(args: &Chart, file: &Path, console: &Console) -> Result<Results, Failure> {
-    let scene = super::scene(file, Compiler::new(), console)?;
+    let scene = super::scene(file, super::compiler(), console)?;
     let options = ChartOptions::new().size(args.size).methods(args.march.clone());
     let chart = measured(file, &scene, &options, &args.cache, console)?;
     Ok(Results { made: args.note.clone(), ..chart })

@@ -1,7 +1,5 @@
 //! `sdfc check`: all diagnostics of all files.
 
-use sdfc::Compiler;
-
 use crate::args::Check;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -17,7 +15,7 @@ pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
     let result = super::each(&args.files, console, |path| {
         let input = sdfc_files::read(path)?;
         let folder = sdfc_files::Folder::of(path);
-        let compiler = Compiler::new().resolver(&folder).verify(true);
+        let compiler = super::compiler().resolver(&folder);
         let diagnostics = compiler.check(&input.name, &input.text);
         if args.json {
             rows.extend(diagnostics.rows());

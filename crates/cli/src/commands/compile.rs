@@ -20,7 +20,7 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
     let options = options(args)?;
-    let scene = super::scene(&args.file, super::compiler(args.live_literals), console)?;
+    let scene = super::scene(&args.file, super::compiler_with(args.live_literals), console)?;
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {

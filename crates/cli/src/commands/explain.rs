@@ -1,7 +1,5 @@
 //! `sdfc explain`: how a scene is compiled.
 
-use sdfc::Compiler;
-
 use crate::args::Explain;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -13,7 +11,7 @@ use crate::output;
 ///
 /// The scene cannot be read, has errors or draws nothing.
 pub fn run(args: &Explain, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene(&args.file, Compiler::new(), console)?;
+    let scene = super::scene(&args.file, super::compiler(), console)?;
     let explanation = scene.explain().map_err(|e| super::lowering(&e, console))?;
     let bytes =
         if args.json { super::json(&explanation)? } else { explanation.to_string().into_bytes() };

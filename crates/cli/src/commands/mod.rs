@@ -33,9 +33,15 @@ fn scene(path: &Path, compiler: Compiler<'_>, console: &Console) -> Result<Scene
     shown(compiler.resolver(&folder).compile(&input.name, &input.text), console)
 }
 
-/// Returns a compiler, with live literals if asked for.
-fn compiler<'r>(live_literals: bool) -> Compiler<'r> {
-    if live_literals { Compiler::new().live_literals(None) } else { Compiler::new() }
+/// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so
+/// that no command accepts a scene that another one refuses.
+fn compiler() -> Compiler<'static> {
+    Compiler::new().verify(true)
+}
+
+/// Returns the compiler, with live literals if asked for.
+fn compiler_with(live_literals: bool) -> Compiler<'static> {
+    if live_literals { compiler().live_literals(None) } else { compiler() }
 }
 
 /// Prints the diagnostics of a compilation and returns its scene.

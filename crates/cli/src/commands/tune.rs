@@ -1,6 +1,6 @@
 //! `sdfc tune`: finds the cheapest ray method and setting within an error limit.
 
-use sdfc::{Compiler, Method};
+use sdfc::Method;
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_measure::ChartOptions;
 use sdfc_measure::chart::{Chart, Row};
@@ -17,7 +17,7 @@ use crate::output::{self, Output};
 ///
 /// Those of `chart`; or no method stays within the limit.
 pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene(&args.file, Compiler::new(), console)?;
+    let scene = super::scene(&args.file, super::compiler(), console)?;
     let json = args.json.as_deref().map(Output::new);
     output::distinct(&args.file, &args.json.as_deref().into_iter().collect::<Vec<_>>())?;
     json.iter().try_for_each(Output::check)?;

@@ -233,7 +233,7 @@ enum Data {
 /// The data that all variants of a row share.
 struct Setup<'a> {
     scene: &'a Scene,
-    live: &'a Scene,
+    live: Result<&'a Scene, &'a str>,
     gpu: &'a Gpu,
     options: &'a BenchOptions,
     view: View,
@@ -250,14 +250,14 @@ struct Setup<'a> {
 /// timed. Then the variants draw one timed frame each in turn, as often as repetitions are asked
 /// for.
 ///
-/// `live` is the same scene compiled with live literals.
+/// `live` is the same scene compiled with live literals, or the reason why there is none.
 ///
 /// # Errors
 ///
 /// [`MeasureError::Scene`] for a failure of the scene or the machine.
 pub fn bench(
     scene: &Scene,
-    live: &Scene,
+    live: Result<&Scene, &str>,
     name: &str,
     gpu: &Gpu,
     options: &BenchOptions,
@@ -334,7 +334,7 @@ fn times_best(
 impl<'a> Setup<'a> {
     fn new(
         scene: &'a Scene,
-        live: &'a Scene,
+        live: Result<&'a Scene, &'a str>,
         gpu: &'a Gpu,
         options: &'a BenchOptions,
     ) -> Result<Self, MeasureError> {
@@ -388,7 +388,10 @@ impl<'a> Setup<'a> {
                 Err(Inexpressible(why))
             }
             Kind::Units | Kind::Tape | Kind::Specialized => Ok(&self.unrolled),
-            Kind::LiveLiterals => Ok(self.live.program()),
+            Kind::LiveLiterals => match self.live {
+                Ok(live) => Ok(live.program()),
+                Err(why) => Err(Inexpressible(why.to_owned())),
+            },
             Kind::Rolled if leaves > MAX_UNCULLED_LEAVES => {
                 let why =
                     format!("over {MAX_UNCULLED_LEAVES} leaves, all of which it visits each time");
@@ -406,7 +409,8 @@ impl<'a> Setup<'a> {
         kind: Kind,
         counter: &mut FrameCounter<'_, '_>,
     ) -> Result<Result<Candidate, Inexpressible>, MeasureError> {
-        let scene = if kind == Kind::LiveLiterals { self.live } else { self.scene };
+        let live = self.live.ok().filter(|_| kind == Kind::LiveLiterals);
+        let scene = live.unwrap_or(self.scene);
         let start = Instant::now();
         let program = match self.program(kind) {
             Ok(program) => program,
@@ -526,7 +530,11 @@ impl<'a> Setup<'a> {
             evals_per_pixel: Some(evals),
             leaf_evals_per_pixel: Some(candidate.leaf_evaluations.clone()),
             turns_per_eval: candidate.iterations,
-            slots: (candidate.kind == Kind::LiveLiterals).then(|| self.live.live_literals().len()),
+            slots: self
+                .live
+                .ok()
+                .filter(|_| candidate.kind == Kind::LiveLiterals)
+                .map(|live| live.live_literals().len()),
             differing_pixels: Some(self.differing(candidate, reference)),
             why: Why::new(),
         };
