@@ -34,8 +34,8 @@ use crate::shader::Shader;
 ///
 /// # Errors
 ///
-/// [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has no distance or no gradient;
-/// others if its nodes cannot be lowered.
+/// [`Error::NothingDrawn`] and [`Error::MissingRoot`] if the program has no distance or no
+/// gradient; others if its nodes cannot be lowered.
 pub fn render_module(program: &Program, method: Method) -> Result<Shader, Error> {
     link_picture(program, Form::Compute, method.definition(), None)
 }
