@@ -64,7 +64,7 @@ pub struct Entry {
     /// An expression that uses the entry.
     pub example: String,
     /// For the library: the name of the file that declares it, and the line, counted from 1.
-    pub place: Option<(&'static str, u32)>,
+    pub location: Option<(&'static str, u32)>,
 }
 
 impl Entry {
@@ -102,7 +102,7 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
         topic: topic(file),
         signature: signature(sources, decl),
         clauses: clauses(sources, decl),
-        place: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
+        location: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
         ..Entry::default()
     };
     let mut lines = unwrapped(&decl.docs.lines).into_iter();

@@ -10,7 +10,7 @@ const SMOOTH_DEGREES: f64 = 5.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normal {
     /// The point of the normal: the method's own hit, before its distance is rounded.
-    pub place: [f64; 3],
+    pub point: [f64; 3],
     /// Outward direction, of any length.
     pub direction: [f64; 3],
 }
@@ -19,11 +19,11 @@ pub struct Normal {
 /// same point. `None` if the surface is not smooth within half the width of a pixel. A NaN normal
 /// counts as 180 degrees.
 pub(crate) fn normal_error(prober: &mut Prober<'_>, width: f64, normal: Normal) -> Option<f64> {
-    let Normal { place, direction } = normal;
-    let gradient = prober.gradient(place);
+    let Normal { point, direction } = normal;
+    let gradient = prober.gradient(point);
     let half = 0.5 * width;
     let is_smooth = (0..6).all(|side| {
-        let mut beside = place;
+        let mut beside = point;
         beside[side / 2] += if side % 2 == 0 { half } else { -half };
         // NaN is not smooth.
         degrees(prober.gradient(beside), gradient) <= SMOOTH_DEGREES

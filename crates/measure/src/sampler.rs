@@ -57,7 +57,7 @@ fn sample(pixel: &PixelBlock) -> PixelSample {
         status: status(pixel),
         t: f64::from(pixel.depth),
         evaluations: pixel.primary_evaluations,
-        normal: Some(Normal { place: [x, y, z], direction: folded([u, v]) }),
+        normal: Some(Normal { point: [x, y, z], direction: folded([u, v]) }),
     }
 }
 

@@ -190,7 +190,7 @@ fn tables_are_those_made_by_hand() -> Result<(), Failed> {
     assert_eq!(floats(planes)[..4], [0.0, 1.0, 0.0, -0.5]);
     assert_eq!(floats(spheres)[..4], [0.0, 0.0, 0.0, 0.25]);
     assert_eq!(floats(boxes), [4.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.5, 0.0]);
-    assert_eq!((encoded.turns, encoded.leaves), (2, 4));
+    assert_eq!((encoded.iterations, encoded.leaves), (2, 4));
     Ok(())
 }
 
@@ -200,8 +200,8 @@ fn many_leaves_need_few_locals() -> Result<(), Failed> {
         let scene = scene(&text);
         let encoded = on_tape(&scene).map_err(|e| format!("{name}: {}", e.0))?;
         let most = 23 * scene.report().leaves;
-        if encoded.turns > most {
-            return Err(format!("{name}: {} iterations, over {most}", encoded.turns).into());
+        if encoded.iterations > most {
+            return Err(format!("{name}: {} iterations, over {most}", encoded.iterations).into());
         }
     }
     Ok(())

@@ -158,15 +158,15 @@ fn a_normal_is_compared_with_the_gradient_at_its_point() {
     case.picture[hit].t += 0.1;
     let point = ray.at(case.picture[hit].t);
     let [x, y, z] = point;
-    case.picture[hit].normal = Some(Normal { place: point, direction: point });
+    case.picture[hit].normal = Some(Normal { point, direction: point });
     assert!(case.metrics().normal.max < 1e-9);
     // Rotated about y by half a degree, at most.
     let (sine, cosine) = 0.5f64.to_radians().sin_cos();
     let direction = [cosine * x + sine * z, y, cosine * z - sine * x];
-    case.picture[hit].normal = Some(Normal { place: point, direction });
+    case.picture[hit].normal = Some(Normal { point, direction });
     let off = case.metrics().normal.max;
     assert!(off > 0.2 && off < 0.5 + 1e-9, "{off}");
-    case.picture[hit].normal = Some(Normal { place: point, direction: [f64::NAN; 3] });
+    case.picture[hit].normal = Some(Normal { point, direction: [f64::NAN; 3] });
     assert_eq!(case.metrics().normal.max, 180.0);
 }
 

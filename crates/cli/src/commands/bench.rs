@@ -148,7 +148,7 @@ fn table(report: &BenchReport) -> String {
                 &ratio.map_or_else(String::new, |ratio| format!(", {ratio:.2} of the best {of}"));
         }
         text.push('\n');
-        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  leaves/px  turns/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
+        text += "  variant             frame ms   ratio    cpu ms   ratio  evals/px  leaves/px  iters/eval  front ms  analyze ms  lower ms  pipeline ms  first picture ms\n";
         variants.iter().for_each(|variant| text += &line(variant));
     }
     text

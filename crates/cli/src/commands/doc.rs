@@ -142,7 +142,7 @@ fn row(entry: &Entry) -> Row<'_> {
         contract: entry.contract(),
         source: &entry.source,
         example: &entry.example,
-        file: entry.place.map(|(file, _)| file),
-        line: entry.place.map(|(_, line)| line),
+        file: entry.location.map(|(file, _)| file),
+        line: entry.location.map(|(_, line)| line),
     }
 }

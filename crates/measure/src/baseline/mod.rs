@@ -16,7 +16,7 @@ pub struct Encoded {
     /// Contents of the storage buffers, from binding 3 on; none is empty.
     pub tables: Vec<Vec<u8>>,
     /// Iterations of the interpreter's loop per evaluation of the field.
-    pub turns: usize,
+    pub iterations: usize,
     /// Leaves evaluated per evaluation of the field.
     pub leaves: usize,
 }

@@ -43,7 +43,7 @@ pub fn tape(
         bytes.words(&[*operation as u32, *index as u32, source as u32, u32::from(*reversed)]);
         bytes.floats(&constant);
     }
-    Ok(Encoded { tables: vec![bytes.0], turns: encoder.code.len(), leaves })
+    Ok(Encoded { tables: vec![bytes.0], iterations: encoder.code.len(), leaves })
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -338,7 +338,7 @@ impl Tables {
             bytes.resize(bytes.len().max(ROW), 0);
             bytes
         });
-        let turns = self.units.len();
-        Encoded { tables: tables.collect(), turns, leaves: 2 * turns }
+        let iterations = self.units.len();
+        Encoded { tables: tables.collect(), iterations, leaves: 2 * iterations }
     }
 }

@@ -146,7 +146,7 @@ pub struct BenchVariant {
     /// Evaluations of leaves.
     pub leaf_evals_per_pixel: Option<LeafEvaluations>,
     /// Iterations of the interpreter's loop per evaluation; null without an interpreter.
-    pub turns_per_eval: Option<usize>,
+    pub iterations_per_eval: Option<usize>,
     /// Number of live literals, for `specialized-slots` only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slots: Option<usize>,
@@ -425,7 +425,7 @@ impl<'a> Setup<'a> {
         let validate = shader.validation_time().as_secs_f64() * 1e3;
         let lower = milliseconds_since(start) - validate;
         let (tables, uniforms, iterations) = match &data {
-            Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.turns)),
+            Data::Encoded(encoded) => (&encoded.tables[..], Vec::new(), Some(encoded.iterations)),
             Data::Uniforms(uniforms) => (&[][..], uniforms.clone(), None),
         };
         let pipeline = Pipeline::with_tables(self.gpu, shader, uniforms.len(), tables)?;
@@ -529,7 +529,7 @@ impl<'a> Setup<'a> {
             first_picture_ms: Some(candidate.first_picture),
             evals_per_pixel: Some(evals),
             leaf_evals_per_pixel: Some(candidate.leaf_evaluations.clone()),
-            turns_per_eval: candidate.iterations,
+            iterations_per_eval: candidate.iterations,
             slots: self
                 .live
                 .ok()
@@ -539,7 +539,7 @@ impl<'a> Setup<'a> {
             why: Why::new(),
         };
         if candidate.iterations.is_none() {
-            variant.why.insert("turns_per_eval", "the field is not interpreted".to_owned());
+            variant.why.insert("iterations_per_eval", "the field is not interpreted".to_owned());
         }
         if let Some(reason) = self.refusal(candidate, reference) {
             variant.refuse(&reason);
@@ -626,7 +626,7 @@ impl BenchVariant {
             "first_picture_ms",
             "evals_per_pixel",
             "leaf_evals_per_pixel",
-            "turns_per_eval",
+            "iterations_per_eval",
             "differing_pixels",
         ];
         Self {
@@ -639,7 +639,7 @@ impl BenchVariant {
             first_picture_ms: None,
             evals_per_pixel: None,
             leaf_evals_per_pixel: None,
-            turns_per_eval: None,
+            iterations_per_eval: None,
             slots: None,
             differing_pixels: None,
             why: keys.map(|key| (key, reason.to_owned())).into(),

@@ -58,7 +58,7 @@ impl Page {
             self.line("contract", &entry.contract());
             self.line("example", &entry.example);
             self.line("source", &entry.source);
-            if let Some((file, line)) = entry.place {
+            if let Some((file, line)) = entry.location {
                 self.line("declared", &format!("{file}:{line}"));
             }
         }
