@@ -226,7 +226,7 @@ fn a_row_has_metrics_or_reasons() -> Result<(), Failed> {
         assert_eq!(drawn.cpu_ms.is_some(), gpu.info().software);
         assert!(drawn.evals_per_pixel.unwrap().mean > 1.0);
     }
-    assert!([rolled, pruned].iter().all(|none| none.why["frame_ms"].contains("alike")));
+    assert!([rolled, pruned].iter().all(|none| none.why["frame_ms"].contains("similar")));
     assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
     assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
     // No literal of this scene can become live.
