@@ -215,20 +215,20 @@ fn a_row_has_metrics_or_reasons() -> Result<(), Failed> {
     let gpu = Gpu::new()?;
     let row = bench(&torus, Ok(&moving), "torus", &gpu, &options, &mut no_progress)?;
     let names: Vec<_> = row.variants.iter().map(|variant| variant.name).collect();
-    assert_eq!(names, ["units", "tape", "specialized", "specialized-slots", "rolled", "pruned"]);
-    let [units, tape, specialized, slots, rolled, pruned] = &row.variants[..] else {
+    assert_eq!(names, ["units", "tape", "specialized", "live-literals", "loops", "culled"]);
+    let [units, tape, specialized, live, looped, culled] = &row.variants[..] else {
         unreachable!()
     };
     assert!(units.frame_ms.is_none() && units.why.contains_key("frame_ms"));
-    for drawn in [tape, specialized, slots] {
+    for drawn in [tape, specialized, live] {
         assert_eq!(drawn.frame_ms.map(|times| times.n), Some(2), "{drawn:?}");
         assert_eq!(drawn.differing_pixels, Some(0));
         assert_eq!(drawn.cpu_ms.is_some(), gpu.info().software);
         assert!(drawn.evals_per_pixel.unwrap().mean > 1.0);
     }
-    assert!([rolled, pruned].iter().all(|none| none.why["frame_ms"].contains("similar")));
+    assert!([looped, culled].iter().all(|none| none.why["frame_ms"].contains("similar")));
     assert_eq!((row.auto, specialized.times_specialized), ("specialized", Some(1.0)));
-    assert!(slots.slots.is_some_and(|count| count >= 2), "{:?}", slots.slots);
+    assert!(live.live_literals.is_some_and(|count| count >= 2), "{:?}", live.live_literals);
     // No literal of this scene can become live.
     let row = bench(&torus, Ok(&torus), "torus", &gpu, &options, &mut no_progress)?;
     assert!(row.variants[3].why["frame_ms"].contains("no number"), "{:?}", row.variants[3]);

@@ -68,7 +68,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
 
 /// Returns the cost per pixel of the scattered scenes, as CPU time if the GPU is a software one.
 fn growth(report: &BenchReport) -> Growth {
-    let names = ["pruned", "specialized"];
+    let names = ["culled", "specialized"];
     let rows = || report.rows.iter().filter(|row| row.scene.starts_with("scattered"));
     let points = |name: &str| {
         let point = |row: &BenchRow| {
@@ -166,7 +166,7 @@ fn line(variant: &BenchVariant) -> String {
     };
     let (compile, leaves) = (variant.compile_ms.as_ref(), variant.leaf_evals_per_pixel.as_ref());
     let notes = [
-        variant.slots.map(|count| format!("{count} live literals")),
+        variant.live_literals.map(|count| format!("{count} live literals")),
         variant.differing_pixels.filter(|count| *count > 0).map(|n| format!("{n} pixels differ")),
     ];
     let notes: Vec<String> = notes.into_iter().flatten().collect();
@@ -178,7 +178,7 @@ fn line(variant: &BenchVariant) -> String {
         number(variant.cpu_times_specialized, 6, 2),
         number(variant.evals_per_pixel.map(|evals| evals.mean), 8, 1),
         number(leaves.and_then(|leaves| leaves.mean), 9, 0),
-        number(variant.turns_per_eval.map(|turns| turns as f64), 10, 0),
+        number(variant.iterations_per_eval.map(|turns| turns as f64), 10, 0),
         number(compile.and_then(|times| times.front), 8, 1),
         number(compile.and_then(|times| times.analyze), 10, 1),
         number(compile.and_then(|times| times.lower), 8, 1),
