@@ -14,27 +14,41 @@ use sdfc_tests::repository;
 use crate::case::Case;
 
 const HEAD: &str = "\
-# Where ray methods fail, and `auto` holds
+# Where ray methods fail, and what `auto` does there
 
 <!-- Written by `STABILITY_UPDATE=1 cargo test -p sdfc-tests --test stability`. To change it, change
      the comments of the scenes, or the test. -->
 
-This page shows what every ray method does on scenes that are made to break one of them, and where
-`auto` holds. Each row is a scene of [tests/stability](../tests/stability) or
-[examples/faults](../examples/faults). The comment in the scene says what fails and why. Every ray
-method draws the scene at 160x120 with its usual settings, at each frame of the scene, and each
-picture is compared with the [oracle](accuracy.md#the-oracle).
+Every ray method has scenes on which it fails: it passes through a wall, or stops in front of it.
+This page shows scenes that are made to break one method each, and what all methods do there. Look
+here if a picture has holes or noise. [accuracy.md](accuracy.md#the-methods) explains the methods;
+if you do not choose one, it is `auto`.
 
-Values are percentages of all pixels, to two significant digits; zeros are omitted.
+Each row is a scene of [tests/stability](../tests/stability) or
+[examples/faults](../examples/faults). The comment in the scene says what fails and why. Every ray
+method draws the scene at 160x120 with its default settings, at each frame that the scene's comment
+names. Each picture is compared with the [oracle](accuracy.md#the-oracle), which proves where each
+ray hits.
+
+The values of M, F, C and N are percentages of all pixels, to two significant digits. Zeros are
+omitted.
 
 - **M**, missed: the ray passed through a surface.
 - **F**, false: the ray ended where there is no surface.
 - **C**, capped: the ray ran out of steps.
 - **N**: the result is not a number.
-- **D**: the depth error of 99 of 100 pixels, in pixel widths; omitted up to 0.05.
+- **D**: the depth error that 99 of 100 pixels do not exceed, in pixel widths. Values up to 0.05
+  are omitted.
 - *good*: none of these.
 
 For several frames, the percentages cover all frames, and D is that of the worst frame.
+
+";
+
+const EXEMPTIONS: &str = "\
+On all other scenes, the field is certified, and the test requires that `auto` is *good*. These
+scenes are exceptions: their field is uncertified, or their details are finer than a pixel or than
+32-bit numbers. `Bounds` lists the largest errors of `auto` that the test permits.
 
 ";
 
@@ -158,9 +172,8 @@ impl Page {
                 let _ = writeln!(text, "{row}");
             }
         }
-        text += "\n## Scenes with bounds of their own\n\n\
-                 No bound holds for an uncertified field, or for details finer than 32-bit \
-                 numbers.\n\n";
+        text += "\n## Scenes with bounds of their own\n\n";
+        text += EXEMPTIONS;
         for case in cases {
             if let Some(why) = &case.exempt {
                 let _ = writeln!(text, "{}", exempt(case, why));
@@ -185,5 +198,5 @@ fn line(case: &Case, row: &[Errors]) -> String {
 
 fn exempt(case: &Case, why: &str) -> String {
     let bounds = case.text.lines().find_map(|line| line.strip_prefix("// Auto: "));
-    format!("- `{}`: {why}.\n  `auto` holds: {}", case.name, bounds.unwrap_or_default())
+    format!("- `{}`: {why}.\n  Bounds: {}", case.name, bounds.unwrap_or_default())
 }
