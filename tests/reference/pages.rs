@@ -92,7 +92,7 @@ fn section(entry: &Entry, level: &str) -> String {
         text.push('\n');
     }
     let _ = writeln!(text, "Example: `{}`", entry.example);
-    if let Some((file, _)) = entry.place {
+    if let Some((file, _)) = entry.location {
         let _ = write!(text, "\nSource: {}. ", entry.source);
         let _ = writeln!(text, "Declared in [{file}](../../crates/lang/{file}).");
     }
@@ -109,7 +109,7 @@ fn section(entry: &Entry, level: &str) -> String {
 
 /// Returns the first line of the declaration.
 fn declaration(entry: &Entry) -> String {
-    match entry.place {
+    match entry.location {
         Some(_) => format!("{} {}", entry.kind, entry.signature),
         None => entry.signature.clone(),
     }

@@ -30,7 +30,7 @@ const LINE: f64 = 0.012;
 
 /// Returns the path of an entry's picture below the folder, if it has one.
 pub fn name(entry: &Entry) -> Option<String> {
-    entry.place?;
+    entry.location?;
     Some(format!("pictures/{}-{}.png", entry.name, entry.kind))
 }
 
