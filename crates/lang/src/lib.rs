@@ -46,6 +46,7 @@ pub mod reference;
 pub mod settings;
 mod spelling;
 mod synonyms;
+mod syntax_words;
 
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 

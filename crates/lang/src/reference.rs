@@ -1,13 +1,15 @@
 //! The reference: all names that a scene can use without declaring them.
 //!
-//! These are the names of the library, the kernel, the settings and the types. The descriptions of
-//! library entries come from the doc comments in `std`, the others from the checker's tables.
+//! These are the names of the library, the kernel, the settings and the types, and the words of the
+//! syntax. The descriptions of library entries come from the doc comments in `std`, the others from
+//! tables.
 
 use crate::check::kernel::ROWS;
 use crate::check::types::{WORDS, show};
 use crate::library::{self, Entry};
 use crate::settings::{self, SettingRow};
 use crate::spelling;
+use crate::syntax_words;
 
 /// All entries, sorted by topic.
 pub fn entries() -> Vec<Entry> {
@@ -27,6 +29,15 @@ pub fn entries() -> Vec<Entry> {
         kind: "type",
         topic: "types",
         signature: word.name.to_owned(),
+        summary: word.summary.to_owned(),
+        example: word.example.to_owned(),
+        ..Entry::default()
+    }));
+    entries.extend(syntax_words::WORDS.iter().map(|word| Entry {
+        name: word.name.to_owned(),
+        kind: "syntax",
+        topic: "syntax",
+        signature: word.signature.to_owned(),
         summary: word.summary.to_owned(),
         example: word.example.to_owned(),
         ..Entry::default()

@@ -26,7 +26,7 @@ const ROWS: &[(&str, &str)] = &[
     ("schwarz_p", "schwarz primitive"),
     ("text", "label letters glyphs"),
     // Operators.
-    ("union", "add merge combine join unite together opu"),
+    ("union", "add merge combine join unite together group opu"),
     ("difference", "subtract subtraction cut minus ops"),
     ("intersection", "intersect common opi"),
     (
@@ -49,7 +49,7 @@ const ROWS: &[(&str, &str)] = &[
     ("revolve", "rotateextrude revolution lathe"),
     ("shell", "hollow"),
     ("round", "rounded rounding"),
-    ("offset", "dilate inset grow"),
+    ("offset", "dilate inset grow expand inflate"),
     ("displace", "displacement bump"),
     ("morph", "tween"),
     ("invert", "complement inverse"),
@@ -67,7 +67,7 @@ const ROWS: &[(&str, &str)] = &[
     ("hash", "random rand rnd"),
     ("gradient_noise", "noise perlin perlinnoise"),
     ("voronoi", "worley cellular"),
-    ("time", "itime seconds clock"),
+    ("time", "t itime seconds clock"),
     ("if c { a } else { b }", "select ternary cond where"),
     ("[for x in list: f(x)]", "map listcomprehension"),
     ("len", "count numelements"),
@@ -113,6 +113,47 @@ const ROWS: &[(&str, &str)] = &[
     ("#008080", "teal"),
     ("#ffd700", "gold"),
 ];
+
+/// A parameter, and the names that other tools have for such a parameter, spelt like those of
+/// [`ROWS`].
+const PARAMETERS: &[(&str, &str)] = &[
+    ("r", "radius rad diameter size"),
+    ("h", "height length tall"),
+    ("size", "dimensions dimension extents sides lengths scale"),
+    ("wall", "thickness thick"),
+    ("width", "thickness"),
+    ("eye", "position pos origin location from"),
+    ("target", "lookat look center centre to at"),
+    ("position", "pos at center centre"),
+    ("direction", "dir axis normal"),
+    ("fov", "angle fieldofview lens"),
+    ("strength", "intensity brightness power energy"),
+    ("color", "colour tint albedo"),
+    ("zenith", "top up"),
+    ("ground", "bottom down"),
+    ("n", "count number sides times"),
+    ("count", "n number times"),
+    ("spacing", "period step distance every"),
+    ("blend", "smooth smoothness radius r k"),
+    ("samples", "count n"),
+    ("stops", "ev value exposure"),
+    ("tone", "curve tonemap mapping"),
+];
+
+/// The parameter among `names` that is meant by a parameter's name in another tool.
+pub fn parameter<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
+    let name = plain(name);
+    let meant = |(here, others): &&(&str, &str)| {
+        names.contains(here) && others.split(' ').any(|other| other == name)
+    };
+    let (here, _) = PARAMETERS.iter().find(meant)?;
+    names.iter().copied().find(|own| own == here)
+}
+
+/// The blend that other tools mean by a number behind the operands of a union.
+pub fn blend_of_width(width: &str) -> String {
+    format!("smooth({width})")
+}
 
 /// The expression to write here for a name from another tool.
 pub fn here(name: &str) -> Option<&'static str> {
@@ -166,13 +207,33 @@ mod tests {
         let mut all: Vec<&str> = ROWS.iter().flat_map(|(_, others)| others.split(' ')).collect();
         for name in &all {
             assert_eq!(plain(name), *name);
-            let is_free = entries.iter().all(|entry| plain(&entry.name) != *name);
+            // A clause, such as `intersect`, is no name that a scene can call.
+            let mut names = entries.iter().filter(|entry| entry.kind != "syntax");
+            let is_free = names.all(|entry| plain(&entry.name) != *name);
             assert!(is_free, "`{name}` exists here now: remove it from the names of other tools");
         }
         let count = all.len();
         all.sort_unstable();
         all.dedup();
         assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn parameters_of_other_tools_are_known_where_they_have_an_equivalent() {
+        assert_eq!(parameter("radius", &["r"]), Some("r"));
+        assert_eq!(parameter("look_at", &["eye", "target"]), Some("target"));
+        assert_eq!(parameter("height", &["size"]), None);
+        let entries = reference::entries();
+        let known = |name: &str| {
+            entries.iter().any(|entry| {
+                let (_, parameters) = entry.signature.split_once('(').unwrap_or_default();
+                let mut words = parameters.split([' ', ',', ')', ':', '?']);
+                words.any(|word| word == name)
+            })
+        };
+        for (here, _) in PARAMETERS {
+            assert!(known(here), "no entry has the parameter `{here}`");
+        }
     }
 
     #[test]

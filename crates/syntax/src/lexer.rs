@@ -66,6 +66,10 @@ pub(crate) fn lex(text: &str, file: FileId, from: usize) -> Lexed {
             lexed.comments.push(Comment { start: token.start, end: end as u32, tokens_before });
             continue;
         }
+        if token.kind == TokenKind::BlockComment {
+            lexed.block_comment(token.span(file));
+            continue;
+        }
         if token.kind == TokenKind::Unknown {
             let letters = lexer.slice().chars().chain(lexer.remainder().chars());
             let word: usize = letters.take_while(|&c| is_letter(c)).map(char::len_utf8).sum();
@@ -104,6 +108,16 @@ impl Lexed {
             }
             Some(_) | None => Some(token),
         }
+    }
+
+    /// Reports a block comment, which is otherwise ignored.
+    fn block_comment(&mut self, span: Span) {
+        let opening = Span { end: span.start + 2, ..span };
+        let message = "comments in `/* */` are not part of the language";
+        self.diagnostics.push(
+            Diagnostic::error(Code::UNKNOWN_CHARACTER, opening, message)
+                .help("write `//` before each line; such a comment ends with its line"),
+        );
     }
 
     /// Reports a word with letters outside ASCII. It counts as a name, together with a name right

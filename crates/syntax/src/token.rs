@@ -10,6 +10,9 @@ pub(crate) enum TokenKind {
     /// `//` to the end of the line; never reaches the parser.
     #[regex(r"//[^\n]*", allow_greedy = true)]
     Comment,
+    /// `/*` to `*/` or the end of the file, which is invalid; recognised for a better error.
+    #[token("/*", scan_block)]
+    BlockComment,
     #[regex(r"[A-Za-z_][A-Za-z0-9_]*")]
     Name,
     /// Digits with any letters behind them; `literal::number` checks the unit.
@@ -139,6 +142,13 @@ fn scan_string(lexer: &mut logos::Lexer<'_, TokenKind>) {
     let rest = &lexer.remainder()[..length];
     // A carriage return before the line feed belongs to the line's end, not to the string.
     lexer.bump(rest.strip_suffix('\r').unwrap_or(rest).len());
+}
+
+/// Extends a block comment to its end, or to the end of the file.
+fn scan_block(lexer: &mut logos::Lexer<'_, TokenKind>) {
+    let rest = lexer.remainder();
+    let length = rest.find("*/").map_or(rest.len(), |end| end + 2);
+    lexer.bump(length);
 }
 
 /// Returns true if strings in other languages or in pasted text begin or end with the character.

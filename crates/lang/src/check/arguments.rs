@@ -12,6 +12,7 @@ use super::written::written;
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
 use crate::spelling::nearest;
+use crate::synonyms;
 
 impl<'a> Checker<'a> {
     /// The arguments in the order of the parameters; `None` means the default. Reports arguments
@@ -92,7 +93,8 @@ impl<'a> Checker<'a> {
             && first.name.is_none()
             && !named
         {
-            let found = too_many(callee, parameters, first.span);
+            let mut found = too_many(callee, parameters, first.span);
+            found.help.extend(bracketed(callee, parameters, &bound, &excess));
             self.report(found);
         }
         self.give_up(excess, callee.span);
@@ -111,7 +113,9 @@ impl<'a> Checker<'a> {
         else {
             let message = format!("`{}` has no parameter `{}`", callee.name, name.text);
             let found = Diagnostic::error(Code::ARGUMENTS, name.span, message);
-            let near = nearest(&name.text, parameters.iter().map(|parameter| parameter.name));
+            let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name).collect();
+            let near = synonyms::parameter(&name.text, &names)
+                .or_else(|| nearest(&name.text, names.into_iter()));
             let found = match near {
                 Some(near) => found.help(format!("did you mean `{near}`?")),
                 None => self.elsewhere(
@@ -201,9 +205,13 @@ impl<'a> Checker<'a> {
                 Value::Expr(e) if is_lambda(e) => Element::One(self.check_expr(e, want, role)),
                 Value::Expr(e) => {
                     let value = self.infer(e);
+                    let width = later.iter().find(|it| is_width_of_blend(&value.ty, it, want));
                     match later.iter().find(|later| meant_for(&value.ty, later, want)) {
                         Some(later) => Element::One(self.needs_name(e, parameter, later)),
-                        None => self.spread(Element::One(value), want, role),
+                        None => match width {
+                            Some(blend) => Element::One(self.needs_blend(e, parameter, blend)),
+                            None => self.spread(Element::One(value), want, role),
+                        },
                     }
                 }
                 Value::Element(element) => self.element(element, Some((want, role))).0,
@@ -224,6 +232,23 @@ impl<'a> Checker<'a> {
         let message = format!("parameters after `{}` must be named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
         self.report(found.help(format!("write {}: {}", later.name, written(given))));
+        poison(given.span)
+    }
+
+    /// Reports the width of a blend without the blend.
+    fn needs_blend(
+        &mut self,
+        given: &ast::Expr,
+        parameter: &ParameterSignature<'a>,
+        blend: &ParameterSignature<'a>,
+    ) -> Expr {
+        let message = format!("`{}` takes shapes; this is a number", parameter.name);
+        let found = Diagnostic::error(Code::TYPE_MISMATCH, given.span, message);
+        self.report(found.help(format!(
+            "to blend them, write {}: {}",
+            blend.name,
+            synonyms::blend_of_width(&written(given))
+        )));
         poison(given.span)
     }
 
@@ -268,6 +293,28 @@ impl<'a> Checker<'a> {
     }
 }
 
+/// The call with its numbers in brackets, as in `box([1, 2, 3])`, if its first parameter is a
+/// vector of as many components as there are numbers.
+fn bracketed(
+    callee: Callee,
+    parameters: &[ParameterSignature],
+    bound: &[Vec<Given>],
+    excess: &[Given],
+) -> Option<String> {
+    let Type::Vec(width) = parameters.first()?.ty else { return None };
+    let given: Vec<String> = bound
+        .iter()
+        .flatten()
+        .chain(excess)
+        .map(|given| match given.value {
+            Value::Expr(e) if given.name.is_none() => Some(written(e)),
+            Value::Expr(_) | Value::Element(_) | Value::Done(..) => None,
+        })
+        .collect::<Option<_>>()?;
+    let fits = given.len() == usize::from(width);
+    fits.then(|| format!("write {}([{}])", callee.name, given.join(", ")))
+}
+
 /// True for a literal: a number, colour, string or bool.
 fn is_literal(e: &ast::Expr) -> bool {
     use ast::ExprKind::{Bool, Color, Number, Text};
@@ -277,4 +324,11 @@ fn is_literal(e: &ast::Expr) -> bool {
 /// True if a value does not have type `want` but fits a later parameter, which must be named.
 fn meant_for(ty: &Type, later: &ParameterSignature, want: &Type) -> bool {
     !types::poisoned(ty) && !types::same_value(ty, want) && types::same_value(ty, &later.ty)
+}
+
+/// True if a number stands where a shape is wanted, and a later parameter is a blend, whose width
+/// it probably is.
+fn is_width_of_blend(ty: &Type, later: &ParameterSignature, want: &Type) -> bool {
+    let is_number = matches!(ty, Type::Number | Type::Int);
+    is_number && matches!(want, Type::Shape(_)) && later.ty == types::blend()
 }

@@ -65,7 +65,11 @@ impl<'a> Checker<'a> {
         given: Vec<Given<'a>>,
     ) -> Expr {
         match builtin {
-            Builtin::Number(_) | Builtin::Time | Builtin::Frame | Builtin::Hard => {
+            Builtin::Number(_)
+            | Builtin::Angle(_)
+            | Builtin::Time
+            | Builtin::Frame
+            | Builtin::Hard => {
                 let message = format!("`{}` is a value, not a function", callee.name);
                 self.report(Diagnostic::error(Code::WRONG_CALL, callee.at, message));
                 self.give_up(given, callee.span)

@@ -233,7 +233,7 @@ pub(super) fn solid_for_region(span: Span, wanted: &str) -> Diagnostic {
         .help("use a 2D shape of the library, such as circle or rect")
 }
 
-fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
+pub(super) fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
     let literal = literal(value);
     let what = literal.map_or("this number".to_owned(), |value| format!("`{value}`"));
     let message = format!("{subject} is an angle; {what} has no unit");
@@ -251,7 +251,7 @@ fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
 }
 
 /// The value of a literal, including its sign.
-fn literal(value: &Expr) -> Option<f64> {
+pub(super) fn literal(value: &Expr) -> Option<f64> {
     match &value.kind {
         ExprKind::Number(value) => Some(*value),
         ExprKind::Kernel(Kernel::Neg, arguments) => Some(-literal(arguments.first()?)?),

@@ -5,8 +5,10 @@ use crate::hir::Kernel;
 /// The meaning of a name of the kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Builtin {
-    /// `pi`, `tau`, `inf`
+    /// `inf`
     Number(f64),
+    /// `pi`, `tau`, in radians
+    Angle(f64),
     /// `time`, in seconds
     Time,
     /// `frame`, a whole number
@@ -111,8 +113,8 @@ use MathResult::{Angle, Mix, Number, Same, Whole};
 /// Every name of the kernel.
 pub(crate) const ROWS: &[Row] = rows! {
     "constants" {
-        "pi" Builtin::Number(std::f64::consts::PI), "pi", "Half the circumference of the unit circle.", "2 * pi";
-        "tau" Builtin::Number(std::f64::consts::TAU), "tau", "The circumference of the unit circle.", "tau / 6";
+        "pi" Builtin::Angle(std::f64::consts::PI), "pi", "Half the circumference of the unit circle: a number, and the angle of half a turn.", "2 * pi";
+        "tau" Builtin::Angle(std::f64::consts::TAU), "tau", "The circumference of the unit circle: a number, and the angle of a turn.", "tau / 6";
         "inf" Builtin::Number(f64::INFINITY), "inf", "Infinity, for ranges and bounds.", "[-inf, 0, -inf] .. [inf, 1, inf]";
         "time" Builtin::Time, "time", "The time in seconds: `--time`, or the frame number divided by `--fps`. It changes without a recompile.", "0.5 + 0.2 * sin(time)";
         "frame" Builtin::Frame, "frame", "The frame number, a whole number that counts from 0. It changes without a recompile.", "frame % 30";

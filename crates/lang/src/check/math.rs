@@ -4,7 +4,7 @@ use sdfc_diagnostics::{Code, Diagnostic, Span};
 
 use super::builtins::kernel;
 use super::call::{Callee, Given, Value};
-use super::coerce::{Role, bind, has_no_need_of_a_unit};
+use super::coerce::{Role, bind, has_no_need_of_a_unit, literal, not_an_angle};
 use super::kernel::{Math, MathResult};
 use super::operators::as_type;
 use super::types::{self, describe, is_numeric, is_scalar, lanes};
@@ -18,6 +18,14 @@ impl<'a> Checker<'a> {
         let Some(values) = self.positional(callee, given, arity, arity) else {
             return poison(callee.span);
         };
+        if matches!(math.kernel, Kernel::Sin | Kernel::Cos | Kernel::Tan)
+            && let [value] = &values[..]
+            && matches!(value.ty, Type::Number | Type::Int)
+            && literal(value).is_some_and(|value| value != 0.0)
+        {
+            self.report(not_an_angle(value, &format!("the argument of `{}`", callee.name)));
+            return poison(callee.span);
+        }
         let decide = if math.result == MathResult::Mix { 2 } else { arity };
         let Some(ty) = self.common(callee, values.iter().map(|value| (value, &value.ty))) else {
             return poison(callee.span);

@@ -343,6 +343,7 @@ impl<'a> Checker<'a> {
 fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
     match builtin {
         Builtin::Number(value) => Some((ExprKind::Number(value), Type::Number)),
+        Builtin::Angle(value) => Some((ExprKind::Number(value), Type::Angle)),
         Builtin::Time => Some((ExprKind::Time, Type::Number)),
         Builtin::Frame => Some((ExprKind::Frame, Type::Int)),
         Builtin::Hard => Some((ExprKind::Kernel(Kernel::Hard, Vec::new()), Type::Shadow)),

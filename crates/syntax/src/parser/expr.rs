@@ -85,6 +85,9 @@ impl Parser<'_> {
                 let right = parser.binary(level.tighter())?;
                 parser.link(op_span)?;
                 let span = left.span.to(right.span);
+                if op == BinaryOp::Intersect {
+                    parser.refuse_mixture(op_span, &left, &right);
+                }
                 let kind = match level.does_not_chain() {
                     Some(why) if unchained == Some(level) => {
                         parser.report_chain(why, op_span, &left, &right);
@@ -99,6 +102,21 @@ impl Parser<'_> {
             }
             Ok(left)
         })
+    }
+
+    /// Reports `a | b & c`: operators go from left to right here, but most languages bind `&`
+    /// tighter.
+    fn refuse_mixture(&mut self, op_span: Span, left: &Expr, right: &Expr) {
+        let ExprKind::Binary(BinaryOp::Union, _, first, middle) = &left.kind else { return };
+        let message = "`|` and then `&` need brackets";
+        let mut diagnostic = Diagnostic::error(Code::DOES_NOT_CHAIN, op_span, message);
+        let [a, b, c] = [first.span, middle.span, right.span].map(|span| self.slice(span));
+        if a.len() + b.len() + c.len() < 60 {
+            diagnostic = diagnostic.help(format!("write {a} | ({b} & {c}), or ({a} | {b}) & {c}"));
+        } else {
+            diagnostic = diagnostic.help("write a | (b & c), or (a | b) & c");
+        }
+        self.report(diagnostic);
     }
 
     /// Reports the second of two operators that do not chain.
