@@ -5,7 +5,7 @@
 //! - A block that begins with ```` ```sdf ```` is a scene, or the declarations of one.
 //! - ```` ```sdf E0304 ```` is a scene with that code and no other.
 //! - A row of a table with the head `| expression | gives |` has two expressions of equal value.
-//! - In the tutorial, a picture right behind a block shows the scene of that block.
+//! - In the tutorial and the gallery, a picture right behind a block shows the scene of that block.
 //!
 //! The pages of `docs/reference` and `docs/errors` have tests of their own.
 
@@ -167,10 +167,15 @@ fn every_expression_gives_what_is_said() {
 }
 
 #[test]
-fn every_picture_of_the_tutorial_shows_the_scene_of_its_block() {
-    let page = std::fs::read_to_string(repository().join("docs/tutorial.md")).unwrap();
-    let shown = pictures::shown(&page.replace("\r\n", "\n"));
-    assert!(shown.len() > 5, "the pictures were not found");
+fn every_picture_of_tutorial_and_gallery_shows_the_scene_of_its_block() {
+    let shown: Vec<(String, String)> = ["docs/tutorial.md", "docs/gallery.md"]
+        .into_iter()
+        .flat_map(|page| {
+            let page = std::fs::read_to_string(repository().join(page)).unwrap();
+            pictures::shown(&page.replace("\r\n", "\n"))
+        })
+        .collect();
+    assert!(shown.len() > 10, "the pictures were not found");
     for (path, block) in shown {
         let file = repository().join("docs").join(&path);
         let drawn = pictures::drawn(&block);
