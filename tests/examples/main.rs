@@ -17,7 +17,7 @@ fn examples_are_formatted() {
 
 #[test]
 fn the_library_is_formatted() {
-    for (name, text) in sdfc_lang::library::FILES {
+    for (name, text) in sdfc_lang::library::FILES.iter().chain([&sdfc_lang::library::LOOK]) {
         let text = text.replace("\r\n", "\n");
         let formatted = sdfc::format(name, &text).map_err(|errors| errors.to_string());
         assert!(formatted.as_deref() == Ok(&*text), "{name}: run `sdfc fmt crates/lang/std/*.sdf`");

@@ -14,10 +14,6 @@ pub const SIZE: [u32; 2] = [160, 120];
 const SAMPLES: u32 = 4;
 const POINTS: u32 = 3;
 
-/// The light and the background of all pictures of solids.
-const LIGHT: &str =
-    "\nsun(direction: [1, 2, 1.5], strength: 0.75)\nambient(strength: 0.2)\nbackground(#e8ecf2)";
-
 /// The sRGB colours of a region's field: inside, outside, and the outline.
 const INSIDE: [f64; 3] = [217.0, 120.0, 80.0];
 const OUTSIDE: [f64; 3] = [232.0, 236.0, 242.0];
@@ -54,20 +50,20 @@ fn png(entry: &Entry) -> Vec<u8> {
     bytes
 }
 
-fn scene(entry: &Entry, more: &str) -> Scene {
-    let compiled = Compiler::new().compile(&entry.name, &format!("{}{more}", entry.example));
+fn scene(entry: &Entry) -> Scene {
+    let compiled = Compiler::new().compile(&entry.name, &entry.example);
     compiled.unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 fn solid(entry: &Entry) -> Vec<u8> {
     let options = PictureOptions::new().size(SIZE).backend(Backend::Cpu).samples(Some(SAMPLES));
-    let picture = scene(entry, LIGHT).render(&options, &mut no_progress);
+    let picture = scene(entry).render(&options, &mut no_progress);
     picture.unwrap_or_else(|e| panic!("{}: {e}", entry.name)).image.to_srgb8()
 }
 
 /// Draws the region of this name in the example, with bands along its distance.
 fn region(entry: &Entry) -> Vec<u8> {
-    let scene = scene(entry, "");
+    let scene = scene(entry);
     let mut graph = scene.graph().graph.clone();
     let of_entry = |id: &ShapeId| {
         let shape = graph.shape(*id);

@@ -93,8 +93,8 @@ pub use polynomial::{Polynomial, similarity_scale_squared};
 pub use program::{CullableLoop, Program, Rays};
 pub use range::Range;
 pub use scene::{
-    Camera, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind, Reflections, Scene,
-    Settings, Shadow, Sky,
+    Camera, Exposure, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind,
+    Reflections, Scene, Settings, Shadow, Sky, Tone,
 };
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};

@@ -113,7 +113,7 @@ impl Program {
         program
     }
 
-    /// All nodes that a shader of the program computes per point.
+    /// All nodes that a shader of the program computes per point, and the exposure.
     pub fn roots(&self) -> Vec<NodeId> {
         // Destructured so that a new function does not compile until it is handled here.
         let Rays { first_hit, analytic, marched, clip, copies } = self.rays;
@@ -121,6 +121,8 @@ impl Program {
         let rays = [first_hit, analytic, marched, clip, copies];
         let material = self.material.into_iter().flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);
-        fields.into_iter().chain(rays).flatten().chain(material).chain(culling_bounds).collect()
+        let exposure = self.settings.exposure.and_then(|exposure| exposure.factor);
+        let single = fields.into_iter().chain(rays).chain([exposure]).flatten();
+        single.chain(material).chain(culling_bounds).collect()
     }
 }

@@ -58,6 +58,8 @@ pub struct Settings {
     pub occlusion: Option<Occlusion>,
     /// Mirror reflections; `None`: surfaces show lights only.
     pub reflections: Option<Reflections>,
+    /// How light becomes the colours of the picture; `None`: unchanged.
+    pub exposure: Option<Exposure>,
     /// Camera rays per pixel.
     pub samples: Option<u32>,
     /// Settings of the ray marcher.
@@ -82,6 +84,7 @@ impl Settings {
             fog,
             occlusion,
             reflections,
+            exposure,
             samples: _,
             march: _,
         } = self;
@@ -106,17 +109,20 @@ impl Settings {
             }
         }
         nodes.extend(ambient.iter().chain(background));
-        if let Some(Sky { zenith, horizon }) = *sky {
-            nodes.extend([zenith, horizon]);
+        if let Some(Sky { zenith, horizon, ground }) = *sky {
+            nodes.extend([zenith, horizon].into_iter().chain(ground));
         }
         if let Some(Fog { density, color }) = *fog {
             nodes.extend(Some(density).into_iter().chain(color));
         }
         if let Some(Occlusion { radius, strength }) = *occlusion {
-            nodes.extend([radius, strength]);
+            nodes.extend(radius.into_iter().chain([strength]));
         }
         if let Some(Reflections { count: _, strength }) = *reflections {
             nodes.push(strength);
+        }
+        if let Some(Exposure { factor, tone: _ }) = *exposure {
+            nodes.extend(factor);
         }
         nodes
     }
@@ -184,8 +190,10 @@ pub enum LightSource {
 pub struct Sky {
     /// Colour straight up, 3-vector.
     pub zenith: NodeId,
-    /// Colour at the horizon and below it, 3-vector.
+    /// Colour at the horizon, 3-vector.
     pub horizon: NodeId,
+    /// Colour straight down, 3-vector; `None`: that of the horizon.
+    pub ground: Option<NodeId>,
 }
 
 /// Fog, which fades distant surfaces.
@@ -201,10 +209,32 @@ pub struct Fog {
 /// Ambient occlusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Occlusion {
-    /// Occluders farther away than this have no effect.
-    pub radius: NodeId,
+    /// Occluders farther away than this have no effect; `None`: a part of the height of the
+    /// picture.
+    pub radius: Option<NodeId>,
     /// From 0 (no occlusion) to 1 (full).
     pub strength: NodeId,
+}
+
+/// How light becomes the colours of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exposure {
+    /// Factor of all light; `None`: 1.
+    pub factor: Option<NodeId>,
+    /// The curve that compresses light that is brighter than a picture can show.
+    pub tone: Tone,
+}
+
+/// Curves from light to the colours of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Tone {
+    /// Colours are kept; brighter ones become white.
+    Clip,
+    /// Colours are kept up to 0.8; brighter ones approach 1 and lose saturation.
+    #[default]
+    Neutral,
+    /// As film: more contrast, less saturation.
+    Film,
 }
 
 /// Mirror reflections.

@@ -28,9 +28,13 @@ pub const FILES: &[(&str, &str)] = &[
     ("std/surfaces.sdf", include_str!("../std/surfaces.sdf")),
 ];
 
-/// Adds the library's files to `sources`, unless they are already there. Returns their ids.
+/// Name and source of the default look: the settings of a scene that does not light itself.
+pub const LOOK: (&str, &str) = ("std/look.sdf", include_str!("../std/look.sdf"));
+
+/// Adds the library's files and the default look to `sources`, unless they are already there.
+/// Returns their ids, that of the look last.
 pub(crate) fn add_to(sources: &mut Sources) -> Vec<FileId> {
-    FILES.iter().map(|(name, text)| add(sources, name, text)).collect()
+    FILES.iter().chain([&LOOK]).map(|(name, text)| add(sources, name, text)).collect()
 }
 
 fn add(sources: &mut Sources, name: &str, text: &str) -> FileId {

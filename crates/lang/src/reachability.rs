@@ -40,9 +40,10 @@ pub(crate) fn check(
     };
     let files = imports.iter().map(|import| import.file).chain([scene.0]);
     let reached = library.reached(sources, files.map(|file| sources.text(file)));
-    let checked = check_items(&reached, imports, scene);
+    let look = library.look(sources);
+    let checked = check_items(&reached, look, imports, scene);
     if has_errors(&checked.1) {
-        return check_items(&library.whole(sources), imports, scene);
+        return check_items(&library.whole(sources), look, imports, scene);
     }
     checked
 }
@@ -53,6 +54,7 @@ struct Library {
     files: Vec<FileId>,
     parts: Vec<Part>,
     by_name: FxHashMap<&'static str, Vec<usize>>,
+    look: OnceLock<ast::File>,
 }
 
 /// The source of an item.
@@ -76,10 +78,10 @@ struct Read {
 
 impl Library {
     fn new(files: &[FileId]) -> Self {
-        let mut library =
-            Self { files: files.to_vec(), parts: Vec::new(), by_name: FxHashMap::default() };
+        let (parts, by_name, look) = Default::default();
+        let mut library = Self { files: files.to_vec(), parts, by_name, look };
         for (file, (_, text)) in library::FILES.iter().enumerate() {
-            for (name, range) in parts(text) {
+            for (name, range) in items_of(text) {
                 library.by_name.entry(name).or_default().push(library.parts.len());
                 library.parts.push(Part { file, range, read: OnceLock::new() });
             }
@@ -97,6 +99,12 @@ impl Library {
             let (tree, _) = sdfc_syntax::parse_part(sources, file, range.clone());
             Read { items: tree.items, mentions }
         })
+    }
+
+    /// The default look, whose file is the last one.
+    fn look(&self, sources: &Sources) -> Option<&ast::File> {
+        let file = *self.files.last()?;
+        Some(self.look.get_or_init(|| sdfc_syntax::parse(sources, file).0))
     }
 
     fn named(&self, word: &str) -> impl Iterator<Item = usize> {
@@ -140,7 +148,7 @@ impl Library {
 
 /// Name and byte range of each item of a formatted file. An item begins with a letter in the first
 /// column, or with comments on the lines above.
-fn parts(text: &str) -> Vec<(&str, Range<usize>)> {
+fn items_of(text: &str) -> Vec<(&str, Range<usize>)> {
     let mut parts: Vec<(&str, Range<usize>)> = Vec::new();
     let (mut at, mut documentation) = (0, None);
     for line in text.split_inclusive('\n') {
@@ -181,6 +189,10 @@ mod tests {
         for (file, items) in library.whole(&sources) {
             let (whole, found) = sdfc_syntax::parse(&sources, file);
             assert!(found.is_empty(), "{found:?}");
+            if library.files.last() == Some(&file) {
+                assert!(items.is_empty(), "the look declares nothing");
+                continue;
+            }
             assert_eq!(items, whole.items.iter().collect::<Vec<_>>());
         }
     }

@@ -1,10 +1,16 @@
 //! The settings of a scene (camera, lights, background, ...), their parameters and documentation.
 
+use sdfc_graph::Tone;
+
 use crate::hir::{SettingKind, Type};
 
 /// The ray methods that `march(method: ...)` can name, the default first. These are the methods of
 /// `sdfc-march`, except those that exist only for comparison.
 pub const RAY_METHODS: [&str; 5] = ["auto", "fixed", "sphere", "segment", "interval"];
+
+/// The tone curves that `exposure(tone: ...)` can name, the default first.
+pub const TONES: [(&str, Tone); 3] =
+    [("neutral", Tone::Neutral), ("film", Tone::Film), ("clip", Tone::Clip)];
 
 /// One parameter of a setting.
 #[derive(Clone, Debug)]
@@ -83,11 +89,12 @@ pub fn table() -> Vec<SettingRow> {
         row(
             (Kind::Sky, "sky", ONCE),
             "A sky behind the scene, also seen in reflections: a gradient from the horizon's colour to the \
-             zenith's. It does not light the scene; use `ambient` for that.",
+             zenith's, and below to the ground's. It does not light the scene; use `ambient` for that.",
             "sky(zenith: #4477bb, horizon: #dde8f0)",
             &[
                 ("zenith", Color, true, "colour straight up; default #4477bb"),
-                ("horizon", Color, true, "colour at the horizon and below it; default #dde8f0"),
+                ("horizon", Color, true, "colour at the horizon; default #dde8f0"),
+                ("ground", Color, true, "colour straight down; default the horizon's colour"),
             ],
         ),
         row(
@@ -119,15 +126,15 @@ pub fn table() -> Vec<SettingRow> {
                     "radius",
                     Number,
                     true,
-                    "distance within which surfaces occlude, in scene units; default 0.3",
+                    "distance within which surfaces occlude, in scene units; default a twelfth of the height of the view at the camera's target",
                 ),
                 ("strength", Number, true, "from 0 (no effect) to 1 (full effect); default 1"),
             ],
         ),
         row(
             (Kind::Reflections, "reflections", ONCE),
-            "Reflections: all surfaces mirror the scene and the sky or background by the same fraction.",
-            "reflections(count: 2, strength: 0.5)",
+            "Reflections: surfaces mirror the scene and the sky or background, metals and smooth surfaces more, and every surface more at grazing angles. Without this setting, materials mirror the sky alone.",
+            "reflections(count: 2)",
             &[
                 (
                     "count",
@@ -135,7 +142,21 @@ pub fn table() -> Vec<SettingRow> {
                     true,
                     "number of reflections that a ray follows, at most 8; default 1",
                 ),
-                ("strength", Number, true, "factor of each reflection, from 0 to 1; default 0.3"),
+                ("strength", Number, true, "factor of each reflection, from 0 to 1; default 1"),
+            ],
+        ),
+        row(
+            (Kind::Exposure, "exposure", ONCE),
+            "Exposure and the tone curve, which turns bright light into colours that a picture can show.",
+            "exposure(stops: 0.5)",
+            &[
+                ("stops", Number, true, "each stop doubles all light; default 0"),
+                (
+                    "tone",
+                    Text,
+                    true,
+                    "\"neutral\" keeps colours up to 0.8 and compresses brighter ones, \"film\" adds contrast, \"clip\" cuts off at white; default \"neutral\"",
+                ),
             ],
         ),
         row(

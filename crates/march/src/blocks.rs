@@ -88,7 +88,7 @@ pub struct ViewBlock {
     pub ambient: [f32; 3],
     /// The number of times that a camera ray is reflected.
     pub reflections: u32,
-    /// Linear colour of the background.
+    /// Linear colour of the background; under a sky, that of the ground.
     pub background: [f32; 3],
     /// Factor of the light from each reflection.
     pub reflection_strength: f32,

@@ -32,10 +32,18 @@ pub struct Features {
     pub occlusion: bool,
     /// The background is a sky: its colour depends on the direction.
     pub sky: bool,
+    /// The sky has another colour below the horizon.
+    pub ground: bool,
     /// There is fog.
     pub fog: bool,
     /// The fog has a colour of its own.
     pub fog_color: bool,
+    /// All light is multiplied by the exposure.
+    pub exposure: bool,
+    /// Light is compressed by the neutral tone curve.
+    pub neutral_tone: bool,
+    /// Light is compressed by the tone curve of film.
+    pub film_tone: bool,
     /// Camera rays are parallel.
     pub parallel: bool,
     /// Camera rays run only those iterations of loops that can affect them.
@@ -57,11 +65,10 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 19] {
-        // Destructured so that a new feature does not compile until it is handled here. Materials
-        // have a file of their own.
+    pub fn overrides(self) -> [(&'static str, bool); 25] {
+        // Destructured so that a new feature does not compile until it is handled here.
         let Self {
-            materials: _,
+            materials,
             analytic,
             marched,
             clipped,
@@ -73,8 +80,12 @@ impl Features {
             reflections,
             occlusion,
             sky,
+            ground,
             fog,
             fog_color,
+            exposure,
+            neutral_tone,
+            film_tone,
             parallel,
             culled,
             instrumented,
@@ -93,8 +104,14 @@ impl Features {
             ("REFLECTIONS", reflections),
             ("OCCLUSION", occlusion),
             ("SKY", sky),
+            ("GROUND", ground),
+            ("MIRRORS_SKY", sky && materials && !reflections),
             ("FOG", fog),
             ("FOG_COLOR", fog_color),
+            ("DEVELOPS", exposure || neutral_tone || film_tone),
+            ("EXPOSURE", exposure),
+            ("NEUTRAL_TONE", neutral_tone),
+            ("FILM_TONE", film_tone),
             ("PARALLEL", parallel),
             ("CULLED", culled),
             ("CULLED_BY_CELL", self.culls_by_cell()),

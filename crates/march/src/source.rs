@@ -110,6 +110,7 @@ pub fn source_with(
         shade,
         include_str!("wgsl/secondary.wgsl"),
         include_str!("wgsl/background.wgsl"),
+        include_str!("wgsl/tone.wgsl"),
         include_str!("wgsl/pixel.wgsl"),
     ]);
     files.extend(form.files());

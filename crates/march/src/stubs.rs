@@ -29,6 +29,9 @@ pub const SLOPE_RANGE: &str = "field_slope_range";
 /// `fn material(p: vec3f) -> Material`. Called if
 /// [`Features::materials`](crate::Features::materials) is set.
 pub const MATERIAL: &str = "material";
+/// `fn exposure() -> f32`, the factor of all light. Called if
+/// [`Features::exposure`](crate::Features::exposure) is set.
+pub const EXPOSURE: &str = "exposure";
 /// `fn load_frame()`, which loads or computes the per-frame values. Its calls are dropped if there
 /// are none.
 pub const LOAD_FRAME: &str = "load_frame";

@@ -81,6 +81,6 @@ pub use stats::{AdapterInfo, CompileTimes, EvaluationCounts, LeafEvaluations, St
 pub use tiles::{Tile, TileSize};
 pub use view::footprint::Footprint;
 pub use view::{
-    Background, Bounds, Pose, View, ViewError, ViewFog, ViewLight, ViewOcclusion, ViewShadow,
-    ViewSource,
+    Background, Bounds, Pose, View, ViewError, ViewExposure, ViewFog, ViewLight, ViewOcclusion,
+    ViewShadow, ViewSource,
 };

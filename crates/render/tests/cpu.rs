@@ -254,20 +254,22 @@ fn the_floor_mirrors_the_sphere_where_the_quadratic_formula_says() {
         let added = std::array::from_fn::<f64, 3, _>(|channel| {
             f64::from(with.color[channel] - without.color[channel])
         });
+        // Schlick's approximation for a dielectric.
+        let fresnel = 0.04 + 0.96 * (1.0 + direction.y).powi(5);
         // The reflected ray starts a fraction of a pixel above the floor.
         let expected = if apart > 1.08 || along < 0.0 {
             skies += 1;
-            [0.0, 0.0, 0.5]
+            [0.0, 0.0, 0.5 * fresnel]
         } else if apart < 0.92 {
             spheres += 1;
             let met = point + up * (along - (1.0 - apart * apart).sqrt());
             let light = (met - center).y.max(0.0);
-            [1.0, 0.5, 0.25].map(|channel| 0.5 * 0.8 * (0.1 + channel * light))
+            [1.0, 0.5, 0.25].map(|channel| fresnel * 0.5 * 0.8 * (0.1 + channel * light))
         } else {
             continue;
         };
         let off = added.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(off < 0.05, "{point}: {added:?} is not {expected:?}");
+        assert!(off < 0.1 * fresnel, "{point}: {added:?} is not {expected:?}");
     }
     assert!(spheres > 100 && skies > 100, "{spheres} of the sphere, {skies} of the sky");
 }

@@ -1,7 +1,14 @@
 //! The bounding box of a scene, as nodes that are evaluated for each frame.
 
+use rustc_hash::FxHashSet;
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
-use sdfc_graph::{Graph, NodeId, Scene, bounds};
+use sdfc_graph::{Bounds, Graph, Node, NodeId, Scene, ShapeId, bounds, reachable_where};
+
+/// The largest number of shapes that are looked at for the bounded parts of a scene.
+const MOST_PARTS: usize = 1024;
+
+/// Lowest and highest corner of a box.
+type Corners = [[f64; 3]; 2];
 
 /// Lowest and highest corner of everything that is drawn, in a graph of their own.
 #[derive(Debug)]
@@ -20,18 +27,68 @@ impl DerivedBounds {
         Some(Self { graph: extract.graph, corners })
     }
 
-    /// Derives the corners of a scene at one frame alone. They may be tighter than those that hold
-    /// for all values of the params.
-    pub(crate) fn at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
-        let (mut graph, root) = scene.shapes_at(frame)?;
-        let corners = bounds(&mut graph, root, &[]);
-        Self { graph, corners }.at(frame)
-    }
-
     /// Returns the corners at a frame, infinite where the scene has no limit.
-    pub(crate) fn at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
+    pub(crate) fn at(&self, frame: &FrameValues) -> Option<Corners> {
         let values = evaluate_frame(&self.graph, &self.corners, frame);
         let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
         Some([corner(values.first()?), corner(values.get(1)?)])
     }
+}
+
+/// The corners of what a fitted camera looks at, at one frame alone: of the bounded parts if the
+/// scene has no limit and there are any, else of everything. Corners for one frame may be tighter
+/// than those that hold for all values of the params.
+pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<Corners> {
+    let (mut graph, root) = scene.shapes_at(frame)?;
+    let mut bounds = Bounds::new(&[]);
+    let whole = corners_of(&mut graph, &mut bounds, root, frame)?;
+    if is_finite(&whole) {
+        return Some(whole);
+    }
+    let mut focus: Option<Corners> = None;
+    let mut seen = FxHashSet::default();
+    let mut left = joined(&graph, root);
+    while let Some(shape) = left.pop() {
+        if !seen.insert(shape) || seen.len() > MOST_PARTS {
+            continue;
+        }
+        let corners = corners_of(&mut graph, &mut bounds, shape, frame)?;
+        if is_finite(&corners) {
+            focus = Some(focus.map_or(corners, |focus| hull(focus, corners)));
+        } else {
+            left.extend(joined(&graph, shape));
+        }
+    }
+    Some(focus.unwrap_or(whole))
+}
+
+fn corners_of(
+    graph: &mut Graph,
+    bounds: &mut Bounds,
+    shape: ShapeId,
+    frame: &FrameValues,
+) -> Option<Corners> {
+    let corners = bounds.of(graph, shape);
+    let values = evaluate_frame(graph, &corners, frame);
+    let corner = |index: usize| values.get(index).copied();
+    Some([corner(0)?, corner(1)?].map(|[x, y, z, _]| [x, y, z]))
+}
+
+/// The shapes that a shape's formula samples at its own point.
+fn joined(graph: &Graph, shape: ShapeId) -> Vec<ShapeId> {
+    let shape = graph.shape(shape);
+    let inside = |id| !matches!(graph.node(id), Node::Sample(..));
+    let nodes = reachable_where(graph, &[shape.formula], inside);
+    let sampled = nodes.into_iter().filter_map(|id| graph.as_sample(id));
+    let here = |at: NodeId| matches!(graph.node(at), Node::Point(level, _) if level == shape.level);
+    sampled.filter(|(_, at)| here(*at)).map(|(child, _)| child).collect()
+}
+
+/// True if a box is limited on all sides and not empty.
+fn is_finite([lo, hi]: &Corners) -> bool {
+    (0..3).all(|axis| lo[axis].is_finite() && hi[axis].is_finite() && lo[axis] <= hi[axis])
+}
+
+fn hull([a, b]: Corners, [c, d]: Corners) -> Corners {
+    [[0, 1, 2].map(|axis| a[axis].min(c[axis])), [0, 1, 2].map(|axis| b[axis].max(d[axis]))]
 }

@@ -48,6 +48,9 @@ pub struct PictureOptions {
     /// Rays per pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes the
     /// scene's, or 1.
     pub samples: Option<u32>,
+    /// True for linear light without exposure and tone curve, as files with a high dynamic range
+    /// hold it.
+    pub hdr: bool,
     /// Number of times that the frame is drawn, to time it; at least 1.
     pub repetitions: u32,
 }
@@ -101,6 +104,12 @@ impl PictureOptions {
         Self { samples: samples.into(), ..self }
     }
 
+    /// Draws linear light, without exposure and tone curve.
+    #[must_use]
+    pub fn hdr(self, hdr: bool) -> Self {
+        Self { hdr, ..self }
+    }
+
     /// Sets how often the frame is drawn, to time it.
     #[must_use]
     pub fn repetitions(self, repetitions: u32) -> Self {
@@ -119,6 +128,7 @@ impl Default for PictureOptions {
             tolerance: 1.0,
             frame: None,
             samples: None,
+            hdr: false,
             repetitions: 1,
         }
     }
@@ -172,10 +182,13 @@ impl Scene {
         };
         // A method that the CPU lacks is an error if both are asked for by name.
         let both = options.backend == Backend::Cpu && options.method.is_some();
-        let Marched { program, method, note: why } = match gpu {
+        let Marched { mut program, method, note: why } = match gpu {
             Err(_) if !both => self.marched_on_cpu(method),
             Ok(_) | Err(_) => self.marched(method),
         };
+        if options.hdr {
+            program.to_mut().settings.exposure = None;
+        }
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
                 let parallel = options.pose.map(|pose| pose.parallel);
@@ -191,7 +204,7 @@ impl Scene {
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
-        let PictureOptions { size, pose, tolerance, .. } = *options;
+        let PictureOptions { size, pose, tolerance, hdr, .. } = *options;
         Ok(Painter {
             scene: self,
             program,
@@ -201,6 +214,7 @@ impl Scene {
             size,
             pose,
             tolerance,
+            hdr,
             samples,
             compile,
             note,
@@ -262,6 +276,7 @@ pub struct Painter<'s> {
     size: [u32; 2],
     pose: Option<Pose>,
     tolerance: f64,
+    hdr: bool,
     /// The points at which rays pass through a pixel.
     samples: Vec<[f64; 2]>,
     compile: CompileTimes,
@@ -314,6 +329,7 @@ impl Painter<'_> {
             }
             None => self.scene.view(values, self.size)?,
         };
+        let view = if self.hdr { View { exposure: None, ..view } } else { view };
         Ok(view.with_scaled_parameter(self.method.definition().parameter, self.tolerance))
     }
 

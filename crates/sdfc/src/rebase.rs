@@ -36,7 +36,7 @@ impl Scene {
                 ([target[0], target[1], target[2]], distance([eye[0], eye[1], eye[2]], target))
             }
             None => {
-                let [lo, hi] = self.bounds_at(&frame)?;
+                let [lo, hi] = self.focus_at(&frame)?;
                 let middle = [0, 1, 2].map(|axis| 0.5 * (lo[axis] + hi[axis]));
                 (middle, distance(lo, [hi[0], hi[1], hi[2], 0.0]))
             }

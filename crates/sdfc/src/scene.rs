@@ -10,7 +10,7 @@ use sdfc_lang::live_literals::LiveLiteral;
 use sdfc_lang::{Elaborated, Site};
 use sdfc_render::{Pose, View};
 
-use crate::derived_bounds::DerivedBounds;
+use crate::derived_bounds::{DerivedBounds, focus_at_one_frame};
 use crate::diagnostics::Diagnostics;
 use crate::error::Error;
 use crate::source_id::SourceId;
@@ -119,6 +119,12 @@ impl Scene {
         self.bounds.get_or_init(derive).as_ref()?.at(frame)
     }
 
+    /// Lowest and highest corner of what a camera looks at in a scene that states none, at one
+    /// frame: of all shapes, but without unbounded ones, such as a floor, if there are others.
+    pub fn focus_at(&self, frame: &FrameValues) -> Option<[[f64; 3]; 2]> {
+        focus_at_one_frame(&self.elaborated.scene, frame)
+    }
+
     /// The camera of a frame, for a picture whose width is `aspect` times its height: the scene's,
     /// or one that sees the whole scene. It is the same with and without live literals.
     ///
@@ -129,7 +135,7 @@ impl Scene {
         // Bounds for all values of the params would be wider, and so would be the picture.
         let bounds = match self.program.settings.camera {
             Some(_) => None,
-            None => DerivedBounds::at_one_frame(&self.elaborated.scene, frame),
+            None => self.focus_at(frame),
         };
         Ok(Pose::new(self.drawn(), frame, bounds, aspect)?)
     }

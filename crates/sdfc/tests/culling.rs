@@ -262,7 +262,7 @@ fn broken_lists_change_the_picture() -> Result<(), Failed> {
 /// Without culling each evaluation visits all parts, those for normals too. With culling far fewer
 /// are visited.
 fn visited_iterations_are_counted() -> Result<(), Failed> {
-    let scene = scene(&(hard() + OUTSIDE));
+    let scene = scene(&(hard() + OUTSIDE + "sun()\n"));
     let mut all = scene.program().clone();
     for cullable in &mut all.cullable_loops {
         let near = all.graph.number(-1e3);
@@ -298,7 +298,7 @@ fn visited_iterations_are_counted() -> Result<(), Failed> {
 
 /// `interval` visits all parts; `sphere` does not, and has no count of them.
 fn leaves_are_counted() -> Result<(), Failed> {
-    let scene = scene(&(hard() + OUTSIDE));
+    let scene = scene(&(hard() + OUTSIDE + "sun()\n"));
     let count = |method: Method| -> Result<Option<f64>, Failed> {
         let options = PictureOptions::new().size([16, 16]).method(method);
         let drawn = scene.render(&options, &mut no_progress)?;
@@ -348,7 +348,7 @@ fn cells_are_kept() -> Result<(), Failed> {
 
 /// As constants, 150 parts take 4 or 5 KiB; their lists take more.
 fn limits_are_reported() -> Result<(), Failed> {
-    let scene = scene(&(hard() + OUTSIDE));
+    let scene = scene(&(hard() + OUTSIDE + "sun()\n"));
     let program = scene.program();
     for (bytes, part) in [(1 << 10, "the scene's lists"), (6 << 10, "a tile of the picture")] {
         let gpu = testing::with_storage(bytes)?;

@@ -22,7 +22,7 @@ macro_rules! examples {
 
 /// All examples, by name.
 pub const EXAMPLES: &[Example] = examples![
-    "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lettering" "mandelbulb" "materials"
+    "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lantern" "lettering" "mandelbulb" "materials"
     "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "polyhedra" "profiles" "recursion" "round"
     "snowman" "solids" "table" "terrain" "time" "transforms" "twist"
 ];

@@ -265,7 +265,7 @@ fn parallel() -> Result<(), Failed> {
             let worst = pixels.filter(is_hit).filter_map(off).fold(0.0, f64::max);
             expect(worst < 0.01, &format!("{lens} {parallel}: rays end {worst} off the ball"))?;
             let pose = Some(request.pose);
-            let options = PictureOptions::new().size(SIZE).pose(pose);
+            let options = PictureOptions::new().size(SIZE).pose(pose).samples(1);
             let file = request.model.scene.render(&options, &mut no_progress)?;
             expect(file.image.counts() == *counts, &format!("{:?}", file.image.counts()))?;
         }

@@ -35,7 +35,8 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let values = values(&scene, args)?;
     outputs.check(args.frames)?;
     let interrupt = Interrupt::watch();
-    let painter = scene.painter(&options(args)).map_err(|e| super::lowering(&e, console))?;
+    let options = options(args).hdr(outputs.format == Format::Exr);
+    let painter = scene.painter(&options).map_err(|e| super::lowering(&e, console))?;
     let job = Job { args, console, interrupt, painter, values };
     match args.frames {
         None => job.still(&outputs),

@@ -30,6 +30,11 @@ impl StubBinding {
         Self { role, stub, root, arguments: &["p"] }
     }
 
+    /// A function without arguments, of a per-frame value.
+    pub(crate) fn of_frame(stub: &'static str, root: NodeId) -> Self {
+        Self { role: None, stub, root, arguments: &[] }
+    }
+
     fn of_ray(stub: &'static str, root: NodeId) -> Self {
         Self { role: None, stub, root, arguments: &["origin", "direction"] }
     }

@@ -52,6 +52,8 @@ impl<'p> PictureLinker<'p> {
             bindings.push(StubBinding::of_point(Some(Role::Gradient), stubs::GRADIENT, gradient));
         }
         bindings.extend(segment_bindings(program, method)?);
+        let exposure = program.settings.exposure.and_then(|exposure| exposure.factor);
+        bindings.extend(exposure.map(|root| StubBinding::of_frame(stubs::EXPOSURE, root)));
         let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
         roots.extend(program.material.into_iter().flatten());
         let used = used_slots(program, roots);

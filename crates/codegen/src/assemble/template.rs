@@ -2,7 +2,7 @@
 
 use naga::Module;
 use rustc_hash::FxHashSet;
-use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, reachable_where};
+use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, Tone, reachable_where};
 use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
@@ -42,8 +42,12 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
         reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
         occlusion: settings.occlusion.is_some(),
         sky: settings.sky.is_some(),
+        ground: settings.sky.is_some_and(|sky| sky.ground.is_some()),
         fog: settings.fog.is_some(),
         fog_color: settings.fog.is_some_and(|fog| fog.color.is_some()),
+        exposure: settings.exposure.is_some_and(|exposure| exposure.factor.is_some()),
+        neutral_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Neutral),
+        film_tone: settings.exposure.is_some_and(|it| it.tone == Tone::Film),
         parallel: settings.is_parallel(),
         ..ray_features(program, pre_intersects)
     };

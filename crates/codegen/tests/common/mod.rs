@@ -207,8 +207,8 @@ pub fn featured(mut program: Program, bits: u32) -> Program {
     program.settings = Settings {
         lights: vec![Light { source, color: vector, shadow }],
         reflections: has(4).then_some(Reflections { count: 1, strength: number }),
-        occlusion: has(5).then_some(Occlusion { radius: number, strength: number }),
-        sky: has(6).then_some(Sky { zenith: vector, horizon: vector }),
+        occlusion: has(5).then_some(Occlusion { radius: Some(number), strength: number }),
+        sky: has(6).then_some(Sky { zenith: vector, horizon: vector, ground: None }),
         fog: has(7).then_some(Fog { density: number, color: has(6).then_some(vector) }),
         camera: has(4).then_some(Camera {
             eye: vector,

@@ -80,12 +80,14 @@ pub fn check_with_imports(
     imports: &[Imported],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
-    check_items(&whole(library), imports, scene)
+    check_items(&whole(library), None, imports, scene)
 }
 
-/// Like [`check_with_imports`], with only the given items of each library file.
+/// Like [`check_with_imports`], with only the given items of each library file. A scene that does
+/// not light itself gets the settings of the look.
 pub(crate) fn check_items<'a>(
     library: &[(FileId, Vec<&'a Item>)],
+    look: Option<&'a ast::File>,
     imports: &'a [Imported],
     scene: (FileId, &'a ast::File),
 ) -> (Program, Vec<Diagnostic>) {
@@ -99,6 +101,10 @@ pub(crate) fn check_items<'a>(
         checker.check_imported(module, &import.tree);
     }
     checker.check_scene(module, scene);
+    if let Some(look) = look {
+        let module = checker.add_module(&look.items, None, true);
+        checker.check_look(module, look);
+    }
     checker.finish()
 }
 

@@ -46,6 +46,25 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Adds the settings of the default look to a scene that does not light itself, except those
+    /// that the scene states.
+    pub(super) fn check_look(&mut self, module: usize, look: &'a ast::File) {
+        let stated: Vec<SettingKind> = self.program.settings.iter().map(|s| s.kind).collect();
+        if stated.iter().any(|kind| kind.is_light()) {
+            return;
+        }
+        for item in &look.items {
+            let Item::Expr(e) = item else { continue };
+            let outer = std::mem::replace(&mut self.body, Body::new(module, e.span.start));
+            if let Some((row, callee, args)) = self.as_setting(e)
+                && !stated.iter().any(|&kind| replaces(kind, self.settings[row].kind))
+            {
+                self.setting(row, callee, args);
+            }
+            self.leave_top_level(outer);
+        }
+    }
+
     /// Checks the declarations of an imported file, but not what it draws or its settings.
     pub(super) fn check_imported(&mut self, module: usize, ast: &'a ast::File) {
         self.import(module, ast);
@@ -257,6 +276,11 @@ impl<'a> Checker<'a> {
             self.report(Diagnostic::warning(Code::UNUSED, span, message).help("remove it"));
         }
     }
+}
+
+/// True if a stated setting takes the place of a setting of the default look.
+fn replaces(stated: SettingKind, of_look: SettingKind) -> bool {
+    stated == of_look || (stated == SettingKind::Background && of_look == SettingKind::Sky)
 }
 
 fn unused(span: Span, ty: &Type) -> Diagnostic {

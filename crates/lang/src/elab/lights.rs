@@ -101,7 +101,8 @@ impl<'p> Elaborator<'p> {
             Shadow::Soft(node) => self.graph.as_number(node),
             Shadow::Off | Shadow::Hard => None,
         };
-        if matches!(shadow, Shadow::Soft(_)) {
+        // Nobody can change the default look where a warning about it would stand.
+        if matches!(shadow, Shadow::Soft(_)) && !self.program.library.contains(&expr.span.file) {
             self.soft_shadows.push(expr.span);
         }
         if sharpness.is_some_and(|value| !(POSITIVE[0]..=POSITIVE[1]).contains(&value)) {

@@ -2,13 +2,14 @@
 
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic};
 use sdfc_graph::{
-    Camera, Expander, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky, Type,
+    Camera, Expander, Exposure, Fog, Lens, March, NodeId, Occlusion, Reflections, Settings, Sky,
+    Tone, Type, Unary,
 };
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::value::Value;
 use crate::hir::{Expr, Setting, SettingKind};
-use crate::settings::RAY_METHODS;
+use crate::settings::{RAY_METHODS, TONES};
 
 /// Default field of view: 40 degrees.
 const DEFAULT_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
@@ -19,12 +20,10 @@ const DEFAULT_ZENITH: [f64; 3] = [0.0578, 0.1845, 0.4969];
 const DEFAULT_HORIZON: [f64; 3] = [0.7230, 0.8070, 0.8714];
 /// Default density of `fog()`, per scene unit.
 const DEFAULT_DENSITY: f64 = 0.05;
-/// Default radius of `ambient_occlusion()`, in scene units.
-const DEFAULT_OCCLUSION_RADIUS: f64 = 0.3;
 /// Default number of reflections of `reflections()`.
 const DEFAULT_MIRRORS: u32 = 1;
 /// Default factor of each reflection of `reflections()`.
-const DEFAULT_REFLECTION: f64 = 0.3;
+const DEFAULT_REFLECTION: f64 = 1.0;
 /// The largest number of reflections, which is also that of `march`: each one repeats all work.
 const MAX_MIRRORS: f64 = 8.0;
 /// Default number of rays per pixel of `antialias()`.
@@ -63,6 +62,7 @@ impl<'p> Elaborator<'p> {
             SettingKind::Fog => out.fog = Some(self.fog(setting)?),
             SettingKind::AmbientOcclusion => out.occlusion = Some(self.occlusion(setting)?),
             SettingKind::Reflections => out.reflections = Some(self.reflections(setting)?),
+            SettingKind::Exposure => out.exposure = Some(self.exposure(setting)?),
             SettingKind::Antialias => {
                 let samples = self.known_within(setting, 0, "`samples`", [1.0, MAX_SAMPLES])?;
                 out.samples = Some(samples.map_or(DEFAULT_SAMPLES, |samples| samples as u32));
@@ -189,12 +189,12 @@ impl<'p> Elaborator<'p> {
     }
 
     fn sky(&mut self, setting: &'p Setting) -> Outcome<Sky> {
-        let [zenith, horizon] = [0, 1].map(|index| self.setting_color(setting, index));
+        let [zenith, horizon, ground] = [0, 1, 2].map(|index| self.setting_color(setting, index));
         let mut or = |color: Option<NodeId>, default: [f64; 3]| {
             color.unwrap_or_else(|| self.graph.constant(Type::Vec3, &default))
         };
         let [zenith, horizon] = [or(zenith?, DEFAULT_ZENITH), or(horizon?, DEFAULT_HORIZON)];
-        Ok(Sky { zenith, horizon })
+        Ok(Sky { zenith, horizon, ground: ground? })
     }
 
     fn fog(&mut self, setting: &'p Setting) -> Outcome<Fog> {
@@ -208,7 +208,7 @@ impl<'p> Elaborator<'p> {
         let radius = self.setting_within(setting, 0, "`radius`", POSITIVE);
         let strength = self.setting_within(setting, 1, "`strength`", FRACTION);
         Ok(Occlusion {
-            radius: radius?.unwrap_or_else(|| self.graph.number(DEFAULT_OCCLUSION_RADIUS)),
+            radius: radius?,
             strength: strength?.unwrap_or_else(|| self.graph.number(1.0)),
         })
     }
@@ -220,6 +220,13 @@ impl<'p> Elaborator<'p> {
             count: count?.map_or(DEFAULT_MIRRORS, |count| count as u32),
             strength: strength?.unwrap_or_else(|| self.graph.number(DEFAULT_REFLECTION)),
         })
+    }
+
+    fn exposure(&mut self, setting: &'p Setting) -> Outcome<Exposure> {
+        let stops = self.setting_number(setting, 0);
+        let tone = self.argument(setting, 1).map(|expr| self.tone(expr)).transpose();
+        let factor = stops?.map(|stops| self.graph.unary(Unary::Exp2, stops));
+        Ok(Exposure { factor, tone: tone?.unwrap_or_default() })
     }
 
     fn march(&mut self, setting: &'p Setting) -> Outcome<March> {
@@ -238,18 +245,28 @@ impl<'p> Elaborator<'p> {
     }
 
     fn method(&mut self, expr: &'p Expr) -> Outcome<String> {
+        Ok(RAY_METHODS[self.choice(expr, "ray method", &RAY_METHODS)?].to_owned())
+    }
+
+    fn tone(&mut self, expr: &'p Expr) -> Outcome<Tone> {
+        let names = TONES.map(|(name, _)| name);
+        Ok(TONES[self.choice(expr, "tone curve", &names)?].1)
+    }
+
+    /// The index of the name that a string states.
+    fn choice(&mut self, expr: &'p Expr, what: &str, names: &[&str]) -> Outcome<usize> {
         let value = self.eval(&mut Env::new(self.program.locals), expr)?;
         let Value::Text(text) = &value else {
             if let Value::Choice(node, _) = value {
-                return Err(self.not_constant(expr.span, "the ray method", node));
+                return Err(self.not_constant(expr.span, &format!("the {what}"), node));
             }
             return Err(self.unexpected(expr.span, "a string", &value));
         };
-        if RAY_METHODS.contains(&&**text) {
-            return Ok(text.to_string());
+        if let Some(index) = names.iter().position(|name| *name == &**text) {
+            return Ok(index);
         }
-        let message = format!("there is no ray method \"{text}\"");
-        let help = format!("the methods are {}", RAY_METHODS.join(", "));
+        let message = format!("there is no {what} \"{text}\"");
+        let help = format!("the {what}s are {}", names.join(", "));
         let error = Diagnostic::error(ErrorCode::NOT_YET, expr.span, message);
         Err(self.report(error.help(help)))
     }

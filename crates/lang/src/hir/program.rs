@@ -188,9 +188,28 @@ pub enum SettingKind {
     Background,
     AmbientOcclusion,
     Reflections,
+    Exposure,
     Antialias,
     March,
     Sun,
     PointLight,
     SpotLight,
+}
+
+impl SettingKind {
+    /// True for a setting that lights the scene. A scene with one gets nothing of the default look.
+    pub fn is_light(self) -> bool {
+        match self {
+            Self::Ambient | Self::Sun | Self::PointLight | Self::SpotLight => true,
+            Self::Camera
+            | Self::Sky
+            | Self::Fog
+            | Self::Background
+            | Self::AmbientOcclusion
+            | Self::Reflections
+            | Self::Exposure
+            | Self::Antialias
+            | Self::March => false,
+        }
+    }
 }

@@ -6,6 +6,13 @@ fn background_color(direction: vec3f) -> vec3f {
         // The colour changes fastest near the horizon.
         let low = 1.0 - saturate(direction.y);
         color = mix(view.zenith, view.horizon, low * low * low);
+        if GROUND {
+            if direction.y < 0.0 {
+                // Under a sky, the background is the ground.
+                let high = 1.0 - saturate(-direction.y);
+                color = mix(view.background, view.horizon, high * high * high);
+            }
+        }
     }
     return color;
 }

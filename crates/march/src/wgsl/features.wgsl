@@ -24,9 +24,18 @@ override REFLECTIONS: bool;
 override OCCLUSION: bool;
 // The background is a sky, whose colour depends on the direction.
 override SKY: bool;
+// The sky has another colour below the horizon.
+override GROUND: bool;
+// Materials mirror the sky without reflected rays.
+override MIRRORS_SKY: bool;
 // There is fog; the fog has a colour of its own.
 override FOG: bool;
 override FOG_COLOR: bool;
+// Light is multiplied by the exposure or compressed by a tone curve; each of these.
+override DEVELOPS: bool;
+override EXPOSURE: bool;
+override NEUTRAL_TONE: bool;
+override FILM_TONE: bool;
 // Camera rays are parallel.
 override PARALLEL: bool;
 // Camera rays run only those iterations of loops that can affect them.

@@ -21,11 +21,21 @@ fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
     if found.status == HIT {
         hit.surface = surface_at(view_ray, found.t);
         var ambient = view.ambient;
-        if OCCLUSION {
-            ambient *= unoccluded_fraction(hit.surface.point, hit.surface.normal);
-            hit.evaluations += OCCLUSION_SAMPLES;
+        if MIRRORS_SKY {
+            var open = 1.0;
+            if OCCLUSION {
+                open = unoccluded_fraction(hit.surface.point, hit.surface.normal);
+                hit.evaluations += OCCLUSION_SAMPLES;
+            }
+            ambient *= open;
+            hit.color = ambient_light(hit.surface, ambient) + open * mirrored_sky(hit.surface);
+        } else {
+            if OCCLUSION {
+                ambient *= unoccluded_fraction(hit.surface.point, hit.surface.normal);
+                hit.evaluations += OCCLUSION_SAMPLES;
+            }
+            hit.color = ambient_light(hit.surface, ambient);
         }
-        hit.color = ambient_light(hit.surface, ambient);
         if FOG {
             hit.clear = exp(-view.fog_density * found.t);
             hit.color = mix(fog_color_at(view_ray.direction), hit.color, hit.clear);
@@ -55,8 +65,9 @@ fn picture(pixel: vec2u) -> Pixel {
     var hit: SurfaceHit;
     var color = vec3f();
     var evaluations = 0u;
-    // Factor of the light along the current view ray.
+    // Factor of the light along the current view ray, and the part of it that mirrors have left.
     var weight = 1.0;
+    var mirrored = vec3f(1.0);
     var reflections = 0u;
     // The number of lights handled for the current surface. The ray leads to the last of them, or
     // is the view ray.
@@ -84,11 +95,17 @@ fn picture(pixel: vec2u) -> Pixel {
                 evaluations += found.evaluations;
             } else {
                 hit = shade_hit(view_ray, found);
+                if REFLECTIONS {
+                    hit.color *= mirrored;
+                }
                 color += weight * hit.color;
                 evaluations += hit.evaluations;
             }
         } else {
             hit = shade_hit(view_ray, found);
+            if REFLECTIONS {
+                hit.color *= mirrored;
+            }
             color += weight * hit.color;
             evaluations += hit.evaluations;
         }
@@ -104,6 +121,9 @@ fn picture(pixel: vec2u) -> Pixel {
                     lights_done++;
                     let incoming = light_at(light, hit.surface.point);
                     pending_light = through * reflected_light(hit.surface, incoming);
+                    if REFLECTIONS {
+                        pending_light *= mirrored;
+                    }
                     needs_ray = light.shadow != SHADOW_OFF && any(pending_light > vec3f());
                     if needs_ray {
                         ray = shadow_ray(hit.surface, view_ray, hit.trace.t, incoming);
@@ -117,7 +137,11 @@ fn picture(pixel: vec2u) -> Pixel {
             } else {
                 for (var i = 0u; i < light_count; i++) {
                     let incoming = light_at(view.lights[i], hit.surface.point);
-                    color += through * reflected_light(hit.surface, incoming);
+                    if REFLECTIONS {
+                        color += mirrored * (through * reflected_light(hit.surface, incoming));
+                    } else {
+                        color += through * reflected_light(hit.surface, incoming);
+                    }
                 }
             }
             if REFLECTIONS {
@@ -125,6 +149,7 @@ fn picture(pixel: vec2u) -> Pixel {
                     reflections++;
                     lights_done = 0u;
                     weight = through * view.reflection_strength;
+                    mirrored *= mirrored_fraction(hit.surface, -view_ray.direction);
                     view_ray = reflected_ray(hit.surface, view_ray, hit.trace.t);
                     ray = view_ray;
                     continue;
@@ -136,6 +161,9 @@ fn picture(pixel: vec2u) -> Pixel {
     var primary = hit.trace;
     if REFLECTIONS {
         primary = first;
+    }
+    if DEVELOPS {
+        color = developed(color);
     }
     return pixel_of(primary, color, evaluations);
 }

@@ -1,5 +1,8 @@
 // Shading of scenes without materials: one colour, Lambert's law.
 
+// Reflectance of a polished dielectric, if surfaces mirror each other.
+const POLISHED: f32 = 0.04;
+
 struct Surface {
     point: vec3f,
     normal: vec3f,
@@ -8,6 +11,19 @@ struct Surface {
 fn surface_at(ray: Ray, t: f32) -> Surface {
     let point = ray_point(ray, t);
     return Surface(point, normal_at(point, -ray.direction));
+}
+
+// The fraction of the light from the mirrored direction that the surface reflects: without a
+// material, that of a polished dielectric (Schlick).
+fn mirrored_fraction(surface: Surface, toward_eye: vec3f) -> vec3f {
+    let rest = 1.0 - saturate(dot(surface.normal, toward_eye));
+    let square = rest * rest;
+    return vec3f(mix(POLISHED, 1.0, square * square * rest));
+}
+
+// Surfaces without materials do not mirror the sky.
+fn mirrored_sky(surface: Surface) -> vec3f {
+    return vec3f();
 }
 
 // The ambient light that the surface reflects.

@@ -90,6 +90,20 @@ fn ambient_specular(straight_on: vec3f, roughness: f32, facing: f32) -> vec3f {
     return max(straight_on * (r.z - 1.04 * a) + (r.w + 1.04 * a), vec3f());
 }
 
+// The fraction of the light from the mirrored direction that the surface reflects towards the eye
+// as a mirror: rough surfaces spread the rest.
+fn mirrored_fraction(surface: Surface, toward_eye: vec3f) -> vec3f {
+    let paint = surface.material;
+    let mirrored = ambient_specular(specular_color(paint), paint.roughness, surface.facing);
+    return (1.0 - paint.roughness) * mirrored;
+}
+
+// What mirroring the sky adds to mirroring the ambient light.
+fn mirrored_sky(surface: Surface) -> vec3f {
+    let sky = background_color(reflect(-surface.toward_eye, surface.normal));
+    return surface.material.occlusion * mirrored_fraction(surface, surface.toward_eye) * (sky - view.ambient);
+}
+
 // The light that the surface emits, and the ambient light that it reflects.
 fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     let paint = surface.material;

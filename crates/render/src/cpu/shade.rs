@@ -78,6 +78,25 @@ impl Surface {
         }
     }
 
+    /// The fraction of the light from the mirrored direction that the surface reflects as a mirror.
+    pub(super) fn mirrored_fraction(&self) -> DVec3 {
+        match self.paint {
+            Some(paint) => paint.specular(self.facing()) * (1.0 - paint.roughness),
+            None => DVec3::splat(schlick(DIELECTRIC, self.facing().min(1.0))),
+        }
+    }
+
+    /// What mirroring the sky adds to mirroring the ambient light, which is `sky` and `ambient`.
+    pub(super) fn mirrored_sky(&self, sky: DVec3, ambient: DVec3) -> DVec3 {
+        let occlusion = self.paint.map_or(0.0, |paint| paint.occlusion);
+        self.mirrored_fraction() * (sky - ambient) * occlusion
+    }
+
+    /// The direction in which the surface mirrors the eye.
+    pub(super) fn mirrored_direction(&self) -> DVec3 {
+        self.normal * (2.0 * self.normal.dot(self.toward_eye)) - self.toward_eye
+    }
+
     /// The light that the surface reflects from a light source: Lambert's law and, with a material,
     /// a highlight.
     pub(super) fn lit(&self, incoming: &IncomingLight) -> DVec3 {
@@ -120,6 +139,12 @@ impl Paint {
         self.mixed(|mirrored, matt| {
             mirrored.map(|straight_on| schlick(straight_on, tilt) * facets) + matt * passed
         })
+    }
+
+    /// The fraction of uniform light that microfacets reflect towards the eye.
+    fn specular(&self, facing: f64) -> DVec3 {
+        let [scale, bias] = karis(self.roughness, facing);
+        self.mixed(|color, _| color.map(|straight_on| (straight_on * scale + bias).max(0.0)))
     }
 
     /// The fraction of uniform ambient light that leaves towards the eye.

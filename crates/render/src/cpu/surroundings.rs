@@ -57,8 +57,9 @@ pub(super) fn light_visibility(light: &ViewLight, clearance: f64) -> f64 {
 pub(super) fn background_color(view: &View, direction: DVec3) -> DVec3 {
     match view.background {
         Background::Plain(color) => color,
-        Background::Sky { zenith, horizon } => {
-            zenith + (horizon - zenith) * (1.0 - direction.y.clamp(0.0, 1.0)).powi(3)
+        Background::Sky { zenith, horizon, ground } => {
+            let far = if direction.y < 0.0 { ground } else { zenith };
+            far + (horizon - far) * (1.0 - direction.y.abs().min(1.0)).powi(3)
         }
     }
 }

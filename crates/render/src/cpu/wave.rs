@@ -12,7 +12,7 @@ use super::trace::copies::trace_among_copies;
 use super::trace::{Limits, Trace, trace};
 use crate::image::HIT;
 use crate::view::footprint::Footprint;
-use crate::view::{View, ViewLight, ViewOcclusion, ViewShadow};
+use crate::view::{Background, View, ViewLight, ViewOcclusion, ViewShadow};
 
 /// The number of samples above a surface for ambient occlusion.
 const OCCLUSION_SAMPLES: u32 = 5;
@@ -47,7 +47,7 @@ struct ViewRay<T> {
     pixel: usize,
     ray: Ray<T>,
     /// Factor of the light along the ray.
-    weight: f64,
+    weight: DVec3,
 }
 
 /// The hit of a view ray.
@@ -73,7 +73,7 @@ impl<T: Real> Wave<'_, T> {
             .map(|(pixel, position)| ViewRay {
                 pixel,
                 ray: self.camera_ray(*position),
-                weight: 1.0,
+                weight: DVec3::ONE,
             })
             .collect();
         let mut shades = vec![Shade { color: DVec3::ZERO, evaluations: 0 }; positions.len()];
@@ -131,7 +131,11 @@ impl<T: Real> Wave<'_, T> {
         let open = self.unoccluded_fractions(&hits, shades);
         for (SurfaceHit { view_ray, t, surface, .. }, open) in hits.iter_mut().zip(open) {
             let (clear, haze) = through_fog(self.view, -surface.toward_eye, (*t).into());
-            let reflected = surface.ambient(self.view.ambient * open);
+            let mut reflected = surface.ambient(self.view.ambient * open);
+            if self.mirrors_sky() {
+                let sky = background_color(self.view, surface.mirrored_direction());
+                reflected += surface.mirrored_sky(sky, self.view.ambient) * open;
+            }
             shades[view_ray.pixel].color +=
                 (reflected * clear + haze * (1.0 - clear)) * view_ray.weight;
             view_ray.weight *= clear;
@@ -140,6 +144,12 @@ impl<T: Real> Wave<'_, T> {
             self.light(light, &hits, shades);
         }
         hits
+    }
+
+    /// True if materials mirror the sky without reflected rays.
+    fn mirrors_sky(&self) -> bool {
+        let is_sky = matches!(self.view.background, Background::Sky { .. });
+        is_sky && self.material.is_some() && self.view.reflections == 0
     }
 
     /// The unoccluded fraction of ambient light at each hit: 1, less what the field falls below
@@ -257,8 +267,7 @@ impl<T: Real> Wave<'_, T> {
     /// The reflection of a view ray.
     fn reflected(&self, hit: &SurfaceHit<T>) -> ViewRay<T> {
         let SurfaceHit { view_ray, t, surface, .. } = hit;
-        let inward = -surface.toward_eye;
-        let direction = inward - 2.0 * inward.dot(surface.normal) * surface.normal;
+        let direction = surface.mirrored_direction();
         let ray = Ray {
             origin: self.lifted(hit, T::constant(1.5) * self.near(hit)),
             direction: direction.to_array().map(T::constant),
@@ -267,15 +276,18 @@ impl<T: Real> Wave<'_, T> {
             spread: view_ray.ray.spread,
             tolerance: view_ray.ray.tolerance,
         };
-        let weight = view_ray.weight * self.view.reflection_strength;
+        let factor = surface.mirrored_fraction() * self.view.reflection_strength;
+        let weight = view_ray.weight * factor;
         ViewRay { pixel: view_ray.pixel, ray, weight }
     }
 
     fn block(&self, trace: &Trace<T>, shade: Shade) -> PixelBlock {
         let t: f64 = trace.t.into();
+        let exposure = self.view.exposure;
+        let color = exposure.map_or(shade.color, |exposure| exposure.developed(shade.color));
         let depth = if t > self.view.t_max { self.view.t_max } else { t };
         PixelBlock {
-            color: shade.color.as_vec3().extend(1.0).to_array(),
+            color: color.as_vec3().extend(1.0).to_array(),
             depth: depth as f32,
             status: trace.status,
             evaluations: shade.evaluations,

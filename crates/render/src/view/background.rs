@@ -6,6 +6,9 @@ use sdfc_graph::{Fog, NodeId, Occlusion, Settings, Sky};
 use super::error::ViewError;
 use super::values::{finite, fraction, positive};
 
+/// Radius of the occlusion in heights of the view where the camera looks, if the scene states none.
+const DEFAULT_OCCLUSION: f64 = 1.0 / 12.0;
+
 /// The background in linear colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
@@ -15,8 +18,10 @@ pub enum Background {
     Sky {
         /// Straight up.
         zenith: DVec3,
-        /// At the horizon and below it.
+        /// At the horizon.
         horizon: DVec3,
+        /// Straight down.
+        ground: DVec3,
     },
 }
 
@@ -42,10 +47,10 @@ pub(super) fn background(
     settings: &Settings,
     value: &dyn Fn(NodeId) -> [f64; 4],
 ) -> Result<Background, ViewError> {
-    if let Some(Sky { zenith, horizon }) = settings.sky {
-        let [zenith, horizon] =
-            [zenith, horizon].map(|node| finite(value(node), "the sky's colour"));
-        return Ok(Background::Sky { zenith: zenith?, horizon: horizon? });
+    if let Some(Sky { zenith, horizon, ground }) = settings.sky {
+        let [zenith, horizon, ground] = [zenith, horizon, ground.unwrap_or(horizon)]
+            .map(|node| finite(value(node), "the sky's colour"));
+        return Ok(Background::Sky { zenith: zenith?, horizon: horizon?, ground: ground? });
     }
     let color = settings.background.map(|node| finite(value(node), "the background colour"));
     Ok(Background::Plain(color.transpose()?.unwrap_or_default()))
@@ -63,12 +68,16 @@ pub(super) fn view_fog(fog: Fog, value: &dyn Fn(NodeId) -> [f64; 4]) -> Result<V
     Ok(ViewFog { density, color })
 }
 
+/// The occlusion of a view whose height where the camera looks is `height`.
 pub(super) fn view_occlusion(
     occlusion: Occlusion,
+    height: f64,
     value: &dyn Fn(NodeId) -> [f64; 4],
 ) -> Result<ViewOcclusion, ViewError> {
+    let radius =
+        occlusion.radius.map(|node| positive(value(node), "the radius of ambient occlusion"));
     Ok(ViewOcclusion {
-        radius: positive(value(occlusion.radius), "the radius of ambient occlusion")?,
+        radius: radius.transpose()?.unwrap_or(DEFAULT_OCCLUSION * height),
         strength: fraction(value(occlusion.strength), "the strength of ambient occlusion")?,
     })
 }

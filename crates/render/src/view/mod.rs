@@ -5,6 +5,7 @@
 
 mod background;
 mod error;
+mod exposure;
 pub(crate) mod footprint;
 mod light;
 mod limits;
@@ -20,6 +21,7 @@ use sdfc_march::{LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, MethodParameter, ViewB
 
 use crate::tiles::Tile;
 use background::{background, view_fog, view_occlusion};
+use exposure::view_exposure;
 use footprint::Footprint;
 use light::lights;
 use limits::Limits;
@@ -27,6 +29,7 @@ use values::{aspect, finite, fraction, value_of};
 
 pub use background::{Background, ViewFog, ViewOcclusion};
 pub use error::ViewError;
+pub use exposure::ViewExposure;
 pub use light::{ViewLight, ViewShadow, ViewSource};
 pub use pose::Pose;
 pub use values::Bounds;
@@ -67,6 +70,8 @@ pub struct View {
     pub fog: Option<ViewFog>,
     /// The ambient occlusion.
     pub occlusion: Option<ViewOcclusion>,
+    /// The exposure.
+    pub exposure: Option<ViewExposure>,
     /// The number of reflections of a camera ray, at most [`MAX_REFLECTIONS`].
     pub reflections: u32,
     /// Factor of the light from each reflection, 0..1.
@@ -147,6 +152,9 @@ impl View {
             }
             None => (0, 0.0),
         };
+        let occlusion = settings.occlusion;
+        let occlusion =
+            occlusion.map(|found| view_occlusion(found, pose.height_at_target(), value));
         let ambient = settings.ambient.map(|node| finite(value(node), "the ambient light"));
         Ok(Self {
             size,
@@ -163,7 +171,8 @@ impl View {
             ambient: ambient.transpose()?.unwrap_or_default(),
             background: background(settings, value)?,
             fog: settings.fog.map(|fog| view_fog(fog, value)).transpose()?,
-            occlusion: settings.occlusion.map(|found| view_occlusion(found, value)).transpose()?,
+            occlusion: occlusion.transpose()?,
+            exposure: settings.exposure.map(|found| view_exposure(found, value)).transpose()?,
             reflections,
             reflection_strength,
             within: None,
@@ -242,7 +251,7 @@ impl View {
         let Footprint { radius, spread } = self.footprint();
         let [background, zenith, horizon] = match self.background {
             Background::Plain(color) => [color, DVec3::ZERO, DVec3::ZERO],
-            Background::Sky { zenith, horizon } => [DVec3::ZERO, zenith, horizon],
+            Background::Sky { zenith, horizon, ground } => [ground, zenith, horizon],
         };
         let fog = self.fog.unwrap_or(ViewFog { density: 0.0, color: None });
         let occlusion = self.occlusion.unwrap_or(ViewOcclusion { radius: 0.0, strength: 0.0 });

@@ -14,8 +14,8 @@ const FITTED_FOV: f64 = 40.0 * std::f64::consts::PI / 180.0;
 /// Direction from the middle of the bounds towards a fitted camera: from the right, above and in
 /// front.
 const FITTED_DIRECTION: DVec3 = DVec3::new(0.5, 0.45, 1.0);
-/// Factor of the distance at which the sphere around the bounds just fits.
-const FITTED_MARGIN: f64 = 1.05;
+/// The fraction of the picture's width and height that the corners of the bounds may fill.
+const FITTED_FILL: f64 = 0.9;
 
 /// The position and direction of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The scene's camera at a frame; without one, a camera fitted to the bounds for a picture
+    /// The scene's camera at a frame; without one, a camera fitted to the bounds, for a picture
     /// whose width is `aspect` times its height.
     ///
     /// # Errors
@@ -84,15 +84,36 @@ impl Pose {
     /// A camera that sees the whole of the bounds from the right, above and in front; an unlimited
     /// side counts as long as the longest limited one.
     pub fn fitted(bounds: Option<Bounds>, aspect: f64) -> Self {
+        Self::fitted_from(bounds, aspect, FITTED_DIRECTION, DVec3::Y)
+    }
+
+    /// A camera that sees the whole of the bounds from a direction, of any length.
+    pub fn fitted_from(bounds: Option<Bounds>, aspect: f64, toward_eye: DVec3, up: DVec3) -> Self {
         let [lo, hi] = limited(bounds);
         let target = (lo + hi) / 2.0;
-        // The narrower side decides; a flat or single-point box still needs some distance.
-        let narrower = FITTED_FOV.min(2.0 * ((FITTED_FOV / 2.0).tan() * aspect).atan());
-        let radius = ((hi - lo).length() / 2.0).max(1e-3);
-        let distance = FITTED_MARGIN * radius / (narrower / 2.0).sin();
-        let eye = target + FITTED_DIRECTION.normalize() * distance;
         let half_height = (FITTED_FOV / 2.0).tan();
-        Self { eye, target, up: DVec3::Y, parallel: false, half_height }
+        let toward_eye = toward_eye.normalize_or(DVec3::Z);
+        let pose = Self { eye: target + toward_eye, target, up, parallel: false, half_height };
+        let [x, y, z] = pose.basis();
+        // Each corner is in the picture, at least this far away.
+        let corners = (0..8).map(|index| {
+            let end = |axis: usize| if index >> axis & 1 == 0 { lo[axis] } else { hi[axis] };
+            DVec3::new(end(0), end(1), end(2)) - target
+        });
+        let away = corners.map(|corner| {
+            let [width, height] =
+                [aspect * half_height, half_height].map(|half| FITTED_FILL * half);
+            (corner.dot(x).abs() / width).max(corner.dot(y).abs() / height) - corner.dot(z)
+        });
+        // A single point still needs some distance.
+        let distance = away.fold(1e-3, f64::max);
+        Self { eye: target + toward_eye * distance, ..pose }
+    }
+
+    /// Height of the view where the camera looks.
+    pub fn height_at_target(&self) -> f64 {
+        let distance = if self.parallel { 1.0 } else { (self.target - self.eye).length() };
+        2.0 * self.half_height * distance
     }
 
     /// Unit vectors to the right, upwards and into the picture.

@@ -113,7 +113,7 @@ pub fn foggy(density: f64) -> Program {
     let graph = &mut program.graph;
     let [zenith, horizon] =
         [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0]].map(|color| graph.constant(Type::Vec3, &color));
-    program.settings.sky = Some(Sky { zenith, horizon });
+    program.settings.sky = Some(Sky { zenith, horizon, ground: None });
     program.settings.fog = Some(Fog { density: graph.number(density), color: None });
     program
 }
@@ -127,7 +127,7 @@ pub fn occluded(radius: f64) -> Program {
     program.gradient = program.gradient.map(|gradient| graph.mul(gradient, two));
     program.settings.lights[0].color = graph.constant(Type::Vec3, &[0.0; 3]);
     program.settings.ambient = Some(graph.constant(Type::Vec3, &[1.0; 3]));
-    let (radius, strength) = (graph.number(radius), graph.number(1.0));
+    let (radius, strength) = (Some(graph.number(radius)), graph.number(1.0));
     program.settings.occlusion = Some(Occlusion { radius, strength });
     program
 }

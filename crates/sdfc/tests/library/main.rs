@@ -66,13 +66,20 @@ fn main() {
     conclusion.exit();
 }
 
+/// The light of the pictures. The default look, with its soft shadow, is drawn elsewhere.
+const LIGHT: &str = "\nsun()";
+
 fn drawn(entry: &Entry) -> Result<String, Failed> {
-    let (hit, found) = agree::precisions(&agree::scene(&entry.name, &entry.example)?)?;
+    let (hit, found) = agree::precisions(&agree::scene(&entry.name, &lit(entry))?)?;
     Ok(format!("{hit:>4} px {:.0e}", found.depth))
 }
 
+fn lit(entry: &Entry) -> String {
+    format!("{}{LIGHT}", entry.example)
+}
+
 fn gpu(entry: &Entry) -> Result<String, Failed> {
-    let found = agree::devices(&agree::scene(&entry.name, &entry.example)?)?;
+    let found = agree::devices(&agree::scene(&entry.name, &lit(entry))?)?;
     Ok(format!("{:.0e}, {}/255", found.depth, found.color))
 }
 

@@ -34,7 +34,7 @@ impl Session {
     pub fn fit_view(&mut self) {
         let Some(model) = &self.model else { return };
         let (values, aspect) = (self.values(model), self.aspect());
-        let bounds = model.scene.bounds_at(&values);
+        let bounds = model.scene.focus_at(&values);
         self.move_camera(|camera| camera.fit(bounds, aspect));
     }
 

@@ -175,7 +175,7 @@ impl OrbitCamera {
 
     /// Moves so that it sees all of the bounds, without turning.
     pub fn fit(&mut self, bounds: Option<Bounds>, aspect: f64) {
-        let fitted = Pose::fitted(bounds, aspect);
+        let fitted = Pose::fitted_from(bounds, aspect, -self.forward, self.up);
         let distance = (fitted.target - fitted.eye).length();
         // The fitted distance is that of the fitted pose's field of view.
         let half = distance * fitted.half_height;

@@ -21,7 +21,7 @@ mod tests {
     #[test]
     fn the_shaded_view_is_the_picture_that_render_writes() {
         let scene = sdfc::Compiler::new().compile("a", BALL).unwrap();
-        let options = sdfc::PictureOptions::new().size(SIZE).backend(sdfc::Backend::Cpu);
+        let options = sdfc::PictureOptions::new().size(SIZE).backend(sdfc::Backend::Cpu).samples(1);
         let expected = scene.render(&options, &mut sdfc::no_progress).unwrap().image.to_srgb8();
         let (colors, _) = view_of(BALL, ViewMode::Shaded, |_| {});
         for (color, expected) in colors.iter().flatten().zip(expected) {
