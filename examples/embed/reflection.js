@@ -120,12 +120,14 @@ function slider({ type, min, max, choices, default: lanes }) {
   return [input, () => Number(input.value)];
 }
 
-// Conversions between linear light and sRGB.
-const encode = (light) => (light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055);
-const decode = (code) => (code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4);
+/// Conversions between linear light and sRGB.
+export const encode = (light) =>
+  light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055;
+export const decode = (code) =>
+  code <= 0.04045 ? code / 12.92 : ((code + 0.055) / 1.055) ** 2.4;
 
 /// Returns where the members of a buffer's structure are, as indices into arrays of 4-byte words.
-function memberPlaces(reflection, role) {
+export function memberPlaces(reflection, role) {
   const { type } = reflection.buffers.find((buffer) => buffer.role === role);
   const { members } = reflection.structs.find(({ name }) => name === type);
   return Object.fromEntries(members.map(({ name, offset }) => [name, offset / 4]));

@@ -26,10 +26,10 @@ fn put_package(session: &Session) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The playground draws the typed scene and shows its errors.
+/// The page draws the typed scene and shows its errors.
 pub fn draws_the_typed_scene(session: &mut Session) -> Result<(), Failed> {
     put_package(session)?;
-    session.chromium.open(&session.server.url("playground/index.html"), [660, 800])?;
+    session.chromium.open(&session.server.url("compiler/index.html"), [660, 800])?;
     for typed in [None, Some("sphere(1) +"), Some("torus(major: 1, minor: 0.3)\nsphere(0.4)")] {
         if let Some(text) = typed {
             session.chromium.apply(TYPE, &text.into())?;

@@ -1,8 +1,17 @@
 #!/usr/bin/env bash
 # Builds sdfc.wasm beside this script, with rustup's target for WebAssembly. If that is not available,
 # it uses Debian's packages rustc-web, cargo-web and rust-web-src, which build the standard library
-# too.
+# too. With --small the module is as small as it can be, and takes longer to build.
 set -euo pipefail
+case "${1:-}" in
+  "") ;;
+  --small)
+    export CARGO_PROFILE_RELEASE_OPT_LEVEL=z CARGO_PROFILE_RELEASE_LTO=fat
+    export CARGO_PROFILE_RELEASE_CODEGEN_UNITS=1 CARGO_PROFILE_RELEASE_PANIC=abort
+    export CARGO_PROFILE_RELEASE_STRIP=symbols
+    ;;
+  *) echo "usage: build.sh [--small]" >&2; exit 2 ;;
+esac
 package=$(cd "$(dirname "$0")" && pwd)
 cd "$package/../../.."
 target=wasm32-unknown-unknown

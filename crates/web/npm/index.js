@@ -3,16 +3,21 @@
 
 /// Loads the compiler from a URL or from bytes. Default: `sdfc.wasm` beside this file.
 export async function load(wasm = new URL("sdfc.wasm", import.meta.url)) {
-  return new Compiler(await WebAssembly.compile(await bytesOf(wasm)));
+  return new Compiler(await moduleOf(wasm));
 }
 
-async function bytesOf(wasm) {
-  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return wasm;
+async function moduleOf(wasm) {
+  if (wasm instanceof ArrayBuffer || ArrayBuffer.isView(wasm)) return WebAssembly.compile(wasm);
   const url = new URL(wasm, import.meta.url);
-  if (url.protocol === "file:") return (await import("node:fs/promises")).readFile(url);
+  if (url.protocol === "file:") {
+    return WebAssembly.compile(await (await import("node:fs/promises")).readFile(url));
+  }
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: ${response.status}`);
-  return response.arrayBuffer();
+  // Browsers keep the machine code of what they compile from a stream, which needs this type.
+  return response.headers.get("Content-Type") === "application/wasm"
+    ? WebAssembly.compileStreaming(response)
+    : WebAssembly.compile(await response.arrayBuffer());
 }
 
 class Compiler {

@@ -1,0 +1,60 @@
+// The colours of scene text: a tokeniser with the tokens of section 2 of the language reference.
+
+import { HighlightStyle, LanguageSupport, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
+import { tags } from "@lezer/highlight";
+
+const KEYWORDS = /^(?:let|param|fn|solid|region|shape|import|from|as|if|else|for|in|lipschitz|require)$/;
+const ATOMS = /^(?:true|false|inf|pi)$/;
+const TYPES = /^(?:number|int|bool|length|angle|vec2|vec3|vec4|color|curve|str|range)$/;
+
+const sdf = StreamLanguage.define({
+  name: "sdf",
+  languageData: {
+    commentTokens: { line: "//" },
+    closeBrackets: { brackets: ["(", "[", "{", '"'] },
+    indentOnInput: /^\s*[)\]}]$/,
+  },
+  startState: () => ({ depth: 0, declares: false }),
+  token(stream, state) {
+    if (stream.eatSpace()) return null;
+    if (stream.match(/^\/\/\/?.*/)) return "comment";
+    if (stream.match(/^"(?:[^"\\]|\\.)*"?/)) return "string";
+    if (stream.match(/^#[A-Za-z0-9_]*/)) return "color";
+    if (stream.match(/^[0-9]+(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?[A-Za-z_]*/)) return "number";
+    const word = stream.match(/^[A-Za-z_][A-Za-z0-9_]*/)?.[0];
+    if (word) return kind(word, stream, state);
+    const mark = stream.match(/^(?:\.\.\.?|->|[=!<>]=|&&|\|\||.)/)[0];
+    if (/[([{]/.test(mark)) state.depth += 1;
+    if (/[)\]}]/.test(mark)) state.depth = Math.max(0, state.depth - 1);
+    return /[()[\]{},;:]/.test(mark) ? "punctuation" : "operator";
+  },
+  indent(state, after, { unit }) {
+    return Math.max(0, state.depth - (/^\s*[)\]}]/.test(after) ? 1 : 0)) * unit;
+  },
+  tokenTable: { color: tags.color, name: tags.definition(tags.variableName), call: tags.function(tags.variableName), label: tags.labelName },
+});
+
+function kind(word, stream, state) {
+  const declares = state.declares;
+  state.declares = /^(?:let|param|fn|solid|region|shape)$/.test(word);
+  if (KEYWORDS.test(word)) return "keyword";
+  if (ATOMS.test(word)) return "atom";
+  if (declares) return "name";
+  if (stream.match(/^\s*:(?!:)/, false) && state.depth > 0) return "label";
+  if (stream.match(/^\s*\(/, false)) return "call";
+  return TYPES.test(word) ? "typeName" : "variableName";
+}
+
+// The colours are variables of the page, so that they follow its theme.
+const style = HighlightStyle.define([
+  { tag: tags.comment, color: "var(--code-comment)", fontStyle: "italic" },
+  { tag: [tags.keyword, tags.typeName], color: "var(--code-keyword)" },
+  { tag: [tags.number, tags.atom, tags.color], color: "var(--code-number)" },
+  { tag: tags.string, color: "var(--code-string)" },
+  { tag: tags.function(tags.variableName), color: "var(--code-call)" },
+  { tag: tags.labelName, color: "var(--code-label)" },
+  { tag: tags.definition(tags.variableName), color: "var(--code-name)", fontWeight: "600" },
+  { tag: [tags.operator, tags.punctuation], color: "var(--code-mark)" },
+]);
+
+export const language = () => [new LanguageSupport(sdf), syntaxHighlighting(style)];
