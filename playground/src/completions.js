@@ -11,6 +11,8 @@ const options = library.map(({ name, signature, doc }) => ({
   info: doc || undefined,
 }));
 
+const known = new Set(library.map(({ name }) => name));
+
 function libraryNames(context) {
   const word = context.matchBefore(/[A-Za-z_]\w*/);
   if (!word || (word.text.length < 2 && !context.explicit)) return null;
@@ -18,4 +20,10 @@ function libraryNames(context) {
   return before ? null : { from: word.from, options, validFor: /^\w*$/ };
 }
 
-export const completions = () => autocompletion({ override: [libraryNames, completeAnyWord] });
+/// Names in the text that are not in the library.
+async function ownNames(context) {
+  const found = await completeAnyWord(context);
+  return found && { ...found, options: found.options.filter(({ label }) => !known.has(label)) };
+}
+
+export const completions = () => autocompletion({ override: [libraryNames, ownNames] });
