@@ -128,7 +128,7 @@ fn many() -> Result<(), Failed> {
         format!("{kind}(0.1{index:03}).translate([{x}, {y}, 0.0{index}])\n")
     };
     let text: String = (0..400).map(leaf).collect();
-    let text = text + "camera(eye: [0, 0, 12], target: 0, fov: 40deg)\n";
+    let text = text + "camera(eye: [0, 0, 12], target: 0, fov: 40deg)\nsun()\n";
     let mut fixture = Fixture::new(&text)?;
     fixture.finish()?;
     let before = fixture.picture()?.counts.hit;
