@@ -2,7 +2,7 @@
 
 use sdfc_graph::{
     Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, ShapeId,
-    fold_transforms, gradient, uniforms,
+    fold_transforms, uniforms,
 };
 
 use crate::analytic::operands::Operands;
@@ -12,6 +12,7 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
+use crate::gradient::best_gradient;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
@@ -107,7 +108,8 @@ fn flatten(
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();
-    program.gradient = Some(gradient(graph, distance, own_point));
+    let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
+    program.gradient = Some(gradient);
     program.cullable_loops = cullable_loops(graph, &fields, lipschitz);
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
         program.loop_bounds = looped_bounds(graph, &mut bounds, root);
@@ -121,7 +123,8 @@ fn flatten(
         unrolled_limit,
         leaves,
         distance_cost: cost(graph, &[distance]),
-        gradient_cost: cost(graph, program.gradient.as_slice()),
+        gradient_cost: cost(graph, &[gradient]),
+        gradient: gradient_report,
         ray_cost: cost(graph, &queries),
         marched_cost: cost(graph, copies.or(marched).as_slice()),
         analytic: operands.analytic.iter().map(|operand| operand.shape).collect(),

@@ -9,6 +9,7 @@ use crate::certify::promise::Sides;
 use crate::certify::quality::Qualities;
 use crate::certify::reason::Reason;
 use crate::cost::Cost;
+use crate::gradient::GradientReport;
 use crate::reroll::rewrite::RerolledLoop;
 use crate::shapes::shapes_below;
 
@@ -25,6 +26,8 @@ pub struct Report {
     pub distance_cost: Cost,
     /// Cost of the gradient, including what it shares with the distance.
     pub gradient_cost: Cost,
+    /// How the gradient is derived.
+    pub gradient: GradientReport,
     /// Cost of the functions of a ray that are evaluated before it is marched.
     pub ray_cost: Cost,
     /// Cost of the distance to the marched operands.

@@ -17,8 +17,10 @@
 //! | a loop's iteration count | 0 |
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
+mod cuts;
 mod live;
 mod loops;
+mod parts;
 mod rules;
 mod sweep;
 mod terms;
@@ -27,13 +29,29 @@ pub(crate) use self::sweep::TINY;
 pub use self::sweep::adjoints;
 
 use crate::graph::Graph;
-use crate::node::NodeId;
+use crate::node::{NodeId, Type};
 
 /// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
 pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
     let found = sweep::adjoints(graph, root, &[point]);
-    match loops::merged(graph, &found)[..] {
-        [gradient] => gradient,
-        _ => sweep::zero(graph, graph.ty(point)),
-    }
+    merged(graph, &found)
+}
+
+/// The same gradient, summed up at every scalar that alone needs at least `least` lanes of other
+/// values. `None` if there is no such scalar, or if the parts between them share too much.
+///
+/// It takes more operations than one sweep, and keeps far fewer values alive.
+pub fn gradient_in_parts(
+    graph: &mut Graph,
+    root: NodeId,
+    point: NodeId,
+    least: usize,
+) -> Option<NodeId> {
+    let found = parts::gradient(graph, root, point, least)?;
+    Some(merged(graph, &[found]))
+}
+
+fn merged(graph: &mut Graph, found: &[NodeId]) -> NodeId {
+    let merged = loops::merged(graph, found);
+    merged.first().copied().unwrap_or_else(|| sweep::zero(graph, Type::Vec3))
 }

@@ -52,6 +52,7 @@ mod bounds;
 mod builders;
 mod coefficient;
 mod derive;
+mod dominators;
 mod dump;
 mod enclose;
 pub mod eval;
@@ -67,6 +68,7 @@ mod polynomial;
 mod program;
 mod range;
 mod scene;
+mod schedule;
 mod shape;
 mod simplify;
 mod transforms;
@@ -76,7 +78,7 @@ mod walk;
 pub use blend::{Blend, Blends, blend_at, substitute};
 pub use bounds::{Bounds, bounds};
 pub use coefficient::Coefficient;
-pub use derive::{adjoints, gradient};
+pub use derive::{adjoints, gradient, gradient_in_parts};
 pub use dump::{dump, operation_count};
 pub use enclose::{enclosure, slope_enclosure};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
@@ -96,6 +98,7 @@ pub use scene::{
     Camera, Exposure, Fog, Lens, Light, LightSource, March, Occlusion, Param, ParamKind,
     Reflections, Scene, Settings, Shadow, Sky, Tone,
 };
+pub use schedule::{live_lanes, schedule};
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use transforms::{Rewritten, fold_transforms};
 pub use uniforms::uniforms;

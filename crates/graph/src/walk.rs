@@ -41,7 +41,7 @@ pub(crate) fn computed_where(
 const FEW: usize = 48;
 
 /// All nodes that `step` leads to from the roots, each once, in ascending order.
-fn visited(roots: &[NodeId], step: impl Fn(NodeId, &mut Vec<NodeId>)) -> Vec<NodeId> {
+pub(crate) fn visited(roots: &[NodeId], step: impl Fn(NodeId, &mut Vec<NodeId>)) -> Vec<NodeId> {
     let mut pending = roots.to_vec();
     let mut few: Vec<NodeId> = Vec::new();
     while few.len() < FEW {

@@ -18,6 +18,12 @@ pub struct Explanation {
     pub ops_per_gradient: usize,
     /// Arithmetic operations per frame, on the CPU.
     pub ops_per_frame: usize,
+    /// `parts` if the gradient is summed up part by part, `sweep` if one reverse sweep computes it.
+    pub gradient: &'static str,
+    /// The largest number of values that the gradient keeps alive at once.
+    pub gradient_live: usize,
+    /// The same for one reverse sweep.
+    pub gradient_live_of_sweep: usize,
     /// `loops` if similar parts are loops, otherwise `unrolled`.
     pub code: &'static str,
     /// Why that was chosen.
@@ -123,6 +129,17 @@ impl std::fmt::Display for Explanation {
         writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
         writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
         writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
+        let (live, of_sweep) = (self.gradient_live, self.gradient_live_of_sweep);
+        match self.gradient {
+            "parts" => writeln!(
+                f,
+                "gradient            summed up part by part ({live} values alive at once, {of_sweep} in one \
+                 sweep)"
+            )?,
+            _ => {
+                writeln!(f, "gradient            one reverse sweep ({live} values alive at once)")?
+            }
+        }
         writeln!(f, "code                {} ({})", self.code, self.code_why)?;
         if !self.analytic.is_empty() {
             writeln!(f, "analytic            {}", listed(&self.analytic))?;

@@ -14,6 +14,10 @@ use crate::reflection::{ModuleParts, Role};
 use crate::shader::Shader;
 use sdfc_march::Features;
 
+/// The number of lanes of per-frame values up to which a shader that computes them itself stores
+/// all of them.
+const MAX_STORED_LANES: usize = 32;
+
 /// A picture's shader while the scene's functions are linked into it.
 pub(crate) struct PictureLinker<'p> {
     program: &'p Program,
@@ -67,13 +71,28 @@ impl<'p> PictureLinker<'p> {
         self.used.iter().map(|&slot| self.program.uniforms[slot]).collect()
     }
 
+    /// The per-frame values that a shader which computes them itself does so once per pixel. Each
+    /// takes a register as long as the shader runs. Where there are many, functions that a ray
+    /// calls once compute theirs when they are called.
+    fn stored_nodes(&self) -> Vec<NodeId> {
+        let all = self.slot_nodes();
+        let graph = &self.program.graph;
+        let lanes: usize = all.iter().map(|&node| graph.ty(node).width()).sum();
+        if lanes <= MAX_STORED_LANES {
+            return all;
+        }
+        let once = [stubs::ANALYTIC_HIT, stubs::CLIP_INTERVAL, stubs::GRADIENT];
+        let steps = self.bindings.iter().filter(|binding| !once.contains(&binding.stub));
+        let slots = used_slots(self.program, steps.map(|binding| binding.root).collect());
+        slots.into_iter().map(|slot| self.program.uniforms[slot]).collect()
+    }
+
     /// Makes `load_frame` compute per-frame values from raw inputs, into private variables.
     pub(crate) fn compute_slots(&mut self, mut raw: Inputs) -> Result<(), Error> {
-        let nodes = self.slot_nodes();
+        let nodes = self.stored_nodes();
         raw.tables.declare(&mut self.module, self.program, &nodes)?;
         let (program, module) = (self.program, &mut self.module);
-        let stored = self.used.iter().map(|&slot| program.uniforms[slot]);
-        let stored = stored.filter(|&node| !raw.is_constant(program.graph.node(node)));
+        let stored = nodes.into_iter().filter(|&node| !raw.is_constant(program.graph.node(node)));
         let declare = |node| (node, declare_variable(module, program, node));
         let stored: Vec<_> = stored.map(declare).collect();
         if find_function(module, stubs::LOAD_FRAME).is_some() {

@@ -76,14 +76,14 @@ impl Lowering<'_> {
         let depth = usize::from(looped.depth);
         self.iterations.resize_with(self.iterations.len().max(depth + 1), || None);
         self.iterations[depth] = Some(Iteration { number, listed, state: read });
-        self.visit_needed(&body.condition)?;
+        self.visit_needed(looped.condition.as_slice(), &body.condition)?;
         if let Some(condition) = looped.condition {
             let condition = self.value(condition)?;
             let not = Expression::Unary { op: UnaryOperator::LogicalNot, expr: condition };
             let ends = self.body.compute(not, &[condition]);
             self.body.break_if(ends);
         }
-        self.visit_needed(&body.step)?;
+        self.visit_needed(&looped.step, &body.step)?;
         let next = looped.step.iter().map(|&part| self.value(part));
         let next: Vec<Value> = next.collect::<Result<_, _>>()?;
         for (&(variable, _), next) in state.iter().zip(next) {
@@ -177,10 +177,10 @@ impl Lowering<'_> {
         }
     }
 
-    fn visit_needed(&mut self, nodes: &[NodeId]) -> Result<(), Error> {
+    fn visit_needed(&mut self, roots: &[NodeId], nodes: &[NodeId]) -> Result<(), Error> {
         let needed = nodes.iter().copied().filter(|&id| self.uses.contains(id));
         let needed: Vec<NodeId> = needed.collect();
-        self.visit(needed.into_iter())
+        self.visit(roots, &needed)
     }
 
     /// The number of iterations, at most `max`.

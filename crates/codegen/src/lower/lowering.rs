@@ -1,8 +1,8 @@
 //! Lowers nodes to the body of one naga function.
 //!
-//! Nodes are visited in the order of their ids, arguments first, so nothing recurses over the
-//! graph. A value that is used more than once gets a name in the written source, as do those that
-//! the program names; a value used once is written where it is used, to a bounded depth.
+//! Nodes are visited in the order of [`sdfc_graph::schedule`], arguments first, so nothing recurses
+//! over the graph. A value that is used more than once gets a name in the written source, as do
+//! those that the program names; a value used once is written where it is used, to a bounded depth.
 
 use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
 use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
@@ -13,7 +13,7 @@ use super::body::{Body, Value};
 use super::inputs::{Inputs, frame_name, input_name};
 use super::iteration::Iteration;
 use super::types;
-use super::uses::{Uses, is_component};
+use super::uses::{Uses, is_component, scheduled};
 use crate::error::Error;
 
 /// Makes a function of several points, by level, that returns one node's value.
@@ -27,7 +27,7 @@ pub(crate) fn function_of(
 ) -> Result<Function, Error> {
     let lowering = Lowering::new(program, inputs, types, &[root]);
     let mut lowering = Lowering { arguments, ..lowering };
-    lowering.visit_all()?;
+    lowering.visit_all(&[root])?;
     let mut value = lowering.value(root)?;
     if program.graph.ty(root) == Type::Scalar {
         value = lowering.with_inactive_distance(value);
@@ -50,7 +50,7 @@ pub(crate) fn function_of_iteration(
     let number = lowering.body.declare(Expression::FunctionArgument(0));
     lowering.iterations = vec![Some(Iteration::of_number(number))];
     let order = lowering.uses.take_order();
-    lowering.visit(order.into_iter())?;
+    lowering.visit(&[root], &order)?;
     let value = lowering.value(root)?;
     let result = types::value(lowering.types, program.graph.ty(root));
     Ok(lowering.finish(name, value, result))
@@ -66,7 +66,7 @@ pub(crate) fn struct_function(
     structure: Handle<naga::Type>,
 ) -> Result<Function, Error> {
     let mut lowering = Lowering::new(program, inputs, types, roots);
-    lowering.visit_all()?;
+    lowering.visit_all(roots)?;
     let components: Vec<_> =
         roots.iter().map(|&root| lowering.value(root)).collect::<Result<_, _>>()?;
     let compose = Expression::Compose { ty: structure, components: components.clone() };
@@ -83,7 +83,7 @@ pub(crate) fn store_function(
 ) -> Result<Function, Error> {
     let roots: Vec<_> = stored.iter().map(|&(node, _)| node).collect();
     let mut lowering = Lowering::new(program, inputs, types, &roots);
-    lowering.visit_all()?;
+    lowering.visit_all(&roots)?;
     for &(node, variable) in stored {
         let value = lowering.value(node)?;
         let pointer = lowering.body.declare(Expression::GlobalVariable(variable));
@@ -144,15 +144,16 @@ impl<'a> Lowering<'a> {
     }
 
     /// Computes all nodes that the roots need.
-    fn visit_all(&mut self) -> Result<(), Error> {
+    fn visit_all(&mut self, roots: &[NodeId]) -> Result<(), Error> {
         let graph = &self.program.graph;
         let outside = self.uses.take_order().into_iter().filter(|&id| graph.loops_around(id) == 0);
-        self.visit(outside)
+        let outside: Vec<NodeId> = outside.collect();
+        self.visit(roots, &outside)
     }
 
-    /// Computes nodes, arguments first.
-    pub(super) fn visit(&mut self, order: impl Iterator<Item = NodeId>) -> Result<(), Error> {
-        for id in order {
+    /// Computes ascending nodes, each near its first use and after its arguments.
+    pub(super) fn visit(&mut self, roots: &[NodeId], nodes: &[NodeId]) -> Result<(), Error> {
+        for id in scheduled(&self.program.graph, roots, nodes, self.inputs) {
             let node = self.program.graph.node(id);
             if matches!(node, Node::Const(_)) {
                 continue;

@@ -1,7 +1,7 @@
 //! Which nodes a function needs, and how often each is written.
 
 use rustc_hash::FxHashSet;
-use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary};
+use sdfc_graph::{Binary, Graph, IdMap, IdSet, Node, NodeId, Type, Unary, schedule};
 
 use super::inputs::Inputs;
 
@@ -113,6 +113,34 @@ fn uniform(graph: &Graph, id: NodeId) -> Option<Uniform> {
     let Node::Const(constant) = node else { return None };
     let lanes = &constant.lanes()[..constant.ty().width()];
     lanes.iter().all(|lane| *lane == lanes[0]).then_some(Uniform::Number(lanes[0]))
+}
+
+/// `members`, ascending, in an order in which few values are alive at once, operands first. `roots`
+/// are read last.
+pub(crate) fn scheduled(
+    graph: &Graph,
+    roots: &[NodeId],
+    members: &[NodeId],
+    inputs: &Inputs,
+) -> Vec<NodeId> {
+    schedule(graph, roots, members, |id| match graph.node(id) {
+        _ if inputs.is_slot(id) => Vec::new(),
+        Node::Loop(looped, ..) => graph.loop_inputs(looped),
+        Node::Const(_)
+        | Node::Point(..)
+        | Node::Frame(..)
+        | Node::Unary(..)
+        | Node::Binary(..)
+        | Node::Ternary(..)
+        | Node::Splat(..)
+        | Node::Compose(..)
+        | Node::Swizzle(..)
+        | Node::Transform(..)
+        | Node::Variable(..)
+        | Node::Element(..)
+        | Node::Sample(..)
+        | Node::MaterialAt(..) => operands(graph, id).collect(),
+    })
 }
 
 /// The nodes that the lowering of a node reads.

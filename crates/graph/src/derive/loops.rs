@@ -41,7 +41,11 @@ impl Sweep<'_> {
             if !self.live.contains(id) || !seen.insert(id) {
                 continue;
             }
-            if let Node::Compose(..) | Node::Swizzle(..) | Node::Splat(..) = self.graph.node(id) {
+            let moves = matches!(
+                self.graph.node(id),
+                Node::Compose(..) | Node::Swizzle(..) | Node::Splat(..)
+            );
+            if moves && !self.inputs.contains(id) {
                 pending.extend(self.graph.arguments(id));
             } else {
                 sources.insert(id);

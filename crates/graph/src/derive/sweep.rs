@@ -33,14 +33,8 @@ pub fn adjoints(graph: &mut Graph, root: NodeId, wrt: &[NodeId]) -> Vec<NodeId> 
     let inputs: IdSet = wrt.iter().copied().collect();
     let order = computed_where(graph, &[root], |id| !inputs.contains(id));
     let live = live_nodes(graph, &order, &inputs);
-    let mut sweep = Sweep { graph, live, adjoints: IdMap::default() };
-    let one = sweep.graph.number(1.0);
-    sweep.accumulate(root, one);
-    for &id in order.iter().rev().filter(|&&id| !inputs.contains(id)) {
-        if let Some(adjoint) = sweep.take(id) {
-            sweep.propagate(id, adjoint);
-        }
-    }
+    let mut sweep = Sweep::new(graph, live, inputs.clone());
+    sweep.run(root, order.into_iter().rev().filter(|&id| !inputs.contains(id)));
     wrt.iter().map(|&id| sweep.total(id)).collect()
 }
 
@@ -61,10 +55,43 @@ struct Adjoint {
 pub(super) struct Sweep<'a> {
     pub(super) graph: &'a mut Graph,
     pub(super) live: IdSet,
+    /// The nodes at which the sweep ends.
+    pub(super) inputs: IdSet,
+    /// Scalars whose derivatives are known.
+    pub(super) known: IdMap<Known>,
     adjoints: IdMap<Adjoint>,
 }
 
-impl Sweep<'_> {
+/// A known derivative: of a scalar with respect to a node that it depends on the inputs through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    /// The node that the scalar is differentiated by.
+    pub(super) frame: NodeId,
+    /// The derivative, of the frame's type.
+    pub(super) derivative: NodeId,
+}
+
+impl<'a> Sweep<'a> {
+    pub(super) fn new(graph: &'a mut Graph, live: IdSet, inputs: IdSet) -> Self {
+        Self { graph, live, inputs, known: IdMap::default(), adjoints: IdMap::default() }
+    }
+
+    /// Starts at the root and passes adjoints on, in the given order.
+    pub(super) fn run(&mut self, root: NodeId, order: impl Iterator<Item = NodeId>) {
+        let one = self.graph.number(1.0);
+        self.accumulate(root, one);
+        for id in order {
+            let Some(adjoint) = self.take(id) else { continue };
+            match self.known.get(id) {
+                Some(Known { frame, derivative }) => {
+                    let part = self.graph.mul(derivative, adjoint);
+                    self.accumulate(frame, part);
+                }
+                None => self.propagate(id, adjoint),
+            }
+        }
+    }
+
     /// Adds to a node's adjoint. `contribution` has the node's type.
     pub(super) fn accumulate(&mut self, id: NodeId, contribution: NodeId) {
         if !self.live.contains(id) || self.is_zero(contribution) {
@@ -94,7 +121,7 @@ impl Sweep<'_> {
     }
 
     /// The sum of a node's contributions, which are taken out; `None` if there are none.
-    fn take(&mut self, id: NodeId) -> Option<NodeId> {
+    pub(super) fn take(&mut self, id: NodeId) -> Option<NodeId> {
         let Adjoint { whole, lanes } = self.adjoints.entry(id).take()?;
         if lanes == [None; 4] {
             return whole;

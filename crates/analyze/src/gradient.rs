@@ -1,0 +1,57 @@
+//! The choice of how the gradient is derived.
+
+use sdfc_graph::{Graph, NodeId, gradient, gradient_in_parts, live_lanes};
+
+use crate::cost::cost;
+
+/// The number of live lanes up to which fewer gain nothing: the rest of a picture's shader needs
+/// about as many.
+const FREE_LANES: usize = 32;
+
+/// GPUs hand out registers in groups of this size.
+const LANES_OF_GROUP: usize = 8;
+
+/// The least number of lanes that a part of the formula must need alone to be differentiated by
+/// itself. Small parts keep fewer values alive; large ones take fewer operations.
+const PARTS: [usize; 2] = [16, 8];
+
+/// How a gradient is derived, and what that keeps alive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GradientReport {
+    /// True if it is summed up part by part, false if one reverse sweep computes it.
+    pub in_parts: bool,
+    /// The largest number of lanes alive at once.
+    pub live_lanes: usize,
+    /// The same for one reverse sweep.
+    pub live_lanes_of_sweep: usize,
+}
+
+/// The gradient of a scalar with respect to a point: of one reverse sweep and of sums over parts,
+/// the one that keeps the fewest lanes alive, and of equals the one with the fewest operations.
+pub(crate) fn best_gradient(
+    graph: &mut Graph,
+    root: NodeId,
+    point: NodeId,
+) -> (NodeId, GradientReport) {
+    let sweep = gradient(graph, root, point);
+    let live_lanes_of_sweep = live_lanes(graph, &[sweep]);
+    let mut report =
+        GradientReport { in_parts: false, live_lanes: live_lanes_of_sweep, live_lanes_of_sweep };
+    let mut best = sweep;
+    if live_lanes_of_sweep <= FREE_LANES {
+        return (best, report);
+    }
+    for least in PARTS {
+        let Some(found) = gradient_in_parts(graph, root, point, least) else { continue };
+        let live_lanes = live_lanes(graph, &[found]);
+        let rank = |graph: &Graph, id: NodeId, lanes: usize| {
+            let groups = lanes.max(FREE_LANES).div_ceil(LANES_OF_GROUP);
+            (groups, cost(graph, &[id]).operations)
+        };
+        if rank(graph, found, live_lanes) < rank(graph, best, report.live_lanes) {
+            best = found;
+            report = GradientReport { in_parts: true, live_lanes, ..report };
+        }
+    }
+    (best, report)
+}

@@ -1,0 +1,92 @@
+//! Depth-first orders.
+
+use super::dag::Dag;
+use crate::dominators::DominatorTree;
+
+/// What is left to do for a node.
+#[derive(Clone, Copy)]
+enum Task {
+    /// Compute what is heavy below it.
+    Prepare(usize),
+    /// Compute it.
+    Visit(usize),
+    /// Compute it; its arguments are done.
+    Emit(usize),
+}
+
+/// Depth first; of several arguments the one first that most lanes are computed for alone. A sum
+/// over a chain so follows the chain from its beginning, and a derivative comes before conditions
+/// on the values that it shares.
+///
+/// An argument is heavy if at least `heavy` lanes are computed for it alone. Heavy arguments come
+/// before light ones across several levels: a sum of weighted derivatives needs all derivatives
+/// before the weights, each of which depends on all values that the derivatives share.
+pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
+    let sizes = sizes(dag);
+    let count = dag.nodes.len();
+    let (mut order, mut done) = (Vec::with_capacity(count), vec![false; count]);
+    // The last task is taken first, so larger arguments are sorted to the end.
+    let sorted = |positions: &[usize], done: &[bool]| {
+        let mut open: Vec<usize> = positions.iter().copied().filter(|&p| !done[p]).collect();
+        open.sort_by_key(|&position| (sizes[position], position));
+        open
+    };
+    let is_heavy = |position: &usize| sizes[*position] >= heavy;
+    // Nodes that no root needs come last.
+    let mut tasks: Vec<Task> = (0..count).rev().map(Task::Visit).collect();
+    let roots = sorted(&dag.roots, &done);
+    tasks.extend(roots.iter().copied().map(Task::Visit));
+    tasks.extend(roots.into_iter().filter(is_heavy).map(Task::Prepare));
+    while let Some(task) = tasks.pop() {
+        let (Task::Prepare(position) | Task::Visit(position) | Task::Emit(position)) = task;
+        if done[position] {
+            continue;
+        }
+        let open = || sorted(&dag.arguments[position], &done);
+        match task {
+            Task::Prepare(_) => {
+                let open: Vec<usize> = open().into_iter().filter(is_heavy).collect();
+                // What has one heavy argument waits for the others of the sum that it is in.
+                if open.len() != 1 {
+                    tasks.push(Task::Visit(position));
+                }
+                tasks.extend(open.into_iter().map(Task::Prepare));
+            }
+            Task::Visit(_) => {
+                let open = open();
+                tasks.push(Task::Emit(position));
+                tasks.extend(open.iter().copied().map(Task::Visit));
+                tasks.extend(open.into_iter().filter(is_heavy).map(Task::Prepare));
+            }
+            Task::Emit(_) => {
+                done[position] = true;
+                order.push(position);
+            }
+        }
+    }
+    order
+}
+
+/// The number of lanes that are computed for each node alone, its own included.
+fn sizes(dag: &Dag) -> Vec<usize> {
+    let count = dag.nodes.len();
+    let mut users = DominatorTree::new(count + 1, count);
+    let mut found: Vec<Option<usize>> = vec![None; count];
+    for &root in &dag.roots {
+        found[root] = Some(count);
+    }
+    for position in (0..count).rev() {
+        users.add(position, found[position].unwrap_or(count));
+        for &argument in &dag.arguments[position] {
+            let common = found[argument].map_or(position, |known| users.common(known, position));
+            found[argument] = Some(common);
+        }
+    }
+    let mut sizes: Vec<usize> = (0..count).map(|position| dag.own_lanes(position)).collect();
+    sizes.push(0);
+    // A node's dominator has a greater position.
+    for position in 0..count {
+        sizes[users.parent(position)] += sizes[position];
+    }
+    sizes
+}
