@@ -1,0 +1,80 @@
+//! No example uses more registers on a GPU than `docs/gpu.md` says.
+//!
+//! Mesa's RADV compiles shaders for AMD chips that the machine does not have, and reports what its
+//! compiler made of them. Without RADV the tests are reported as ignored, unless `SDFC_REQUIRE_GPU`
+//! is 1. After a change of the emitted shaders, `GPU_UPDATE=1 cargo test -p sdfc-occupancy` rewrites
+//! the table.
+
+#![allow(clippy::print_stdout, reason = "a run of the driver prints what it found")]
+
+mod driver;
+mod radv;
+mod table;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use sdfc::{Emit, ShaderOptions, Target};
+use sdfc_test_support::repository;
+use sdfc_tests::compiled_examples;
+
+use crate::radv::Chip;
+use crate::table::{Row, Table};
+
+fn main() {
+    if let Some(folder) = std::env::var_os(radv::SHADERS) {
+        return radv::print_statistics(&folder);
+    }
+    let is_required = std::env::var_os("SDFC_REQUIRE_GPU").is_some_and(|value| value == "1");
+    let is_ignored = !is_required && radv::manifest().is_none();
+    let trial = Trial::test("no_example_takes_more_of_a_gpu_than_the_table_says", check);
+    libtest_mimic::run(&Arguments::from_args(), vec![trial.with_ignored_flag(is_ignored)]).exit();
+}
+
+fn check() -> Result<(), Failed> {
+    let path = repository().join("docs/gpu.md");
+    let page = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
+    let known = Table::read(&page)?;
+    let found = measure()?;
+    if std::env::var_os("GPU_UPDATE").is_some() {
+        std::fs::write(&path, found.written_into(&page)?)?;
+        return Ok(());
+    }
+    if found.driver != known.driver {
+        let (here, there) = (&found.driver, &known.driver);
+        return Err(format!("docs/gpu.md is of {there}; this machine has {here}").into());
+    }
+    let problems = found.worse_than(&known);
+    if problems.is_empty() {
+        return Ok(());
+    }
+    let advice = "if the change is worth it, rewrite docs/gpu.md with GPU_UPDATE=1";
+    Err(format!("{}\n{advice}", problems.join("\n")).into())
+}
+
+/// Compiles all examples for all chips.
+fn measure() -> Result<Table, Failed> {
+    let manifest = radv::manifest().ok_or("there is no RADV driver")?;
+    let folder = tempfile::tempdir()?;
+    let mut names = Vec::new();
+    for (name, scene) in compiled_examples()? {
+        let options = ShaderOptions::new().target(Target::Spirv).emit(Emit::Render);
+        let code = scene.write_shader(&options)?.code.into_bytes();
+        std::fs::write(folder.path().join(format!("{:03}.spv", names.len())), code)?;
+        names.push(name);
+    }
+    // Each chip needs a process of its own: the driver reads the environment once.
+    let [first, second, third] = std::thread::scope(|scope| {
+        let folder = folder.path();
+        let run = |chip| scope.spawn(move || radv::statistics(chip, manifest, folder));
+        Chip::ALL.map(run).map(|thread| thread.join())
+    });
+    let of = |run: std::thread::Result<Result<radv::Run, String>>| {
+        run.map_err(|_| "a run of the driver panicked".to_owned())?
+    };
+    let runs = [of(first)?, of(second)?, of(third)?];
+    let driver = runs[0].driver.clone();
+    let row = |(index, name): (usize, String)| {
+        let chips = runs.each_ref().map(|run| run.shaders.get(index).copied().unwrap_or_default());
+        Row { name, chips }
+    };
+    Ok(Table { driver, rows: names.into_iter().enumerate().map(row).collect() })
+}
