@@ -1,5 +1,7 @@
 //! The gradient part by part, and the order in which nodes are computed.
 
+#![allow(clippy::expect_used, clippy::unwrap_used)]
+
 mod twin;
 
 use proptest::prelude::*;
@@ -141,7 +143,11 @@ proptest! {
             return Ok(());
         }
         for (a, b) in found[0].into_iter().zip(found[1]) {
-            prop_assert!(close(a, b), "{:?}\n{}", found, sdfc_graph::dump(&case.graph, &[("f", field)]));
+            prop_assert!(
+                close(a, b),
+                "{found:?}\n{}",
+                sdfc_graph::dump(&case.graph, &[("f", field)])
+            );
         }
     }
 

@@ -91,8 +91,8 @@ impl Device {
             .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
             .stage(stage)
             .layout(layout);
-        // SAFETY: the layout has all bindings that the module declares, and the module has the entry
-        // point.
+        // SAFETY: the layout has all bindings that the module declares, and the entry point is its
+        // own.
         let made = unsafe {
             self.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None)
         };

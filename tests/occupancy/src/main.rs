@@ -2,8 +2,8 @@
 //!
 //! Mesa's RADV compiles shaders for AMD chips that the machine does not have, and reports what its
 //! compiler made of them. Without RADV the tests are reported as ignored, unless `SDFC_REQUIRE_GPU`
-//! is 1. After a change of the emitted shaders, `GPU_UPDATE=1 cargo test -p sdfc-occupancy` rewrites
-//! the table.
+//! is 1. After a change of the emitted shaders, `GPU_UPDATE=1 cargo test -p sdfc-occupancy` writes
+//! the table again.
 
 #![allow(clippy::print_stdout, reason = "a run of the driver prints what it found")]
 

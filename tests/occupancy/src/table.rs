@@ -86,7 +86,7 @@ impl Table {
         let eight = count(&|row| row.chips[0].waves >= 8);
         let cost: u64 = self.rows.iter().map(|row| row.chips[0].cost).sum();
         format!(
-            "{spill} of {} examples spill on one of the chips. On {}, {ten} run at 10 waves or \
+            "{spill} of {} examples spill on one of the chips. On {}, {ten} run at 10 waves or\n\
              more and {eight} at 8 or more; the costs sum up to {cost}.",
             self.rows.len(),
             Chip::ALL[0].name(),

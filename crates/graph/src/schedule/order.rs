@@ -9,7 +9,7 @@ enum Task {
     /// Compute what is heavy below it.
     Prepare(usize),
     /// Compute it.
-    Visit(usize),
+    Compute(usize),
     /// Compute it; its arguments are done.
     Emit(usize),
 }
@@ -33,12 +33,12 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
     };
     let is_heavy = |position: &usize| sizes[*position] >= heavy;
     // Nodes that no root needs come last.
-    let mut tasks: Vec<Task> = (0..count).rev().map(Task::Visit).collect();
+    let mut tasks: Vec<Task> = (0..count).rev().map(Task::Compute).collect();
     let roots = sorted(&dag.roots, &done);
-    tasks.extend(roots.iter().copied().map(Task::Visit));
+    tasks.extend(roots.iter().copied().map(Task::Compute));
     tasks.extend(roots.into_iter().filter(is_heavy).map(Task::Prepare));
     while let Some(task) = tasks.pop() {
-        let (Task::Prepare(position) | Task::Visit(position) | Task::Emit(position)) = task;
+        let (Task::Prepare(position) | Task::Compute(position) | Task::Emit(position)) = task;
         if done[position] {
             continue;
         }
@@ -48,14 +48,14 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
                 let open: Vec<usize> = open().into_iter().filter(is_heavy).collect();
                 // What has one heavy argument waits for the others of the sum that it is in.
                 if open.len() != 1 {
-                    tasks.push(Task::Visit(position));
+                    tasks.push(Task::Compute(position));
                 }
                 tasks.extend(open.into_iter().map(Task::Prepare));
             }
-            Task::Visit(_) => {
+            Task::Compute(_) => {
                 let open = open();
                 tasks.push(Task::Emit(position));
-                tasks.extend(open.iter().copied().map(Task::Visit));
+                tasks.extend(open.iter().copied().map(Task::Compute));
                 tasks.extend(open.into_iter().filter(is_heavy).map(Task::Prepare));
             }
             Task::Emit(_) => {
