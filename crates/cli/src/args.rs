@@ -267,6 +267,9 @@ pub struct Render {
     /// Output file for times and counts, as JSON; `-` is stdout. Draws the frame five times
     #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
     pub stats: Option<PathBuf>,
+    /// Fail, and write no picture, if a part of it is unproven: if a ray may have missed a surface
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// A param and its value as text.

@@ -226,8 +226,8 @@ codes! {
         "do this to the parts before they are joined, or leave it if it looks right";
     UNCERTIFIED "W0602" "No Lipschitz constant could be derived"
         "A ray may step through this shape when its step is as long as the field's value. `auto` \
-         therefore falls back to interval tracing, which is slower; only if that runs out of steps \
-         does it step by the field's value. Where the slope of a formula depends on the point, a \
+         therefore falls back to interval tracing, which is slower; what that cannot prove it \
+         samples at short steps, and reports as unproven. Where the slope of a formula depends on the point, a \
          constant exists within finite bounds: intersect the shape with something, or state \
          `bounds`. Otherwise state a constant with `lipschitz`, or use an operator whose constant \
          is known. A shape without bounds, such as a plane, has no constant once it is bent or \

@@ -80,7 +80,7 @@ pub use bounds::{Bounds, bounds};
 pub use coefficient::Coefficient;
 pub use derive::{adjoints, gradient, gradient_in_parts};
 pub use dump::{dump, operation_count};
-pub use enclose::{enclosure, slope_enclosure};
+pub use enclose::{enclosure, slope_enclosure, tight_enclosure};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};
 pub use extract::Extract;
 pub use graph::{Arguments, Graph, LipschitzClaim};
@@ -100,6 +100,7 @@ pub use scene::{
 };
 pub use schedule::{live_lanes, schedule};
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
+pub use simplify::function::{SoftExtreme, SoftKind};
 pub use transforms::{Rewritten, fold_transforms};
 pub use uniforms::uniforms;
 pub use walk::{reachable, reachable_where};

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::enclose::{enclosure, slope_enclosure};
+use crate::enclose::{slope_enclosure, tight_enclosure};
 use crate::graph::Graph;
 use crate::loops::SkipCondition;
 use crate::node::{Dim, NodeId};
@@ -102,7 +102,7 @@ impl Program {
         let graph = &mut program.graph;
         let [a, b, direction] = [0, 1, 2].map(|level| graph.point(level, Dim::Three));
         if value {
-            let ends = enclosure(graph, distance, a, [a, b]);
+            let ends = tight_enclosure(graph, distance, a, [a, b]);
             program.range = ends.map(|ends| graph.compose(&ends));
         }
         if slope {

@@ -8,8 +8,8 @@ use common::{each_node_in_shader, graph, steps};
 use proptest::prelude::*;
 use sdfc_graph::eval::{FrameValues, Tape};
 use sdfc_graph::{
-    Dim, FrameInput, Graph, NodeId, Stage, Ternary, Type, Unary, dump, enclosure, reachable,
-    slope_enclosure,
+    Dim, FrameInput, Graph, NodeId, Stage, Ternary, Type, Unary, dump, reachable, slope_enclosure,
+    tight_enclosure,
 };
 
 /// Number of sampled points of a segment, including its ends.
@@ -62,7 +62,7 @@ fn bounds(graph: &mut Graph, root: NodeId, segment: [[f64; 3]; 2], param: f64) -
     let point = graph.point(0, Dim::Three);
     let offset = graph.frame_input(FrameInput::Param(1), Type::Vec3);
     let end = graph.add(point, offset);
-    let mut roots = enclosure(graph, root, point, [point, end])?.to_vec();
+    let mut roots = tight_enclosure(graph, root, point, [point, end])?.to_vec();
     roots.extend(slope_enclosure(graph, root, point, [point, end], offset)?);
     let tape = Tape::new(graph, &roots).expect("flat math");
     let [from, to] = segment;

@@ -109,7 +109,8 @@ pub struct ViewBlock {
     pub lights: [LightBlock; MAX_LIGHTS],
 }
 
-/// One pixel of the storage buffer at binding 2 of group 0: 32 bytes.
+/// One pixel of the storage buffer at binding 2 of group 0: 32 bytes. In the shader `status` and
+/// `unproven` are the lower and the upper half of one word.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct PixelBlock {
@@ -118,7 +119,10 @@ pub struct PixelBlock {
     /// Distance along the (unit) ray to the hit, or to where the ray ended.
     pub depth: f32,
     /// 0 miss, 1 hit, 2 capped (ran out of steps).
-    pub status: u32,
+    pub status: u16,
+    /// 1 if a ray of the pixel passed a stretch longer than the tolerance without a proof that it
+    /// is free; only methods that prove what they pass tell.
+    pub unproven: u16,
     /// Evaluations of the field for this pixel, those of shadow rays and reflections included.
     pub evaluations: u32,
     /// Evaluations of the field for the camera ray.

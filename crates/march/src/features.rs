@@ -50,6 +50,10 @@ pub struct Features {
     pub culled: bool,
     /// A pixel's `evaluations` counts iterations of loops instead of evaluations of the field.
     pub instrumented: bool,
+    /// The scene has bounds of the field along ray segments.
+    pub proved: bool,
+    /// Pixels tell whether a ray passed a stretch without a proof that it is free.
+    pub records_gaps: bool,
 }
 
 impl Features {
@@ -65,7 +69,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 25] {
+    pub fn overrides(self) -> [(&'static str, bool); 27] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
@@ -89,6 +93,8 @@ impl Features {
             parallel,
             culled,
             instrumented,
+            proved,
+            records_gaps,
         } = self;
         [
             ("ANALYTIC", analytic),
@@ -116,13 +122,18 @@ impl Features {
             ("CULLED", culled),
             ("CULLED_BY_CELL", self.culls_by_cell()),
             ("INSTRUMENTED", instrumented),
+            ("PROVED", proved),
+            ("RECORDS_GAPS", records_gaps),
         ]
     }
 
     /// The functions whose calls the linker drops because nothing reads what they record.
     pub fn unused(self) -> Vec<&'static str> {
-        let recorders =
-            [(stubs::RECORD_SAMPLE, self.soft_shadows), (stubs::RECORD_SLOPE, self.occlusion)];
+        let recorders = [
+            (stubs::RECORD_SAMPLE, self.soft_shadows),
+            (stubs::RECORD_SLOPE, self.occlusion),
+            (stubs::RECORD_GAP, self.records_gaps),
+        ];
         recorders.into_iter().filter(|recorder| !recorder.1).map(|recorder| recorder.0).collect()
     }
 }

@@ -101,6 +101,7 @@ pub fn source_with(
         RAY,
         BRACKET,
         PENUMBRA,
+        SAMPLING,
     ];
     files.extend(method.files());
     files.extend([
@@ -122,7 +123,7 @@ pub fn source_with(
 pub fn ray_source(method: &MethodDefinition) -> String {
     let [field, _] = FieldSource::Scene.files();
     let features = include_str!("wgsl/features.wgsl");
-    let mut files = vec![features, field, RANGES, RAY, BRACKET, PENUMBRA];
+    let mut files = vec![features, field, RANGES, RAY, BRACKET, PENUMBRA, SAMPLING];
     files.extend(method.files());
     files.extend([include_str!("wgsl/intersect.wgsl"), include_str!("wgsl/anchor.wgsl")]);
     files.join("\n")
@@ -151,6 +152,7 @@ const RANGES: &str = include_str!("wgsl/ranges.wgsl");
 const RAY: &str = include_str!("wgsl/ray.wgsl");
 const BRACKET: &str = include_str!("wgsl/bracket.wgsl");
 const PENUMBRA: &str = include_str!("wgsl/penumbra.wgsl");
+const SAMPLING: &str = include_str!("wgsl/sampling.wgsl");
 
 /// The GLSL that precedes the functions of [`Form::Shadertoy`] on shadertoy.com.
 pub const SHADERTOY_HEAD: &str = include_str!("shadertoy/head.glsl");

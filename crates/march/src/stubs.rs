@@ -22,6 +22,7 @@ pub const CLIP_INTERVAL: &str = "clip_interval";
 /// Called if [`Features::copies`](crate::Features::copies) is set.
 pub const COPIES: &str = "intersect_copies";
 /// `fn field_range(a: vec3f, b: vec3f) -> vec2f`, bounds of `field` on the segment from a to b.
+/// Called if [`Features::proved`](crate::Features::proved) is set.
 pub const RANGE: &str = "field_range";
 /// `fn field_slope_range(a: vec3f, b: vec3f, direction: vec3f) -> vec2f`, bounds of the slope of
 /// `field` on the segment from a to b, where `direction` is the unit vector from a to b.
@@ -61,6 +62,10 @@ pub const RECORD_SAMPLE: &str = "record_sample";
 /// `fn record_slope(square: f32)`, which takes the squared length of each gradient. No scene
 /// supplies it; its calls are dropped if there is no ambient occlusion.
 pub const RECORD_SLOPE: &str = "record_slope";
+/// `fn record_gap()`, which methods call for each stretch of a ray that they pass without a proof
+/// that it is free. No scene supplies it; its calls are dropped if pixels do not tell
+/// ([`Features::records_gaps`](crate::Features::records_gaps)).
+pub const RECORD_GAP: &str = "record_gap";
 /// `fn culling_bounds_0(iteration: f32, p: vec3f) -> vec3f` and so on, one for each loop that can
 /// be culled, of [`culling_source`](crate::culling_source). `x`: lower bound on the distance to
 /// where the iteration can affect a ray. `y`: the iteration's operand minus the blend radius. `z`:

@@ -93,10 +93,13 @@ pub fn pixel_from_bytes(bytes: &[u8]) -> PixelBlock {
         _ => 0,
     });
     let mut word = || words.next().unwrap_or(0);
+    let color = [0; 4].map(|_| f32::from_bits(word()));
+    let (depth, ends) = (f32::from_bits(word()), word());
     PixelBlock {
-        color: [0; 4].map(|_| f32::from_bits(word())),
-        depth: f32::from_bits(word()),
-        status: word(),
+        color,
+        depth,
+        status: ends as u16,
+        unproven: (ends >> 16) as u16,
         evaluations: word(),
         primary_evaluations: word(),
     }
@@ -163,12 +166,13 @@ mod tests {
             color: [0.1, 0.2, 0.3, 1.0],
             depth: 4.5,
             status: 2,
+            unproven: 1,
             evaluations: 31,
             primary_evaluations: 17,
         };
         let mut bytes = Bytes::default();
         bytes.floats(&pixel.color).floats(&[pixel.depth]);
-        bytes.words(&[pixel.status, pixel.evaluations, pixel.primary_evaluations]);
+        bytes.words(&[0x10002, pixel.evaluations, pixel.primary_evaluations]);
         assert_eq!(pixel_from_bytes(&bytes.0), pixel);
     }
 }

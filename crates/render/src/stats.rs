@@ -52,7 +52,8 @@ pub struct Stats {
     pub leaf_evals_per_pixel: LeafEvaluations,
     /// The numbers of rays by how they ended.
     pub pixels: PixelCounts,
-    /// Why metrics of this object are null, and why the method is not the requested one.
+    /// Why metrics of this object are null, why the method is not the requested one, and why pixels
+    /// are unproven.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub why: Why,
 }
@@ -216,7 +217,7 @@ mod tests {
             "first_picture_ms": null,
             "evals_per_pixel": {"mean": 7.5, "p99": 9, "max": 9},
             "leaf_evals_per_pixel": {"mean": null, "why": {"mean": "not counted"}},
-            "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0},
+            "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0, "unproven": 0},
             "why": {
                 "adapter": "drawn on the CPU", "driver": "drawn on the CPU",
                 "first_picture_ms": "not measured",

@@ -148,6 +148,8 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         parallel,
         culled,
         instrumented: _,
+        proved: _,
+        records_gaps: _,
     } = features;
     let names = [
         ("material", materials),

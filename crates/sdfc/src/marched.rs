@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use sdfc_graph::Program;
 use sdfc_march::{Method, stubs};
-use sdfc_render::{CpuScene, HIT, MISS, View};
+use sdfc_render::{CpuScene, View};
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -13,8 +13,8 @@ use crate::scene::Scene;
 const TRIAL_SIZE: [u32; 2] = [8, 6];
 /// The pixels of the drawn picture are this many times narrower than those of the trial.
 const FINER: f64 = 80.0;
-/// At most this many rays of the trial may run out of steps.
-const MAX_CAPPED: usize = 1;
+/// If more rays of the trial than this are left unproven, all rays are sampled from the start.
+const MAX_UNPROVEN: u64 = 12;
 
 /// A program with the ray method that marches it: see [`Scene::marched`].
 #[derive(Clone, Debug)]
@@ -38,9 +38,8 @@ impl Scene {
 
     /// The program and the method that draw pictures on a GPU if `method` is requested.
     pub fn marched(&self, method: Method) -> Marched<'_> {
-        let used = self.marched_by(method);
-        let program = with_segment_bounds(self.drawn(), used);
-        Marched { program, method: used, note: self.why_marched_by(method) }
+        let program = self.with_bounds_for(self.drawn(), method);
+        Marched { program, method: self.marched_by(method), note: self.why_marched_by(method) }
     }
 
     /// The program and the method that draw pictures on the CPU if `method` is requested. `auto`
@@ -54,8 +53,7 @@ impl Scene {
                 format!("the CPU renderer has no method `{method}`, `{auto}` is used instead");
             (auto, Some(note))
         };
-        let used = self.marched_by(known);
-        let program = with_segment_bounds(self.drawn(), used);
+        let (program, used) = (self.with_bounds_for(self.drawn(), known), self.marched_by(known));
         let notes: Vec<String> = other.into_iter().chain(self.why_marched_by(known)).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         Marched { program, method: used, note }
@@ -63,45 +61,68 @@ impl Scene {
 
     /// The ray method that draws if `method` is requested.
     ///
-    /// For an uncertified field `auto` falls back to `interval`, so that no surface is missed,
-    /// unless the rays of a trial run out of steps with it.
+    /// For an uncertified field `auto` falls back to `interval`, so that no surface is missed where
+    /// its bounds tell, and no ray steps by the field's value.
     pub fn marched_by(&self, method: Method) -> Method {
-        let falls_back = method == Method::Auto && !self.is_certified() && self.intervals_end();
-        if falls_back { Method::FALLBACK } else { method }
+        if self.falls_back(method) { Method::FALLBACK } else { method }
+    }
+
+    /// Returns true if `method` draws the field by steps as long as its value, although the field
+    /// is uncertified: nothing that such a picture shows is proven.
+    pub(crate) fn trusts_uncertified(&self, method: Method) -> bool {
+        let bounds = [stubs::RANGE, stubs::SLOPE_RANGE];
+        let is_bounded = bounds.into_iter().any(|stub| method.definition().calls(stub));
+        !self.is_certified() && !is_bounded
+    }
+
+    /// Returns a form of the program with the functions that draw it if `method` is requested.
+    pub(crate) fn with_bounds_for<'p>(
+        &self,
+        program: &'p Program,
+        method: Method,
+    ) -> Cow<'p, Program> {
+        if self.falls_back(method) && !self.intervals_prove() {
+            // Without bounds `interval` samples all rays.
+            return Cow::Borrowed(program);
+        }
+        with_segment_bounds(program, self.marched_by(method))
     }
 
     /// Returns one line that explains the choice of [`Scene::marched_by`]. `None` if the field is
     /// certified or `method` is not `auto`.
     pub(crate) fn why_marched_by(&self, method: Method) -> Option<String> {
-        if method != Method::Auto || self.is_certified() {
+        if !self.falls_back(method) {
             return None;
         }
         let fallback = Method::FALLBACK;
-        Some(if self.intervals_end() {
+        Some(if self.intervals_prove() {
             format!("the field is uncertified: `{method}` falls back to `{fallback}`")
         } else {
             format!(
-                "the field is uncertified and its bounds are too wide for `{fallback}`: \
-                 `{method}` treats the field as a distance"
+                "the field is uncertified and its bounds are too wide for a proof: `{method}` \
+                 falls back to `{fallback}`, which samples the rays at short steps here"
             )
         })
     }
 
-    fn intervals_end(&self) -> bool {
-        // A scene without a valid view has no picture either.
-        let tried = || self.capped_by_intervals().unwrap_or(0) <= MAX_CAPPED;
-        *self.intervals_end.get_or_init(tried)
+    fn falls_back(&self, method: Method) -> bool {
+        method == Method::Auto && !self.is_certified()
     }
 
-    /// Returns how many rays of the trial run out of steps.
-    fn capped_by_intervals(&self) -> Result<usize, Error> {
+    fn intervals_prove(&self) -> bool {
+        // A scene without a valid view has no picture either.
+        let tried = || self.unproven_by_intervals().unwrap_or(0) <= MAX_UNPROVEN;
+        *self.intervals_prove.get_or_init(tried)
+    }
+
+    /// Returns how many rays of the trial are left unproven.
+    fn unproven_by_intervals(&self) -> Result<u64, Error> {
         let frame = self.defaults();
         let view = self.view(&frame, TRIAL_SIZE)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
         let program = with_segment_bounds(self.drawn(), Method::FALLBACK);
         let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, Method::FALLBACK)?;
-        let ended = |status: u32| status == HIT || status == MISS;
-        Ok(depths.pixels().iter().filter(|pixel| !ended(pixel.status)).count())
+        Ok(depths.counts().unproven)
     }
 }
 

@@ -9,8 +9,8 @@ use sdfc_graph::eval::FrameValues;
 use sdfc_march::Method;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
-    OnProgress, Pipeline, Pose, Progress, RenderError, RenderOptions, Stats, View, Why,
-    milliseconds_since, sample_offsets, uniform_values,
+    OnProgress, Pipeline, PixelCounts, Pose, Progress, RenderError, RenderOptions, Stats, View,
+    Why, milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::error::Error;
@@ -144,6 +144,9 @@ pub struct Picture {
     pub stats: Stats,
     /// One line that says why the device or the method differs from the options.
     pub note: Option<String>,
+    /// One line that says what part of the picture is unproven, and why; `None` if no ray can have
+    /// missed more than the method's tolerance.
+    pub unproven: Option<String>,
 }
 
 impl Scene {
@@ -315,10 +318,32 @@ impl Painter<'_> {
             }
             Engine::Gpu(_) | Engine::Cpu(_) => stats.set_leaves(scene.report.leaves),
         }
+        let unproven = self.unproven(&mut stats.pixels);
+        stats.why.extend(unproven.clone().map(|why| ("unproven", why)));
         stats.why.extend(self.why.clone().map(|why| ("method", why)));
         let first = scene.times.front + scene.times.analyze + milliseconds_since(self.start);
         stats.set_first_picture(first - frame_ms.median * f64::from(repetitions - 1));
-        Ok(Picture { image: frame.image, stats, note: self.note.clone() })
+        Ok(Picture { image: frame.image, stats, note: self.note.clone(), unproven })
+    }
+
+    /// Returns what part of a picture with these pixels is unproven, and counts it.
+    fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
+        let all = pixels.hit + pixels.miss + pixels.capped + pixels.nan;
+        let why = if self.scene.trusts_uncertified(self.method) {
+            pixels.unproven = all;
+            "the field is uncertified, and its value is the length of the steps"
+        } else if pixels.unproven > pixels.capped {
+            "bounds of the field are too wide to tell, so the rays were sampled"
+        } else {
+            "the rays ran out of steps"
+        };
+        let (unproven, method) = (pixels.unproven, self.method);
+        (unproven > 0).then(|| {
+            format!(
+                "{unproven} of {all} pixels are unproven with `{method}`: {why}; parts may be \
+                 missing or wrong"
+            )
+        })
     }
 
     fn view(&self, values: &FrameValues) -> Result<View, Error> {

@@ -42,8 +42,8 @@ pub struct Scene {
     pub(crate) rebased: OnceLock<Option<Program>>,
     /// Derived on first use; a shader needs no bounds.
     pub(crate) bounds: OnceLock<Option<DerivedBounds>>,
-    /// True if `interval` reaches the surface within its steps. Determined on first use.
-    pub(crate) intervals_end: OnceLock<bool>,
+    /// True if `interval` proves most rays within its steps. Determined on first use.
+    pub(crate) intervals_prove: OnceLock<bool>,
     /// The tapes that evaluate the field. Built on first use.
     pub(crate) tapes: OnceLock<Result<Option<Tapes>, TapeError>>,
     pub(crate) times: FrontTimes,
@@ -60,7 +60,7 @@ impl Scene {
         id: SourceId,
     ) -> Self {
         let Prepared { program, report } = prepared;
-        let (rebased, bounds, intervals_end, tapes) = Default::default();
+        let (rebased, bounds, intervals_prove, tapes) = Default::default();
         Self {
             diagnostics,
             elaborated,
@@ -69,7 +69,7 @@ impl Scene {
             loops,
             rebased,
             bounds,
-            intervals_end,
+            intervals_prove,
             tapes,
             times,
             id,

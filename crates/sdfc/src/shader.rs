@@ -8,7 +8,6 @@ use sdfc_march::Method;
 use sdfc_render::{Tile, View, view_bytes};
 
 use crate::error::Error;
-use crate::marched::with_segment_bounds;
 use crate::scene::Scene;
 
 /// The part of a shader that is written.
@@ -161,8 +160,8 @@ impl Scene {
     ///
     /// [`Error::Codegen`].
     pub fn picture_shader(&self, method: Method) -> Result<Shader, Error> {
-        let method = self.marched_by(method);
-        Ok(render_module(&with_segment_bounds(&self.program, method), method)?)
+        let program = self.with_bounds_for(&self.program, method);
+        Ok(render_module(&program, self.marched_by(method))?)
     }
 
     /// Writes the shader in the language of `options`.
@@ -205,8 +204,8 @@ impl Scene {
             let prefix = prefix.clone();
             FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
         };
+        let program = self.with_bounds_for(&self.program, method);
         let method = self.marched_by(method);
-        let program = with_segment_bounds(&self.program, method);
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
             Emit::March => march_module(&program, method, &functions())?,

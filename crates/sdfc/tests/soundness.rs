@@ -85,6 +85,30 @@ const SCENES: &[(&str, &str)] = &[
     ("smooth intersection", "intersection(sphere(0.7), box(1.1), torus(), blend: smooth(0.2))"),
     ("smooth difference", "difference(box(1), sphere(0.6), sphere(0.4), blend: smooth(0.1))"),
     (
+        "soft minimum by log and exp",
+        "solid s() = -log(exp(-8 * (length(p) - 0.6)) + exp(-8 * (length(p - [0.7, 0.2, 0]) - 0.4))) / 8\n\
+         s()",
+    ),
+    (
+        "soft minimum without a factor",
+        "solid s() = 0.1 - log(exp(-length(p)) + exp(-length(p - [0.5, 0, 0])))\ns() | sphere(0.1)",
+    ),
+    (
+        "soft maximum of three by log2 and exp2",
+        "solid s() = log2(exp2(6 * p.x) + 3 * exp2(6 * p.y) + exp2(5 * p.z) + 0.1) / 6 - 0.7\ns()",
+    ),
+    (
+        "box by its usual formula",
+        "solid b() = {\n let q = abs(p) - [0.5, 0.3, 0.4]\n\
+         length(max(q, 0)) + min(max(q.x, max(q.y, q.z)), 0) - 0.1\n}\nb()",
+    ),
+    (
+        "root of squares of affine terms",
+        "solid s() = sqrt((3 * p.x + p.y) * (3 * p.x + p.y) + 4 * p.z * p.z + p.y * p.y + 0.01) - 0.7\n\
+         s()",
+    ),
+    ("outline shrunk, extruded and rounded", "circle(0.5).offset(-0.1).extrude(0.3).round(0.1)"),
+    (
         "claim behind an offset and a sign",
         "fn hill(x, y) lipschitz 1 = 0.5 - sin(x) * sin(y)\n\
          solid land(a: solid) = a(p) - 0.25 * (0.1 - hill(1 - p.x, p.y + 2))\nland(sphere(1))",

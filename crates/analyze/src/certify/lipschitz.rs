@@ -5,10 +5,13 @@
 //! reference, section "Promises".
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
-use sdfc_graph::{Binary, Graph, LoopId, LoopVar, Node, NodeId, ShapeId, Stage, Ternary, Unary};
+use sdfc_graph::{
+    Binary, Graph, LoopId, LoopVar, Node, NodeId, ShapeId, SoftExtreme, Stage, Ternary, Unary,
+};
 
 use crate::certify::affine;
 use crate::certify::components::Components;
+use crate::certify::corner::corner_distance;
 use crate::certify::maps::Maps;
 use crate::certify::mixed_lanes;
 use crate::certify::norms::{
@@ -158,6 +161,14 @@ impl Slopes {
         }
         if self.has_constant_arguments(graph, node) {
             return Ok(graph.number(0.0));
+        }
+        if let Some(SoftExtreme { operands: [a, b], .. }) = graph.as_soft_extreme(node) {
+            // Its gradient is a mixture of those of its operands.
+            let (x, y) = (self.constant(a)?, self.constant(b)?);
+            return Ok(graph.max(x, y));
+        }
+        if let Some(offset) = corner_distance(graph, node) {
+            return self.constant(offset);
         }
         match graph.node(node) {
             Node::Const(_) | Node::Frame(..) => Ok(graph.number(0.0)),

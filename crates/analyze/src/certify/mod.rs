@@ -3,6 +3,7 @@
 pub(crate) mod affine;
 pub(crate) mod components;
 pub(crate) mod conservative;
+pub(crate) mod corner;
 pub(crate) mod descent;
 pub(crate) mod inexact;
 pub(crate) mod lipschitz;

@@ -24,7 +24,8 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// # Errors
 ///
 /// The scene cannot be read, has errors or draws nothing; a param does not take its value; two of
-/// the outputs and the scene are the same file; the machine cannot draw or write; Ctrl-C.
+/// the outputs and the scene are the same file; with `--strict`, a part of the picture is unproven;
+/// the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
     let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
@@ -160,6 +161,9 @@ impl Job<'_> {
             stats_output.write(&super::json(&picture.stats)?)?;
         }
         self.print_notes(&picture);
+        if let Some(unproven) = &picture.unproven {
+            self.console.warning(unproven);
+        }
         if let Output::File(path) = output {
             self.print_files(&picture, &path.display().to_string());
         }
@@ -169,8 +173,10 @@ impl Job<'_> {
     /// Writes one file per frame as soon as it is drawn.
     fn sequence(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
         let progress = self.console.progress("drawing");
+        let mut said = false;
         for (number, before) in frames.numbers().zip(0..) {
             let picture = self.frame(number, &progress, [before, frames.count()])?;
+            self.warn_once(&picture, number, &mut said);
             outputs.picture(Some(number)).write(&self.encode(&picture, outputs.format)?)?;
             self.write_depth(&picture, outputs.depth(Some(number)))?;
             if before == 0 {
@@ -192,9 +198,10 @@ impl Job<'_> {
         let progress = self.console.progress("drawing");
         let mut file = Vec::new();
         let mut animation = Animation::new(&mut file).map_err(refused)?;
-        let mut last = None;
+        let (mut last, mut said) = (None, false);
         for (number, before) in frames.numbers().zip(0..) {
             let picture = self.frame(number, &progress, [before, frames.count()])?;
+            self.warn_once(&picture, number, &mut said);
             let shown = sequence::hundredths(number, self.args.fps);
             animation.push(&picture.image, shown).map_err(refused)?;
             self.write_depth(&picture, outputs.depth(Some(number)))?;
@@ -250,7 +257,14 @@ impl Job<'_> {
             ControlFlow::Continue(()) => picture,
             ControlFlow::Break(()) => Err(RenderError::Cancelled.into()),
         };
-        picture.map_err(|e| super::lowering(&e, self.console))
+        let picture = picture.map_err(|e| super::lowering(&e, self.console))?;
+        match &picture.unproven {
+            Some(unproven) if self.args.strict => {
+                self.console.error(unproven);
+                Err(Failure::Scene)
+            }
+            Some(_) | None => Ok(picture),
+        }
     }
 
     fn encode(&self, picture: &Picture, format: Format) -> Result<Vec<u8>, Failure> {
@@ -261,6 +275,14 @@ impl Job<'_> {
         let Some(output) = output else { return Ok(()) };
         let file = picture.image.depth_to_exr();
         output.write(&file.map_err(|e| super::lowering(&e.into(), self.console))?)
+    }
+
+    /// Warns of the first frame of a sequence that is unproven in part.
+    fn warn_once(&self, picture: &Picture, number: u32, said: &mut bool) {
+        if let (Some(unproven), false) = (&picture.unproven, *said) {
+            self.console.warning(&format!("frame {number}: {unproven}"));
+            *said = true;
+        }
     }
 
     /// Prints why the device or the method differs from the options, a warning about pixels that

@@ -78,7 +78,8 @@ pub(crate) fn analytic_bindings(program: &Program, features: Features) -> Vec<St
         .collect()
 }
 
-/// The bounds along ray segments that a method asks for.
+/// The bounds along ray segments that a method asks for. Without bounds of the value a method
+/// samples instead.
 pub(crate) fn segment_bindings(
     program: &Program,
     method: &MethodDefinition,
@@ -92,6 +93,7 @@ pub(crate) fn segment_bindings(
             &["a", "b", "direction"],
         ),
     ];
-    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub));
+    let samples = |stub| stub == stubs::RANGE && program.range.is_none();
+    let wanted = known.into_iter().filter(|(stub, _)| method.calls(stub) && !samples(*stub));
     wanted.map(|(stub, binding)| binding.ok_or(Error::MissingRoot(stub))).collect()
 }

@@ -71,7 +71,8 @@ fn functions(
 
     let mut module = match method {
         Some(method) => {
-            parse_template(&ray_source(method), &features.overrides(), &[stubs::RECORD_SAMPLE])?
+            let unused = [stubs::RECORD_SAMPLE, stubs::RECORD_GAP];
+            parse_template(&ray_source(method), &features.overrides(), &unused)?
         }
         None => Module::default(),
     };

@@ -46,6 +46,8 @@ impl<'p> PictureLinker<'p> {
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let mut features = features(program, method.pre_intersects);
         features.culled = culled && is_culled(program, method);
+        let writes_pixels = matches!(form, Form::Compute | Form::Normals);
+        features.records_gaps = writes_pixels && method.calls(stubs::RECORD_GAP);
         features.parallel = parallel.unwrap_or(features.parallel);
         let mut bindings = analytic_bindings(program, features);
         let steps = features.steps() && !features.analytic;

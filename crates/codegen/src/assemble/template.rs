@@ -30,6 +30,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
         marched: !pre_intersects || hits.is_none() || marched.is_some(),
         clipped: pre_intersects && clip.is_some(),
         copies: pre_intersects && copies.is_some(),
+        proved: program.range.is_some(),
         ..Features::default()
     }
 }

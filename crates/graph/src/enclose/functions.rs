@@ -6,10 +6,13 @@ use super::encloser::Encloser;
 use super::values::{COARSE, Interval, LARGE, ROUNDING, TINY, Values};
 use crate::eval::HASH_COUNT;
 use crate::node::{Binary, NodeId, Ternary, Type, Unary};
+use crate::simplify::function::{SoftExtreme, SoftKind};
 
 /// Error of devices in sine, cosine and the inverse trigonometric functions for arguments of
 /// ordinary size.
 const ANGLE: f64 = 1.0 / 65_536.0;
+/// Error of devices in `log(1 + exp(-x))`.
+const SOFT: f64 = 1.0 / 262_144.0;
 /// Slack, in periods, when looking for the maxima and minima of sine and cosine.
 const PERIOD_SLACK: f64 = 1.0 / 16_384.0;
 /// e to this power exceeds twice [`LARGE`].
@@ -181,6 +184,30 @@ impl Encloser<'_> {
         let result =
             Interval::overflowing(self.graph.select(meets_zero, least, result.lo), result.hi);
         self.overflow_monotone(result, &[Interval { lo: ends.lo, ..x }])
+    }
+
+    /// Bounds a soft maximum or minimum, which increases or decreases with both operands.
+    pub(super) fn soft_extreme(&mut self, id: NodeId) -> Option<Values> {
+        let SoftExtreme { kind, op, operands } = self.graph.as_soft_extreme(id)?;
+        let [x, y] = operands.map(|operand| self.known.get(operand));
+        let [x, y] = [x?, y?].map(|known| self.interval(known.value));
+        let hard = if kind == SoftKind::Max { Binary::Max } else { Binary::Min };
+        let [lo, hi] = [[x.lo, y.lo], [x.hi, y.hi]].map(|[a, b]| {
+            let (hard, gap) = (self.graph.binary(hard, a, b), self.graph.soft_gap(op, a, b));
+            match kind {
+                SoftKind::Max => self.graph.add(hard, gap),
+                SoftKind::Min | SoftKind::NegatedMin => self.graph.sub(hard, gap),
+            }
+        });
+        let result = Interval::new(lo, hi).with(&[x, y]);
+        let result = self.widen_relative(result, 2.0 * COARSE);
+        let result = self.expand_by(result, SOFT);
+        let result = self.overflow_monotone(result, &[x, y]);
+        Some(if kind == SoftKind::NegatedMin {
+            self.negative(result.into())
+        } else {
+            result.into()
+        })
     }
 
     /// Bounds sine or cosine: a function of period 2π that falls from 1 at `crest` to -1 at

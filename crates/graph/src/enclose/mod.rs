@@ -26,8 +26,13 @@ mod values;
 mod vectors;
 
 use self::encloser::Encloser;
+use self::values::ROUNDING;
+use crate::dump::operation_count;
 use crate::graph::Graph;
 use crate::node::NodeId;
+
+/// Largest number of operations of a formula with tight bounds.
+const MAX_TIGHT: usize = 200;
 
 /// The least and the greatest value of a scalar on the segment from one point to another, as two
 /// nodes.
@@ -62,6 +67,33 @@ pub fn enclosure(
     let known = encloser.bound_root(root, point, ends)?;
     let interval = encloser.interval(known.value);
     Some([interval.lo, interval.hi])
+}
+
+/// The same as [`enclosure`] with a lower bound that may be greater: the value at the first end,
+/// and as far below it as the slope allows. Its excess shrinks with the square of the segment,
+/// where that of plain interval arithmetic shrinks with its length. Formulas of more than
+/// 200 operations keep the plain bounds, since these cost several times as much.
+pub fn tight_enclosure(
+    graph: &mut Graph,
+    root: NodeId,
+    point: NodeId,
+    ends: [NodeId; 2],
+) -> Option<[NodeId; 2]> {
+    let [lo, hi] = enclosure(graph, root, point, ends)?;
+    if operation_count(graph, &[root]) > MAX_TIGHT {
+        return Some([lo, hi]);
+    }
+    let across = graph.sub(ends[1], ends[0]);
+    let [fall, _] = slope_enclosure(graph, root, point, ends, across)?;
+    let [start, _] = enclosure(graph, root, point, [ends[0]; 2])?;
+    let zero = graph.number(0.0);
+    let fall = graph.min(fall, zero);
+    let least = graph.add(start, fall);
+    let sizes = [start, fall].map(|node| graph.abs(node));
+    let (size, rounding) = (graph.add(sizes[0], sizes[1]), graph.number(2.0 * ROUNDING));
+    let margin = graph.mul(size, rounding);
+    let least = graph.sub(least, margin);
+    Some([graph.max(lo, least), hi])
 }
 
 /// The least and the greatest slope of a scalar on a segment: its derivative with respect to s at

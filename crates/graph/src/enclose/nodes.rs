@@ -56,8 +56,11 @@ impl Encloser<'_> {
             }
             Node::Binary(op, a, b) => {
                 let (x, y) = (of(self, a)?, of(self, b)?);
+                let soft = self.soft_extreme(id);
                 // The same argument twice does not vary independently.
-                let value = if a == b && op == Binary::Mul {
+                let value = if let Some(soft) = soft {
+                    soft
+                } else if a == b && op == Binary::Mul {
                     self.square(x.value)
                 } else if a == b && op == Binary::Dot {
                     self.square_of_length(x.value)

@@ -16,7 +16,7 @@
 
 mod arithmetic;
 mod choice;
-mod function;
+pub(crate) mod function;
 mod logic;
 mod vector;
 
@@ -86,6 +86,7 @@ impl Graph {
             Unary::Length => self.simplified_length(a),
             Unary::Not => self.simplified_not(a),
             Unary::Sqrt => self.simplified_sqrt(a),
+            Unary::Log | Unary::Log2 => self.simplified_log(op, a),
             Unary::Sin | Unary::Tan | Unary::Asin | Unary::Atan | Unary::Sinh | Unary::Tanh => {
                 let inner = self.as_neg(a)?;
                 let mirrored = self.unary(op, inner);
@@ -103,8 +104,6 @@ impl Graph {
             | Unary::InverseSqrt
             | Unary::Exp
             | Unary::Exp2
-            | Unary::Log
-            | Unary::Log2
             | Unary::Acos
             | Unary::Normalize => None,
         }

@@ -44,3 +44,7 @@ override CULLED: bool;
 override CULLED_BY_CELL: bool;
 // Pixels count iterations of loops instead of evaluations of the field.
 override INSTRUMENTED: bool;
+// The scene has bounds of the field along segments of rays.
+override PROVED: bool;
+// Pixels tell whether a ray passed a stretch without a proof that it is free.
+override RECORDS_GAPS: bool;

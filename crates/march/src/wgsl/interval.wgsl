@@ -4,6 +4,9 @@
 // promises, even if it jumps. No stack of segments is kept: after a segment that is skipped the
 // next one is as long as the distance there, or twice as long as the last one. After A. Knoll et
 // al., Fast Ray Tracing of Arbitrary Implicit Surfaces with Interval and Affine Arithmetic (2009).
+//
+// The rest of a ray that runs out of steps is sampled, without a proof (`sampling.wgsl`). A scene
+// whose bounds prove next to nothing has no `field_range`: its rays are sampled from the start.
 
 // The shortest segment, as a fraction of the tolerance. It grows up to COARSEST tolerances as a ray
 // spends its steps: near a jump the bounds stay wide however short the segment is.
@@ -17,21 +20,38 @@ fn tolerance(ray: Ray, t: f32) -> f32 {
     return footprint_tolerance(ray, t);
 }
 
+// Each iteration examines a segment or takes a step, and samples the field first where the ray has
+// moved. A loop over segments within one over samples would be natural, but a software driver
+// (Mesa 22) mixes up the rays of a workgroup there if the field has loops too.
 fn trace(ray: Ray) -> Trace {
     // The ray is free of the surface up to the last sample outside.
     var bracket: Bracket;
     var t = 0.0;
+    var distance = 0.0;
     var segment = ray.t_max;
+    // True if the field at t is known, because a segment from there was found too long.
+    var shortened = false;
+    // At first as if straight towards a surface.
+    var slope = 1.0;
     // Evaluations of the field's range; the sample at the end of a segment counts as part of it.
     var evaluations = 0u;
-    while evaluations < ray.steps {
-        let distance = field(ray_point(ray, t));
-        record_sample(t, distance);
-        // A ray that starts inside or on a surface hits at its origin.
-        if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {
-            return Trace(t, HIT, 1u);
+    // Steps for a proof, and for the samples after it.
+    var proving = 0u;
+    if PROVED {
+        proving = ray.steps;
+    }
+    let budget = proving + SAMPLE_BUDGET_FACTOR * ray.steps;
+    while evaluations < budget {
+        if !shortened {
+            distance = field(ray_point(ray, t));
+            record_sample(t, distance);
+            // A ray that starts inside or on a surface hits at its origin.
+            if evaluations == 0u && distance < hit_within(ray, t, tolerance(ray, t)) {
+                return Trace(t, HIT, 1u);
+            }
+            slope = recent_slope(slope, bracket.outside, t, distance);
+            bracket = with_sample(bracket, t, distance);
         }
-        bracket = with_sample(bracket, t, distance);
         let free = bracket.outside.x;
         let near = tolerance(ray, free);
         if bracket.crossed {
@@ -40,29 +60,39 @@ fn trace(ray: Ray) -> Trace {
                 return Trace(bracket.inside.x, HIT, evaluations);
             }
             t = false_position(bracket);
-            continue;
-        }
-        if !(t < ray.t_max) {
+        } else if !(t < ray.t_max) {
             return Trace(t, MISS, evaluations);
-        }
-        segment = limited_step(max(segment, max(distance, rounding(ray, t))), max(distance, near));
-        var shortened = false;
-        while evaluations < ray.steps {
-            let end = min(free + segment, ray.t_max);
-            let least = field_range(ray_point(ray, free), ray_point(ray, end)).x;
+        } else if evaluations >= proving {
+            record_gap();
+            t = min(t + sampling_step(ray, t, distance, slope, budget - evaluations), ray.t_max);
             evaluations++;
-            let spent = f32(evaluations) / f32(ray.steps);
-            let finest = max(max(FINEST, COARSEST * spent) * near, rounding(ray, t));
-            if least > 0.0 || segment <= finest {
-                t = end;
-                break;
+            shortened = false;
+        } else {
+            if PROVED {
+                if !shortened {
+                    segment = limited_step(max(segment, max(distance, rounding(ray, t))), max(distance, near));
+                }
+                let end = min(free + segment, ray.t_max);
+                let least = field_range(ray_point(ray, free), ray_point(ray, end)).x;
+                evaluations++;
+                let spent = f32(evaluations) / f32(ray.steps);
+                let finest = max(max(FINEST, COARSEST * spent) * near, rounding(ray, t));
+                if least > 0.0 || segment <= finest {
+                    if !(least > 0.0) && end - free > max(near, rounding(ray, t)) {
+                        record_gap();
+                    }
+                    t = end;
+                    segment = select(2.0 * segment, 0.0, shortened);
+                    shortened = false;
+                } else {
+                    // As far as the field would stay positive if it fell linearly to its lower
+                    // bound.
+                    let fraction = clamp(MAX_FRACTION * distance / max(distance - least, 1e-30), MIN_FRACTION, MAX_FRACTION);
+                    segment = max(fraction * (end - free), finest);
+                    shortened = true;
+                }
             }
-            // As far as the field would stay positive if it fell linearly to its lower bound.
-            let fraction = clamp(MAX_FRACTION * distance / max(distance - least, 1e-30), MIN_FRACTION, MAX_FRACTION);
-            segment = max(fraction * (end - free), finest);
-            shortened = true;
         }
-        segment = select(2.0 * segment, 0.0, shortened);
     }
-    return Trace(bracket.outside.x, CAPPED, ray.steps);
+    return Trace(bracket.outside.x, CAPPED, budget);
 }

@@ -3,6 +3,7 @@
 struct Pixel {
     color: vec4f,
     depth: f32,
+    // MISS, HIT or CAPPED, and perhaps UNPROVEN.
     status: u32,
     evaluations: u32,
     primary_evaluations: u32,

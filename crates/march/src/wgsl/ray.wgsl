@@ -1,6 +1,7 @@
 // The interface of a ray method: `fn trace(ray: Ray) -> Trace` finds the first hit of a ray, and
 // `fn tolerance(ray: Ray, t: f32) -> f32` tells how near to the surface its hits are. A method
-// calls `record_sample` for each sample that it keeps.
+// calls `record_sample` for each sample that it keeps, and may call `record_gap` for what it passes
+// without a proof.
 
 const MISS: u32 = 0;
 const HIT: u32 = 1;

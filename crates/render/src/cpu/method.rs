@@ -10,7 +10,8 @@ pub(crate) enum CpuMethod {
     /// Relaxed steps up to a fraction of a pixel, then secants; after a change of sign, false
     /// position.
     Auto,
-    /// Ray segments are proven free or cut, the nearer part first, down to a fraction of a pixel.
+    /// Ray segments are proven free or cut, the nearer part first, down to a fraction of a pixel;
+    /// what is left when the steps for that are spent is sampled.
     Interval,
 }
 
@@ -37,8 +38,10 @@ impl CpuMethod {
     /// Factor of the view's step budget.
     pub(crate) fn step_budget_factor(self) -> u32 {
         match self {
-            Self::Sphere | Self::Interval => 1,
+            Self::Sphere => 1,
             Self::Auto => 4,
+            // One part for proofs, four for samples.
+            Self::Interval => 5,
         }
     }
 

@@ -82,8 +82,7 @@ impl CpuScene {
     /// # Errors
     ///
     /// [`RenderError::MethodNotOnCpu`], [`RenderError::Size`], [`RenderError::OutOfMemory`],
-    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient, or
-    /// for `interval` no range.
+    /// [`RenderError::Cancelled`], [`RenderError::Evaluator`] if the program has no gradient.
     pub fn render(
         &self,
         view: &View,
@@ -111,7 +110,7 @@ impl CpuScene {
         if self.gradient.is_none() {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
-        let method = self.method(method)?;
+        let method = known_method(method)?;
         self.draw(view, options, progress, &self.wave::<T>(view, frame, method, true))
     }
 
@@ -127,16 +126,8 @@ impl CpuScene {
         frame: &FrameValues,
         method: Method,
     ) -> Result<Image, RenderError> {
-        let wave = self.wave::<T>(view, frame, self.method(method)?, false);
+        let wave = self.wave::<T>(view, frame, known_method(method)?, false);
         Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
-    }
-
-    fn method(&self, method: Method) -> Result<CpuMethod, RenderError> {
-        let method = CpuMethod::of(method).ok_or(RenderError::MethodNotOnCpu(method))?;
-        if method == CpuMethod::Interval && self.range.is_none() {
-            return Err(RenderError::Evaluator("the program has no range".to_owned()));
-        }
-        Ok(method)
     }
 
     fn wave<'a, T: Real>(
@@ -193,6 +184,10 @@ impl CpuScene {
         }
         Ok(Frame { image, milliseconds, clock: Clock::Wall, tiles, culling_evaluations: 0 })
     }
+}
+
+fn known_method(method: Method) -> Result<CpuMethod, RenderError> {
+    CpuMethod::of(method).ok_or(RenderError::MethodNotOnCpu(method))
 }
 
 /// The current time; `None` if there is no clock, as in WebAssembly.

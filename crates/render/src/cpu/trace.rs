@@ -51,18 +51,20 @@ impl<T: Real> Limits<T> {
 pub(super) struct Trace<T> {
     pub(super) t: T,
     /// One of `MISS`, `HIT`, `CAPPED`.
-    pub(super) status: u32,
+    pub(super) status: u16,
     pub(super) evaluations: u32,
     /// The least ratio of the distance from the ray to the distance along it; infinite if it is not
     /// recorded.
     pub(super) clearance: T,
+    /// True if the ray passed a stretch without a proof that it is free (`interval`).
+    pub(super) unproven: bool,
 }
 
 impl<T: Real> Trace<T> {
     /// The result of a ray that was not traced.
     fn untraced() -> Self {
         let (t, clearance) = (T::constant(f64::NAN), T::constant(f64::INFINITY));
-        Self { t, status: MISS, evaluations: 0, clearance }
+        Self { t, status: MISS, evaluations: 0, clearance, unproven: false }
     }
 }
 
@@ -91,6 +93,10 @@ struct Walk<T> {
     close: bool,
     /// Length of the next segment to examine (`interval`).
     segment: T,
+    /// How steep the field has been of late, and whether a stretch was passed without a proof
+    /// (`interval`).
+    steepness: T,
+    unproven: bool,
 }
 
 /// The decision after a sample of the field.
@@ -117,12 +123,14 @@ impl<T: Real> Walk<T> {
             slope: T::constant(-1.0),
             close: false,
             segment: ray.t_max,
+            steepness: T::constant(1.0),
+            unproven: false,
         }
     }
 
-    fn result(&self, t: T, status: u32) -> Trace<T> {
+    fn result(&self, t: T, status: u16) -> Trace<T> {
         let evaluations = self.evaluations + self.known.evaluations;
-        Trace { t, status, evaluations, clearance: self.clearance }
+        Trace { t, status, evaluations, clearance: self.clearance, unproven: self.unproven }
     }
 
     /// The result of a ray that has hit nothing on its march; a position that is NaN stays NaN.
@@ -150,10 +158,7 @@ impl<T: Real> Walk<T> {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
-            CpuMethod::Interval => match range {
-                Some(range) => self.interval(distance, limits, range),
-                None => return Some(self.result(self.known.start + self.t, CAPPED)),
-            },
+            CpuMethod::Interval => self.interval(distance, limits, range),
         };
         match next {
             Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),

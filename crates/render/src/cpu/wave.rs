@@ -34,10 +34,20 @@ pub(super) struct Wave<'a, T> {
 }
 
 /// A pixel while it is drawn.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Shade {
     color: DVec3,
     evaluations: u32,
+    /// True if a ray passed a stretch without a proof that it is free.
+    unproven: bool,
+}
+
+impl Shade {
+    /// Adds what a ray cost, and what it left unproven.
+    fn count<T: Real>(&mut self, trace: &Trace<T>) {
+        self.evaluations += trace.evaluations;
+        self.unproven = self.unproven || trace.unproven;
+    }
 }
 
 /// A camera ray or a reflection of one.
@@ -76,7 +86,7 @@ impl<T: Real> Wave<'_, T> {
                 weight: DVec3::ONE,
             })
             .collect();
-        let mut shades = vec![Shade { color: DVec3::ZERO, evaluations: 0 }; positions.len()];
+        let mut shades = vec![Shade::default(); positions.len()];
         let primary = self.traced(&view_rays, &mut shades);
         let mut hits = self.lit_hits(&view_rays, &primary, &mut shades);
         for _ in 0..self.view.reflections {
@@ -92,7 +102,7 @@ impl<T: Real> Wave<'_, T> {
         let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
         let traces = self.traces(&rays, false);
         for (view_ray, trace) in view_rays.iter().zip(&traces) {
-            shades[view_ray.pixel].evaluations += trace.evaluations;
+            shades[view_ray.pixel].count(trace);
         }
         traces
     }
@@ -229,7 +239,7 @@ impl<T: Real> Wave<'_, T> {
         let traces = self.traces(&rays, records_clearance);
         for ((hit, _, lit), trace) in shadowed.into_iter().zip(traces) {
             let shade = &mut shades[hit.view_ray.pixel];
-            shade.evaluations += trace.evaluations;
+            shade.count(&trace);
             if trace.status != HIT {
                 shade.color += lit * light_visibility(light, trace.clearance.into());
             }
@@ -290,6 +300,7 @@ impl<T: Real> Wave<'_, T> {
             color: color.as_vec3().extend(1.0).to_array(),
             depth: depth as f32,
             status: trace.status,
+            unproven: u16::from(shade.unproven),
             evaluations: shade.evaluations,
             primary_evaluations: trace.evaluations,
         }

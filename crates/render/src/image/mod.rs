@@ -15,11 +15,11 @@ pub use file::Animation;
 pub use samples::sample_offsets;
 
 /// [`PixelBlock::status`] of a ray that hit nothing.
-pub const MISS: u32 = 0;
+pub const MISS: u16 = 0;
 /// [`PixelBlock::status`] of a ray that hit a surface.
-pub const HIT: u32 = 1;
+pub const HIT: u16 = 1;
 /// [`PixelBlock::status`] of a ray that ran out of steps.
-pub const CAPPED: u32 = 2;
+pub const CAPPED: u16 = 2;
 
 /// The colour, in sRGB, of pixels whose colour or depth is not a finite number.
 pub const NOT_FINITE_COLOR: [u8; 3] = [255, 0, 255];
@@ -32,7 +32,7 @@ pub struct Image {
     pixels: Vec<PixelBlock>,
 }
 
-/// The numbers of rays of a picture by how they ended. The four add up to its pixels.
+/// The numbers of rays of a picture by how they ended. The first four add up to its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct PixelCounts {
     /// The ray hit a surface.
@@ -43,6 +43,9 @@ pub struct PixelCounts {
     pub capped: u64,
     /// Depth or colour is not a finite number, however the ray ended.
     pub nan: u64,
+    /// The ray ran out of steps, or it, a reflection or a shadow ray passed a stretch without a
+    /// proof that it is free, however the ray ended.
+    pub unproven: u64,
 }
 
 impl Image {
@@ -114,6 +117,7 @@ impl Image {
                 }
             };
             *count += 1;
+            counts.unproven += u64::from(is_unproven(pixel));
         }
         counts
     }
@@ -142,6 +146,12 @@ pub(crate) fn check_size(size: [u32; 2]) -> Result<(), RenderError> {
 /// Returns true if colour and depth of a pixel are finite numbers.
 pub fn is_finite(pixel: &PixelBlock) -> bool {
     pixel.depth.is_finite() && pixel.color.iter().all(|channel| channel.is_finite())
+}
+
+/// Returns true if a ray of the pixel ran out of steps, or passed a stretch without a proof that it
+/// is free.
+pub fn is_unproven(pixel: &PixelBlock) -> bool {
+    pixel.unproven != 0 || pixel.status == CAPPED
 }
 
 /// The transfer function of sRGB (IEC 61966-2-1), 0 to 1 on both sides.
@@ -187,7 +197,9 @@ mod tests {
         }
         image.pixels_mut()[3].depth = f32::NAN;
         image.pixels_mut()[4].color[1] = f32::INFINITY;
-        assert_eq!(image.counts(), PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2 });
+        image.pixels_mut()[0].unproven = 1;
+        let expected = PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2, unproven: 2 };
+        assert_eq!(image.counts(), expected);
     }
 
     #[test]

@@ -39,13 +39,15 @@ fn length([x, y]: &[f64; 2]) -> f64 {
 }
 
 impl Image {
-    /// Adds the colours and evaluations of another picture of the same size; depths and statuses
-    /// stay. The sum of `n` pictures [divided](Self::divide) by `n` is their mean in linear light.
+    /// Adds the colours and evaluations of another picture of the same size, and what it leaves
+    /// unproven; depths and statuses stay. The sum of `n` pictures [divided](Self::divide) by `n`
+    /// is their mean in linear light.
     pub fn add(&mut self, other: &Image) {
         for (pixel, more) in self.pixels.iter_mut().zip(&other.pixels) {
             for (channel, more) in pixel.color.iter_mut().zip(more.color) {
                 *channel += more;
             }
+            pixel.unproven |= more.unproven;
             pixel.evaluations = pixel.evaluations.saturating_add(more.evaluations);
             pixel.primary_evaluations =
                 pixel.primary_evaluations.saturating_add(more.primary_evaluations);

@@ -218,6 +218,9 @@ fn lines(ui: &Ui, info: &PixelInfo) -> Vec<(String, Color32)> {
         CAPPED => lines.push(("the ray ran out of steps".to_owned(), theme::of(ui).warning)),
         _ => lines.push(("background".to_owned(), theme::of(ui).weak)),
     }
+    if info.unproven && info.status != CAPPED {
+        lines.push(("not proven: the ray was sampled".to_owned(), theme::of(ui).warning));
+    }
     let distance = info.distance.map_or(String::new(), |d| format!("   field {d:.2e}"));
     let plural = if info.evaluations == 1 { "" } else { "s" };
     let text =

@@ -79,6 +79,14 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
             "Pixels whose ray ran out of steps. The view “Out of steps” marks them.",
         );
     }
+    let sampled = picture.counts.unproven.saturating_sub(picture.counts.capped);
+    if sampled > 0 {
+        let text = format!("{sampled} unproven");
+        ui.label(RichText::new(text).small().color(theme::of(ui).warning)).on_hover_text(
+            "Pixels whose rays were sampled, because bounds of the field are too wide for a proof. \
+             Thin parts may be missing there.",
+        );
+    }
     refinement(ui, session, picture);
 }
 

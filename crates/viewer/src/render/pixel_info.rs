@@ -1,7 +1,7 @@
 //! Information about one pixel of a picture.
 
 use glam::DVec3;
-use sdfc_render::HIT;
+use sdfc_render::{HIT, is_unproven};
 
 use crate::render::picture::Picture;
 
@@ -9,7 +9,9 @@ use crate::render::picture::Picture;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelInfo {
     /// The status of the pixel's ray: [`HIT`] or another of the renderer's.
-    pub status: u32,
+    pub status: u16,
+    /// True if a ray of the pixel was not proven all the way.
+    pub unproven: bool,
     /// The length of the ray in scene units.
     pub depth: f64,
     /// The point of the scene where the ray ended.
@@ -46,6 +48,7 @@ impl PixelInfo {
         });
         Some(Self {
             status: pixel.status,
+            unproven: is_unproven(pixel),
             depth,
             point: point + origin,
             distance: field.map(|field| field.value),

@@ -12,15 +12,26 @@ const MIN_FRACTION: f64 = 0.0625;
 /// ray spends its steps.
 const FINEST: f64 = 0.0625;
 const COARSEST: f64 = 4.0;
+/// The longest step between samples: at the start of the ray as long as after this fraction of it,
+/// and its growth as a multiple of 1 / steps.
+const START_FRACTION: f64 = 0.03125;
+const STEP_GROWTH: f64 = 1.1655;
+/// A step is no longer than this fraction of the way to where the field would be 0.
+const APPROACH: f64 = 0.5;
+/// Weight of the steepest slope so far, beside that of the last step.
+const SLOPE_MEMORY: f64 = 0.75;
+/// Steps that are left for a bracket.
+const BRACKET_STEPS: u32 = 48;
 
 impl<T: Real> Walk<T> {
     /// Returns the position up to which the ray is free, or which is too near to tell; after a
-    /// change of sign, the next position of false position.
+    /// change of sign, the next position of false position. The rest of a ray that runs out of
+    /// steps, or that has no bounds, is sampled without a proof.
     pub(super) fn interval(
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: &mut Evaluator<'_, T>,
+        range: Option<&mut Evaluator<'_, T>>,
     ) -> Next<T> {
         let zero = T::constant(0.0);
         let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
@@ -28,6 +39,7 @@ impl<T: Real> Walk<T> {
             self.evaluations = 1;
             return Next::Hit(self.t);
         }
+        self.steepness = self.recent_slope(distance);
         self.record(distance);
         self.evaluations += u32::from(self.inside.is_some());
         let (last, above) = self.outside.unwrap_or((zero, zero));
@@ -38,6 +50,26 @@ impl<T: Real> Walk<T> {
         if self.t >= self.ray.t_max {
             return Next::At(self.ray.t_max + self.ray.t_max);
         }
+        match range.filter(|_| self.evaluations < limits.steps) {
+            Some(range) => self.proven_step([last, above], limits, range),
+            None => {
+                self.unproven = true;
+                let step = self.sampling_step(distance, limits);
+                self.evaluations += 1;
+                Next::At((self.t + step).min(self.ray.t_max))
+            }
+        }
+    }
+
+    /// Returns the position up to which the ray is free, or which is too near to tell.
+    fn proven_step(
+        &mut self,
+        [last, above]: [T; 2],
+        limits: &Limits<T>,
+        range: &mut Evaluator<'_, T>,
+    ) -> Next<T> {
+        let zero = T::constant(0.0);
+        let near = limits.tolerance(&self.ray, last);
         let rounding = self.ray.rounding(self.t);
         self.segment = self.segment.max(above.max(rounding));
         if limits.records_clearance {
@@ -53,6 +85,8 @@ impl<T: Real> Walk<T> {
             let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
             let finest = finest.max(rounding);
             if least > zero || self.segment <= finest {
+                let proven = least > zero || end - last <= near.max(rounding);
+                self.unproven = self.unproven || !proven;
                 break;
             }
             // As far as the field would stay positive if it fell linearly to its lower bound.
@@ -64,5 +98,34 @@ impl<T: Real> Walk<T> {
         }
         self.segment = if shortened { zero } else { self.segment + self.segment };
         Next::At(end)
+    }
+
+    /// How steep the field has been of late, with one more sample.
+    fn recent_slope(&self, distance: T) -> T {
+        match self.outside {
+            Some((last, above)) if self.t > last => {
+                let slope = (distance - above).abs().div(self.t - last);
+                (T::constant(SLOPE_MEMORY) * self.steepness).max(slope)
+            }
+            Some(_) | None => self.steepness,
+        }
+    }
+
+    /// The step from a sample to the next where nothing is proven. It is at least the tolerance,
+    /// and the ray reaches its end within the budget.
+    fn sampling_step(&self, distance: T, limits: &Limits<T>) -> T {
+        let growth = T::constant(STEP_GROWTH / f64::from(limits.steps));
+        let pixel = T::constant(2.0) * self.ray.footprint(self.t);
+        let start = T::constant(START_FRACTION) * self.ray.t_max;
+        let near = limits.tolerance(&self.ray, self.t);
+        let longest = (growth * (self.t + start)).max(pixel).max(near);
+        let approach =
+            (T::constant(APPROACH) * distance).div(self.steepness.max(T::constant(1e-20)));
+        let step = approach.clamp(near, longest);
+        let step = if limits.records_clearance { step.min(distance.max(near)) } else { step };
+        let budget = limits.method.step_budget_factor().saturating_mul(limits.steps);
+        let left = budget.saturating_sub(self.evaluations);
+        let samples = T::constant(f64::from(left.max(BRACKET_STEPS + 1) - BRACKET_STEPS));
+        step.max((self.ray.t_max - self.t).div(samples))
     }
 }
