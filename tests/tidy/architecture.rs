@@ -11,11 +11,12 @@ use serde_json::Value;
 use crate::files::{files, product};
 
 /// The crates of this workspace that each crate may depend on. A new crate needs a row.
-const MAY_DEPEND_ON: [(&str, &[&str]); 16] = [
+const MAY_DEPEND_ON: [(&str, &[&str]); 17] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
     ("lang", &["diagnostics", "graph", "syntax"]),
+    ("ide", &["diagnostics", "lang", "syntax"]),
     ("analyze", &["graph"]),
     ("march", &[]),
     ("codegen", &["graph", "march"]),

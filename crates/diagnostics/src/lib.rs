@@ -54,6 +54,15 @@ pub struct Note {
     pub message: String,
 }
 
+/// A change of the source that follows a suggestion.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// What the change does, in a few words.
+    pub title: String,
+    /// Source ranges with the text that replaces each of them.
+    pub edits: Vec<(Span, String)>,
+}
+
 /// An error or a warning about a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -71,6 +80,8 @@ pub struct Diagnostic {
     pub notes: Vec<Note>,
     /// Suggestions for this case, best first; see [`Self::suggestions`].
     pub help: Vec<String>,
+    /// Changes that an editor can make, best first.
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
@@ -85,8 +96,8 @@ impl Diagnostic {
     }
 
     fn new(severity: Severity, code: Code, span: Span, message: String) -> Self {
-        let (label, notes, help) = (String::new(), Vec::new(), Vec::new());
-        Self { code, severity, message, span, label, notes, help }
+        let (label, notes, help, fixes) = Default::default();
+        Self { code, severity, message, span, label, notes, help, fixes }
     }
 
     /// Sets the text at the caret.
@@ -110,6 +121,12 @@ impl Diagnostic {
     /// Adds a suggestion.
     pub fn help(mut self, message: impl Into<String>) -> Self {
         self.help.push(message.into());
+        self
+    }
+
+    /// Adds a change that replaces one source range.
+    pub fn fix(mut self, title: impl Into<String>, span: Span, text: impl Into<String>) -> Self {
+        self.fixes.push(Fix { title: title.into(), edits: vec![(span, text.into())] });
         self
     }
 

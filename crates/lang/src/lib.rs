@@ -38,17 +38,21 @@ pub mod elab;
 pub mod font;
 pub mod hir;
 pub mod import;
+pub mod inspect;
 pub mod library;
 pub mod live_literals;
 pub mod outline;
 mod reachability;
+pub mod receivers;
 pub mod reference;
 pub mod settings;
 mod spelling;
 mod synonyms;
 mod syntax_words;
+pub mod uses;
 
 use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
+use sdfc_syntax::ast;
 
 pub use check::{check, check_library, check_with_imports};
 pub use elab::{Claimed, Declared, DeclaredPromise, Elaborated, Site};
@@ -90,19 +94,8 @@ pub fn front_with(
     resolver: &dyn Resolver,
     options: Options,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let (scene, mut found) = sdfc_syntax::parse(sources, file);
-    // The parser stopped early: declarations in the rest of the file would seem to be missing.
-    if found.iter().any(|it| matches!(it.code, Code::NESTING | Code::TOO_LARGE)) {
-        return (None, found);
-    }
-    // The library comes before the imports, so that its file ids are the same in every scene.
-    let library = library::add_to(sources);
-    let (imports, of_imports) = import::load(sources, (file, &scene), resolver);
-    found.extend(of_imports);
-    let (program, of_check) = reachability::check(sources, &library, &imports, (file, &scene));
-    let parsed = !has_errors(&found);
-    // A part that could not be parsed may use or draw the items that warnings call unused.
-    found.extend(of_check.into_iter().filter(|it| parsed || it.is_error()));
+    let checked = check_scene(sources, file, resolver, None);
+    let (program, mut found) = (checked.program, checked.found);
     if has_errors(&found) {
         return (None, found);
     }
@@ -114,4 +107,41 @@ pub fn front_with(
     };
     found.extend(of_elaboration);
     (elaborated, found)
+}
+
+/// A scene after the check.
+struct Checked {
+    tree: ast::File,
+    imports: Vec<import::Imported>,
+    /// The ids of the library's files.
+    library: Vec<FileId>,
+    program: hir::Program,
+    /// The tables, if they were asked for.
+    uses: Option<uses::Uses>,
+    /// The diagnostics of the parser, the imports and the checker.
+    found: Vec<Diagnostic>,
+}
+
+/// Parses and checks a scene. Fills `uses` if it is there.
+fn check_scene(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+    uses: Option<uses::Uses>,
+) -> Checked {
+    let (tree, mut found) = sdfc_syntax::parse(sources, file);
+    // The library comes before the imports, so that its file ids are the same in every scene.
+    let library = library::add_to(sources);
+    // The parser stopped early: declarations in the rest of the file would seem to be missing.
+    if found.iter().any(|it| matches!(it.code, Code::NESTING | Code::TOO_LARGE)) {
+        let (imports, program) = (Vec::new(), hir::Program::default());
+        return Checked { tree, imports, library, program, uses, found };
+    }
+    let (imports, of_imports) = import::load(sources, (file, &tree), resolver);
+    found.extend(of_imports);
+    let checked = reachability::check(sources, &library, &imports, (file, &tree), uses);
+    let parsed = !has_errors(&found);
+    // A part that could not be parsed may use or draw the items that warnings call unused.
+    found.extend(checked.diagnostics.into_iter().filter(|it| parsed || it.is_error()));
+    Checked { tree, imports, library, program: checked.program, uses: checked.uses, found }
 }

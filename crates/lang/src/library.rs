@@ -95,6 +95,12 @@ pub fn entries() -> Vec<Entry> {
 }
 
 fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
+    let line = sources.line_column(decl.span.file, decl.span.start).line;
+    Entry { topic: topic(file), location: Some((file, line)), ..describe_declaration(sources, decl) }
+}
+
+/// Describes a declaration of a scene or of the library, without topic and place.
+pub fn describe_declaration(sources: &Sources, decl: &ast::Decl) -> Entry {
     let mut entry = Entry {
         name: decl.name.text.clone(),
         kind: match decl.kind {
@@ -103,10 +109,8 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
             DeclKind::Region => "region",
             DeclKind::Shape => "shape",
         },
-        topic: topic(file),
         signature: signature(sources, decl),
         clauses: clauses(sources, decl),
-        location: Some((file, sources.line_column(decl.span.file, decl.span.start).line)),
         ..Entry::default()
     };
     let mut lines = unwrapped(&decl.docs.lines).into_iter();

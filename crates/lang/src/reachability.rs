@@ -8,13 +8,13 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use rustc_hash::FxHashMap;
-use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+use sdfc_diagnostics::{FileId, Sources, has_errors};
 use sdfc_syntax::ast::{self, Item};
 
-use crate::check::check_items;
-use crate::hir::Program;
+use crate::check::{CheckedItems, check_items};
 use crate::import::Imported;
 use crate::library;
+use crate::uses::Uses;
 
 /// The library items that scenes use without a name: `|`, `&` and `-` call them, and `union` also
 /// joins the shapes that are drawn.
@@ -26,7 +26,8 @@ pub(crate) fn check(
     library: &[FileId],
     imports: &[Imported],
     scene: (FileId, &ast::File),
-) -> (Program, Vec<Diagnostic>) {
+    uses: Option<Uses>,
+) -> CheckedItems {
     // File ids are part of every span. So parsed items can be reused only if the library's files
     // have the same ids, which is always the case for fresh `Sources`.
     static FIRST: OnceLock<Library> = OnceLock::new();
@@ -41,9 +42,10 @@ pub(crate) fn check(
     let files = imports.iter().map(|import| import.file).chain([scene.0]);
     let reached = library.reached(sources, files.map(|file| sources.text(file)));
     let look = library.look(sources);
-    let checked = check_items(&reached, look, imports, scene);
-    if has_errors(&checked.1) {
-        return check_items(&library.whole(sources), look, imports, scene);
+    let again = uses.clone();
+    let checked = check_items(&reached, look, imports, scene, uses);
+    if has_errors(&checked.diagnostics) {
+        return check_items(&library.whole(sources), look, imports, scene, again);
     }
     checked
 }

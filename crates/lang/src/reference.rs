@@ -68,5 +68,6 @@ fn setting(row: &SettingRow) -> Entry {
 
 /// A suggestion for an unknown name: "did you mean `sphere`?"
 pub fn meant(entries: &[Entry], name: &str) -> Option<String> {
-    spelling::meant(name, entries.iter().map(|entry| entry.name.as_str()))
+    let meant = spelling::meant(name, entries.iter().map(|entry| entry.name.as_str()));
+    meant.map(|meant| meant.message)
 }

@@ -2,14 +2,26 @@
 
 use crate::synonyms;
 
+/// A suggestion for an unknown name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Meant {
+    /// The suggestion as a sentence.
+    pub message: String,
+    /// The expression to write instead.
+    pub instead: String,
+}
+
 /// A suggestion for a name that is not among `names`: one of them in another spelling, its name in
 /// this language, or one with a similar spelling.
-pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Meant> {
     let names: Vec<&str> = names.collect();
-    let ask = |name: &str| format!("did you mean `{name}`?");
+    let suggest = |message: String, instead: &str| Meant { message, instead: instead.to_owned() };
+    let ask = |name: &str| suggest(format!("did you mean `{name}`?"), name);
     synonyms::respelt(name, &names)
         .map(ask)
-        .or_else(|| synonyms::here(name).map(|here| format!("that is `{here}` here")))
+        .or_else(|| {
+            synonyms::here(name).map(|here| suggest(format!("that is `{here}` here"), here))
+        })
         .or_else(|| nearest(name, names.into_iter()).map(ask))
 }
 

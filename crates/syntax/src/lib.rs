@@ -33,12 +33,14 @@
 //! rest are only counted.
 
 pub mod ast;
+mod classes;
 mod format;
 mod lexer;
 mod literal;
 mod parser;
 mod token;
 
+pub use classes::{Class, classes, is_reserved};
 pub use format::format;
 pub use parser::{parse, parse_part};
 

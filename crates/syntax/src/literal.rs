@@ -21,13 +21,16 @@ pub(crate) fn number(text: &str, span: Span) -> Checked<ExprKind> {
         "rad" => (Some(Unit::Rad), None),
         "e" | "E" => (None, Some(wrong(format!("the exponent of `{text}` has no digits")))),
         _ if is_upper_exponent(suffix) => {
-            let help = format!("write {}", text.replace('E', "e"));
-            (None, Some(wrong("exponents are written with a small `e`".to_owned()).help(help)))
+            let fixed = text.replace('E', "e");
+            let help = format!("write {fixed}");
+            let problem = wrong("exponents are written with a small `e`".to_owned());
+            (None, Some(problem.help(&help).fix(help, span, fixed)))
         }
         _ => {
             let problem = wrong(format!("`{suffix}` is not a unit"))
                 .help("the units are deg, turn and rad; lengths have none")
-                .help(format!("a product needs its operator: {digits} * {suffix}"));
+                .help(format!("a product needs its operator: {digits} * {suffix}"))
+                .fix("write a product", span, format!("{digits} * {suffix}"));
             (None, Some(problem))
         }
     };
@@ -71,6 +74,7 @@ pub(crate) fn bare_point(written: &str, span: Span) -> Diagnostic {
     };
     Diagnostic::error(Code::BAD_NUMBER, span, "a number needs a digit on both sides of the point")
         .help(format!("write {fixed}"))
+        .fix(format!("write {fixed}"), span, fixed)
 }
 
 /// Reads a colour: `#rgb`, `#rgba`, `#rrggbb`, `#rrggbbaa`.
@@ -109,7 +113,8 @@ pub(crate) fn text(written: &str, span: Span) -> Checked<String> {
             span,
             "strings stand between plain double quotes",
         )
-        .help(format!("write \"{inner}\""));
+        .help(format!("write \"{inner}\""))
+        .fix("use plain double quotes", span, format!("\"{inner}\""));
         return (inner.to_owned(), Some(problem));
     }
     let mut value = String::new();

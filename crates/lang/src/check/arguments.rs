@@ -24,6 +24,7 @@ impl<'a> Checker<'a> {
         given: Vec<Given<'a>>,
     ) -> Vec<Option<Expr>> {
         let bound = self.bind(callee, parameters, given);
+        self.note_call(callee.at, parameters, &bound);
         let free: Vec<&ParameterSignature> = parameters
             .iter()
             .zip(&bound)
@@ -117,7 +118,11 @@ impl<'a> Checker<'a> {
             let near = synonyms::parameter(&name.text, &names)
                 .or_else(|| nearest(&name.text, names.into_iter()));
             let found = match near {
-                Some(near) => found.help(format!("did you mean `{near}`?")),
+                Some(near) => found.help(format!("did you mean `{near}`?")).fix(
+                    format!("replace by `{near}`"),
+                    name.span,
+                    near,
+                ),
                 None => self.elsewhere(
                     callee.name,
                     &name.text,
@@ -158,7 +163,14 @@ impl<'a> Checker<'a> {
         };
         let found = match free.iter().find(fits) {
             Some(parameter) => {
-                found.help(format!("or name the parameter: {}: {}", parameter.name, written(e)))
+                let start = Span { end: e.span.start, ..e.span };
+                found
+                    .help(format!("or name the parameter: {}: {}", parameter.name, written(e)))
+                    .fix(
+                        format!("name the parameter `{}`", parameter.name),
+                        start,
+                        format!("{}: ", parameter.name),
+                    )
             }
             None => found,
         };
@@ -231,7 +243,12 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         let message = format!("parameters after `{}` must be named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
-        self.report(found.help(format!("write {}: {}", later.name, written(given))));
+        let start = Span { end: given.span.start, ..given.span };
+        self.report(found.help(format!("write {}: {}", later.name, written(given))).fix(
+            format!("name the parameter `{}`", later.name),
+            start,
+            format!("{}: ", later.name),
+        ));
         poison(given.span)
     }
 

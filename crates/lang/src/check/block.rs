@@ -32,6 +32,7 @@ impl<'a> Checker<'a> {
         for item in lets {
             let name = &item.name;
             let value = self.infer(&item.value);
+            self.note_variable(name.span, &value.ty);
             let local = self.body.declare(&name.text, value.ty.clone(), name.span);
             values.push((local, name.text.clone(), value));
         }

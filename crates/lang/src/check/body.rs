@@ -79,9 +79,9 @@ impl<'a> Body<'a> {
         variables.iter().rposition(|variable| variable.name == name).map(LocalIndex)
     }
 
-    /// The names of all variables in scope.
-    pub(super) fn names(&self) -> impl Iterator<Item = &'a str> {
-        self.frames.last().into_iter().flat_map(|f| f.variables.iter().map(|v| v.name))
+    /// All variables in scope.
+    pub(super) fn variables(&self) -> impl Iterator<Item = &Variable<'a>> {
+        self.frames.last().into_iter().flat_map(|frame| &frame.variables)
     }
 
     /// A fresh id in the innermost frame.

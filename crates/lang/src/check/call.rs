@@ -90,6 +90,7 @@ impl<'a> Checker<'a> {
             self.unknown_name(callee.name, callee.at);
             return self.give_up(given, callee.span);
         };
+        self.note_use(callee.at, callee.name, &found);
         match found {
             Found::Local(_) | Found::Let(_) | Found::Param(_) => {
                 let value = self.value_of(&found, callee.name, callee.at);
@@ -149,7 +150,11 @@ impl<'a> Checker<'a> {
                 let message = format!("{what} is {} and takes no arguments", describe(&other));
                 let at = called.map_or(function.span, |(callee, _)| callee.at);
                 let found = Diagnostic::error(Code::WRONG_CALL, at, message);
-                let found = found.help("write it without parentheses");
+                let found = found.help("write it without parentheses").fix(
+                    "remove the parentheses",
+                    Span { start: at.end, ..span },
+                    "",
+                );
                 let found = self.note_hidden(found, called);
                 self.report(found);
                 self.give_up(given, span)

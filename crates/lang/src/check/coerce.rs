@@ -234,7 +234,7 @@ pub(super) fn solid_for_region(span: Span, wanted: &str) -> Diagnostic {
 }
 
 pub(super) fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
-    let literal = literal(value);
+    let (literal, value_span) = (literal(value), value.span);
     let what = literal.map_or("this number".to_owned(), |value| format!("`{value}`"));
     let message = format!("{subject} is an angle; {what} has no unit");
     let found = Diagnostic::error(Code::NOT_AN_ANGLE, value.span, message);
@@ -244,7 +244,10 @@ pub(super) fn not_an_angle(value: &Expr, subject: &str) -> Diagnostic {
                 short if (short * 1000.0).fract() == 0.0 => format!(" {short}turn,"),
                 _ => String::new(),
             };
-            found.help(format!("write {value}deg,{turn} or {value} * 1rad"))
+            found
+                .help(format!("write {value}deg,{turn} or {value} * 1rad"))
+                .fix("add the unit `deg`", value_span.after(), "deg")
+                .fix("add the unit `rad`", value_span.after(), "rad")
         }
         None => found.help("multiply it by a unit: `* 1deg`, `* 1turn` or `* 1rad`"),
     }

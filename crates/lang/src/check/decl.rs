@@ -248,6 +248,7 @@ impl<'a> Checker<'a> {
                 self.check_variadic(parm, &parameters);
             }
             let parameter = self.check_parameter(parm);
+            self.note_variable(parm.name.span, &parameter.ty);
             self.body.declare_as(LocalId(at as u32), name, parameter.ty.clone(), parm.name.span);
             signatures.push(ParameterSignature {
                 name,

@@ -11,7 +11,9 @@ use crate::hir::{Expr, ExprKind, Type};
 impl<'a> Checker<'a> {
     /// Checks an expression without an expected type.
     pub(super) fn infer(&mut self, e: &'a ast::Expr) -> Expr {
-        self.with_stack(|checker| checker.infer_inner(e))
+        let value = self.with_stack(|checker| checker.infer_inner(e));
+        self.note_type(e.span, &value.ty);
+        value
     }
 
     fn infer_inner(&mut self, e: &'a ast::Expr) -> Expr {
@@ -41,7 +43,14 @@ impl<'a> Checker<'a> {
     /// Checks an expression against type `want`. The type is passed into parentheses, lists,
     /// blocks, branches and lambdas, so that messages point there.
     pub(super) fn check_expr(&mut self, e: &'a ast::Expr, want: &Type, role: Role) -> Expr {
-        self.with_stack(|checker| checker.check_inner(e, want, role))
+        if let Ast::Name(name) = &e.kind {
+            self.note_expected(name, want);
+        }
+        let value = self.with_stack(|checker| checker.check_inner(e, want, role));
+        if matches!(e.kind, Ast::Block(..) | Ast::If(..) | Ast::Lambda(..) | Ast::List(_)) {
+            self.note_type(e.span, &value.ty);
+        }
+        value
     }
 
     fn check_inner(&mut self, e: &'a ast::Expr, want: &Type, role: Role) -> Expr {

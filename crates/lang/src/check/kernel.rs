@@ -1,6 +1,6 @@
 //! The names that the compiler itself knows (the kernel), with their arguments and documentation.
 
-use crate::hir::Kernel;
+use crate::hir::{Kernel, Type};
 
 /// The meaning of a name of the kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -203,4 +203,27 @@ mod tests {
             assert!(ROWS[..at].iter().all(|other| other.name != row.name), "{}", row.name);
         }
     }
+}
+
+/// True if a value of this type can be the first argument of a function of the kernel.
+pub(crate) fn takes_first(name: &str, ty: &Type) -> bool {
+    let Some(builtin) = builtin(name) else { return false };
+    match builtin {
+        Builtin::Number(_) | Builtin::Time | Builtin::Frame | Builtin::Hard => false,
+        Builtin::Soft | Builtin::Material => false,
+        Builtin::Math(_) | Builtin::Hash(_) => is_numeric(ty),
+        Builtin::Vector(_) => is_numeric(ty) && !matches!(ty, Type::Color),
+        Builtin::Geometry(_) | Builtin::Lift => matches!(ty, Type::Vec(_)),
+        Builtin::Len => matches!(ty, Type::List(_) | Type::Range(_) | Type::Vec(_)),
+        Builtin::Iterate => matches!(ty, Type::List(_) | Type::Range(_) | Type::Int),
+        Builtin::Bounds | Builtin::AtPoint(_) => matches!(ty, Type::Shape(_)),
+        Builtin::With => *ty == Type::Material,
+        Builtin::Color(_) => matches!(ty, Type::Number | Type::Int),
+        Builtin::GlyphCurves => *ty == Type::Text,
+    }
+}
+
+/// True for numbers, angles, vectors and colours.
+fn is_numeric(ty: &Type) -> bool {
+    matches!(ty, Type::Number | Type::Int | Type::Angle | Type::Vec(_) | Type::Color)
 }

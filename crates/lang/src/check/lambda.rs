@@ -33,6 +33,7 @@ impl<'a> Checker<'a> {
         };
         let captures = self.enter_lambda(signature, body);
         for (parm, ty) in signature.parms.iter().zip(&parameters) {
+            self.note_variable(parm.name.span, ty);
             self.body.declare(&parm.name.text, ty.clone(), parm.name.span);
         }
         let (lipschitz, requires) = self.lambda_clauses(signature);

@@ -113,6 +113,7 @@ impl<'a> Checker<'a> {
         let over = self.sequence(&each.over);
         let item = self.item_type(&over);
         let mark = self.body.enter();
+        self.note_variable(each.name.span, &item);
         let local = self.body.declare(&each.name.text, item, each.name.span);
         let condition = each.condition.as_ref();
         let condition = condition.map(|e| self.check_condition(e, "the condition of `for`"));

@@ -14,7 +14,8 @@
 //! - `types`, `coerce`: which value can be used where;
 //! - `decl`, `clauses`: declarations, which are checked when they are first mentioned;
 //! - `top`: the top level of a file, which drives the others;
-//! - `order`: circular dependencies, which are found at the end.
+//! - `order`: circular dependencies, which are found at the end;
+//! - `record`: tables of names and types for editors.
 #![allow(
     clippy::wildcard_enum_match_arm,
     reason = "the rule for all other types and forms is an error message, also for new ones"
@@ -39,6 +40,7 @@ mod names;
 mod operators;
 mod order;
 mod overload;
+mod record;
 mod top;
 pub(crate) mod types;
 mod value;
@@ -54,6 +56,7 @@ use sdfc_syntax::ast::{self, Item};
 use crate::hir::{Expr, ExprKind, GlobalId, Param, ParamId, Program, Type};
 use crate::import::{self, Imported};
 use crate::settings::{self, SettingRow};
+use crate::uses::Uses;
 
 /// Checks a scene without access to other files: imports are errors. See [`check_with_imports`].
 pub fn check(
@@ -80,18 +83,30 @@ pub fn check_with_imports(
     imports: &[Imported],
     scene: (FileId, &ast::File),
 ) -> (Program, Vec<Diagnostic>) {
-    check_items(&whole(library), None, imports, scene)
+    let checked = check_items(&whole(library), None, imports, scene, None);
+    (checked.program, checked.diagnostics)
+}
+
+/// The result of [`check_items`].
+pub(crate) struct CheckedItems {
+    pub program: Program,
+    /// The diagnostics, in the order of their positions.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The tables, if they were asked for.
+    pub uses: Option<Uses>,
 }
 
 /// Like [`check_with_imports`], with only the given items of each library file. A scene that does
-/// not light itself gets the settings of the look.
+/// not light itself gets the settings of the look. Fills `uses` if it is there.
 pub(crate) fn check_items<'a>(
     library: &[(FileId, Vec<&'a Item>)],
     look: Option<&'a ast::File>,
     imports: &'a [Imported],
     scene: (FileId, &'a ast::File),
-) -> (Program, Vec<Diagnostic>) {
+    uses: Option<Uses>,
+) -> CheckedItems {
     let mut checker = Checker::new(library);
+    checker.uses = uses;
     for import in imports {
         let module = checker.add_module(&import.tree.items, Some(&import.path), false);
         checker.modules[module].whole = import.whole;
@@ -105,7 +120,9 @@ pub(crate) fn check_items<'a>(
         let module = checker.add_module(&look.items, None, true);
         checker.check_look(module, look);
     }
-    checker.finish()
+    let uses = checker.uses.take();
+    let (program, diagnostics) = checker.finish();
+    CheckedItems { program, diagnostics, uses }
 }
 
 /// Checks every declaration of the library, once per dimension.
@@ -205,6 +222,8 @@ struct Checker<'a> {
     /// The current body.
     body: body::Body<'a>,
     order: order::Order,
+    /// What editors ask for; `None` if nobody does.
+    uses: Option<Uses>,
     program: Program,
     diagnostics: Vec<Diagnostic>,
 }

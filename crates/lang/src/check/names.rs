@@ -11,7 +11,7 @@ use super::body::LocalIndex;
 use super::kernel::{self, Builtin};
 use super::{Checker, DeclIndex, LetIndex, ParamIndex, types};
 use crate::settings::SettingRow;
-use crate::spelling::meant;
+use crate::spelling::{Meant, meant};
 
 /// The item that a top-level name of a file refers to.
 #[derive(Clone, Debug)]
@@ -164,6 +164,7 @@ impl<'a> Checker<'a> {
 
     /// Looks up a name at the current position.
     pub(super) fn look_up(&mut self, name: &str) -> Option<Found> {
+        self.note_scope(name);
         if let Some(local) = self.body.find(name) {
             return Some(Found::Local(local));
         }
@@ -220,7 +221,7 @@ impl<'a> Checker<'a> {
 
     /// True if a name is visible at the current position: a `let` or `param` after its end, a
     /// declaration everywhere.
-    fn is_visible(&self, entry: &Entry) -> bool {
+    pub(super) fn is_visible(&self, entry: &Entry) -> bool {
         match entry {
             Entry::Decls(_) => true,
             Entry::Let(index) => self.lets[index.0].ast.span.end <= self.body.position,
@@ -249,19 +250,20 @@ impl<'a> Checker<'a> {
             (Some(later), _) => found
                 .note_at(later, "it is declared here and can be used only after this line")
                 .help("move that line above this one"),
-            (None, Some(meant)) => found.help(meant),
+            (None, Some(meant)) => replaced(found, meant),
             (None, None) => found,
         };
         self.report(found);
     }
 
     /// A suggestion for an unknown name.
-    fn suggestion(&self, name: &str) -> Option<String> {
+    fn suggestion(&self, name: &str) -> Option<Meant> {
         let module = &self.modules[self.body.module];
         let file = module.names.iter().filter(|(_, entry)| self.is_visible(entry));
         let names = self
             .body
-            .names()
+            .variables()
+            .map(|variable| variable.name)
             .chain(file.map(|(name, _)| *name))
             .chain(module.imports.keys().copied())
             .chain(self.library.keys().copied())
@@ -298,4 +300,15 @@ pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
         }
     }
     of(decl.signature.parms.first()?.ty.as_ref()?)
+}
+
+/// Adds a suggestion for an unknown name, and the change if it is another name.
+pub(super) fn replaced(found: Diagnostic, meant: Meant) -> Diagnostic {
+    let span = found.span;
+    let is_name = meant.instead.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let found = found.help(meant.message);
+    if !is_name {
+        return found;
+    }
+    found.fix(format!("replace by `{}`", meant.instead), span, meant.instead)
 }

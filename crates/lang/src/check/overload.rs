@@ -1,5 +1,6 @@
 //! Overload resolution: which declaration a call refers to, and in which dimension.
 
+use sdfc_diagnostics::Span;
 use sdfc_graph::Dim;
 use sdfc_syntax::ast::{self, DeclKind};
 
@@ -85,11 +86,22 @@ impl<'a> Checker<'a> {
             return poison(callee.span);
         }
         self.needs(signature.target.node(), callee.span);
+        if let Some(declared) = self.declared_at(signature.target) {
+            self.note_declared(callee.at, declared);
+        }
         let kind = match signature.target {
             Target::Fn(id) => ExprKind::Call(id, arguments),
             Target::Shape(id) => ExprKind::Build(id, arguments),
         };
         Expr { kind, ty, span: callee.span }
+    }
+
+    /// The span of the name of a declaration.
+    fn declared_at(&self, target: Target) -> Option<Span> {
+        match target {
+            Target::Fn(id) => self.program.functions.get(id.0 as usize).map(|it| it.span),
+            Target::Shape(id) => self.program.shapes.get(id.0 as usize).map(|it| it.span),
+        }
     }
 
     /// Selects among the declarations of a name by the type of the first argument. In a declaration

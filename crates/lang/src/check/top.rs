@@ -95,6 +95,7 @@ impl<'a> Checker<'a> {
     /// Brings the imported names of a file into its scope. Files that could not be read, or
     /// that import each other in a circle, were reported when they were loaded.
     fn import(&mut self, module: usize, ast: &'a ast::File) {
+        self.body.module = module;
         for item in &ast.items {
             let Item::Import(import) = item else { continue };
             let from = self.modules[module].path.unwrap_or("");
@@ -106,6 +107,12 @@ impl<'a> Checker<'a> {
             });
             for (name, renamed) in &import.names {
                 let entry = source.and_then(|source| self.exported(source, name));
+                if let Some(entry) = &entry {
+                    let declared = self.entry_span(entry);
+                    for name in [Some(name), renamed.as_ref()].into_iter().flatten() {
+                        self.note_declared(name.span, declared);
+                    }
+                }
                 self.import_name(module, renamed.as_ref().unwrap_or(name), entry);
             }
         }
@@ -128,7 +135,11 @@ impl<'a> Checker<'a> {
                 let found = Diagnostic::error(Code::IMPORT, name.span, message);
                 let public = names.keys().copied().filter(|name| !is_private(name));
                 match nearest(&name.text, public) {
-                    Some(near) => found.help(format!("did you mean `{near}`?")),
+                    Some(near) => found.help(format!("did you mean `{near}`?")).fix(
+                        format!("replace by `{near}`"),
+                        name.span,
+                        near,
+                    ),
                     None => found,
                 }
             }
@@ -184,7 +195,8 @@ impl<'a> Checker<'a> {
         let Ast::Call(callee, args) = &e.kind else { return None };
         let Ast::Name(name) = &callee.kind else { return None };
         match self.look_up(name) {
-            Some(Found::Setting(row)) => {
+            Some(found @ Found::Setting(row)) => {
+                self.note_use(callee.span, name, &found);
                 Some((row, Callee { name, at: callee.span, span: e.span }, args))
             }
             _ => None,

@@ -98,6 +98,12 @@ pub(crate) fn show(ty: &Type) -> String {
     }
 }
 
+impl std::fmt::Display for Type {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&show(self))
+    }
+}
+
 /// The type with its article: `a number`, `an angle`.
 pub(super) fn describe(ty: &Type) -> String {
     match ty {
@@ -349,7 +355,7 @@ impl Checker<'_> {
         let found =
             Diagnostic::error(Code::UNKNOWN_NAME, ty.span, format!("there is no type `{word}`"));
         let found = match meant(word, WORDS.iter().map(|word| word.name)) {
-            Some(meant) => found.help(meant),
+            Some(meant) => super::names::replaced(found, meant),
             None => {
                 let words: Vec<&str> = WORDS.iter().map(|word| word.name).collect();
                 found.help(format!("the types are {}, [T] and fn(A) -> R", words.join(", ")))

@@ -17,29 +17,29 @@ use crate::import;
 impl<'a> Checker<'a> {
     /// Checks a name that is not called.
     pub(super) fn infer_name(&mut self, name: &str, span: Span) -> Expr {
-        match self.look_up(name) {
-            Some(found) => self.value_of(&found, name, span),
-            None => {
-                self.unknown_name(name, span);
-                poison(span)
-            }
-        }
+        let Some(found) = self.look_up(name) else {
+            self.unknown_name(name, span);
+            return poison(span);
+        };
+        self.note_use(span, name, &found);
+        self.value_of(&found, name, span)
     }
 
     /// Checks a name where a function with these parameters is expected. Declarations and kernel
     /// functions are wrapped in a lambda with these parameters.
     pub(super) fn name_as_function(&mut self, name: &str, want: &[Type], span: Span) -> Expr {
-        match self.look_up(name) {
-            Some(Found::Decls(decls)) => self.declared_function(&decls, name, want, span),
-            Some(Found::Builtin(builtin)) if constant(builtin).is_none() => {
+        let Some(found) = self.look_up(name) else {
+            self.unknown_name(name, span);
+            return poison(span);
+        };
+        self.note_use(span, name, &found);
+        match found {
+            Found::Decls(decls) => self.declared_function(&decls, name, want, span),
+            Found::Builtin(builtin) if constant(builtin).is_none() => {
                 let callee = Callee { name, at: span, span };
                 self.wrap(want, span, |checker, given| checker.call_builtin(builtin, callee, given))
             }
-            Some(found) => self.value_of(&found, name, span),
-            None => {
-                self.unknown_name(name, span);
-                poison(span)
-            }
+            found => self.value_of(&found, name, span),
         }
     }
 
@@ -216,6 +216,7 @@ impl<'a> Checker<'a> {
         body.node = Some(Node::of_let(index));
         let outer = std::mem::replace(&mut self.body, body);
         let value = self.infer(&item.value);
+        self.note_variable(item.name.span, &value.ty);
         let body = std::mem::replace(&mut self.body, outer);
         self.drain();
         let locals = body.frames.first().map_or(0, |frame| frame.locals);
@@ -249,6 +250,7 @@ impl<'a> Checker<'a> {
         self.params[index.0].state = State::Open;
         let outer = std::mem::replace(&mut self.body, Body::new(module, item.span.start));
         let param = self.param(item);
+        self.note_variable(item.name.span, &param.ty);
         self.leave_top_level(outer);
         self.params[index.0].state = match types::poisoned(&param.ty) {
             true => State::Failed,

@@ -256,10 +256,13 @@ impl Parser<'_> {
         if self.kind() != TokenKind::Eq {
             return Ok(());
         }
+        let equals = self.span();
         let diagnostic =
-            Diagnostic::error(Code::EXPECTED, self.span(), "expected `,` or `)`, found `=`")
+            Diagnostic::error(Code::EXPECTED, equals, "expected `,` or `)`, found `=`")
                 .help(format!("a named argument is written with a colon: {name}: ..."))
-                .help("equality is written `==`");
+                .help("equality is written `==`")
+                .fix("name the argument with a colon", equals, ":")
+                .fix("compare with `==`", equals, "==");
         self.fail(diagnostic)
     }
 }

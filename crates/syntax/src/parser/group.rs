@@ -81,7 +81,8 @@ impl Parser<'_> {
             diagnostic =
                 diagnostic.note_at(behind.after(), format!("a `{missing}` is missing up to here"));
         }
-        self.report(diagnostic.help(format!("write `{missing}` there, or before")));
+        let diagnostic = diagnostic.help(format!("write `{missing}` there, or before"));
+        self.report(diagnostic.fix(format!("write `{missing}`"), behind.after(), missing));
     }
 
     /// Handles a closing bracket of another kind. It closes an outer bracket, or is a mistake.
@@ -160,6 +161,11 @@ impl Parser<'_> {
         let diagnostic = self
             .expectation(&format!("`,` or `{closer}`"))
             .help(format!("separate one {one} from the next with a comma"));
+        let behind = self.previous().map(|token| token.span(self.file).after());
+        let diagnostic = match behind {
+            Some(behind) => diagnostic.fix("write `,`", behind, ","),
+            None => diagnostic,
+        };
         self.report(diagnostic);
     }
 

@@ -281,4 +281,5 @@ impl Parser<'_> {
 fn reserved(word: &str, span: Span) -> Diagnostic {
     Diagnostic::error(Code::RESERVED, span, format!("`{word}` is a reserved word, not a name"))
         .help(format!("choose another name, `{word}_` for example"))
+        .fix(format!("rename to `{word}_`"), span, format!("{word}_"))
 }

@@ -101,7 +101,9 @@ impl Parser<'_> {
         if self.at_word(FORMER_INTERSECT) {
             let message = format!("the clause `{FORMER_INTERSECT}` is called `intersect` now");
             let diagnostic = Diagnostic::error(Code::EXPECTED, self.span(), message);
-            self.report(diagnostic.help("write `intersect` and keep the rest of the clause"));
+            let span = self.span();
+            let help = "write `intersect` and keep the rest of the clause";
+            self.report(diagnostic.help(help).fix("write `intersect`", span, "intersect"));
             return Some("intersect");
         }
         CLAUSES.into_iter().find(|word| self.at_word(word))

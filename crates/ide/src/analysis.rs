@@ -1,0 +1,197 @@
+//! A scene that was parsed and checked, with the positions of all its names.
+
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
+use sdfc_lang::Resolver;
+use sdfc_lang::import::Imported;
+use sdfc_lang::inspect::{Inspection, inspect, inspect_at};
+use sdfc_lang::uses::{Target, Uses};
+use sdfc_syntax::ast::{self, Item};
+
+use crate::library::library;
+use crate::tree::{Node, nodes};
+
+/// What a name refers to.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Referent {
+    /// Something whose declared name has this span.
+    Declared(Span),
+    /// A name of the kernel.
+    Kernel(&'static str),
+    /// A setting.
+    Setting(&'static str),
+    /// A parameter of a kernel function or a setting: kind and name of the callee, and its name.
+    Parameter(&'static str, &'static str, String),
+    /// A word of a type.
+    Type(String),
+}
+
+/// A name in the source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Occurrence {
+    /// Its position.
+    pub span: Span,
+    /// What it refers to.
+    pub referent: Referent,
+    /// True if it declares what it refers to.
+    pub declares: bool,
+}
+
+/// A scene with its imports, parsed and checked.
+#[derive(Debug)]
+pub struct Analysis {
+    pub(crate) sources: Sources,
+    pub(crate) file: FileId,
+    pub(crate) tree: ast::File,
+    pub(crate) imports: Vec<Imported>,
+    pub(crate) uses: Uses,
+    pub(crate) found: Vec<Diagnostic>,
+    /// The names of the scene and its imports, by position. Empty for a text with a cursor.
+    pub(crate) occurrences: Vec<Occurrence>,
+}
+
+impl Analysis {
+    /// Parses, checks and elaborates a scene. `name` is its path in messages and locations;
+    /// imported files are named by paths beside it.
+    pub fn new(name: &str, text: &str, resolver: &dyn Resolver) -> Self {
+        let mut sources = Sources::new();
+        let file = sources.add(name, text);
+        let inspection = inspect(&mut sources, file, resolver);
+        let mut analysis = Self::of(sources, file, inspection);
+        analysis.occurrences = analysis.find_occurrences();
+        analysis
+    }
+
+    /// Parses and checks a scene in which the name `cursor` marks the position of the cursor.
+    pub(crate) fn at_cursor(name: &str, text: &str, resolver: &dyn Resolver, cursor: &str) -> Self {
+        let mut sources = Sources::new();
+        let file = sources.add(name, text);
+        let inspection = inspect_at(&mut sources, file, resolver, cursor);
+        Self::of(sources, file, inspection)
+    }
+
+    fn of(sources: Sources, file: FileId, inspection: Inspection) -> Self {
+        let Inspection { tree, imports, library: _, uses, diagnostics } = inspection;
+        let occurrences = Vec::new();
+        Self { sources, file, tree, imports, uses, found: diagnostics, occurrences }
+    }
+
+    /// The text of the scene.
+    pub fn text(&self) -> &str {
+        self.sources.text(self.file)
+    }
+
+    /// The name of the scene.
+    pub fn name(&self) -> &str {
+        self.sources.name(self.file)
+    }
+
+    /// The names of the files that the scene imports, directly or not.
+    pub fn imported(&self) -> impl Iterator<Item = &str> {
+        self.imports.iter().map(|import| self.sources.name(import.file))
+    }
+
+    /// The text of a file of this analysis.
+    pub fn text_of(&self, name: &str) -> Option<&str> {
+        let mut ids = (0..self.sources.len() as u32).map(FileId);
+        ids.find(|id| self.sources.name(*id) == name).map(|id| self.sources.text(id))
+    }
+
+    /// The tree of a file.
+    pub(crate) fn tree_of(&self, file: FileId) -> Option<&ast::File> {
+        if file == self.file {
+            return Some(&self.tree);
+        }
+        let import = self.imports.iter().find(|import| import.file == file);
+        import.map(|import| &import.tree).or_else(|| library().tree(file))
+    }
+
+    /// The trees of the scene and its imports.
+    pub(crate) fn trees(&self) -> impl Iterator<Item = &ast::File> {
+        std::iter::once(&self.tree).chain(self.imports.iter().map(|import| &import.tree))
+    }
+
+    /// The name at a byte offset of the scene. A cursor behind the last letter counts.
+    pub(crate) fn occurrence(&self, offset: usize) -> Option<&Occurrence> {
+        let of_scene = self.occurrences.iter().filter(|it| it.span.file == self.file);
+        let holds =
+            |it: &&Occurrence| it.span.start as usize <= offset && offset <= it.span.end as usize;
+        of_scene.filter(holds).max_by_key(|it| it.span.start)
+    }
+
+    /// The source text of a span.
+    pub(crate) fn slice(&self, span: Span) -> &str {
+        self.sources.slice(span)
+    }
+
+    /// The declaration in a file or in the library whose name has this span.
+    pub(crate) fn declaration(&self, name: Span) -> Option<&ast::Decl> {
+        let items = self.tree_of(name.file)?.items.iter();
+        let mut own = items.filter_map(|item| match item {
+            Item::Decl(decl) => Some(&**decl),
+            Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
+        });
+        own.find(|decl| decl.name.span == name).or_else(|| library().declaration(name))
+    }
+
+    fn find_occurrences(&self) -> Vec<Occurrence> {
+        let declared =
+            |span| Occurrence { span, referent: Referent::Declared(span), declares: true };
+        let mut all = Vec::new();
+        for node in self.trees().flat_map(|tree| nodes(&tree.items)) {
+            match node {
+                Node::Item(Item::Param(it)) => all.push(declared(it.name.span)),
+                Node::Item(Item::Decl(it)) => all.push(declared(it.name.span)),
+                Node::Item(Item::Let(it)) => all.push(declared(it.name.span)),
+                Node::Item(Item::Import(_) | Item::Expr(_)) => {}
+                Node::Parm(it) => all.push(declared(it.name.span)),
+                Node::Let(it) => all.push(declared(it.name.span)),
+                Node::For(it) => all.push(declared(it.name.span)),
+                Node::Type(it) => {
+                    if let ast::TypeExprKind::Named(word) = &it.kind {
+                        let referent = Referent::Type(word.clone());
+                        all.push(Occurrence { span: it.span, referent, declares: false });
+                    }
+                }
+                Node::Signature(_) | Node::Clause(_) | Node::Expr(_) | Node::Arg(_) => {}
+            }
+        }
+        for (span, target) in &self.uses.targets {
+            let referent = match *target {
+                Target::Declared(span) => Referent::Declared(span),
+                Target::Kernel(name) => Referent::Kernel(name),
+                Target::Setting(name) => Referent::Setting(name),
+            };
+            all.push(Occurrence { span: *span, referent, declares: false });
+        }
+        all.extend(self.named_arguments());
+        all.sort_by_key(|it| (it.span, !it.declares));
+        all.dedup_by_key(|it| it.span);
+        all
+    }
+
+    /// The names of named arguments.
+    fn named_arguments(&self) -> Vec<Occurrence> {
+        let mut all = Vec::new();
+        for (callee, call) in &self.uses.calls {
+            let Some(target) = self.uses.targets.get(callee) else { continue };
+            for argument in &call.arguments {
+                let (Some(span), Some(name)) =
+                    (argument.name, call.parameters.get(argument.parameter))
+                else {
+                    continue;
+                };
+                let referent = match *target {
+                    Target::Declared(of) => {
+                        let parms = self.declaration(of).map(|decl| &decl.signature.parms);
+                        let parm = parms.and_then(|parms| parms.get(argument.parameter));
+                        parm.map(|parm| Referent::Declared(parm.name.span))
+                    }
+                    Target::Kernel(of) => Some(Referent::Parameter("kernel", of, name.clone())),
+                    Target::Setting(of) => Some(Referent::Parameter("setting", of, name.clone())),
+                };
+                all.extend(referent.map(|referent| Occurrence { span, referent, declares: false }));
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,98 @@
+//! Errors and warnings as an editor shows them.
+
+use std::ops::Range;
+
+use sdfc_diagnostics::{Code, Diagnostic, Severity};
+
+use crate::analysis::Analysis;
+use crate::edit::{Location, range};
+use crate::library::library_files;
+
+/// A note about another position.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Related {
+    /// The position.
+    pub at: Location,
+    /// The note.
+    pub message: String,
+}
+
+/// An error or a warning in the scene's own file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// The source range that is wrong; for an error in an imported file, the path of the import.
+    pub range: Range<usize>,
+    /// The severity.
+    pub severity: Severity,
+    /// The code, such as `E0201`.
+    pub code: &'static str,
+    /// The message with label, notes and suggestions, one per line.
+    pub message: String,
+    /// Notes about other positions.
+    pub related: Vec<Related>,
+    /// True if the range is code without use.
+    pub unused: bool,
+}
+
+/// Returns the diagnostics of the scene. Those of an imported file are shown at the import.
+pub fn diagnostics(analysis: &Analysis) -> Vec<Found> {
+    let of_library = library_files().iter().any(|(_, text)| *text == analysis.text());
+    let shown = analysis.found.iter().filter(|it| {
+        // A file of the library is open: it draws nothing, and that is as it should be.
+        !(of_library && it.code == Code::NOTHING_DRAWN)
+    });
+    shown.map(|it| found(analysis, it)).collect()
+}
+
+fn found(analysis: &Analysis, it: &Diagnostic) -> Found {
+    let elsewhere = it.span.file != analysis.file;
+    let at = Location::of(&analysis.sources, it.span);
+    let mut related = Vec::new();
+    let mut message = it.message.clone();
+    if elsewhere {
+        related.push(Related { at: at.clone(), message: it.message.clone() });
+        message = format!("{}: {message}", at.file.rsplit('/').next().unwrap_or(&at.file));
+    }
+    let label = Some(it.label.as_str()).filter(|label| !label.is_empty());
+    let notes = it.notes.iter().filter(|note| note.span.is_none());
+    let lines = label.into_iter().chain(notes.map(|note| note.message.as_str()));
+    for line in lines {
+        message.push('\n');
+        message.push_str(line);
+    }
+    for help in it.suggestions() {
+        message.push_str("\nhelp: ");
+        message.push_str(help);
+    }
+    for note in &it.notes {
+        if let Some(span) = note.span {
+            let at = Location::of(&analysis.sources, span);
+            related.push(Related { at, message: note.message.clone() });
+        }
+    }
+    Found {
+        range: if elsewhere { import_of(analysis, it) } else { range(it.span) },
+        severity: it.severity,
+        code: it.code.0,
+        message,
+        related,
+        unused: it.code == Code::UNUSED,
+    }
+}
+
+/// The path of the import that leads to the file of a diagnostic; the start of the scene if it
+/// leads there only through other files.
+fn import_of(analysis: &Analysis, it: &Diagnostic) -> Range<usize> {
+    let path = analysis.imports.iter().find(|import| import.file == it.span.file);
+    let items = analysis.tree.items.iter().filter_map(|item| match item {
+        sdfc_syntax::ast::Item::Import(import) => Some(import),
+        sdfc_syntax::ast::Item::Param(_)
+        | sdfc_syntax::ast::Item::Decl(_)
+        | sdfc_syntax::ast::Item::Let(_)
+        | sdfc_syntax::ast::Item::Expr(_) => None,
+    });
+    let mut leading = items.filter(|import| {
+        path.is_some_and(|it| import.path.text.trim_start_matches("./") == it.path)
+    });
+    leading.next().map_or(0..0, |import| range(import.path.span))
+}

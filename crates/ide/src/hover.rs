@@ -1,0 +1,115 @@
+//! What is shown for the name under the mouse.
+
+use std::ops::Range;
+
+use sdfc_diagnostics::Span;
+use sdfc_lang::library::Entry;
+
+use crate::analysis::{Analysis, Referent};
+use crate::declaration::{Declared, declared, describe, documentation, headline};
+use crate::edit::range;
+use crate::library::library;
+
+/// A text about a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hover {
+    /// The name.
+    pub range: Range<usize>,
+    /// The text, as Markdown.
+    pub markdown: String,
+}
+
+/// Describes the name at a byte offset: its signature, documentation, units, defaults and source.
+pub fn hover(analysis: &Analysis, offset: usize) -> Option<Hover> {
+    let at = analysis.occurrence(offset)?;
+    let markdown = match &at.referent {
+        Referent::Declared(name) => of_declared(analysis, at.span, *name),
+        Referent::Kernel(name) => library().entry("kernel", name).map(of_entry),
+        Referent::Setting(name) => library().entry("setting", name).map(of_entry),
+        Referent::Type(word) => library().entry("type", word).map(of_entry),
+        Referent::Parameter(kind, of, name) => {
+            let entry = library().entry(kind, of)?;
+            let about = entry.parameters.iter().find(|(parameter, _)| parameter == name);
+            let about = about.map(|(_, about)| about.as_str()).unwrap_or_default();
+            Some(page(&format!("{}: {}", of, name), &[about.to_owned()]))
+        }
+    }?;
+    Some(Hover { range: range(at.span), markdown })
+}
+
+fn of_declared(analysis: &Analysis, used: Span, name: Span) -> Option<String> {
+    let is_operator = !analysis.slice(used).starts_with(|c: char| c.is_alphabetic() || c == '_');
+    let same_name = analysis.slice(used) == analysis.slice(name);
+    let found = declared(analysis, name);
+    match found {
+        Some(Declared::Decl(decl)) if is_operator || same_name || !is_point(analysis, used) => {
+            Some(of_entry(&describe(analysis, decl)))
+        }
+        Some(found @ (Declared::Param(_) | Declared::Let(_))) => {
+            let docs = documentation(analysis, found);
+            Some(page(&headline(analysis, found), &[docs]))
+        }
+        Some(found @ (Declared::Parm(..) | Declared::For(_))) => {
+            let docs = documentation(analysis, found);
+            Some(page(&headline(analysis, found), &[docs]))
+        }
+        Some(Declared::Decl(_)) | None => of_implicit(analysis, used),
+    }
+}
+
+/// True if the name is `p`, `o` or `d`, which nobody declares.
+fn is_point(analysis: &Analysis, used: Span) -> bool {
+    matches!(analysis.slice(used), "p" | "o" | "d")
+}
+
+fn of_implicit(analysis: &Analysis, used: Span) -> Option<String> {
+    let name = analysis.slice(used);
+    let about = match name {
+        "p" => "The point at which the formula gives the signed distance.",
+        "o" => "The origin of the ray.",
+        "d" => "The direction of the ray, of length 1.",
+        _ => return None,
+    };
+    let ty = analysis.uses.types.get(&used)?;
+    Some(page(&format!("{name}: {ty}"), &[about.to_owned()]))
+}
+
+/// The page of an entry of the reference.
+pub fn of_entry(entry: &Entry) -> String {
+    let parameters = entry.parameters.iter().map(|(name, about)| format!("- `{name}`: {about}\n"));
+    let labelled = |label: &str, text: &str, code: bool| match (text, code) {
+        ("", _) => String::new(),
+        (text, true) => format!("{label}: `{text}`"),
+        (text, false) => format!("{label}: {text}"),
+    };
+    let head = match entry.kind {
+        "kernel" | "setting" | "type" => entry.signature.clone(),
+        kind => format!("{kind} {}", entry.signature),
+    };
+    page(
+        &head,
+        &[
+            entry.summary.clone(),
+            entry.details.clone(),
+            parameters.collect(),
+            labelled("Contract", &entry.contract(), true),
+            labelled("Example", &entry.example, true),
+            labelled("Source", &entry.source, false),
+            match entry.location {
+                Some((file, line)) => format!("Declared in {file}:{line}"),
+                None => String::new(),
+            },
+        ],
+    )
+}
+
+/// A line of code with paragraphs below it. Empty paragraphs are left out.
+pub fn page(code: &str, paragraphs: &[String]) -> String {
+    let mut page = format!("```sdf\n{code}\n```\n");
+    for paragraph in paragraphs.iter().map(|it| it.trim_end()).filter(|it| !it.is_empty()) {
+        page.push('\n');
+        page.push_str(paragraph);
+        page.push('\n');
+    }
+    page
+}

@@ -1,0 +1,150 @@
+//! Every request at positions all over the examples and the library, and after random edits: none
+//! panics, and every answer lies inside of the text.
+#![allow(missing_docs)]
+
+use std::path::{Path, PathBuf};
+
+use sdfc_ide::{
+    Analysis, Resolver, actions, colors, complete, definition, diagnostics, folds, format,
+    highlights, hints, hover, library_files, prepare_rename, references, rename, selection,
+    signature_help, symbols, tokens,
+};
+use sdfc_test_support::{example_sources, examples_folder};
+
+struct Folder(PathBuf);
+
+impl Resolver for Folder {
+    fn read(&self, path: &str) -> Result<String, String> {
+        std::fs::read_to_string(self.0.join(path)).map_err(|e| e.to_string())
+    }
+}
+
+/// Name, text and folder of each example and library file.
+fn scenes() -> Vec<(String, String, Folder)> {
+    let examples = example_sources().unwrap().into_iter().map(|(name, text)| {
+        let path = examples_folder().join(&name);
+        (name, text, Folder(path.parent().unwrap_or(Path::new("")).to_owned()))
+    });
+    let library = library_files().iter();
+    let library = library.map(|(name, text)| {
+        (format!("library/{name}"), (*text).to_owned(), Folder(PathBuf::new()))
+    });
+    examples.chain(library).collect()
+}
+
+/// Asks everything that a check of the whole text answers.
+fn ask_at(scene: &Analysis, offset: usize) {
+    let text = scene.text();
+    let inside = |range: &std::ops::Range<usize>| {
+        assert!(text.get(range.clone()).is_some(), "{range:?} in {}", scene.name());
+    };
+    hover(scene, offset).iter().for_each(|it| inside(&it.range));
+    definition(scene, offset);
+    references(scene, &[], offset, true);
+    highlights(scene, offset).iter().for_each(|it| inside(&it.0));
+    signature_help(scene, offset);
+    selection(scene, offset).iter().for_each(inside);
+    let renamable = prepare_rename(scene, offset);
+    renamable.iter().for_each(inside);
+    assert_eq!(renamable.is_ok(), rename(scene, &[], offset, "quite_another_name").is_ok());
+    actions(scene, offset..offset);
+}
+
+fn ask_whole(scene: &Analysis) {
+    let text = scene.text();
+    let whole = 0..text.len();
+    let inside = |range: &std::ops::Range<usize>| {
+        assert!(text.get(range.clone()).is_some(), "{range:?} in {}", scene.name());
+    };
+    diagnostics(scene).iter().for_each(|it| inside(&it.range));
+    actions(scene, whole.clone());
+    hints(scene, whole).iter().for_each(|it| inside(&(it.at..it.at)));
+    tokens(scene).iter().for_each(|it| inside(&it.range));
+    folds(scene).iter().for_each(|it| inside(&it.range));
+    symbols(scene).iter().for_each(|it| inside(&it.range));
+    colors(scene).iter().for_each(|it| inside(&it.range));
+    format(text);
+}
+
+#[test]
+fn every_request_is_answered_everywhere() {
+    for (name, text, folder) in scenes() {
+        let scene = Analysis::new(&name, &text, &folder);
+        let found = diagnostics(&scene);
+        assert!(
+            found.iter().all(|it| it.severity < sdfc_ide::Severity::Error),
+            "{name}: {found:?}"
+        );
+        ask_whole(&scene);
+        (0..=text.len()).step_by(3).for_each(|offset| ask_at(&scene, offset));
+        for offset in (0..=text.len()).step_by((text.len() / 12).max(1)) {
+            for it in complete(&name, &text, offset, &folder, &[]) {
+                assert!(text.get(it.replace.clone()).is_some(), "{it:?} in {name}");
+            }
+        }
+    }
+}
+
+/// A generator of pseudo-random numbers (xorshift).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % limit.max(1) as u64) as usize
+    }
+}
+
+const TYPED: [&str; 24] = [
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    ".",
+    ",",
+    ":",
+    "=",
+    "\"",
+    "a",
+    "sphere(1)",
+    " | ",
+    "\n",
+    "//",
+    "let x = ",
+    "é",
+    "1",
+    "deg",
+    "#",
+    "p",
+    "if ",
+    "import a from \"b.sdf\"\n",
+];
+
+#[test]
+fn random_edits_break_nothing() {
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    for (name, original, folder) in scenes() {
+        // A part of a file from its start is quick to check and as broken as any text.
+        let end = (0..=original.len().min(1500)).rev().find(|at| original.is_char_boundary(*at));
+        let mut text = original[..end.unwrap_or(0)].to_owned();
+        for _ in 0..6 {
+            let at = random.below(text.len() + 1);
+            let at = (0..=at).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
+            if random.below(2) == 0 {
+                text.insert_str(at, TYPED[random.below(TYPED.len())]);
+            } else {
+                let end = (at + random.below(12)).min(text.len());
+                let end = (end..=text.len()).find(|at| text.is_char_boundary(*at));
+                text.replace_range(at..end.unwrap_or(text.len()), "");
+            }
+            let scene = Analysis::new(&name, &text, &folder);
+            ask_whole(&scene);
+            (0..=text.len()).step_by(29).for_each(|offset| ask_at(&scene, offset));
+            complete(&name, &text, at.min(text.len()), &folder, &[]);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The front end for editors: it keeps what the compiler drops, and does not stop at errors.
+
+use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
+use sdfc_syntax::ast;
+
+use crate::font::Fonts;
+use crate::import::{Imported, Resolver};
+use crate::uses::Uses;
+use crate::{check_scene, elab};
+
+/// A scene with all that its check found out.
+#[derive(Clone, Debug)]
+pub struct Inspection {
+    /// The syntax tree of the scene.
+    pub tree: ast::File,
+    /// The imported files.
+    pub imports: Vec<Imported>,
+    /// The ids of the library's files, in the order of [`library::FILES`](crate::library::FILES), and
+    /// that of the default look.
+    pub library: Vec<FileId>,
+    /// Names, types and calls.
+    pub uses: Uses,
+    /// The diagnostics of all phases that ran.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Parses, checks and, if there are no errors, elaborates a scene. Arguments as for
+/// [`front_with_imports`](crate::front_with_imports).
+pub fn inspect(sources: &mut Sources, file: FileId, resolver: &dyn Resolver) -> Inspection {
+    let checked = check_scene(sources, file, resolver, Some(Uses::default()));
+    let mut diagnostics = checked.found;
+    if !has_errors(&diagnostics) {
+        diagnostics.extend(elab::elaborate(&checked.program, &Fonts::new(resolver)).1);
+    }
+    Inspection {
+        tree: checked.tree,
+        imports: checked.imports,
+        library: checked.library,
+        uses: checked.uses.unwrap_or_default(),
+        diagnostics,
+    }
+}
+
+/// Parses and checks a scene in which the name `cursor` marks the position of the cursor. So
+/// [`Uses::scope`] says which names are in scope there.
+pub fn inspect_at(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+    cursor: &str,
+) -> Inspection {
+    let checked = check_scene(sources, file, resolver, Some(Uses::new(Some(cursor))));
+    Inspection {
+        tree: checked.tree,
+        imports: checked.imports,
+        library: checked.library,
+        uses: checked.uses.unwrap_or_default(),
+        diagnostics: checked.found,
+    }
+}
