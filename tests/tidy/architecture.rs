@@ -11,12 +11,13 @@ use serde_json::Value;
 use crate::files::{files, product};
 
 /// The crates of this workspace that each crate may depend on. A new crate needs a row.
-const MAY_DEPEND_ON: [(&str, &[&str]); 17] = [
+const MAY_DEPEND_ON: [(&str, &[&str]); 18] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
     ("lang", &["diagnostics", "graph", "syntax"]),
     ("ide", &["diagnostics", "lang", "syntax"]),
+    ("lsp", &["ide"]),
     ("analyze", &["graph"]),
     ("march", &[]),
     ("codegen", &["graph", "march"]),
@@ -24,7 +25,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 17] = [
     ("sdfc", &["analyze", "codegen", "diagnostics", "graph", "lang", "march", "render", "syntax"]),
     ("files", &["sdfc"]),
     ("measure", &["analyze", "codegen", "graph", "march", "render", "sdfc"]),
-    ("cli", &["diagnostics", "files", "lang", "march", "measure", "render", "sdfc"]),
+    ("cli", &["diagnostics", "files", "lang", "lsp", "march", "measure", "render", "sdfc"]),
     ("capi", &["sdfc"]),
     ("build", &["files", "sdfc"]),
     ("web", &["sdfc"]),
@@ -46,12 +47,13 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 17] = [
 ];
 
 /// Dependencies that are reserved for these crates.
-const RESERVED: [(&str, &[&str]); 10] = [
+const RESERVED: [(&str, &[&str]); 11] = [
     ("eframe", &["viewer"]),
     ("notify", &["viewer"]),
     ("naga", &["codegen"]),
     ("wgpu", &["render", "sdfc"]),
     ("logos", &["syntax"]),
+    ("lsp-server", &["lsp"]),
     ("codespan-reporting", &["diagnostics"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),

@@ -76,6 +76,8 @@ pub enum Command {
     Bench(Bench),
     /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
+    /// Serve an editor: the Language Server Protocol over stdin and stdout
+    Lsp,
     /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
     /// Find the cheapest ray method and setting within an error limit

@@ -1,4 +1,4 @@
-//! The cache folder for the oracle's results.
+//! The cache folder of the user, and the oracle's results in it.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ pub struct TruthFolder {
 impl TruthFolder {
     /// Returns the folder of the options, or the user's cache folder. `None` with `--no-cache`.
     pub fn new(cache: &Cache) -> Option<Self> {
-        let folder = cache.cache.clone().or_else(|| user_folder(|name| std::env::var_os(name)));
+        let folder =
+            cache.cache.clone().or_else(|| user_folder("truths", |name| std::env::var_os(name)));
         folder.filter(|_| !cache.no_cache).map(|folder| Self { folder })
     }
 
@@ -48,8 +49,8 @@ impl TruthStore for TruthFolder {
     }
 }
 
-/// Returns the cache folder by the conventions of the operating system.
-fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+/// Returns a folder in the user's cache by the conventions of the operating system.
+pub fn user_folder(below: &str, variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     let folder = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let home = || folder("HOME");
     let caches = if cfg!(windows) {
@@ -59,7 +60,7 @@ fn user_folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     } else {
         folder("XDG_CACHE_HOME").or_else(|| home().map(|home| home.join(".cache")))
     };
-    caches.map(|caches| caches.join("sdfc").join("truths"))
+    caches.map(|caches| caches.join("sdfc").join(below))
 }
 
 /// Removes the least recently used files of a folder until the rest takes at most `max` bytes.
@@ -110,7 +111,7 @@ mod tests {
     #[cfg(all(unix, not(target_os = "macos")))]
     fn the_user_folder_follows_the_conventions_of_the_system() {
         let at = |pairs: &'static [(&str, &str)]| {
-            user_folder(|name| {
+            user_folder("truths", |name| {
                 pairs.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into())
             })
         };

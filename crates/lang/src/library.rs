@@ -96,7 +96,11 @@ pub fn entries() -> Vec<Entry> {
 
 fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
     let line = sources.line_column(decl.span.file, decl.span.start).line;
-    Entry { topic: topic(file), location: Some((file, line)), ..describe_declaration(sources, decl) }
+    Entry {
+        topic: topic(file),
+        location: Some((file, line)),
+        ..describe_declaration(sources, decl)
+    }
 }
 
 /// Describes a declaration of a scene or of the library, without topic and place.

@@ -9,6 +9,7 @@ pub mod doc;
 pub mod explain;
 mod faults;
 pub mod format;
+pub mod lsp;
 pub mod render;
 pub mod tune;
 pub mod view;

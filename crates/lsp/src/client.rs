@@ -1,0 +1,28 @@
+//! What the editor can do.
+
+use serde_json::{Value, json};
+
+use crate::lines::Encoding;
+
+/// What the editor can do.
+#[derive(Clone, Copy, Debug)]
+pub struct Client {
+    /// The unit of columns.
+    pub encoding: Encoding,
+    /// True if completions may have gaps to fill in.
+    pub snippets: bool,
+}
+
+impl Client {
+    /// Reads the parameters of `initialize`.
+    pub fn new(params: &Value) -> Self {
+        let capabilities = &params["capabilities"];
+        let encodings = capabilities["general"]["positionEncodings"].as_array();
+        let utf8 = encodings.is_some_and(|list| list.first() == Some(&json!("utf-8")));
+        let item = &capabilities["textDocument"]["completion"]["completionItem"];
+        Self {
+            encoding: if utf8 { Encoding::Utf8 } else { Encoding::Utf16 },
+            snippets: item["snippetSupport"] == json!(true),
+        }
+    }
+}

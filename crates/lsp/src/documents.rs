@@ -1,0 +1,176 @@
+//! Open files, and the files on disk.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use sdfc_ide::{Analysis, Resolver, library_files};
+use serde_json::Value;
+
+use crate::lines::{Encoding, Lines};
+
+/// Access to files that are not open in the editor.
+pub trait Disk {
+    /// Reads a source file.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason in one line.
+    fn read(&self, path: &Path) -> Result<String, String>;
+
+    /// Reads a binary file, such as a font.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason in one line.
+    fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, String>;
+
+    /// Returns the scenes in a folder and below it. There may be more than those.
+    fn scenes(&self, folder: &Path) -> Vec<PathBuf>;
+
+    /// Returns a folder that has the library's files, `std/solids.sdf` and so on.
+    fn library(&self) -> Option<PathBuf>;
+}
+
+/// The open files and what is known of them.
+pub struct Documents<'d> {
+    open: BTreeMap<PathBuf, String>,
+    analyses: BTreeMap<PathBuf, Rc<Analysis>>,
+    disk: &'d dyn Disk,
+}
+
+/// Resolves the imports of one scene: open files first.
+struct Beside<'d> {
+    folder: PathBuf,
+    open: &'d BTreeMap<PathBuf, String>,
+    disk: &'d dyn Disk,
+}
+
+impl Resolver for Beside<'_> {
+    fn read(&self, path: &str) -> Result<String, String> {
+        let path = self.folder.join(path);
+        self.open.get(&path).map_or_else(|| self.disk.read(&path), |text| Ok(text.clone()))
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
+        self.disk.read_bytes(&self.folder.join(path))
+    }
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).to_owned()
+}
+
+impl<'d> Documents<'d> {
+    /// No open files.
+    pub fn new(disk: &'d dyn Disk) -> Self {
+        Self { open: BTreeMap::new(), analyses: BTreeMap::new(), disk }
+    }
+
+    /// The paths of all open files.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.open.keys().cloned().collect()
+    }
+
+    /// The text of a file, if it is open or can be read.
+    pub fn text(&self, path: &Path) -> Option<String> {
+        let open = self.open.get(path).cloned();
+        open.or_else(|| {
+            let folder = self.disk.library()?;
+            let name = path.strip_prefix(folder).ok()?.to_str()?.replace('\\', "/");
+            let mut files = library_files().iter();
+            files.find(|(file, _)| *file == name).map(|(_, text)| (*text).to_owned())
+        })
+        .or_else(|| self.disk.read(path).ok())
+    }
+
+    /// Opens a file or replaces its text.
+    pub fn set(&mut self, path: &Path, text: String) {
+        self.open.insert(path.to_owned(), text);
+        self.forget(path);
+    }
+
+    /// Closes a file.
+    pub fn close(&mut self, path: &Path) {
+        self.open.remove(path);
+        self.forget(path);
+    }
+
+    /// Applies the changes of a notification.
+    pub fn change(&mut self, path: &Path, changes: &Value, encoding: Encoding) {
+        let mut text = self.open.get(path).cloned().unwrap_or_default();
+        for change in changes.as_array().into_iter().flatten() {
+            let new = change["text"].as_str().unwrap_or_default();
+            if change["range"].is_object() {
+                let range = Lines::new(&text, encoding).bytes(&change["range"]);
+                text.replace_range(range, new);
+            } else {
+                text = new.to_owned();
+            }
+        }
+        self.set(path, text);
+    }
+
+    /// Drops what is known of a file and of the scenes that import it.
+    pub fn forget(&mut self, path: &Path) {
+        let name = path.display().to_string();
+        self.analyses.retain(|of, analysis| {
+            of != path && analysis.imported().all(|imported| imported != name)
+        });
+    }
+
+    /// Drops all that is known.
+    pub fn forget_all(&mut self) {
+        self.analyses.clear();
+    }
+
+    /// The analysis of a file.
+    pub fn analysis(&mut self, path: &Path) -> Option<Rc<Analysis>> {
+        if let Some(known) = self.analyses.get(path) {
+            return Some(known.clone());
+        }
+        let text = self.text(path)?;
+        let name = path.display().to_string();
+        let analysis = self.with_resolver(path, |beside| Analysis::new(&name, &text, beside));
+        let analysis = Rc::new(analysis);
+        self.analyses.insert(path.to_owned(), analysis.clone());
+        Some(analysis)
+    }
+
+    /// Runs a function with the resolver for the imports of a scene.
+    pub fn with_resolver<T>(&self, path: &Path, run: impl FnOnce(&dyn Resolver) -> T) -> T {
+        run(&Beside { folder: folder_of(path), open: &self.open, disk: self.disk })
+    }
+
+    /// The other scenes that may import a file: open ones, and those in its folder and below.
+    pub fn others(&mut self, path: &Path) -> Vec<Rc<Analysis>> {
+        let mut paths = self.paths();
+        paths.extend(self.disk.scenes(&folder_of(path)));
+        paths.sort();
+        paths.dedup();
+        paths.retain(|other| other != path);
+        paths.iter().filter_map(|path| self.analysis(path)).collect()
+    }
+
+    /// The paths that an import of a scene can name.
+    pub fn importable(&self, path: &Path) -> Vec<String> {
+        let folder = folder_of(path);
+        let mut names: Vec<String> = self
+            .disk
+            .scenes(&folder)
+            .iter()
+            .filter(|it| *it != path)
+            .filter_map(|it| Some(it.strip_prefix(&folder).ok()?.display().to_string()))
+            .map(|name| name.replace('\\', "/"))
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// The path of a file of an analysis.
+    pub fn path_of(&self, file: &str) -> PathBuf {
+        let of_library = library_files().iter().any(|(name, _)| *name == file);
+        let folder = self.disk.library().filter(|_| of_library);
+        folder.map_or_else(|| PathBuf::from(file), |folder| folder.join(file))
+    }
+}

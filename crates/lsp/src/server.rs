@@ -1,0 +1,189 @@
+//! The conversation with the editor: start, notifications, requests, end.
+
+use std::collections::VecDeque;
+use std::path::Path;
+
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use sdfc_ide::diagnostics;
+use serde_json::{Value, json};
+
+use crate::answers::answer;
+use crate::client::Client;
+use crate::convert::{TOKEN_MODIFIERS, TOKEN_TYPES, diagnostic};
+use crate::documents::{Disk, Documents};
+use crate::lines::{Encoding, Lines};
+use crate::uri::{path, uri};
+
+/// Answers an editor until it asks to end.
+///
+/// # Errors
+///
+/// The connection fails, or the editor does not keep to the protocol.
+pub fn serve(connection: &Connection, disk: &dyn Disk) -> Result<(), String> {
+    let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
+    let client = Client::new(&params);
+    let result = json!({
+        "capabilities": capabilities(client),
+        "serverInfo": { "name": "sdfc", "version": env!("CARGO_PKG_VERSION") },
+    });
+    connection.initialize_finish(id, result).map_err(|e| e.to_string())?;
+    let mut server = Server {
+        connection,
+        client,
+        documents: Documents::new(disk),
+        changed: Vec::new(),
+        waiting: VecDeque::new(),
+    };
+    server.run()
+}
+
+fn capabilities(client: Client) -> Value {
+    json!({
+        "positionEncoding": match client.encoding {
+            Encoding::Utf8 => "utf-8",
+            Encoding::Utf16 => "utf-16",
+        },
+        "textDocumentSync": { "openClose": true, "change": 2, "save": true },
+        "completionProvider": { "triggerCharacters": [".", "\"", ":"] },
+        "hoverProvider": true,
+        "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
+        "definitionProvider": true,
+        "referencesProvider": true,
+        "documentHighlightProvider": true,
+        "documentSymbolProvider": true,
+        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+        "documentFormattingProvider": true,
+        "renameProvider": { "prepareProvider": true },
+        "foldingRangeProvider": true,
+        "selectionRangeProvider": true,
+        "colorProvider": true,
+        "inlayHintProvider": true,
+        "semanticTokensProvider": {
+            "legend": { "tokenTypes": TOKEN_TYPES, "tokenModifiers": TOKEN_MODIFIERS },
+            "full": true,
+        },
+    })
+}
+
+struct Server<'c, 'd> {
+    connection: &'c Connection,
+    client: Client,
+    documents: Documents<'d>,
+    /// The files whose diagnostics have to be sent again.
+    changed: Vec<std::path::PathBuf>,
+    /// Messages that have arrived, in order.
+    waiting: VecDeque<Message>,
+}
+
+impl Server<'_, '_> {
+    /// Handles messages until the end. Diagnostics are sent when no message waits, so that fast
+    /// typing does not queue them up.
+    fn run(&mut self) -> Result<(), String> {
+        loop {
+            self.waiting.extend(self.connection.receiver.try_iter());
+            if self.waiting.is_empty() {
+                self.publish()?;
+                let Ok(message) = self.connection.receiver.recv() else { return Ok(()) };
+                self.waiting.push_back(message);
+                continue;
+            }
+            let Some(message) = self.waiting.pop_front() else { continue };
+            match message {
+                Message::Request(request) => {
+                    let ends = self.connection.handle_shutdown(&request);
+                    if ends.map_err(|e| e.to_string())? {
+                        return Ok(());
+                    }
+                    self.request(request)?;
+                }
+                Message::Notification(it) if it.method == "exit" => return Ok(()),
+                Message::Notification(notification) => self.notification(&notification),
+                Message::Response(_) => {}
+            }
+        }
+    }
+
+    fn request(&mut self, request: Request) -> Result<(), String> {
+        let id = json!(request.id);
+        let cancels = |message: &Message| match message {
+            Message::Notification(it) => it.method == "$/cancelRequest" && it.params["id"] == id,
+            Message::Request(_) | Message::Response(_) => false,
+        };
+        let response = if self.waiting.iter().any(cancels) {
+            let code = ErrorCode::RequestCanceled as i32;
+            Response::new_err(request.id, code, "cancelled".to_owned())
+        } else {
+            match answer(&mut self.documents, self.client, &request.method, &request.params) {
+                None => {
+                    let message = format!("there is no method `{}`", request.method);
+                    Response::new_err(request.id, ErrorCode::MethodNotFound as i32, message)
+                }
+                Some(Ok(value)) => Response::new_ok(request.id, value),
+                Some(Err(why)) => {
+                    Response::new_err(request.id, ErrorCode::RequestFailed as i32, why)
+                }
+            }
+        };
+        self.send(Message::Response(response))
+    }
+
+    fn notification(&mut self, it: &Notification) {
+        let document = &it.params["textDocument"];
+        let file = path(document["uri"].as_str().unwrap_or_default());
+        match it.method.as_str() {
+            "textDocument/didOpen" => {
+                let text = document["text"].as_str().unwrap_or_default().to_owned();
+                self.documents.set(&file, text);
+                self.touch();
+            }
+            "textDocument/didChange" => {
+                let changes = &it.params["contentChanges"];
+                self.documents.change(&file, changes, self.client.encoding);
+                self.touch();
+            }
+            "textDocument/didClose" => {
+                self.documents.close(&file);
+                self.changed.push(file);
+            }
+            "workspace/didChangeWatchedFiles" | "textDocument/didSave" => {
+                self.documents.forget_all();
+                self.touch();
+            }
+            _ => {}
+        }
+    }
+
+    /// Marks all open files: each may import the one that changed.
+    fn touch(&mut self) {
+        self.changed = self.documents.paths();
+    }
+
+    /// Sends the diagnostics of the files that changed.
+    fn publish(&mut self) -> Result<(), String> {
+        let changed = std::mem::take(&mut self.changed);
+        for file in changed {
+            let found = self.diagnostics(&file);
+            let params = json!({ "uri": uri(&file), "diagnostics": found });
+            let method = "textDocument/publishDiagnostics".to_owned();
+            self.send(Message::Notification(Notification { method, params }))?;
+        }
+        Ok(())
+    }
+
+    fn diagnostics(&mut self, file: &Path) -> Value {
+        if !self.documents.paths().iter().any(|open| open == file) {
+            return json!([]);
+        }
+        let Some(scene) = self.documents.analysis(file) else { return json!([]) };
+        let encoding = self.client.encoding;
+        let lines = Lines::new(scene.text(), encoding);
+        let found = diagnostics(&scene);
+        let shown =
+            found.iter().map(|it| diagnostic(&self.documents, &scene, &lines, it, encoding));
+        shown.collect()
+    }
+
+    fn send(&self, message: Message) -> Result<(), String> {
+        self.connection.sender.send(message).map_err(|e| e.to_string())
+    }
+}
