@@ -15,6 +15,8 @@ use crate::tree::{Node, nodes};
 pub enum Referent {
     /// Something whose declared name has this span.
     Declared(Span),
+    /// The point `p`, or the ray's origin `o` or direction `d`.
+    Implicit,
     /// A name of the kernel.
     Kernel(&'static str),
     /// A setting.
@@ -158,6 +160,7 @@ impl Analysis {
         for (span, target) in &self.uses.targets {
             let referent = match *target {
                 Target::Declared(span) => Referent::Declared(span),
+                Target::Implicit => Referent::Implicit,
                 Target::Kernel(name) => Referent::Kernel(name),
                 Target::Setting(name) => Referent::Setting(name),
             };
@@ -186,6 +189,7 @@ impl Analysis {
                         let parm = parms.and_then(|parms| parms.get(argument.parameter));
                         parm.map(|parm| Referent::Declared(parm.name.span))
                     }
+                    Target::Implicit => None,
                     Target::Kernel(of) => Some(Referent::Parameter("kernel", of, name.clone())),
                     Target::Setting(of) => Some(Referent::Parameter("setting", of, name.clone())),
                 };

@@ -12,7 +12,7 @@ pub fn definition(analysis: &Analysis, offset: usize) -> Option<Location> {
     match &at.referent {
         Referent::Declared(name) => Some(Location::of(&analysis.sources, *name)),
         Referent::Kernel(_) | Referent::Setting(_) | Referent::Type(_) => None,
-        Referent::Parameter(..) => None,
+        Referent::Parameter(..) | Referent::Implicit => None,
     }
 }
 

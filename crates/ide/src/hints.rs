@@ -38,12 +38,16 @@ pub fn hints(analysis: &Analysis, range: Range<usize>) -> Vec<Hint> {
     hints
 }
 
-/// Names for positional arguments of calls with several parameters, unless the argument itself says
+/// Names for positional arguments of calls with several arguments, unless the argument itself says
 /// the name.
 fn parameters(analysis: &Analysis) -> Vec<Hint> {
     let mut hints = Vec::new();
     for (callee, call) in &analysis.uses.calls {
         if callee.file != analysis.file || call.parameters.len() < 2 {
+            continue;
+        }
+        let written = call.arguments.iter().filter(|it| it.value.start > callee.end);
+        if written.count() < 2 {
             continue;
         }
         for argument in &call.arguments {

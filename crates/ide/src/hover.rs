@@ -23,7 +23,8 @@ pub struct Hover {
 pub fn hover(analysis: &Analysis, offset: usize) -> Option<Hover> {
     let at = analysis.occurrence(offset)?;
     let markdown = match &at.referent {
-        Referent::Declared(name) => of_declared(analysis, at.span, *name),
+        Referent::Declared(name) => of_declared(analysis, *name),
+        Referent::Implicit => of_implicit(analysis, at.span),
         Referent::Kernel(name) => library().entry("kernel", name).map(of_entry),
         Referent::Setting(name) => library().entry("setting", name).map(of_entry),
         Referent::Type(word) => library().entry("type", word).map(of_entry),
@@ -37,29 +38,14 @@ pub fn hover(analysis: &Analysis, offset: usize) -> Option<Hover> {
     Some(Hover { range: range(at.span), markdown })
 }
 
-fn of_declared(analysis: &Analysis, used: Span, name: Span) -> Option<String> {
-    let is_operator = !analysis.slice(used).starts_with(|c: char| c.is_alphabetic() || c == '_');
-    let same_name = analysis.slice(used) == analysis.slice(name);
-    let found = declared(analysis, name);
-    match found {
-        Some(Declared::Decl(decl)) if is_operator || same_name || !is_point(analysis, used) => {
-            Some(of_entry(&describe(analysis, decl)))
+fn of_declared(analysis: &Analysis, name: Span) -> Option<String> {
+    let found = declared(analysis, name)?;
+    Some(match found {
+        Declared::Decl(decl) => of_entry(&describe(analysis, decl)),
+        Declared::Param(_) | Declared::Let(_) | Declared::Parm(..) | Declared::For(_) => {
+            page(&headline(analysis, found), &[documentation(analysis, found)])
         }
-        Some(found @ (Declared::Param(_) | Declared::Let(_))) => {
-            let docs = documentation(analysis, found);
-            Some(page(&headline(analysis, found), &[docs]))
-        }
-        Some(found @ (Declared::Parm(..) | Declared::For(_))) => {
-            let docs = documentation(analysis, found);
-            Some(page(&headline(analysis, found), &[docs]))
-        }
-        Some(Declared::Decl(_)) | None => of_implicit(analysis, used),
-    }
-}
-
-/// True if the name is `p`, `o` or `d`, which nobody declares.
-fn is_point(analysis: &Analysis, used: Span) -> bool {
-    matches!(analysis.slice(used), "p" | "o" | "d")
+    })
 }
 
 fn of_implicit(analysis: &Analysis, used: Span) -> Option<String> {

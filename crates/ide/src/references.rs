@@ -20,7 +20,11 @@ pub enum Subject {
 pub fn subject(analysis: &Analysis, at: &Occurrence) -> Subject {
     match &at.referent {
         Referent::Declared(name) => Subject::Declared(Location::of(&analysis.sources, *name)),
-        other => Subject::Other(other.clone()),
+        Referent::Implicit
+        | Referent::Kernel(_)
+        | Referent::Setting(_)
+        | Referent::Parameter(..)
+        | Referent::Type(_) => Subject::Other(at.referent.clone()),
     }
 }
 

@@ -7,7 +7,7 @@ use sdfc_syntax::{Class, classes};
 use crate::analysis::{Analysis, Occurrence, Referent};
 use crate::edit::{Edit, Location, range};
 use crate::library::library_files;
-use crate::references::{Subject, is_name, occurrences, subject};
+use crate::references::{Subject, occurrences, subject};
 
 /// Returns the range of the name at a byte offset.
 ///
@@ -29,33 +29,7 @@ fn renamable(analysis: &Analysis, offset: usize) -> Result<(&Occurrence, Locatio
     if library_files().iter().any(|(file, _)| *file == declared.file) {
         return Err(format!("`{written}` belongs to the library and cannot be renamed"));
     }
-    if !is_name(analysis.slice(name)) || is_point(analysis, at) {
-        return Err(format!("`{written}` has no declaration and cannot be renamed"));
-    }
     Ok((at, declared))
-}
-
-/// True for `p`, `o` and `d` where nobody declares them.
-fn is_point(analysis: &Analysis, at: &Occurrence) -> bool {
-    let Referent::Declared(name) = at.referent else { return false };
-    let [used, declared] = [at.span, name].map(|span| analysis.slice(span));
-    matches!(used, "p" | "o" | "d") && used != declared && !is_alias(analysis, at)
-}
-
-/// True if the file of an occurrence imports something under the name that is written there.
-fn is_alias(analysis: &Analysis, at: &Occurrence) -> bool {
-    let written = analysis.slice(at.span);
-    let Some(tree) = analysis.tree_of(at.span.file) else { return false };
-    tree.items.iter().any(|item| match item {
-        sdfc_syntax::ast::Item::Import(import) => import
-            .names
-            .iter()
-            .any(|(_, renamed)| renamed.as_ref().is_some_and(|name| name.text == written)),
-        sdfc_syntax::ast::Item::Param(_)
-        | sdfc_syntax::ast::Item::Decl(_)
-        | sdfc_syntax::ast::Item::Let(_)
-        | sdfc_syntax::ast::Item::Expr(_) => false,
-    })
 }
 
 /// Renames what the name at a byte offset of a scene refers to: in the scene, its imports, and the

@@ -62,7 +62,7 @@ fn called(analysis: &Analysis, at: usize, name: &str) -> Vec<Entry> {
         Some(Referent::Setting(name)) => {
             library().entry("setting", name).cloned().into_iter().collect()
         }
-        Some(Referent::Parameter(..) | Referent::Type(_)) | None => {
+        Some(Referent::Parameter(..) | Referent::Type(_) | Referent::Implicit) | None => {
             let own = analysis.tree.items.iter().filter_map(|item| match item {
                 Item::Decl(decl) if decl.name.text == name => {
                     Some(crate::declaration::describe(analysis, decl))

@@ -113,6 +113,7 @@ impl Names {
                         || analysis.imports.iter().any(|import| import.file == name.file);
                     (role, it.declares, !of_files)
                 }
+                Referent::Implicit => (TokenRole::Variable, false, true),
                 Referent::Kernel(_) => (TokenRole::Function, false, true),
                 Referent::Setting(_) => (TokenRole::Setting, false, true),
                 Referent::Type(_) => (TokenRole::Type, false, true),

@@ -12,9 +12,10 @@ use crate::hir::Type;
 /// The item that a name refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
-    /// A declaration, variable, parameter or param: the span of its declared name. For `p`, `o` and
-    /// `d`, which nobody declares, the span is that of other text.
+    /// A declaration, variable, parameter or param: the span of its declared name.
     Declared(Span),
+    /// The point `p` of a shape, or the ray's origin `o` or direction `d`, which nobody declares.
+    Implicit,
     /// A name of the kernel.
     Kernel(&'static str),
     /// A setting.

@@ -63,7 +63,7 @@ pub fn is_reserved(word: &str) -> bool {
 fn class(kind: TokenKind) -> Class {
     use TokenKind as Kind;
     match kind {
-        Kind::Comment => Class::Comment,
+        Kind::Comment | Kind::BlockComment => Class::Comment,
         Kind::Name => Class::Name,
         Kind::Number | Kind::PointNumber => Class::Number,
         Kind::Color => Class::Color,

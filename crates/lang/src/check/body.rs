@@ -18,6 +18,8 @@ pub(super) struct Variable<'a> {
     pub ty: Type,
     /// The span of its declaration.
     pub span: Span,
+    /// True for `p`, `o` and `d`, which the language declares.
+    pub implicit: bool,
     /// True if something uses it.
     pub used: bool,
 }
@@ -103,7 +105,15 @@ impl<'a> Body<'a> {
     /// Brings a variable into scope under a reserved id.
     pub(super) fn declare_as(&mut self, id: LocalId, name: &'a str, ty: Type, span: Span) {
         if let Some(frame) = self.frames.last_mut() {
-            frame.variables.push(Variable { name, id, ty, span, used: false });
+            frame.variables.push(Variable { name, id, ty, span, implicit: false, used: false });
+        }
+    }
+
+    /// Brings a variable into scope that the language declares.
+    pub(super) fn declare_implicit(&mut self, id: LocalId, name: &'a str, ty: Type, span: Span) {
+        self.declare_as(id, name, ty, span);
+        if let Some(variable) = self.frames.last_mut().and_then(|it| it.variables.last_mut()) {
+            variable.implicit = true;
         }
     }
 

@@ -41,8 +41,9 @@ impl<'a> Checker<'a> {
         }
         let mark = self.body.enter();
         let space = types::point(Dim::Three);
-        let origin = self.body.declare("o", space.clone(), e.span);
-        let direction = self.body.declare("d", space, e.span);
+        let [origin, direction] = [self.body.fresh(), self.body.fresh()];
+        self.body.declare_implicit(origin, "o", space.clone(), e.span);
+        self.body.declare_implicit(direction, "d", space, e.span);
         let value = self.infer(e);
         let interval = Type::Vec(2);
         let intervals = Type::List(Box::new(interval.clone()));

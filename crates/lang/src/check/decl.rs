@@ -381,7 +381,7 @@ impl<'a> Checker<'a> {
         };
         let mark = self.body.enter();
         let point = LocalId(decl.signature.parms.len() as u32);
-        self.body.declare_as(point, "p", types::point(dim), decl.name.span);
+        self.body.declare_implicit(point, "p", types::point(dim), decl.name.span);
         let mut written = decl.signature.clauses.iter().filter_map(|clause| match &clause.kind {
             ClauseKind::Material(e) => Some(e),
             _ => None,

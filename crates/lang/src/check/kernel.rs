@@ -193,23 +193,12 @@ pub(super) fn builtin(name: &str) -> Option<Builtin> {
     ROWS.iter().find(|row| row.name == name).map(|row| row.builtin)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_unique() {
-        for (at, row) in ROWS.iter().enumerate() {
-            assert!(ROWS[..at].iter().all(|other| other.name != row.name), "{}", row.name);
-        }
-    }
-}
-
 /// True if a value of this type can be the first argument of a function of the kernel.
 pub(crate) fn takes_first(name: &str, ty: &Type) -> bool {
     let Some(builtin) = builtin(name) else { return false };
     match builtin {
-        Builtin::Number(_) | Builtin::Time | Builtin::Frame | Builtin::Hard => false,
+        Builtin::Number(_) | Builtin::Angle(_) => false,
+        Builtin::Time | Builtin::Frame | Builtin::Hard => false,
         Builtin::Soft | Builtin::Material => false,
         Builtin::Math(_) | Builtin::Hash(_) => is_numeric(ty),
         Builtin::Vector(_) => is_numeric(ty) && !matches!(ty, Type::Color),
@@ -226,4 +215,16 @@ pub(crate) fn takes_first(name: &str, ty: &Type) -> bool {
 /// True for numbers, angles, vectors and colours.
 fn is_numeric(ty: &Type) -> bool {
     matches!(ty, Type::Number | Type::Int | Type::Angle | Type::Vec(_) | Type::Color)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique() {
+        for (at, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..at].iter().all(|other| other.name != row.name), "{}", row.name);
+        }
+    }
 }

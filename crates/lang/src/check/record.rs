@@ -46,7 +46,10 @@ impl<'a> Checker<'a> {
             return;
         }
         let target = match found {
-            Found::Local(index) => self.body.variable(*index).map(|it| Target::Declared(it.span)),
+            Found::Local(index) => self.body.variable(*index).map(|it| match it.implicit {
+                true => Target::Implicit,
+                false => Target::Declared(it.span),
+            }),
             Found::Let(index) => Some(Target::Declared(self.lets[index.0].ast.name.span)),
             Found::Param(index) => Some(Target::Declared(self.params[index.0].ast.name.span)),
             Found::Decls(decls) => {
