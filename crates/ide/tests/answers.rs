@@ -1,5 +1,5 @@
 //! Answers about small scenes. `$0` marks the cursor.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::collections::BTreeMap;
 

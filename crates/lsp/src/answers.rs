@@ -204,9 +204,13 @@ impl About<'_, '_> {
         let positions = self.params["positions"].as_array().into_iter().flatten();
         let shown = positions.map(|position| {
             let ranges = selection(scene, lines.offset(position));
-            ranges.into_iter().rev().fold(Value::Null, |parent, range| match parent {
-                Value::Null => json!({ "range": lines.range(range) }),
-                parent => json!({ "range": lines.range(range), "parent": parent }),
+            let around = ranges.into_iter().rev();
+            around.fold(Value::Null, |parent, range| {
+                let mut selected = json!({ "range": lines.range(range) });
+                if !parent.is_null() {
+                    selected["parent"] = parent;
+                }
+                selected
             })
         });
         shown.collect()
