@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::files::{files, product};
 
 /// The crates of this workspace that each crate may depend on. A new crate needs a row.
-const MAY_DEPEND_ON: [(&str, &[&str]); 18] = [
+const MAY_DEPEND_ON: [(&str, &[&str]); 19] = [
     ("diagnostics", &[]),
     ("syntax", &["diagnostics"]),
     ("graph", &[]),
@@ -22,7 +22,21 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 18] = [
     ("march", &[]),
     ("codegen", &["graph", "march"]),
     ("render", &["codegen", "graph", "march"]),
-    ("sdfc", &["analyze", "codegen", "diagnostics", "graph", "lang", "march", "render", "syntax"]),
+    ("mesh", &["graph"]),
+    (
+        "sdfc",
+        &[
+            "analyze",
+            "codegen",
+            "diagnostics",
+            "graph",
+            "lang",
+            "march",
+            "mesh",
+            "render",
+            "syntax",
+        ],
+    ),
     ("files", &["sdfc"]),
     ("measure", &["analyze", "codegen", "graph", "march", "render", "sdfc"]),
     ("cli", &["diagnostics", "files", "lang", "lsp", "march", "measure", "render", "sdfc"]),
@@ -62,7 +76,8 @@ const RESERVED: [(&str, &[&str]); 11] = [
 ];
 
 /// Crates that must not contain names of the library in `std/*.sdf`.
-const WITHOUT_SHAPES: [&str; 6] = ["syntax", "graph", "analyze", "march", "codegen", "render"];
+const WITHOUT_SHAPES: [&str; 7] =
+    ["syntax", "graph", "analyze", "march", "mesh", "codegen", "render"];
 
 /// Library names that are also ray methods, and the crates that may name ray methods.
 const ALSO_METHODS: ([&str; 2], [&str; 3]) =

@@ -68,6 +68,8 @@ pub enum Command {
     Compile(Compile),
     /// Draw a picture of a scene
     Render(Render),
+    /// Write a closed mesh of a scene, with a proven error
+    Mesh(Mesh),
     /// Show a scene in a window that updates when its file changes
     View(View),
     /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
@@ -274,6 +276,37 @@ pub struct Render {
     pub strict: bool,
 }
 
+/// Arguments of `mesh`.
+#[derive(clap::Args, Debug)]
+pub struct Mesh {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Output file; its extension .stl, .obj, .ply, .glb or .3mf gives the format [default: the
+    /// scene's name with .stl, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Greatest distance between mesh and surface, in scene units
+    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
+    pub error: Option<f64>,
+    /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
+    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
+    pub error_relative: Option<f64>,
+    /// Output file for the certificate, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Time in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = finite)]
+    pub time: f64,
+    /// Most cells that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
+}
+
 /// A param and its value as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
@@ -476,6 +509,12 @@ fn finite(text: &str) -> Result<f64, String> {
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| "expected a number of pixel widths above 0, such as 0.05".to_owned())
+}
+
+/// Parses a length or a fraction above 0.
+fn above_0(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a number above 0, such as 0.01".to_owned())
 }
 
 /// Parses `640x400` as `[640, 400]`.

@@ -23,6 +23,10 @@ pub enum Error {
     /// The settings give no valid view.
     #[error(transparent)]
     View(#[from] ViewError),
+    /// The mesh could not be made.
+    #[cfg(feature = "mesh")]
+    #[error(transparent)]
+    Mesh(#[from] sdfc_mesh::MeshError),
     /// The picture could not be drawn or encoded.
     #[error(transparent)]
     Render(#[from] RenderError),
@@ -38,6 +42,8 @@ impl Error {
             | Self::Codegen(_)
             | Self::Evaluate(_)
             | Self::View(_) => false,
+            #[cfg(feature = "mesh")]
+            Self::Mesh(_) => false,
         }
     }
 
@@ -49,6 +55,8 @@ impl Error {
                 matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
             }
             Self::NothingDrawn | Self::Expand(_) | Self::Evaluate(_) | Self::View(_) => false,
+            #[cfg(feature = "mesh")]
+            Self::Mesh(error) => error.is_call(),
         }
     }
 }

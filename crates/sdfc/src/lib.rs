@@ -37,6 +37,7 @@
 //! shaders, without wgpu.
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
+//! - `mesh`: closed triangle meshes with a proven error: `Scene::mesh`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
@@ -55,6 +56,8 @@ mod explain;
 mod explanation;
 mod field;
 mod marched;
+#[cfg(feature = "mesh")]
+mod mesh;
 mod params;
 #[cfg(feature = "render")]
 mod picture;
@@ -73,6 +76,8 @@ pub use error::Error;
 pub use explanation::{Bounds, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
 pub use marched::Marched;
+#[cfg(feature = "mesh")]
+pub use mesh::{MeshOptions, MeshSize};
 pub use params::{ParamError, Value};
 #[cfg(feature = "render")]
 pub use picture::{Backend, Painter, Picture, PictureOptions};
@@ -95,6 +100,11 @@ pub use sdfc_graph::{Param, ParamKind};
 pub use sdfc_lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
 pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
+#[cfg(feature = "mesh")]
+pub use sdfc_mesh::{
+    Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Progress as MeshProgress,
+    TooCoarse,
+};
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};
 pub use sdfc_render::{Pose, RenderError, View, ViewError};

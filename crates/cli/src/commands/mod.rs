@@ -10,6 +10,7 @@ pub mod explain;
 mod faults;
 pub mod format;
 pub mod lsp;
+pub mod mesh;
 pub mod render;
 pub mod tune;
 pub mod view;

@@ -1,0 +1,322 @@
+//! Proves how far mesh and surface are from each other, independent of how the mesh was made.
+
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+
+use crate::error::{MeshError, Phase};
+use crate::field::{Frame, Prism, Prober};
+use crate::nearness::{Clipped, clip, crosses_once, distance};
+use crate::refine::{OnProgress, report};
+use crate::surface::{Mesh, MeshCertificate};
+use crate::vector::{Vec3, add, between, length, scale, sub, unit};
+
+/// Boxes that are examined between two reports of progress.
+const CHUNK: usize = 4096;
+/// A box with more triangles about it is divided without a try.
+const MANY: usize = 48;
+/// A box is not divided below this fraction of the error.
+const FINEST: f64 = 0.125;
+/// The same after many boxes stayed undecided.
+const COARSE: f64 = 0.25;
+/// This many undecided boxes are many.
+const FLOOD: usize = 20_000;
+/// A box is decided by single points if its center is this near to its corners, in errors.
+const SMALL: f64 = 0.7;
+/// Part of the error that proofs use. The rest covers their rounding.
+const USED: f64 = 1.0 - 1e-6;
+
+/// Points of a box through which lines are tried, from its middle to its corners.
+const LINES: [Vec3; 5] = [
+    [0.0103, 0.0071, 0.0029],
+    [-0.313, 0.217, 0.109],
+    [0.271, -0.419, 0.341],
+    [-0.57, -0.61, -0.53],
+    [0.63, 0.59, -0.71],
+];
+
+/// A box to be proven, and the triangles that may be within the error of it.
+struct Task {
+    bounds: [Vec3; 2],
+    triangles: Vec<u32>,
+    /// The changes that may be within the error of it, if there is an earlier proof.
+    changes: Option<Vec<u32>>,
+}
+
+/// What is known of a box.
+enum Outcome {
+    Kept,
+    Empty,
+    Sheet,
+    Small,
+    Undecided,
+    Divided(Vec<Task>),
+}
+
+/// What proofs are made from.
+pub(crate) struct Prover<'a, 'f> {
+    pub(crate) prober: &'a Prober<'f>,
+    pub(crate) mesh: &'a Mesh,
+    pub(crate) error: f64,
+    /// Boxes around all that differs from an earlier proof: changed triangles, undecided boxes.
+    pub(crate) changes: Option<Vec<[Vec3; 2]>>,
+}
+
+/// Boxes around the triangles that only one of two meshes has.
+pub(crate) fn changes(before: &Mesh, after: &Mesh) -> Vec<[Vec3; 2]> {
+    let key = |corners: [Vec3; 3]| {
+        let mut bits = corners.map(|corner| corner.map(f64::to_bits));
+        bits.sort_unstable();
+        bits
+    };
+    let keys = |mesh: &Mesh| -> FxHashSet<_> {
+        mesh.triangles.iter().map(|triangle| key(mesh.corners(*triangle))).collect()
+    };
+    let mut found = Vec::new();
+    for (mesh, others) in [(before, keys(after)), (after, keys(before))] {
+        let corners = mesh.triangles.iter().map(|triangle| mesh.corners(*triangle));
+        let changed = corners.filter(|corners| !others.contains(&key(*corners)));
+        found.extend(changed.map(|[a, b, c]| {
+            let lo = std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis]));
+            [lo, std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis]))]
+        }));
+    }
+    found
+}
+
+/// A certificate and all its undecided boxes.
+pub(crate) struct Proof {
+    pub(crate) certificate: MeshCertificate,
+    pub(crate) undecided: Vec<[Vec3; 2]>,
+}
+
+impl Prover<'_, '_> {
+    /// Divides a box until everything in it is proven or tiny. Boxes that are far from all changes
+    /// keep their earlier proof.
+    pub(crate) fn prove(
+        &self,
+        bounds: [Vec3; 2],
+        max_boxes: u64,
+        progress: OnProgress<'_>,
+    ) -> Result<Proof, MeshError> {
+        let triangles = (0..self.mesh.triangles.len() as u32).collect();
+        let count = |changes: &Vec<[Vec3; 2]>| (0..changes.len() as u32).collect();
+        let changes = self.changes.as_ref().map(count);
+        let mut waiting = vec![Task { bounds, triangles, changes }];
+        let mut certificate = MeshCertificate { error: self.error, ..MeshCertificate::default() };
+        let mut undecided = Vec::new();
+        let mut done = 0;
+        while !waiting.is_empty() {
+            let chunk = waiting.split_off(waiting.len().saturating_sub(CHUNK));
+            done += chunk.len();
+            let boxes: Vec<[Vec3; 2]> = chunk.iter().map(|task| task.bounds).collect();
+            let finest = if undecided.len() < FLOOD { FINEST } else { COARSE };
+            let examine = |prober: &mut Prober<'_>, task| self.examine(prober, task, finest);
+            let outcomes: Vec<Outcome> =
+                chunk.into_par_iter().map_init(|| self.prober.clone(), examine).collect();
+            for (bounds, outcome) in boxes.into_iter().zip(outcomes) {
+                match outcome {
+                    Outcome::Kept => {}
+                    Outcome::Empty => certificate.empty_boxes += 1,
+                    Outcome::Sheet => certificate.sheet_boxes += 1,
+                    Outcome::Small => certificate.small_boxes += 1,
+                    Outcome::Undecided => undecided.push(bounds),
+                    Outcome::Divided(tasks) => waiting.extend(tasks),
+                }
+            }
+            if done as u64 > max_boxes {
+                undecided.extend(waiting.drain(..).map(|task| task.bounds));
+            }
+            report(progress, Phase::Proving, done, done + waiting.len())?;
+        }
+        certificate.is_proven = undecided.is_empty();
+        certificate.undecided = undecided.len() as u64;
+        certificate.undecided_volume = undecided.iter().map(volume).sum();
+        certificate.undecided_boxes =
+            undecided.iter().copied().take(MeshCertificate::MAX_BOXES).collect();
+        Ok(Proof { certificate, undecided })
+    }
+
+    fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id as usize])
+    }
+
+    fn examine(&self, prober: &mut Prober<'_>, task: Task, finest: f64) -> Outcome {
+        let Task { bounds, triangles, changes } = task;
+        if changes.as_ref().is_some_and(Vec::is_empty) {
+            return Outcome::Kept;
+        }
+        let is_absent = prober.side_over(&Prism::aligned(bounds)).is_some();
+        if is_absent && !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0)) {
+            return Outcome::Empty;
+        }
+        let few = !triangles.is_empty() && triangles.len() <= MANY;
+        if few && self.is_sheet(prober, bounds, &triangles) == Some(true) {
+            return Outcome::Sheet;
+        }
+        if self.is_small(prober, bounds, &triangles, is_absent) {
+            return Outcome::Small;
+        }
+        if bounds[1][0] - bounds[0][0] <= finest * self.error {
+            return Outcome::Undecided;
+        }
+        let is_crowded = triangles.len() > 8 * MANY;
+        let tasks = eighths(bounds).into_iter().map(|bounds| {
+            let is_near = |t: &u32| match is_crowded {
+                true => overlaps(self.corners(*t), bounds, self.error),
+                false => meets(self.corners(*t), bounds, self.error),
+            };
+            let is_changed = |index: &u32| {
+                let changes = self.changes.as_deref().unwrap_or_default();
+                let [lo, hi] = changes[*index as usize];
+                overlaps([lo, hi, hi], bounds, self.error)
+            };
+            let changes = changes.as_ref();
+            let changes = changes.map(|list| list.iter().copied().filter(is_changed).collect());
+            let triangles = triangles.iter().copied().filter(is_near).collect();
+            Task { bounds, triangles, changes }
+        });
+        Outcome::Divided(tasks.collect())
+    }
+
+    /// True if the mesh about the box is nearly flat, and the field has different signs at the
+    /// error's distance above and below it.
+    ///
+    /// Let the mesh lie between two heights over a plane, in the box extended by the error to both
+    /// sides. If the field is positive from the error above the lower height and negative from the
+    /// error below the upper one, then each point of the mesh has both signs within the error, and
+    /// each point of the surface has points on both sides of the mesh within the error. One line
+    /// that crosses the mesh an odd number of times shows that these are different sides. The line
+    /// starts in the box and ends at most the error beyond it, where all triangles are known.
+    fn is_sheet(
+        &self,
+        prober: &mut Prober<'_>,
+        bounds: [Vec3; 2],
+        triangles: &[u32],
+    ) -> Option<bool> {
+        let error = USED * self.error;
+        let middle = between(bounds[0], bounds[1], 0.5);
+        let (value, gradient) = prober.sample(middle);
+        let step = scale(gradient, -value / crate::vector::dot(gradient, gradient));
+        let foot = if length(step) < length(sub(bounds[1], bounds[0])) { step } else { [0.0; 3] };
+        let (_, gradient) = prober.sample(add(middle, foot));
+        let frame = Frame::around(bounds, unit(gradient)?);
+        let end = frame.half[0] + error;
+        let limits = [end, frame.half[1], frame.half[2]];
+        let mut clipped = Clipped::default();
+        for triangle in triangles {
+            let corners = self.corners(*triangle).map(|corner| frame.coordinates(corner));
+            clip(corners, limits, &mut clipped);
+        }
+        let [lo, hi] = clipped.heights?;
+        if hi - lo >= 2.0 * error || !prober.is_between(&frame, error, hi - error, lo + error) {
+            return Some(false);
+        }
+        // Beyond an end, the field has one sign in the whole box.
+        let is_crossed = LINES.iter().any(|part| {
+            let start = std::array::from_fn(|axis| {
+                middle[axis] + part[axis] * 0.5 * (bounds[1][axis] - bounds[0][axis])
+            });
+            let [height, u, v] = frame.coordinates(start);
+            let [before, behind] = within(bounds, start, frame.normal);
+            let ends = [height + before - error, height + behind + error];
+            ends[0] < lo && hi < ends[1] && crosses_once(&clipped.triangles, [u, v], ends)
+        });
+        Some(hi >= end || lo <= -end || is_crossed)
+    }
+
+    /// True if the box is so small that one point of the mesh and both signs near its center serve
+    /// for all its points.
+    fn is_small(
+        &self,
+        prober: &mut Prober<'_>,
+        bounds: [Vec3; 2],
+        triangles: &[u32],
+        is_absent: bool,
+    ) -> bool {
+        let middle = between(bounds[0], bounds[1], 0.5);
+        let radius = length(sub(bounds[1], middle)) * (1.0 + 1e-12);
+        if radius > SMALL * self.error {
+            return false;
+        }
+        let rest = USED * self.error - radius;
+        let is_near = |t: &u32| distance(middle, self.corners(*t)) <= rest;
+        if !is_absent && !triangles.iter().any(is_near) {
+            return false;
+        }
+        let is_free = !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0));
+        is_free || changes_sign(prober, middle, 0.999 * rest)
+    }
+}
+
+/// True if the field is proven to have both signs within a distance.
+fn changes_sign(prober: &mut Prober<'_>, middle: Vec3, reach: f64) -> bool {
+    let (_, gradient) = prober.sample(middle);
+    let axis = |axis: usize| {
+        let mut direction = [0.0; 3];
+        direction[axis] = 1.0;
+        direction
+    };
+    let directions = [unit(gradient), Some(axis(0)), Some(axis(1)), Some(axis(2))];
+    let mut found = [false; 2];
+    for direction in directions.into_iter().flatten() {
+        for part in [-1.0, 1.0, -0.5, 0.5] {
+            let point = add(middle, scale(direction, part * reach));
+            if let Some(side) = prober.proven_side(point) {
+                found[usize::from(side)] = true;
+            }
+            if found == [true; 2] {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// The distances along a direction at which a line through a point of a box enters and leaves it.
+fn within(bounds: [Vec3; 2], point: Vec3, direction: Vec3) -> [f64; 2] {
+    let mut range = [f64::NEG_INFINITY, f64::INFINITY];
+    for axis in 0..3 {
+        let ends = bounds.map(|corner| (corner[axis] - point[axis]) / direction[axis]);
+        if direction[axis] != 0.0 {
+            range[0] = range[0].max(ends[0].min(ends[1]));
+            range[1] = range[1].min(ends[0].max(ends[1]));
+        }
+    }
+    range
+}
+
+fn volume([lo, hi]: &[Vec3; 2]) -> f64 {
+    (0..3).map(|axis| hi[axis] - lo[axis]).product()
+}
+
+/// True if the box around a triangle meets a box that is grown by a margin.
+fn overlaps(corners: [Vec3; 3], [lo, hi]: [Vec3; 2], margin: f64) -> bool {
+    (0..3).all(|axis| {
+        let values = corners.map(|corner| corner[axis]);
+        let least = values[0].min(values[1]).min(values[2]);
+        let most = values[0].max(values[1]).max(values[2]);
+        most >= lo[axis] - margin && least <= hi[axis] + margin
+    })
+}
+
+/// True if a triangle meets a box that is grown by a margin.
+fn meets(corners: [Vec3; 3], bounds: [Vec3; 2], margin: f64) -> bool {
+    if !overlaps(corners, bounds, margin) {
+        return false;
+    }
+    let middle = between(bounds[0], bounds[1], 0.5);
+    let half = sub(bounds[1], middle).map(|half| (half + margin) * (1.0 + 1e-12));
+    let mut clipped = Clipped::default();
+    clip(corners.map(|corner| sub(corner, middle)), half, &mut clipped);
+    clipped.heights.is_some()
+}
+
+fn eighths([lo, hi]: [Vec3; 2]) -> [[Vec3; 2]; 8] {
+    let middle = between(lo, hi, 0.5);
+    std::array::from_fn(|i| {
+        let is_upper = |axis: usize| i >> axis & 1 == 1;
+        let from = std::array::from_fn(|a| if is_upper(a) { middle[a] } else { lo[a] });
+        let to = std::array::from_fn(|a| if is_upper(a) { hi[a] } else { middle[a] });
+        [from, to]
+    })
+}

@@ -1,0 +1,209 @@
+//! The field of a scene, in the number types that meshing needs.
+
+use rayon::prelude::*;
+use sdfc_graph::Program;
+use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Interval, Number, Tape, TapeError};
+
+use crate::affine::Affine;
+use crate::vector::{Vec3, add, between, dot, length, scale, sub, tangents};
+
+/// A box that may be rotated: its center and its half axes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prism {
+    pub(crate) center: Vec3,
+    pub(crate) axes: [Vec3; 3],
+}
+
+impl Prism {
+    /// The box with edges along the axes of coordinates.
+    pub(crate) fn aligned([lo, hi]: [Vec3; 2]) -> Self {
+        let center = between(lo, hi, 0.5);
+        let mut axes = [[0.0; 3]; 3];
+        for axis in 0..3 {
+            // Rounded up, so that the box covers both corners.
+            let half = (hi[axis] - center[axis]).max(center[axis] - lo[axis]);
+            axes[axis][axis] = half.next_up();
+        }
+        Self { center, axes }
+    }
+}
+
+/// A frame of three orthogonal directions, and how far a box reaches along them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    pub(crate) center: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) tangents: [Vec3; 2],
+    /// Half the extent of the box along the normal and the tangents.
+    pub(crate) half: [f64; 3],
+}
+
+impl Frame {
+    /// The frame of a unit normal around a box.
+    pub(crate) fn around([lo, hi]: [Vec3; 2], normal: Vec3) -> Self {
+        let center = between(lo, hi, 0.5);
+        let half = scale(sub(hi, lo), 0.5);
+        let reach = |a: Vec3| dot(a.map(f64::abs), half) * (1.0 + 1e-12);
+        let [u, v] = tangents(normal);
+        Self { center, normal, tangents: [u, v], half: [reach(normal), reach(u), reach(v)] }
+    }
+
+    /// The part of the frame between two heights over its center, as wide as the box.
+    pub(crate) fn part(&self, from: f64, to: f64) -> Prism {
+        let [u, v] = self.tangents;
+        let [_, by_u, by_v] = self.half;
+        let center = add(self.center, scale(self.normal, 0.5 * (from + to)));
+        let height = 0.5 * (to - from) * (1.0 + 1e-12);
+        Prism { center, axes: [scale(self.normal, height), scale(u, by_u), scale(v, by_v)] }
+    }
+
+    /// The height and the two other coordinates of a point.
+    pub(crate) fn coordinates(&self, point: Vec3) -> Vec3 {
+        let offset = sub(point, self.center);
+        let [u, v] = self.tangents;
+        [dot(offset, self.normal), dot(offset, u), dot(offset, v)]
+    }
+}
+
+/// Each linear channel of surfaces without a material.
+const DEFAULT_COLOR: f32 = 0.8;
+
+/// The field, as tapes.
+#[derive(Clone, Debug)]
+pub(crate) struct Field {
+    distance: Tape,
+    /// The fields of `MaterialField::ALL`, if the scene has materials.
+    material: Option<Tape>,
+}
+
+impl Field {
+    /// Prepares a program; `None` if it draws nothing.
+    pub(crate) fn new(program: &Program) -> Result<Option<Self>, TapeError> {
+        let Some(distance) = program.distance else { return Ok(None) };
+        let tape = |roots: &[_]| Tape::new(&program.graph, roots);
+        let material = program.material.map(|fields| tape(&fields)).transpose()?;
+        Ok(Some(Self { distance: tape(&[distance])?, material }))
+    }
+
+    /// The linear colour at each point; nothing if the scene has no materials.
+    pub(crate) fn colors(&self, frame: &FrameValues, points: &[Vec3]) -> Vec<[f32; 3]> {
+        let Some(material) = &self.material else { return Vec::new() };
+        let color = |field: &mut Evaluator<'_, f64>, point: &Vec3| {
+            let &[color, coverage, ..] = field.eval(*point) else { return [DEFAULT_COLOR; 3] };
+            let mixed = |channel: f64| (channel as f32 - DEFAULT_COLOR) * coverage[0] as f32;
+            [color[0], color[1], color[2]].map(|channel| {
+                let value = DEFAULT_COLOR + mixed(channel);
+                if value.is_finite() { value.max(0.0) } else { DEFAULT_COLOR }
+            })
+        };
+        points.par_iter().map_init(|| material.prepare(frame), color).collect()
+    }
+
+    pub(crate) fn prober(&self, frame: &FrameValues) -> Prober<'_> {
+        Prober {
+            value: self.distance.prepare(frame),
+            slope: self.distance.prepare(frame),
+            interval: self.distance.prepare(frame),
+            affine: self.distance.prepare(frame),
+        }
+    }
+}
+
+/// A [`Field`] with the registers of its evaluators. Each thread uses its own clone.
+#[derive(Clone, Debug)]
+pub(crate) struct Prober<'f> {
+    value: Evaluator<'f, f64>,
+    slope: Evaluator<'f, Dual>,
+    interval: Evaluator<'f, Interval>,
+    affine: Evaluator<'f, Affine>,
+}
+
+/// The side of the surface that a point lies on. A point without a value counts as outside.
+pub(crate) fn is_inside(value: f64) -> bool {
+    value < 0.0
+}
+
+impl Prober<'_> {
+    pub(crate) fn value(&mut self, point: Vec3) -> f64 {
+        self.value.scalar(point)
+    }
+
+    /// The value and the gradient.
+    pub(crate) fn sample(&mut self, point: Vec3) -> (f64, Vec3) {
+        let Dual { value, partials } = self.slope.scalar(Dual::point(point));
+        (value, partials)
+    }
+
+    /// An estimate of the distance to the surface: the value divided by the gradient's length.
+    pub(crate) fn distance(&mut self, point: Vec3) -> f64 {
+        let (value, gradient) = self.sample(point);
+        let distance = value.abs() / length(gradient);
+        if distance.is_finite() { distance } else { value.abs() }
+    }
+
+    /// The sign at a point, if it is proven in spite of rounding: true for inside.
+    pub(crate) fn proven_side(&mut self, point: Vec3) -> Option<bool> {
+        proven(self.interval.scalar(point.map(Interval::constant)))
+    }
+
+    /// The sign everywhere in a box, if it is proven.
+    pub(crate) fn side_over(&mut self, prism: &Prism) -> Option<bool> {
+        let coordinate = |axis: usize| {
+            let [a, b, c] = prism.axes;
+            Affine::coordinate(prism.center[axis], [a[axis], b[axis], c[axis]])
+        };
+        proven(self.affine.scalar([coordinate(0), coordinate(1), coordinate(2)]).range())
+    }
+
+    /// True if it is proven that the surface in a frame lies between two heights, with the inside
+    /// below. The frame is extended along its normal by `beyond` in both directions.
+    pub(crate) fn is_between(&mut self, frame: &Frame, beyond: f64, lo: f64, hi: f64) -> bool {
+        let end = frame.half[0] + beyond;
+        let is_outside = hi >= end || self.side_over(&frame.part(hi.max(-end), end)) == Some(false);
+        is_outside && (lo <= -end || self.side_over(&frame.part(-end, lo.min(end))) == Some(true))
+    }
+
+    /// Finds where the sign changes between two points on different sides, to `tolerance`.
+    pub(crate) fn root(&mut self, ends: [Vec3; 2], values: [f64; 2], tolerance: f64) -> f64 {
+        let [a, b] = ends;
+        let [mut from, mut to] = [0.0, 1.0];
+        let [mut low, mut high] = values;
+        let side = is_inside(low);
+        let span = length(sub(b, a));
+        for round in 0..MOST_STEPS {
+            if (to - from) * span <= tolerance {
+                break;
+            }
+            let slope = low / (low - high);
+            // Every third step halves, so that a jump or a flat field cannot stall the search.
+            let part = if round % 3 == 2 || !slope.is_finite() { 0.5 } else { slope };
+            let part = part.clamp(0.01, 0.99);
+            let t = from + part * (to - from);
+            let value = self.value(between(a, b, t));
+            // So near by the slope of the bracket that no further step is worth it.
+            let rest = value * (to - from) / (high - low) * span;
+            if value == 0.0 || rest.abs() <= 0.1 * tolerance {
+                return t;
+            }
+            if is_inside(value) == side {
+                (from, low) = (t, value);
+            } else {
+                (to, high) = (t, value);
+            }
+        }
+        let t = low / (low - high);
+        from + if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 } * (to - from)
+    }
+}
+
+const MOST_STEPS: u32 = 60;
+
+fn proven(range: Interval) -> Option<bool> {
+    if range.lo() > 0.0 {
+        Some(false)
+    } else if range.hi() < 0.0 {
+        Some(true)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,71 @@
+//! Closed triangle meshes of signed distance functions, with a proven error.
+//!
+//! # What
+//!
+//! [`mesh()`] makes a [`Mesh`] of a program's surface. The mesh is closed, consistently oriented
+//! and free of self-intersections. Its [`MeshCertificate`] says what is proven about the distance
+//! between mesh and surface, and where nothing is proven.
+//!
+//! # How
+//!
+//! 1. An octree is refined until each cell is proven to be empty, or the triangles that it would
+//!    have are near the surface (`examine`, `refine`).
+//! 2. The surface crosses the boundary of each cell in loops (`loops`). A loop is filled by
+//!    triangles that lie within the cell (`patch`), so triangles of different cells meet only in
+//!    the face between them. Vertices within cells and faces are placed on sharp edges and corners.
+//! 3. The mesh is compared with the field, independent of the octree (`certify`). Where that fails,
+//!    cells are divided and the mesh is made again.
+//!
+//! All bounds are computed by affine arithmetic (`affine`).
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//!
+//! use sdfc_graph::eval::FrameValues;
+//! use sdfc_graph::{Dim, Graph, Program};
+//! use sdfc_mesh::{MeshFormat, MeshOptions, mesh};
+//!
+//! let mut graph = Graph::new();
+//! let p = graph.point(0, Dim::Three);
+//! let (length, radius) = (graph.length(p), graph.number(0.5));
+//! let ball = graph.sub(length, radius);
+//! let program = Program { graph, distance: Some(ball), ..Program::default() };
+//!
+//! let options = MeshOptions::new([[-0.5; 3], [0.5; 3]], 0.02);
+//! let ball = mesh(&program, &FrameValues::default(), &options, &mut |_| ControlFlow::Continue(()))?;
+//! assert!(ball.certificate.is_proven);
+//! assert_eq!(ball.open_edges(), 0);
+//! let file = MeshFormat::Stl.encode(&ball)?;
+//! assert_eq!(file.len(), 84 + 50 * ball.triangles.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Limits
+//!
+//! The number of cells is limited ([`MeshOptions::max_cells`]). Positions need more digits than
+//! the error: [`MeshError::TooFine`].
+
+#![allow(clippy::needless_range_loop, reason = "an index is an axis, of several vectors")]
+
+mod affine;
+mod certify;
+mod contour;
+mod error;
+mod examine;
+mod field;
+mod grid;
+mod loops;
+mod make;
+mod nearness;
+mod patch;
+mod qef;
+mod refine;
+mod surface;
+mod tree;
+mod vector;
+mod write;
+
+pub use error::{MeshError, MeshOptions, Phase, Progress};
+pub use make::mesh;
+pub use surface::{Mesh, MeshCertificate};
+pub use write::{MeshFormat, TooCoarse};

@@ -1,0 +1,49 @@
+//! The loops in which the surface meets the boundary of a cell.
+
+use crate::grid::{Cell, Corner, Edge, Face};
+use crate::tree::{Tangled, Tree};
+
+/// A crossing of a loop, and the face that leads to the next one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoopStep {
+    pub(crate) edge: Edge,
+    pub(crate) face: Face,
+}
+
+/// Returns the loops on the boundary of a cell, counter-clockwise around the normal that points
+/// outside.
+pub(crate) fn loops(
+    tree: &Tree,
+    cell: Cell,
+    is_inside: impl Fn(Corner) -> bool,
+) -> Result<Vec<Vec<LoopStep>>, Tangled> {
+    let mut chords: Vec<(Edge, Edge, Face)> = Vec::new();
+    let mut is_tangled = false;
+    tree.faces_of(cell, |face, is_upper| match tree.chords(face, &is_inside) {
+        Ok(found) => {
+            let ends =
+                found.iter().map(|[a, b]| if is_upper { (b, a, face) } else { (a, b, face) });
+            chords.extend(ends);
+            is_tangled |= found.len() > 1 && cell.size > 1;
+        }
+        Err(Tangled) => is_tangled = true,
+    });
+    if is_tangled {
+        return Err(Tangled);
+    }
+    let mut loops = Vec::new();
+    while let Some((first, mut next, face)) = chords.pop() {
+        let mut steps = vec![LoopStep { edge: first, face }];
+        while next != first {
+            // Each crossing is the end of one chord and the start of another.
+            let Some(at) = chords.iter().position(|(from, ..)| *from == next) else {
+                return Err(Tangled);
+            };
+            let (edge, to, face) = chords.swap_remove(at);
+            steps.push(LoopStep { edge, face });
+            next = to;
+        }
+        loops.push(steps);
+    }
+    if loops.len() > 1 && cell.size > 1 { Err(Tangled) } else { Ok(loops) }
+}

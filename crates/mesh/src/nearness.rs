@@ -1,0 +1,111 @@
+//! Triangles in the coordinates of a frame, and distances to triangles.
+
+use crate::vector::{Vec3, add, cross, dot, length, scale, sub};
+
+/// The parts of triangles within a box.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Clipped {
+    /// The least and the greatest first coordinate.
+    pub(crate) heights: Option<[f64; 2]>,
+    /// The triangles that meet the box, whole.
+    pub(crate) triangles: Vec<[Vec3; 3]>,
+}
+
+/// Clipped heights are widened by this part of the box, for rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Adds a triangle's part within `|x| <= limits` (Sutherland and Hodgman, 1974).
+pub(crate) fn clip(corners: [Vec3; 3], limits: [f64; 3], found: &mut Clipped) {
+    let mut polygon: Vec<Vec3> = corners.to_vec();
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            let inside = |p: &Vec3| sign * p[axis] <= limits[axis];
+            if polygon.iter().all(inside) {
+                continue;
+            }
+            let mut rest = Vec::with_capacity(polygon.len() + 1);
+            for (index, to) in polygon.iter().enumerate() {
+                let from = polygon[(index + polygon.len() - 1) % polygon.len()];
+                if inside(&from) != inside(to) {
+                    let t = (sign * limits[axis] - from[axis]) / (to[axis] - from[axis]);
+                    rest.push(add(from, scale(sub(*to, from), t)));
+                }
+                if inside(to) {
+                    rest.push(*to);
+                }
+            }
+            polygon = rest;
+        }
+    }
+    if polygon.is_empty() {
+        return;
+    }
+    let margin = ROUNDING * (limits[0] + limits[1] + limits[2]);
+    for [height, ..] in &polygon {
+        let [lo, hi] = found.heights.unwrap_or([f64::INFINITY, f64::NEG_INFINITY]);
+        found.heights = Some([lo.min(height - margin), hi.max(height + margin)]);
+    }
+    found.triangles.push(corners);
+}
+
+/// True if a line along the first axis, between two heights, crosses the triangles an odd number
+/// of times. Its other coordinates are given.
+pub(crate) fn crosses_once(triangles: &[[Vec3; 3]], line: [f64; 2], ends: [f64; 2]) -> bool {
+    crossings(triangles, line, ends).is_some_and(|count| count % 2 == 1)
+}
+
+/// The number of triangles around a line; `None` if it is too near to an edge to tell.
+fn crossings(triangles: &[[Vec3; 3]], [u, v]: [f64; 2], ends: [f64; 2]) -> Option<usize> {
+    let close = 1e-9 * (ends[1] - ends[0]);
+    let mut count = 0;
+    for corners in triangles {
+        let [a, b, c] = corners.map(|[_, x, y]| [x - u, y - v]);
+        let area = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let areas = [area(a, b), area(b, c), area(c, a)];
+        let sizes = [side(a, b), side(b, c), side(c, a)];
+        let is_unclear = areas.iter().zip(sizes).any(|(area, size)| area.abs() <= close * size);
+        let signs = areas.map(|area| area > 0.0);
+        if is_unclear {
+            // A line that is clearly beyond another side misses the triangle.
+            let beyond = |sign: bool| {
+                areas
+                    .iter()
+                    .zip(sizes)
+                    .any(|(area, size)| area.abs() > close * size && (*area > 0.0) == sign)
+            };
+            if beyond(true) && beyond(false) {
+                continue;
+            }
+            return None;
+        }
+        if signs[0] == signs[1] && signs[1] == signs[2] {
+            let [x, y, z] = *corners;
+            let height = (areas[1] * x[0] + areas[2] * y[0] + areas[0] * z[0])
+                / (areas[0] + areas[1] + areas[2]);
+            count += usize::from(ends[0] < height && height < ends[1]);
+        }
+    }
+    Some(count)
+}
+
+fn side(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
+}
+
+/// The distance of a point from a triangle.
+pub(crate) fn distance(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = cross(sub(b, a), sub(c, a));
+    let above = |from: Vec3, to: Vec3| dot(cross(sub(to, from), sub(point, from)), normal) >= 0.0;
+    let size = length(normal);
+    if size > 0.0 && above(a, b) && above(b, c) && above(c, a) {
+        return dot(sub(point, a), normal).abs() / size;
+    }
+    to_segment(point, a, b).min(to_segment(point, b, c)).min(to_segment(point, c, a))
+}
+
+fn to_segment(point: Vec3, a: Vec3, b: Vec3) -> f64 {
+    let along = sub(b, a);
+    let t = (dot(sub(point, a), along) / dot(along, along)).clamp(0.0, 1.0);
+    let t = if t.is_nan() { 0.0 } else { t };
+    length(sub(point, add(a, scale(along, t))))
+}

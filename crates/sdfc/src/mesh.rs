@@ -1,0 +1,101 @@
+//! Makes a mesh of a scene.
+
+use std::ops::ControlFlow;
+
+use sdfc_graph::eval::FrameValues;
+use sdfc_mesh::{Mesh, MeshError, Progress};
+
+use crate::error::Error;
+use crate::scene::Scene;
+
+/// How exact a mesh is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeshSize {
+    /// A distance in scene units.
+    Length(f64),
+    /// A fraction of the longest side of the scene's bounds.
+    Relative(f64),
+}
+
+/// Options of [`Scene::mesh`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeshOptions {
+    /// The greatest distance between mesh and surface.
+    pub error: MeshSize,
+    /// Values of params, time and frame; `None` takes the defaults at time 0.
+    pub frame: Option<FrameValues>,
+    /// The most cells that are examined.
+    pub max_cells: u64,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        let max_cells = sdfc_mesh::MeshOptions::MAX_CELLS;
+        Self { error: MeshSize::Relative(1e-3), frame: None, max_cells }
+    }
+}
+
+impl MeshOptions {
+    /// The default options: an error of a thousandth of the scene's size.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets the greatest distance between mesh and surface.
+    #[must_use]
+    pub fn error(self, error: MeshSize) -> Self {
+        Self { error, ..self }
+    }
+
+    /// Sets the values of params, time and frame.
+    #[must_use]
+    pub fn frame(self, frame: FrameValues) -> Self {
+        Self { frame: Some(frame), ..self }
+    }
+
+    /// Sets the most cells that are examined.
+    #[must_use]
+    pub fn max_cells(self, max_cells: u64) -> Self {
+        Self { max_cells, ..self }
+    }
+}
+
+impl Scene {
+    /// A closed mesh of the scene's surface, with a certificate.
+    ///
+    /// The work runs on all cores. It stops if `progress` breaks.
+    ///
+    /// ```
+    /// use sdfc::{Compiler, MeshOptions, MeshSize};
+    /// use std::ops::ControlFlow;
+    ///
+    /// let scene = Compiler::new().compile("ball.sdf", "sphere(1)")?;
+    /// let options = MeshOptions::new().error(MeshSize::Length(0.05));
+    /// let mesh = scene.mesh(&options, &mut |_| ControlFlow::Continue(()))?;
+    /// assert!(mesh.certificate.is_proven);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Mesh`]: the scene has no limit, the error is too small, the mesh needs too many
+    /// cells, or `progress` stopped the work.
+    pub fn mesh(
+        &self,
+        options: &MeshOptions,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Mesh, Error> {
+        let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
+        let bounds = self.bounds_at(&frame).ok_or(MeshError::NothingDrawn)?;
+        let error = match options.error {
+            MeshSize::Length(length) => length,
+            MeshSize::Relative(part) => {
+                let side = |axis: usize| bounds[1][axis] - bounds[0][axis];
+                part * side(0).max(side(1)).max(side(2))
+            }
+        };
+        let options = sdfc_mesh::MeshOptions::new(bounds, error).max_cells(options.max_cells);
+        Ok(sdfc_mesh::mesh(&self.program, &frame, &options, progress)?)
+    }
+}

@@ -1,0 +1,54 @@
+//! Scenes that are hard for meshes.
+
+use proptest::prelude::*;
+
+use crate::{check, mesh, scene};
+
+/// Scenes, the relative error, and whether everything is proven.
+const CASES: &[(&str, &str, f64, bool)] = &[
+    ("thin wall", "box([1, 1, 0.03])", 0.02, true),
+    ("nested shells", "(sphere(1) - sphere(0.9)) | (sphere(0.8) - sphere(0.7))", 0.02, true),
+    ("coplanar faces", "box([1, 1, 1]) | box([1, 1, 1]).translate(x: 0.7)", 0.02, true),
+    ("steps", "box([1, 1, 1]) | box([0.5, 0.5, 0.5]).translate([0.5, 0.5, 0.25])", 0.02, true),
+    (
+        "barely closed gap",
+        "union(sphere(1), sphere(1).translate(x: 2.05), blend: smooth(0.3))",
+        0.02,
+        true,
+    ),
+    ("cut corner", "box([1, 1, 1]) - sphere(0.6).translate([0.5, 0.5, 0.5])", 0.02, true),
+    ("twisted bar", "box([0.4, 0.4, 1.6]).twist(rate: 60deg)", 0.02, false),
+    ("cone", "cone(0.5, 1)", 0.02, false),
+    ("tangent spheres", "sphere(1) | sphere(1).translate(x: 2)", 0.02, false),
+];
+
+#[test]
+fn hard_scenes_give_valid_meshes() {
+    for (name, source, relative, is_proven) in CASES {
+        let mesh = mesh(&scene(source), *relative);
+        check(&mesh, name);
+        let certificate = &mesh.certificate;
+        assert!(certificate.is_proven || !is_proven, "{name}: {certificate:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+
+    #[test]
+    fn random_blends_give_valid_meshes(
+        at in prop::array::uniform3(-0.6..0.6),
+        angle in 0.0..90.0,
+        width in 0.05..0.5,
+        operator in 0..3usize,
+    ) {
+        let operator = ["union", "intersection", "difference"][operator];
+        let [x, y, z] = at;
+        let source = format!(
+            "{operator}(box([1, 0.8, 0.9]), torus(0.5, 0.3).rotate(x: {angle}deg)\
+             .translate([{x}, {y}, {z}]), blend: smooth({width}))"
+        );
+        let mesh = mesh(&scene(&source), 0.03);
+        check(&mesh, &source);
+    }
+}

@@ -1,0 +1,48 @@
+//! What has no mesh, and how that is said.
+
+use std::ops::ControlFlow;
+
+use sdfc::{Error, MeshError, MeshFormat, MeshOptions, MeshSize};
+
+use crate::{mesh, scene};
+
+fn refusal(source: &str, options: &MeshOptions) -> MeshError {
+    let result = scene(source).mesh(options, &mut |_| ControlFlow::Continue(()));
+    let Err(Error::Mesh(error)) = result else { panic!("{source} has a mesh") };
+    error
+}
+
+#[test]
+fn an_unbounded_solid_is_refused_with_the_way_to_bound_it() {
+    let error = refusal("plane(y: 0)", &MeshOptions::new().error(MeshSize::Length(0.1)));
+    assert!(matches!(error, MeshError::Unbounded { .. }), "{error}");
+    assert!(error.to_string().contains("& box("), "{error}");
+}
+
+#[test]
+fn an_error_below_rounding_is_refused_with_the_smallest_possible_one() {
+    let source = "sphere(1).translate(x: 1000000)";
+    let at = |error: f64| MeshOptions::new().error(MeshSize::Length(error));
+    let MeshError::TooFine { least, .. } = refusal(source, &at(1e-12)) else { panic!() };
+    assert!(least > 1e-12);
+    let limited = at(least).max_cells(1000);
+    let error = refusal(source, &limited);
+    assert!(matches!(error, MeshError::TooManyCells { limit: 1000 }), "{error}");
+}
+
+#[test]
+fn work_stops_when_its_progress_breaks() {
+    let result = scene("sphere(1)").mesh(&MeshOptions::new(), &mut |_| ControlFlow::Break(()));
+    assert!(matches!(result, Err(Error::Mesh(MeshError::Cancelled))));
+}
+
+#[test]
+fn a_scene_far_from_the_origin_is_meshed_but_not_written_as_stl() {
+    let mesh = mesh(&scene("sphere(1).translate(x: 1000000)"), 0.01);
+    super::check(&mesh, "far");
+    assert!(mesh.certificate.is_proven);
+    assert!(MeshFormat::Stl.encode(&mesh).is_err());
+    for format in [MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Glb, MeshFormat::ThreeMf] {
+        assert!(format.encode(&mesh).is_ok(), "{format:?}");
+    }
+}
