@@ -15,8 +15,8 @@ pub struct Inspection {
     pub tree: ast::File,
     /// The imported files.
     pub imports: Vec<Imported>,
-    /// The ids of the library's files, in the order of [`library::FILES`](crate::library::FILES), and
-    /// that of the default look.
+    /// The ids of the library's files, in the order of [`library::FILES`](crate::library::FILES),
+    /// and that of the default look.
     pub library: Vec<FileId>,
     /// Names, types and calls.
     pub uses: Uses,
