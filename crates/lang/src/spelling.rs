@@ -1,5 +1,7 @@
 //! Suggestions for unknown names.
 
+use sdfc_diagnostics::Diagnostic;
+
 use crate::synonyms;
 
 /// A suggestion for an unknown name.
@@ -9,6 +11,19 @@ pub struct Meant {
     pub message: String,
     /// The expression to write instead.
     pub instead: String,
+}
+
+impl Meant {
+    /// Adds the suggestion to the diagnostic of a name, and the change if it is another name.
+    pub fn add_to(self, found: Diagnostic) -> Diagnostic {
+        let span = found.span;
+        let is_name = self.instead.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let found = found.help(self.message);
+        if !is_name {
+            return found;
+        }
+        found.fix(format!("replace by `{}`", self.instead), span, self.instead)
+    }
 }
 
 /// A suggestion for a name that is not among `names`: one of them in another spelling, its name in

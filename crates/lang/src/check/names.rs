@@ -250,7 +250,7 @@ impl<'a> Checker<'a> {
             (Some(later), _) => found
                 .note_at(later, "it is declared here and can be used only after this line")
                 .help("move that line above this one"),
-            (None, Some(meant)) => replaced(found, meant),
+            (None, Some(meant)) => meant.add_to(found),
             (None, None) => found,
         };
         self.report(found);
@@ -300,15 +300,4 @@ pub(super) fn first_dimension(decl: &ast::Decl) -> Option<&str> {
         }
     }
     of(decl.signature.parms.first()?.ty.as_ref()?)
-}
-
-/// Adds a suggestion for an unknown name, and the change if it is another name.
-pub(super) fn replaced(found: Diagnostic, meant: Meant) -> Diagnostic {
-    let span = found.span;
-    let is_name = meant.instead.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    let found = found.help(meant.message);
-    if !is_name {
-        return found;
-    }
-    found.fix(format!("replace by `{}`", meant.instead), span, meant.instead)
 }

@@ -355,7 +355,7 @@ impl Checker<'_> {
         let found =
             Diagnostic::error(Code::UNKNOWN_NAME, ty.span, format!("there is no type `{word}`"));
         let found = match meant(word, WORDS.iter().map(|word| word.name)) {
-            Some(meant) => super::names::replaced(found, meant),
+            Some(meant) => meant.add_to(found),
             None => {
                 let words: Vec<&str> = WORDS.iter().map(|word| word.name).collect();
                 found.help(format!("the types are {}, [T] and fn(A) -> R", words.join(", ")))
