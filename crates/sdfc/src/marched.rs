@@ -69,6 +69,7 @@ impl Scene {
 
     /// Returns true if `method` draws the field by steps as long as its value, although the field
     /// is uncertified: nothing that such a picture shows is proven.
+    #[cfg(feature = "render")]
     pub(crate) fn trusts_uncertified(&self, method: Method) -> bool {
         let bounds = [stubs::RANGE, stubs::SLOPE_RANGE];
         let is_bounded = bounds.into_iter().any(|stub| method.definition().calls(stub));
