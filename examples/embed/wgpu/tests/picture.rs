@@ -41,7 +41,9 @@ fn same_picture() -> Result<(), Failed> {
                     sun(direction: [1, 2, 1.5])\nambient(strength: 0.15)\n\
                     background(rgb(0.1, 0.2, 0.3))";
     let [(_, bowl), (_, ring)] = SCENES;
-    let scene = Compiler::new().compile("both.sdf", &[bowl, ring, settings].join("\n"))?;
+    // The bowl has a camera of its own, for pictures of it alone.
+    let bowl: String = bowl.split_inclusive('\n').filter(|it| !it.starts_with("camera(")).collect();
+    let scene = Compiler::new().compile("both.sdf", &[bowl.as_str(), ring, settings].join("\n"))?;
     let mut frame = scene.defaults();
     scene.set(&mut frame, "wall", 0.15)?;
     scene.set(&mut frame, "opening", 0.4)?;
