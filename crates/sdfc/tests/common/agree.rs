@@ -4,7 +4,7 @@
 
 use libtest_mimic::Failed;
 use sdfc::{Backend, Compiler, FrameValues, Method, PictureOptions, Scene, no_progress};
-use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare};
+use sdfc_render::{CpuScene, Difference, HIT, Image, compare};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -62,9 +62,9 @@ struct Depths {
 impl Depths {
     fn of(scene: &Scene) -> Result<Self, Failed> {
         let frame = FrameValues::defaults(scene.params());
-        let view = View::new(scene.program(), &frame, scene.bounds_at(&frame), [SIDE; 2])?;
+        let view = scene.view(&frame, [SIDE; 2])?;
         let method = scene.marched_by(METHOD);
-        let cpu = CpuScene::new(&scene.program().with_segment_bounds(true, false))?;
+        let cpu = CpuScene::new(&scene.drawn().with_segment_bounds(true, false))?;
         let double = cpu.depth_map::<f64>(&view, &frame, method)?;
         let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
         let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
