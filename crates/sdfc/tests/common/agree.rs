@@ -63,8 +63,8 @@ impl Depths {
     fn of(scene: &Scene) -> Result<Self, Failed> {
         let frame = FrameValues::defaults(scene.params());
         let view = scene.view(&frame, [SIDE; 2])?;
-        let method = scene.marched_by(METHOD);
-        let cpu = CpuScene::new(&scene.drawn().with_segment_bounds(true, false))?;
+        let marched = scene.marched_on_cpu(METHOD);
+        let (cpu, method) = (CpuScene::new(&marched.program)?, marched.method);
         let double = cpu.depth_map::<f64>(&view, &frame, method)?;
         let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
         let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
