@@ -1,10 +1,11 @@
 //! Checks that GPU, CPU in f32 and CPU in f64 render the same surface at 64x64. Outside edges,
 //! depths differ by at most 1e-3, by less in small scenes, and far from the origin by no more than
-//! the rounding of coordinates.
+//! the rounding of coordinates. Where a picture says that it proves nothing, rays are sampled at
+//! points that depend on rounding, so there a small part of the pixels may differ.
 
 use libtest_mimic::Failed;
 use sdfc::{Backend, Compiler, FrameValues, Method, PictureOptions, Scene, no_progress};
-use sdfc_render::{CpuScene, Difference, HIT, Image, compare};
+use sdfc_render::{CpuScene, Difference, HIT, Image, compare, edges, is_unproven};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -18,6 +19,8 @@ const ROUNDING: f32 = 1e-6;
 const COLOR: u8 = 2;
 /// If more than this fraction of the pixels are edges, the comparison is meaningless.
 const EDGES: f64 = 0.5;
+/// Largest part of the unproven pixels that may differ, outside edges.
+const UNPROVEN: f64 = 0.01;
 const METHOD: Method = Method::Auto;
 
 /// Compiles a scene.
@@ -80,6 +83,7 @@ fn agree(
     depth: f32,
     color: Option<u8>,
 ) -> Result<Difference, Failed> {
+    let b = &without_unproven(a, b, depth).map_err(|why| format!("{pair}: {why}"))?;
     let found = compare(a, b).ok_or("the sizes differ")?;
     let edges = found.edges as f64 / f64::from(SIDE * SIDE);
     if found.depth > depth || found.status > 0 || edges > EDGES {
@@ -89,4 +93,22 @@ fn agree(
         Some(limit) if found.color > limit => Err(format!("{pair}: {found:?}").into()),
         Some(_) | None => Ok(found),
     }
+}
+
+/// Returns `b` with the pixels of `a` where one of them is unproven, if nearly all of these agree.
+fn without_unproven(a: &Image, b: &Image, depth: f32) -> Result<Image, String> {
+    let is_edge: Vec<bool> = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b).collect();
+    let (mut unproven, mut differing, mut other) = (0, 0, b.clone());
+    for ((a, b), is_edge) in a.pixels().iter().zip(other.pixels_mut()).zip(is_edge) {
+        if is_unproven(a) || is_unproven(b) {
+            let is_same = a.status == b.status && (a.depth - b.depth).abs() <= depth;
+            unproven += usize::from(!is_edge);
+            differing += usize::from(!is_edge && !is_same);
+            *b = *a;
+        }
+    }
+    if differing as f64 > UNPROVEN * f64::from(unproven as u32) {
+        return Err(format!("{differing} of {unproven} unproven pixels differ"));
+    }
+    Ok(other)
 }
