@@ -178,7 +178,7 @@ impl Graph {
     }
 
     /// The operands of a soft maximum or minimum of two values, and which one it is:
-    /// `max(a, b) + gap`, `min(a, b) - gap` or its negative, where `gap` is [`Graph::soft_gap`].
+    /// `max(a, b) + gap`, `min(a, b) - gap` or its negative. `gap` is `log(1 + exp(-|a - b|))`.
     pub fn as_soft_extreme(&mut self, id: NodeId) -> Option<SoftExtreme> {
         let sum = self.as_binary(Binary::Add, id);
         let difference = self.as_binary(Binary::Sub, id);
