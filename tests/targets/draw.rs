@@ -93,7 +93,8 @@ pub fn shadertoy(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
     let expected = own.image.pixels().iter().map(|pixel| eight_bits(pixel.color)).collect();
 
     let view = view_bytes(&view.block(TILE));
-    let toy = shadertoy_module(scene.program(), scene.method(), &view)?;
+    let marched = scene.marched(scene.method());
+    let toy = shadertoy_module(&marched.program, marched.method, &view)?;
     let text = format!("{}\n{TOY}", toy.wgsl()?);
     let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
     let found = devices.draw(source, ["triangle", "toy"], &[])?;
@@ -113,10 +114,11 @@ fn at_defaults(scene: &Scene) -> Result<(FrameValues, View), Failed> {
 }
 
 fn embedded(scene: &Scene, stage: Stage, rows_up: bool) -> Result<Shader, Failed> {
-    let (method, prefix) = (scene.method(), String::new());
+    let marched = scene.marched(scene.method());
+    let (method, prefix) = (marched.method, String::new());
     let lists = Lists::Constants;
     let options = PictureOptions { method, stage, rows_up, prefix, group: 0, binding: 0, lists };
-    Ok(picture_module(scene.program(), &options)?)
+    Ok(picture_module(&marched.program, &options)?)
 }
 
 /// Returns the uniform buffer with all params at their defaults, laid out by the reflection. `time`
