@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use libtest_mimic::Failed;
 use sdfc::{FrameValues, Scene, Stage, no_progress};
 use sdfc_codegen::{Lists, PictureOptions, Reflection, Shader, picture_module, shadertoy_module};
+use sdfc_graph::Program;
 use sdfc_render::{Gpu, Pipeline, RenderOptions, Tile, View, compare, view_bytes};
 use sdfc_render::{linear_to_srgb8, uniform_values};
 use wgpu::BufferUsages as Usage;
@@ -94,7 +95,7 @@ pub fn shadertoy(devices: &Devices, scene: &Scene) -> Result<(), Failed> {
 
     let view = view_bytes(&view.block(TILE));
     let marched = scene.marched(scene.method());
-    let toy = shadertoy_module(&marched.program, marched.method, &view)?;
+    let toy = shadertoy_module(&bounded(scene, &marched.program), marched.method, &view)?;
     let text = format!("{}\n{TOY}", toy.wgsl()?);
     let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
     let found = devices.draw(source, ["triangle", "toy"], &[])?;
@@ -113,12 +114,18 @@ fn at_defaults(scene: &Scene) -> Result<(FrameValues, View), Failed> {
     Ok((frame, view))
 }
 
+/// Returns the scene's program with the bounds that the marched program has, but with the scene's
+/// origin.
+fn bounded(scene: &Scene, marched: &Program) -> Program {
+    scene.program().with_segment_bounds(marched.range.is_some(), marched.slope_range.is_some())
+}
+
 fn embedded(scene: &Scene, stage: Stage, rows_up: bool) -> Result<Shader, Failed> {
     let marched = scene.marched(scene.method());
     let (method, prefix) = (marched.method, String::new());
     let lists = Lists::Constants;
     let options = PictureOptions { method, stage, rows_up, prefix, group: 0, binding: 0, lists };
-    Ok(picture_module(&marched.program, &options)?)
+    Ok(picture_module(&bounded(scene, &marched.program), &options)?)
 }
 
 /// Returns the uniform buffer with all params at their defaults, laid out by the reflection. `time`
