@@ -29,6 +29,16 @@ impl Span {
         Self::new(self.file, self.start.min(other.start), self.end.max(other.end))
     }
 
+    /// Returns true if the other span lies in this one.
+    pub fn contains(self, other: Self) -> bool {
+        self.file == other.file && self.start <= other.start && other.end <= self.end
+    }
+
+    /// Returns the empty span at the start of this one.
+    pub fn before(self) -> Self {
+        Self::new(self.file, self.start, self.start)
+    }
+
     /// Returns the empty span at the end of this one.
     pub fn after(self) -> Self {
         Self::new(self.file, self.end, self.end)

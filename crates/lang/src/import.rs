@@ -134,32 +134,26 @@ fn folder_of(name: &str) -> &str {
 
 /// The imports of a file, last first.
 fn imports(tree: &ast::File) -> Vec<(String, Span)> {
-    let import = |item: &Item| match item {
-        Item::Import(import) => Some((import.path.text.clone(), import.path.span)),
-        Item::Param(_) | Item::Decl(_) | Item::Let(_) | Item::Expr(_) => None,
-    };
-    tree.items.iter().rev().filter_map(import).collect()
+    let imports = tree.items.iter().rev().filter_map(Item::as_import);
+    imports.map(|import| (import.path.text.clone(), import.path.span)).collect()
 }
 
 /// The diagnostic for an import in a scene without access to files.
 pub(crate) fn refuse_without_files(item: &Item) -> Option<Diagnostic> {
-    match item {
-        Item::Import(import) => Some(error(import.path.span, WITHOUT_FILES.into())),
-        Item::Param(_) | Item::Decl(_) | Item::Let(_) | Item::Expr(_) => None,
-    }
+    item.as_import().map(|import| error(import.path.span, WITHOUT_FILES.into()))
 }
 
 fn error(span: Span, why: String) -> Diagnostic {
     Diagnostic::error(Code::IMPORT, span, why)
 }
 
-/// The path of an import relative to the folder of the scene. `from` is the path of the importing
-/// file, empty for the scene.
+/// Returns the path of an import relative to the folder of the scene. `from` is the path of the
+/// importing file, empty for the scene.
 ///
 /// # Errors
 ///
 /// Returns the reason if the path is invalid.
-pub(crate) fn locate(from: &str, written: &str) -> Result<String, String> {
+pub fn locate(from: &str, written: &str) -> Result<String, String> {
     if written.is_empty() {
         return Err("the path of an import is empty".into());
     }

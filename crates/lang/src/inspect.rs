@@ -4,6 +4,7 @@ use sdfc_diagnostics::{Diagnostic, FileId, Sources, has_errors};
 use sdfc_syntax::ast;
 
 use crate::font::Fonts;
+use crate::hir::Program;
 use crate::import::{Imported, Resolver};
 use crate::uses::Uses;
 use crate::{check_scene, elab};
@@ -15,9 +16,6 @@ pub struct Inspection {
     pub tree: ast::File,
     /// The imported files.
     pub imports: Vec<Imported>,
-    /// The ids of the library's files, in the order of [`library::FILES`](crate::library::FILES),
-    /// and that of the default look.
-    pub library: Vec<FileId>,
     /// Names, types and calls.
     pub uses: Uses,
     /// The diagnostics of all phases that ran.
@@ -27,18 +25,12 @@ pub struct Inspection {
 /// Parses, checks and, if there are no errors, elaborates a scene. Arguments as for
 /// [`front_with_imports`](crate::front_with_imports).
 pub fn inspect(sources: &mut Sources, file: FileId, resolver: &dyn Resolver) -> Inspection {
-    let checked = check_scene(sources, file, resolver, Some(Uses::default()));
-    let mut diagnostics = checked.found;
-    if !has_errors(&diagnostics) {
-        diagnostics.extend(elab::elaborate(&checked.program, &Fonts::new(resolver)).1);
+    let (mut inspection, program) = inspect_with(sources, file, resolver, Uses::default());
+    if !has_errors(&inspection.diagnostics) {
+        let (_, found) = elab::elaborate(&program, &Fonts::new(resolver));
+        inspection.diagnostics.extend(found);
     }
-    Inspection {
-        tree: checked.tree,
-        imports: checked.imports,
-        library: checked.library,
-        uses: checked.uses.unwrap_or_default(),
-        diagnostics,
-    }
+    inspection
 }
 
 /// Parses and checks a scene in which the name `cursor` marks the position of the cursor. So
@@ -49,12 +41,21 @@ pub fn inspect_at(
     resolver: &dyn Resolver,
     cursor: &str,
 ) -> Inspection {
-    let checked = check_scene(sources, file, resolver, Some(Uses::new(Some(cursor))));
-    Inspection {
+    inspect_with(sources, file, resolver, Uses::new(cursor)).0
+}
+
+fn inspect_with(
+    sources: &mut Sources,
+    file: FileId,
+    resolver: &dyn Resolver,
+    uses: Uses,
+) -> (Inspection, Program) {
+    let checked = check_scene(sources, file, resolver, Some(uses));
+    let inspection = Inspection {
         tree: checked.tree,
         imports: checked.imports,
-        library: checked.library,
         uses: checked.uses.unwrap_or_default(),
         diagnostics: checked.found,
-    }
+    };
+    (inspection, checked.program)
 }

@@ -113,8 +113,6 @@ pub fn front_with(
 struct Checked {
     tree: ast::File,
     imports: Vec<import::Imported>,
-    /// The ids of the library's files.
-    library: Vec<FileId>,
     program: hir::Program,
     /// The tables, if they were asked for.
     uses: Option<uses::Uses>,
@@ -135,7 +133,7 @@ fn check_scene(
     // The parser stopped early: declarations in the rest of the file would seem to be missing.
     if found.iter().any(|it| matches!(it.code, Code::NESTING | Code::TOO_LARGE)) {
         let (imports, program) = (Vec::new(), hir::Program::default());
-        return Checked { tree, imports, library, program, uses, found };
+        return Checked { tree, imports, program, uses, found };
     }
     let (imports, of_imports) = import::load(sources, (file, &tree), resolver);
     found.extend(of_imports);
@@ -143,5 +141,5 @@ fn check_scene(
     let parsed = !has_errors(&found);
     // A part that could not be parsed may use or draw the items that warnings call unused.
     found.extend(checked.diagnostics.into_iter().filter(|it| parsed || it.is_error()));
-    Checked { tree, imports, library, program: checked.program, uses: checked.uses, found }
+    Checked { tree, imports, program: checked.program, uses: checked.uses, found }
 }

@@ -85,10 +85,8 @@ pub fn entries() -> Vec<Entry> {
     for (name, text) in FILES {
         let id = sources.add(*name, *text);
         let (file, _) = sdfc_syntax::parse(&sources, id);
-        let declarations = file.items.iter().filter_map(|item| match item {
-            Item::Decl(decl) if !decl.name.text.starts_with('_') => Some(decl),
-            Item::Decl(_) | Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
-        });
+        let declarations = file.items.iter().filter_map(Item::as_decl);
+        let declarations = declarations.filter(|decl| !decl.name.text.starts_with('_'));
         entries.extend(declarations.map(|decl| entry(&sources, name, decl)));
     }
     entries
@@ -103,7 +101,7 @@ fn entry(sources: &Sources, file: &'static str, decl: &ast::Decl) -> Entry {
     }
 }
 
-/// Describes a declaration of a scene or of the library, without topic and place.
+/// Describes a declaration of a scene or of the library, without topic and location.
 pub fn describe_declaration(sources: &Sources, decl: &ast::Decl) -> Entry {
     let mut entry = Entry {
         name: decl.name.text.clone(),

@@ -1,15 +1,15 @@
-//! Which functions and shapes can be called as methods of a value, for completion.
+//! Tells which functions and shapes are methods of a value, for completion.
 
-use sdfc_graph::Dim;
 use sdfc_syntax::ast::{Parm, TypeExpr, TypeExprKind};
 
-use crate::check::kernel::takes_first;
+pub use crate::check::kernel::takes_first as kernel_takes;
+use crate::check::types::{blend, named, same_value};
 use crate::hir::Type;
 
 /// Returns true if a value of a type can be the argument of a parameter.
 pub fn takes(parm: &Parm, ty: &Type) -> bool {
     match (&parm.ty, ty) {
-        (None, _) => fits("number", ty),
+        (None, _) => same_value(ty, &Type::Number),
         (Some(written), Type::List(of)) if parm.variadic => {
             takes_type(written, ty) || takes_type(written, of)
         }
@@ -17,14 +17,13 @@ pub fn takes(parm: &Parm, ty: &Type) -> bool {
     }
 }
 
-/// Returns true if a value of a type can be the first argument of a function of the kernel.
-pub fn kernel_takes(name: &str, ty: &Type) -> bool {
-    takes_first(name, ty)
-}
-
 fn takes_type(written: &TypeExpr, ty: &Type) -> bool {
     match (&written.kind, ty) {
-        (TypeExprKind::Named(word), _) => fits(word, ty),
+        (TypeExprKind::Named(word), _) => match &word[..] {
+            "shape" => matches!(ty, Type::Shape(_)),
+            "point" => matches!(ty, Type::Vec(2 | 3)),
+            _ => named(word).is_some_and(|want| is_value_of(ty, &want)),
+        },
         (TypeExprKind::List(of), Type::List(ty)) => takes_type(of, ty),
         (TypeExprKind::List(_), _) => false,
         (TypeExprKind::Fn(parameters, result), Type::Fn(types, ty)) => {
@@ -34,26 +33,13 @@ fn takes_type(written: &TypeExpr, ty: &Type) -> bool {
     }
 }
 
-fn fits(word: &str, ty: &Type) -> bool {
-    match ty {
-        Type::Number => matches!(word, "number" | "length"),
-        Type::Int => matches!(word, "number" | "length" | "int"),
-        Type::Angle => word == "angle",
-        Type::Bool => word == "bool",
-        Type::Text => word == "string",
-        Type::Vec(2) => matches!(word, "vec2" | "point"),
-        Type::Vec(3) => matches!(word, "vec3" | "point"),
-        Type::Vec(_) => word == "vec4",
-        Type::Color => matches!(word, "color" | "pattern"),
-        Type::Range(_) => word == "range",
-        Type::Fn(parameters, result) => match (&parameters[..], &**result) {
-            ([Type::Number, Type::Number], Type::Number) => word == "blend",
-            ([Type::Vec(3)], Type::Color) => word == "pattern",
-            ([..], _) => false,
-        },
-        Type::Shape(Dim::Three) => matches!(word, "solid" | "shape"),
-        Type::Shape(Dim::Two) => matches!(word, "region" | "shape"),
-        Type::Material => word == "material",
-        Type::List(_) | Type::Shadow | Type::Error => false,
-    }
+/// True if a value is wanted there, or one that is the same at each point, such as a colour where a
+/// pattern is wanted.
+fn is_value_of(ty: &Type, want: &Type) -> bool {
+    let is_constant = if let Type::Fn(_, result) = want {
+        *want != blend() && same_value(ty, result)
+    } else {
+        false
+    };
+    is_constant || same_value(ty, want)
 }

@@ -30,14 +30,17 @@ impl Meant {
 /// this language, or one with a similar spelling.
 pub fn meant<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<Meant> {
     let names: Vec<&str> = names.collect();
-    let suggest = |message: String, instead: &str| Meant { message, instead: instead.to_owned() };
-    let ask = |name: &str| suggest(format!("did you mean `{name}`?"), name);
+    let here =
+        |here: &str| Meant { message: format!("that is `{here}` here"), instead: here.to_owned() };
     synonyms::respelt(name, &names)
         .map(ask)
-        .or_else(|| {
-            synonyms::here(name).map(|here| suggest(format!("that is `{here}` here"), here))
-        })
+        .or_else(|| synonyms::here(name).map(here))
         .or_else(|| nearest(name, names.into_iter()).map(ask))
+}
+
+/// The suggestion of a name.
+pub fn ask(name: &str) -> Meant {
+    Meant { message: format!("did you mean `{name}`?"), instead: name.to_owned() }
 }
 
 /// The name with the smallest edit distance, if that is small enough for a spelling mistake. Among

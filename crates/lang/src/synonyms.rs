@@ -60,6 +60,7 @@ const ROWS: &[(&str, &str)] = &[
     ("mix", "lerp interpolate"),
     ("fract", "frac"),
     ("inverseSqrt", "rsqrt invsqrt"),
+    ("log", "ln logarithm"),
     ("length", "magnitude norm mag"),
     ("a % b", "mod fmod modulo"),
     ("x * 1deg", "radians degtorad"),
@@ -241,6 +242,7 @@ mod tests {
         assert_eq!(here("cube"), Some("box"));
         assert_eq!(here("opSmoothUnion"), Some("union(a, b, blend: smooth(0.1))"));
         assert_eq!(here("linear_extrude"), Some("extrude"));
+        assert_eq!(here("ln"), Some("log"));
         assert_eq!(here("teapot"), None);
         let names = ["round_cone", "pi", "twist"];
         assert_eq!(respelt("sdRoundCone", &names), Some("round_cone"));

@@ -1,4 +1,4 @@
-//! What the names of a scene refer to and which types its expressions have, for editors.
+//! Tables for editors: the targets of a scene's names, and the types of its expressions.
 //!
 //! The checker fills these tables while it checks the scene and its imports, if they are asked
 //! for. The library's files are left out. If an expression is checked more than once, for example
@@ -71,8 +71,8 @@ pub struct Uses {
 }
 
 impl Uses {
-    /// Creates empty tables. A name that equals `cursor` marks the position of the cursor.
-    pub fn new(cursor: Option<&str>) -> Self {
-        Self { cursor: cursor.map(str::to_owned), ..Self::default() }
+    /// Creates empty tables for a text in which the name `cursor` marks the cursor.
+    pub fn new(cursor: &str) -> Self {
+        Self { cursor: Some(cursor.to_owned()), ..Self::default() }
     }
 }

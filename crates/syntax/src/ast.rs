@@ -40,6 +40,24 @@ pub enum Item {
     Expr(Expr),
 }
 
+impl Item {
+    /// Returns the import, if it is one.
+    pub fn as_import(&self) -> Option<&Import> {
+        match self {
+            Self::Import(import) => Some(import),
+            Self::Param(_) | Self::Decl(_) | Self::Let(_) | Self::Expr(_) => None,
+        }
+    }
+
+    /// Returns the declaration of a function or shape, if it is one.
+    pub fn as_decl(&self) -> Option<&Decl> {
+        match self {
+            Self::Decl(decl) => Some(decl),
+            Self::Import(_) | Self::Param(_) | Self::Let(_) | Self::Expr(_) => None,
+        }
+    }
+}
+
 /// `import a, b as c from "path"`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {

@@ -11,7 +11,7 @@ use super::types;
 use super::written::written;
 use super::{Checker, poison};
 use crate::hir::{Element, Expr, ExprKind, Type};
-use crate::spelling::nearest;
+use crate::spelling::{ask, nearest};
 use crate::synonyms;
 
 impl<'a> Checker<'a> {
@@ -118,11 +118,7 @@ impl<'a> Checker<'a> {
             let near = synonyms::parameter(&name.text, &names)
                 .or_else(|| nearest(&name.text, names.into_iter()));
             let found = match near {
-                Some(near) => found.help(format!("did you mean `{near}`?")).fix(
-                    format!("replace by `{near}`"),
-                    name.span,
-                    near,
-                ),
+                Some(near) => ask(near).add_to(found),
                 None => self.elsewhere(
                     callee.name,
                     &name.text,
@@ -163,14 +159,8 @@ impl<'a> Checker<'a> {
         };
         let found = match free.iter().find(fits) {
             Some(parameter) => {
-                let start = Span { end: e.span.start, ..e.span };
-                found
-                    .help(format!("or name the parameter: {}: {}", parameter.name, written(e)))
-                    .fix(
-                        format!("name the parameter `{}`", parameter.name),
-                        start,
-                        format!("{}: ", parameter.name),
-                    )
+                let help = format!("or name the parameter: {}: {}", parameter.name, written(e));
+                name_argument(found.help(help), parameter, e)
             }
             None => found,
         };
@@ -217,13 +207,14 @@ impl<'a> Checker<'a> {
                 Value::Expr(e) if is_lambda(e) => Element::One(self.check_expr(e, want, role)),
                 Value::Expr(e) => {
                     let value = self.infer(e);
-                    let width = later.iter().find(|it| is_width_of_blend(&value.ty, it, want));
-                    match later.iter().find(|later| meant_for(&value.ty, later, want)) {
-                        Some(later) => Element::One(self.needs_name(e, parameter, later)),
-                        None => match width {
-                            Some(blend) => Element::One(self.needs_blend(e, parameter, blend)),
-                            None => self.spread(Element::One(value), want, role),
-                        },
+                    let is_width =
+                        |it: &&ParameterSignature| is_width_of_blend(&value.ty, it, want);
+                    if let Some(later) = later.iter().find(|it| meant_for(&value.ty, it, want)) {
+                        Element::One(self.needs_name(e, parameter, later))
+                    } else if let Some(blend) = later.iter().find(is_width) {
+                        Element::One(self.needs_blend(e, parameter, blend))
+                    } else {
+                        self.spread(Element::One(value), want, role)
                     }
                 }
                 Value::Element(element) => self.element(element, Some((want, role))).0,
@@ -243,12 +234,8 @@ impl<'a> Checker<'a> {
     ) -> Expr {
         let message = format!("parameters after `{}` must be named", parameter.name);
         let found = Diagnostic::error(Code::ARGUMENTS, given.span, message);
-        let start = Span { end: given.span.start, ..given.span };
-        self.report(found.help(format!("write {}: {}", later.name, written(given))).fix(
-            format!("name the parameter `{}`", later.name),
-            start,
-            format!("{}: ", later.name),
-        ));
+        let help = format!("write {}: {}", later.name, written(given));
+        self.report(name_argument(found.help(help), later, given));
         poison(given.span)
     }
 
@@ -330,6 +317,12 @@ fn bracketed(
         .collect::<Option<_>>()?;
     let fits = given.len() == usize::from(width);
     fits.then(|| format!("write {}([{}])", callee.name, given.join(", ")))
+}
+
+/// Adds the change that names the parameter of an argument.
+fn name_argument(found: Diagnostic, parameter: &ParameterSignature, e: &ast::Expr) -> Diagnostic {
+    let name = parameter.name;
+    found.fix(format!("name the parameter `{name}`"), e.span.before(), format!("{name}: "))
 }
 
 /// True for a literal: a number, colour, string or bool.

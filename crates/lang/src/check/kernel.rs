@@ -1,5 +1,6 @@
 //! The names that the compiler itself knows (the kernel), with their arguments and documentation.
 
+use super::types::is_numeric;
 use crate::hir::{Kernel, Type};
 
 /// The meaning of a name of the kernel.
@@ -193,8 +194,8 @@ pub(super) fn builtin(name: &str) -> Option<Builtin> {
     ROWS.iter().find(|row| row.name == name).map(|row| row.builtin)
 }
 
-/// True if a value of this type can be the first argument of a function of the kernel.
-pub(crate) fn takes_first(name: &str, ty: &Type) -> bool {
+/// Returns true if a value of a type can be the first argument of a function of the kernel.
+pub fn takes_first(name: &str, ty: &Type) -> bool {
     let Some(builtin) = builtin(name) else { return false };
     match builtin {
         Builtin::Number(_) | Builtin::Angle(_) => false,
@@ -210,11 +211,6 @@ pub(crate) fn takes_first(name: &str, ty: &Type) -> bool {
         Builtin::Color(_) => matches!(ty, Type::Number | Type::Int),
         Builtin::GlyphCurves => *ty == Type::Text,
     }
-}
-
-/// True for numbers, angles, vectors and colours.
-fn is_numeric(ty: &Type) -> bool {
-    matches!(ty, Type::Number | Type::Int | Type::Angle | Type::Vec(_) | Type::Color)
 }
 
 #[cfg(test)]

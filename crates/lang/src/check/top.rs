@@ -13,7 +13,7 @@ use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
 use crate::hir::{Setting, SettingKind, Type};
 use crate::import;
-use crate::spelling::nearest;
+use crate::spelling::{ask, nearest};
 
 /// An item that is evaluated at the top level.
 enum TopLevel<'a> {
@@ -135,11 +135,7 @@ impl<'a> Checker<'a> {
                 let found = Diagnostic::error(Code::IMPORT, name.span, message);
                 let public = names.keys().copied().filter(|name| !is_private(name));
                 match nearest(&name.text, public) {
-                    Some(near) => found.help(format!("did you mean `{near}`?")).fix(
-                        format!("replace by `{near}`"),
-                        name.span,
-                        near,
-                    ),
+                    Some(near) => ask(near).add_to(found),
                     None => found,
                 }
             }

@@ -46,8 +46,30 @@ pub(crate) const WORDS: &[Word] = words! {
     "pattern" "A colour at each point, `fn(vec3) -> color`. A single colour is a pattern too." "fn striped() -> pattern = fn(q) = if fract(q.y) < 0.5 { #fff } else { #222 }";
 };
 
+/// The type with a name, unless its dimension depends on where it is written.
+pub(crate) fn named(word: &str) -> Option<Type> {
+    Some(match word {
+        "number" | "length" => Type::Number,
+        "int" => Type::Int,
+        "angle" => Type::Angle,
+        "bool" => Type::Bool,
+        "string" => Type::Text,
+        "vec2" => Type::Vec(2),
+        "vec3" => Type::Vec(3),
+        "vec4" => Type::Vec(4),
+        "color" => Type::Color,
+        "range" => Type::Range(Box::new(Type::Number)),
+        "solid" => Type::Shape(Dim::Three),
+        "region" => Type::Shape(Dim::Two),
+        "material" => Type::Material,
+        "blend" => blend(),
+        "pattern" => pattern(),
+        _ => return None,
+    })
+}
+
 /// The type of `blend`: two distances to one.
-pub(super) fn blend() -> Type {
+pub(crate) fn blend() -> Type {
     Type::Fn(vec![Type::Number, Type::Number], Box::new(Type::Number))
 }
 
@@ -225,7 +247,7 @@ pub(super) fn dimension(ty: &Type) -> Option<Dim> {
 
 /// True if a value of type `have` is a value of type `want` without conversion. Ints and angles are
 /// numbers, also inside lists, ranges and functions.
-pub(super) fn same_value(have: &Type, want: &Type) -> bool {
+pub(crate) fn same_value(have: &Type, want: &Type) -> bool {
     match (have, want) {
         (Type::Int | Type::Angle, Type::Number) => true,
         (Type::List(a), Type::List(b)) | (Type::Range(a), Type::Range(b)) => same_value(a, b),
@@ -315,21 +337,6 @@ impl Checker<'_> {
 
     fn resolve_word(&mut self, word: &str, ty: &TypeExpr) -> Type {
         match word {
-            "number" | "length" => Type::Number,
-            "int" => Type::Int,
-            "angle" => Type::Angle,
-            "bool" => Type::Bool,
-            "string" => Type::Text,
-            "vec2" => Type::Vec(2),
-            "vec3" => Type::Vec(3),
-            "vec4" => Type::Vec(4),
-            "color" => Type::Color,
-            "range" => Type::Range(Box::new(Type::Number)),
-            "solid" => Type::Shape(Dim::Three),
-            "region" => Type::Shape(Dim::Two),
-            "material" => Type::Material,
-            "blend" => blend(),
-            "pattern" => pattern(),
             "shape" => match self.body.either {
                 Some(dim) => Type::Shape(dim),
                 None => self.no_dimension(ty, "`shape`", "`solid` or `region`"),
@@ -338,7 +345,7 @@ impl Checker<'_> {
                 Some(dim) => point(dim),
                 None => self.no_dimension(ty, "`point`", "`vec2` or `vec3`"),
             },
-            _ => self.unknown_word(word, ty),
+            _ => named(word).unwrap_or_else(|| self.unknown_word(word, ty)),
         }
     }
 

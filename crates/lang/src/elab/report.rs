@@ -43,7 +43,7 @@ impl<'p> Elaborator<'p> {
         let mut shown = vec![position];
         let outer: Vec<Note> = calls
             .filter(|call| {
-                let fresh = !encloses(call.span, position) && !shown.contains(&call.span);
+                let fresh = !call.span.contains(position) && !shown.contains(&call.span);
                 shown.push(call.span);
                 fresh
             })
@@ -154,10 +154,6 @@ impl<'p> Elaborator<'p> {
         }
         "this value is not constant".to_owned()
     }
-}
-
-fn encloses(outer: Span, inner: Span) -> bool {
-    outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }
 
 /// A number for messages, with at most six digits after the decimal point.
