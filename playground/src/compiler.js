@@ -34,12 +34,12 @@ export class CompilerClient {
   }
 
   /// Compiles a scene; see crates/web/npm/index.d.ts.
-  compile(source, options, wantsFixes = false) {
+  compile(source, options) {
     const id = ++this.#last;
     return new Promise((resolve, reject) => {
       const late = () => this.#restart(`the compiler took more than ${MAX_WAIT / 1000} s`);
       this.#waiting.set(id, { resolve, reject, timer: setTimeout(late, MAX_WAIT) });
-      this.#worker.postMessage({ id, source, options, wantsFixes });
+      this.#worker.postMessage({ id, source, options });
     });
   }
 }

@@ -1,7 +1,6 @@
 // Compiles scenes, away from the page, so that typing never waits.
 
 import { load } from "../../crates/web/npm/index.js";
-import { withFixes } from "./fixes.js";
 
 // The first compilation reads the library. It is done while the page waits for the GPU.
 const ready = load(new URL("sdfc.wasm", self.location.href)).then((compiler) => {
@@ -9,16 +8,12 @@ const ready = load(new URL("sdfc.wasm", self.location.href)).then((compiler) => 
   return compiler;
 });
 
-onmessage = async ({ data: { id, source, options, wantsFixes } }) => {
+onmessage = async ({ data: { id, source, options } }) => {
   try {
     const compiler = await ready;
     const started = performance.now();
     const compiled = compiler.compile(source, options);
-    const milliseconds = performance.now() - started;
-    const diagnostics = wantsFixes
-      ? withFixes(compiler, source, options, compiled.diagnostics)
-      : compiled.diagnostics;
-    postMessage({ id, ...compiled, diagnostics, milliseconds });
+    postMessage({ id, ...compiled, milliseconds: performance.now() - started });
   } catch (error) {
     postMessage({ id, failure: error.message });
   }

@@ -43,36 +43,45 @@ export function makeEditor(parent, text, changed) {
       view.dispatch({ selection: { anchor: from }, scrollIntoView: true });
       view.focus();
     },
-    /// Replaces the range of a row.
-    replace(row, insert) {
-      view.dispatch({ changes: { ...range(view.state.doc, row), insert } });
+    /// Makes the changes of a fix.
+    apply(fix) {
+      view.dispatch({ changes: changes(view.state.doc, fix) });
       view.focus();
     },
   };
 }
 
 function shown(view, row) {
-  const { from, to } = range(view.state.doc, row);
-  const name = row.fix === "" ? "Remove it" : `Replace with ${row.fix}`;
-  const apply = (view, from, to) => view.dispatch({ changes: { from, to, insert: row.fix } });
+  const { doc } = view.state;
+  const { from, to } = range(doc, row);
+  const actions = row.fixes.map((fix) => {
+    const all = changes(doc, fix);
+    // The row has moved if something was typed above it.
+    const moved = (by) => all.map((it) => ({ ...it, from: it.from + by, to: it.to + by }));
+    return { name: fix.title, apply: (view, now) => view.dispatch({ changes: moved(now - from) }) };
+  });
   return {
-    from, to,
+    from, to, actions,
     severity: row.severity,
     source: row.code ?? undefined,
     message: row.help ? `${row.message}\n${row.help}` : row.message,
-    actions: row.fix === undefined ? [] : [{ name, apply }],
   };
 }
 
-/// Returns the offsets of a row of the compiler, within the text. The compiler counts characters,
+/// Returns the changes of a fix of the compiler.
+function changes(doc, { edits }) {
+  return edits.map((edit) => ({ ...range(doc, edit), insert: edit.text }));
+}
+
+/// Returns the offsets of a range of the compiler, within the text. The compiler counts characters,
 /// and the editor counts units of UTF-16.
-function range(doc, row) {
+function range(doc, { line, column, end_line, end_column }) {
   const offset = (line, column) => {
     if (line < 1) return 0;
     if (line > doc.lines) return doc.length;
     const { from, text } = doc.line(line);
     return from + [...text].slice(0, column - 1).join("").length;
   };
-  const from = offset(row.line, row.column);
-  return { from, to: Math.max(from, offset(row.end_line, row.end_column)) };
+  const from = offset(line, column);
+  return { from, to: Math.max(from, offset(end_line, end_column)) };
 }

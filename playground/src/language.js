@@ -3,9 +3,11 @@
 import { HighlightStyle, LanguageSupport, StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { tags } from "@lezer/highlight";
 
-const KEYWORDS = /^(?:let|param|fn|solid|region|shape|import|from|as|if|else|for|in|lipschitz|require)$/;
-const ATOMS = /^(?:true|false|inf|pi)$/;
-const TYPES = /^(?:number|int|bool|length|angle|vec2|vec3|vec4|color|curve|str|range)$/;
+// A test compares these words with those of the compiler.
+const KEYWORDS = /^(?:let|param|fn|solid|region|shape|import|from|as|if|else|for|in)$/;
+const CLAUSES = /^(?:exact|bound|lipschitz|bounds|material|intersect|copies|require)$/;
+const ATOMS = /^(?:true|false|inf|pi|tau)$/;
+const TYPES = /^(?:number|length|int|angle|bool|string|vec2|vec3|vec4|color|range|point|blend|pattern)$/;
 
 const sdf = StreamLanguage.define({
   name: "sdf",
@@ -42,6 +44,7 @@ function kind(word, stream, state) {
   if (declares) return "name";
   if (stream.match(/^\s*:(?!:)/, false) && state.depth > 0) return "label";
   if (stream.match(/^\s*\(/, false)) return "call";
+  if (CLAUSES.test(word) && state.depth === 0) return "keyword";
   return TYPES.test(word) ? "typeName" : "variableName";
 }
 

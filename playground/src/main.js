@@ -125,7 +125,7 @@ async function compileOnce() {
   await isOpen;
   const source = editor.text();
   const options = { ...target, name: "scene.sdf" };
-  const { text, reflection, diagnostics, milliseconds } = await compiler.compile(source, options, true);
+  const { text, reflection, diagnostics, milliseconds } = await compiler.compile(source, options);
   times.compiled = milliseconds;
   // Positions in an old text would be wrong.
   if (source === editor.text()) report(diagnostics);
@@ -151,12 +151,12 @@ function report(rows) {
     where.append(head, `: ${row.message}.`, help);
     where.addEventListener("click", () => editor.reveal(row));
     item.append(where);
-    if (row.fix !== undefined) {
-      const fix = document.createElement("button");
-      fix.className = "fix";
-      fix.textContent = row.fix === "" ? "Remove it" : `Use ${row.fix}`;
-      fix.addEventListener("click", () => editor.replace(row, row.fix));
-      item.append(fix);
+    for (const fix of row.fixes.slice(0, 1)) {
+      const button = document.createElement("button");
+      button.className = "fix";
+      button.textContent = fix.title;
+      button.addEventListener("click", () => editor.apply(fix));
+      item.append(button);
     }
     return item;
   }));

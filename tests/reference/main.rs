@@ -50,6 +50,25 @@ fn present() -> BTreeSet<String> {
     found
 }
 
+/// The playground's editor colours the words of the syntax and the names of types, and no others.
+#[test]
+fn the_playground_knows_the_words_of_the_language() {
+    let source = std::fs::read_to_string(repository().join("playground/src/language.js")).unwrap();
+    let list = |name: &str| -> BTreeSet<String> {
+        let (_, behind) = source.split_once(&format!("const {name} = /^(?:")).unwrap();
+        behind.split_once(')').unwrap().0.split('|').map(str::to_owned).collect()
+    };
+    let entries = reference::entries();
+    let named = |kind: &str| -> BTreeSet<String> {
+        entries.iter().filter(|it| it.kind == kind).map(|it| it.name.clone()).collect()
+    };
+    let (keywords, clauses) = (list("KEYWORDS"), list("CLAUSES"));
+    let words: BTreeSet<String> = keywords.union(&clauses).cloned().collect();
+    let parts = ["from", "as", "else", "in"].map(str::to_owned);
+    assert_eq!(words, &named("syntax") | &BTreeSet::from(parts));
+    assert_eq!(&list("TYPES") - &words, &named("type") - &words);
+}
+
 #[test]
 fn the_reference_is_current() {
     let files = files();

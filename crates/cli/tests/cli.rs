@@ -82,13 +82,15 @@ fn json_diagnostics_have_all_keys() {
     assert!(rows.len() >= 2);
     let mut keys: Vec<_> = rows[0].as_object().unwrap().keys().cloned().collect();
     keys.sort();
-    let expected = "code column end_column end_line file help line message severity"
+    let expected = "code column end_column end_line file fixes help line message severity"
         .split(' ')
         .collect::<Vec<_>>();
     assert_eq!(keys, expected);
     assert_eq!(rows[0]["code"], "E0201");
     assert_eq!(rows[0]["file"], "wrong.sdf");
     assert_eq!((&rows[0]["line"], &rows[0]["column"]), (&1.into(), &1.into()));
+    let edit = &rows[0]["fixes"][0]["edits"][0];
+    assert_eq!((&edit["end_column"], &edit["text"]), (&rows[0]["end_column"], &"sphere".into()));
 }
 
 #[test]

@@ -33,7 +33,7 @@ mod render;
 mod source;
 
 pub use codes::{ALL_CODES, Code, CodeInfo};
-pub use render::{Located, locate, render};
+pub use render::{Located, LocatedEdit, LocatedFix, locate, render};
 pub use source::{FileId, LineColumn, Sources, Span};
 
 /// The severity of a diagnostic.

@@ -6,7 +6,7 @@ use codespan_reporting::diagnostic::{Diagnostic as Report, Label, LabelStyle};
 use codespan_reporting::term::{self, termcolor};
 
 use crate::excerpt::Excerpts;
-use crate::{Diagnostic, FileId, LineColumn, Severity, Sources, Span};
+use crate::{Diagnostic, FileId, Fix, LineColumn, Severity, Sources, Span};
 
 /// The most characters of a message that are shown, since names in it may be of any length.
 const MAX_MESSAGE: usize = 400;
@@ -89,6 +89,30 @@ pub struct Located {
     pub end: LineColumn,
     /// Suggestions, one per line.
     pub help: String,
+    /// Changes that fix it, best first.
+    pub fixes: Vec<LocatedFix>,
+}
+
+/// A change of the source with its positions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LocatedFix {
+    /// A few words that say what changes.
+    pub title: String,
+    /// The source ranges that are replaced.
+    pub edits: Vec<LocatedEdit>,
+}
+
+/// A source range with the text that replaces it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LocatedEdit {
+    /// The name of the file.
+    pub file: String,
+    /// The start of the source range.
+    pub start: LineColumn,
+    /// The end of the source range.
+    pub end: LineColumn,
+    /// The new text.
+    pub text: String,
 }
 
 /// Converts a diagnostic's span to lines and columns.
@@ -105,7 +129,18 @@ pub fn locate(sources: &Sources, diagnostic: &Diagnostic) -> Located {
         start: sources.line_column(span.file, span.start),
         end: sources.line_column(span.file, span.end),
         help: diagnostic.suggestions().join("\n"),
+        fixes: diagnostic.fixes.iter().map(|fix| locate_fix(sources, fix)).collect(),
     }
+}
+
+fn locate_fix(sources: &Sources, fix: &Fix) -> LocatedFix {
+    let edits = fix.edits.iter().map(|(span, text)| LocatedEdit {
+        file: sources.name(span.file).to_owned(),
+        start: sources.line_column(span.file, span.start),
+        end: sources.line_column(span.file, span.end),
+        text: text.clone(),
+    });
+    LocatedFix { title: fix.title.clone(), edits: edits.collect() }
 }
 
 #[cfg(test)]

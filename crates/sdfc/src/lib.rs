@@ -71,7 +71,7 @@ mod tapes;
 mod uniforms;
 
 pub use compiler::{Compiler, format};
-pub use diagnostics::{DiagnosticRow, Diagnostics};
+pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
 pub use explanation::{Bounds, Explanation, Input, QualityRow};
 pub use field::{Field, Material};

@@ -28,6 +28,22 @@ export interface Diagnostic {
   end_line: number;
   end_column: number;
   help: string;
+  /** Changes of the source that fix the problem, best first. */
+  fixes: Fix[];
+}
+
+export interface Fix {
+  /** A few words that say what changes. */
+  title: string;
+  /** The parts of the source that are replaced; they do not overlap. Positions are as above. */
+  edits: {
+    file: string;
+    line: number;
+    column: number;
+    end_line: number;
+    end_column: number;
+    text: string;
+  }[];
 }
 
 export interface Compiled {
@@ -42,7 +58,11 @@ export interface Compiled {
 }
 
 export interface Compiler {
-  /** Never throws, for any input. */
+  /**
+   * Never throws, for any input. A scene that is nested too deeply for the browser's stack has an
+   * error, and the compiler starts again. In a page that takes a moment, and until then every scene
+   * has an error that says so.
+   */
   compile(source: string, options?: Options): Compiled;
 }
 

@@ -3,7 +3,8 @@
 
 /// Loads the compiler from a URL or from bytes. Default: `sdfc.wasm` beside this file.
 export async function load(wasm = new URL("sdfc.wasm", import.meta.url)) {
-  return new Compiler(await moduleOf(wasm));
+  const module = await moduleOf(wasm);
+  return new Compiler(module, await WebAssembly.instantiate(module));
 }
 
 async function moduleOf(wasm) {
@@ -24,28 +25,32 @@ class Compiler {
   #module;
   #exports;
 
-  constructor(module) {
+  constructor(module, instance) {
     this.#module = module;
-    this.#begin();
+    this.#exports = instance.exports;
   }
 
-  #begin() {
-    this.#exports = new WebAssembly.Instance(this.#module).exports;
+  /// Compiles from now on with another instance. A browser starts a large module at once only in a
+  /// worker. In a page the instance is there a little later.
+  #restart() {
+    this.#exports = null;
+    try {
+      this.#exports = new WebAssembly.Instance(this.#module).exports;
+    } catch {
+      WebAssembly.instantiate(this.#module).then(({ exports }) => (this.#exports = exports));
+    }
   }
 
   /// Returns shader, reflection and diagnostics of a scene; see index.d.ts.
   compile(source, options = {}) {
+    if (!this.#exports) return failed("the compiler starts again after a failure", "compile again");
     try {
       return this.#call(source, JSON.stringify(options));
     } catch (error) {
       // Browsers limit the stack of WebAssembly, and deep nesting can exhaust it. The instance is then
       // in an unknown state and is not used again.
-      this.#begin();
-      const position = { file: "", line: 0, column: 0, end_line: 0, end_column: 0 };
-      const message = `the compiler failed: ${error.message}`;
-      const help = "nest less deeply";
-      const diagnostic = { code: null, severity: "error", message, ...position, help };
-      return { text: null, words: null, reflection: null, diagnostics: [diagnostic] };
+      this.#restart();
+      return failed(`the compiler failed: ${error.message}`, "nest less deeply");
     }
   }
 
@@ -61,4 +66,10 @@ class Compiler {
     const bytes = new Uint8Array(memory.buffer, answer, answer_length());
     return JSON.parse(new TextDecoder().decode(bytes));
   }
+}
+
+function failed(message, help) {
+  const position = { file: "", line: 0, column: 0, end_line: 0, end_column: 0 };
+  const diagnostic = { code: null, severity: "error", message, ...position, help, fixes: [] };
+  return { text: null, words: null, reflection: null, diagnostics: [diagnostic] };
 }

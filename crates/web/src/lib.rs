@@ -66,6 +66,8 @@ struct CallError {
     end_line: u32,
     end_column: u32,
     help: &'static str,
+    /// Always empty.
+    fixes: [(); 0],
 }
 
 /// Compiles a scene.
@@ -149,6 +151,9 @@ mod tests {
         let row = &found["diagnostics"][0];
         assert_eq!((&row["severity"], &row["line"]), (&"error".into(), &1.into()));
         assert!(row["code"].is_string() && found["reflection"].is_null());
+        let found = compile("spere(1)", &json!({}));
+        let edit = &found["diagnostics"][0]["fixes"][0]["edits"][0];
+        assert_eq!((&edit["column"], &edit["text"]), (&1.into(), &"sphere".into()));
         let impossible = json!({ "target": "glsl-es", "emit": "render", "stage": "compute" });
         for options in
             [json!({ "target": "cobol" }), json!({ "colour": 1 }), json!("wgsl"), impossible]

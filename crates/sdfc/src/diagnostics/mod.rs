@@ -6,7 +6,9 @@ pub(crate) mod warnings;
 
 use std::sync::Arc;
 
-use sdfc_diagnostics::{Diagnostic, Located, Sources, has_errors, locate, render};
+use sdfc_diagnostics::{
+    Diagnostic, Located, LocatedEdit, LocatedFix, Sources, has_errors, locate, render,
+};
 use serde::Serialize;
 
 /// All errors and warnings of one compilation, in the order of the compiler's phases.
@@ -118,8 +120,38 @@ pub struct DiagnosticRow {
     pub end_line: u32,
     /// Column after the last character.
     pub end_column: u32,
-    /// Suggested fixes, one per line.
+    /// Suggestions, one per line.
     pub help: String,
+    /// Changes of the source that fix the problem, best first.
+    pub fixes: Vec<FixRow>,
+}
+
+/// A change of the source, as `sdfc check --json` writes it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct FixRow {
+    /// A few words that say what changes.
+    pub title: String,
+    /// The parts of the source that are replaced. They do not overlap.
+    pub edits: Vec<EditRow>,
+}
+
+/// A part of the source with the text that replaces it. Lines and columns count from 1.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct EditRow {
+    /// Name of the file.
+    pub file: String,
+    /// Line of the first character.
+    pub line: u32,
+    /// Column of the first character.
+    pub column: u32,
+    /// Line of the end.
+    pub end_line: u32,
+    /// Column after the last character.
+    pub end_column: u32,
+    /// The new text.
+    pub text: String,
 }
 
 impl From<Located> for DiagnosticRow {
@@ -134,6 +166,21 @@ impl From<Located> for DiagnosticRow {
             end_line: located.end.line,
             end_column: located.end.column,
             help: located.help,
+            fixes: located.fixes.into_iter().map(FixRow::from).collect(),
         }
+    }
+}
+
+impl From<LocatedFix> for FixRow {
+    fn from(fix: LocatedFix) -> Self {
+        let row = |edit: LocatedEdit| EditRow {
+            file: edit.file,
+            line: edit.start.line,
+            column: edit.start.column,
+            end_line: edit.end.line,
+            end_column: edit.end.column,
+            text: edit.text,
+        };
+        Self { title: fix.title, edits: fix.edits.into_iter().map(row).collect() }
     }
 }
