@@ -157,6 +157,14 @@ fn an_editor_is_served_from_start_to_end() {
         let answer = editor.ask(&format!("textDocument/{method}"), params);
         assert!(answer.is_array() || answer["data"].is_array(), "{method}: {answer}");
     }
+    // A file that is open counts with its text, and when it is closed the file on disk does.
+    let part = format!("file://{}/part.sdf", folder.path().display());
+    editor.open(&part, "let unused = 1\n");
+    assert_eq!(editor.diagnostics(&uri)[0]["code"], "E0209");
+    assert_ne!(editor.diagnostics(&part), json!([]));
+    editor.notify("textDocument/didClose", json!({ "textDocument": { "uri": part } }));
+    assert_eq!(editor.diagnostics(&uri), json!([]));
+    assert_eq!(editor.diagnostics(&part), json!([]));
     let unknown = editor.answer("textDocument/unknown", Editor::at(&uri, 0, 0));
     assert_eq!(unknown["error"]["code"], -32601);
     editor.end();

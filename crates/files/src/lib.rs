@@ -106,13 +106,22 @@ impl sdfc::Resolver for Folder {
 
     fn read_bytes(&self, path: &str) -> Result<Vec<u8>, String> {
         let file = self.resolve(path).map_err(|e| e.to_string())?;
-        let file = std::fs::File::open(file).map_err(|e| e.to_string())?;
-        let bytes = read_all(file).map_err(|e| e.to_string())?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(format!("the file is larger than {} MiB", MAX_BYTES >> 20));
-        }
-        Ok(bytes)
+        read_bytes(&file).map_err(|e| e.to_string())
     }
+}
+
+/// Reads a binary file.
+///
+/// # Errors
+///
+/// The file is missing, unreadable or larger than 64 MiB.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let bytes = std::fs::File::open(path).and_then(read_all);
+    let bytes = bytes.map_err(|e| ReadError(e.to_string()))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(ReadError(format!("the file is larger than {} MiB", MAX_BYTES >> 20)));
+    }
+    Ok(bytes)
 }
 
 fn read_all(from: impl Read) -> std::io::Result<Vec<u8>> {

@@ -1,10 +1,10 @@
-//! What the editor can do.
+//! The abilities of the editor.
 
 use serde_json::{Value, json};
 
 use crate::lines::Encoding;
 
-/// What the editor can do.
+/// The abilities of the editor.
 #[derive(Clone, Copy, Debug)]
 pub struct Client {
     /// The unit of columns.

@@ -32,7 +32,7 @@ pub trait Disk {
     fn library(&self) -> Option<PathBuf>;
 }
 
-/// The open files and what is known of them.
+/// The open files and their analyses.
 pub struct Documents<'d> {
     open: BTreeMap<PathBuf, String>,
     analyses: BTreeMap<PathBuf, Rc<Analysis>>,
@@ -70,6 +70,11 @@ impl<'d> Documents<'d> {
     /// The paths of all open files.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.open.keys().cloned().collect()
+    }
+
+    /// True if a file is open.
+    pub fn is_open(&self, path: &Path) -> bool {
+        self.open.contains_key(path)
     }
 
     /// The text of a file, if it is open or can be read.
@@ -111,7 +116,7 @@ impl<'d> Documents<'d> {
         self.set(path, text);
     }
 
-    /// Drops what is known of a file and of the scenes that import it.
+    /// Drops the analyses of a file and of the scenes that import it.
     pub fn forget(&mut self, path: &Path) {
         let name = path.display().to_string();
         self.analyses.retain(|of, analysis| {
@@ -119,7 +124,7 @@ impl<'d> Documents<'d> {
         });
     }
 
-    /// Drops all that is known.
+    /// Drops all analyses.
     pub fn forget_all(&mut self) {
         self.analyses.clear();
     }

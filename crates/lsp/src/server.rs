@@ -1,7 +1,7 @@
 //! The conversation with the editor: start, notifications, requests, end.
 
-use std::collections::VecDeque;
-use std::path::Path;
+use std::collections::{BTreeSet, VecDeque};
+use std::path::{Path, PathBuf};
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use sdfc_ide::diagnostics;
@@ -31,7 +31,7 @@ pub fn serve(connection: &Connection, disk: &dyn Disk) -> Result<(), String> {
         connection,
         client,
         documents: Documents::new(disk),
-        changed: Vec::new(),
+        changed: BTreeSet::new(),
         waiting: VecDeque::new(),
     };
     server.run()
@@ -70,7 +70,7 @@ struct Server<'c, 'd> {
     client: Client,
     documents: Documents<'d>,
     /// The files whose diagnostics have to be sent again.
-    changed: Vec<std::path::PathBuf>,
+    changed: BTreeSet<PathBuf>,
     /// Messages that have arrived, in order.
     waiting: VecDeque<Message>,
 }
@@ -143,7 +143,8 @@ impl Server<'_, '_> {
             }
             "textDocument/didClose" => {
                 self.documents.close(&file);
-                self.changed.push(file);
+                self.changed.insert(file);
+                self.touch();
             }
             "workspace/didChangeWatchedFiles" | "textDocument/didSave" => {
                 self.documents.forget_all();
@@ -155,7 +156,7 @@ impl Server<'_, '_> {
 
     /// Marks all open files: each may import the one that changed.
     fn touch(&mut self) {
-        self.changed = self.documents.paths();
+        self.changed.extend(self.documents.paths());
     }
 
     /// Sends the diagnostics of the files that changed.
@@ -171,7 +172,7 @@ impl Server<'_, '_> {
     }
 
     fn diagnostics(&mut self, file: &Path) -> Value {
-        if !self.documents.paths().iter().any(|open| open == file) {
+        if !self.documents.is_open(file) {
             return json!([]);
         }
         let Some(scene) = self.documents.analysis(file) else { return json!([]) };

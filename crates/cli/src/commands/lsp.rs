@@ -41,7 +41,7 @@ impl Disk for Files {
     }
 
     fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
-        std::fs::read(path).map_err(|e| e.to_string())
+        sdfc_files::read_bytes(path).map_err(|e| e.to_string())
     }
 
     fn scenes(&self, folder: &Path) -> Vec<PathBuf> {
