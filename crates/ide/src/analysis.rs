@@ -2,7 +2,7 @@
 
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 use sdfc_lang::Resolver;
-use sdfc_lang::import::Imported;
+use sdfc_lang::import::{Imported, locate};
 use sdfc_lang::inspect::{Inspection, inspect, inspect_at};
 use sdfc_lang::uses::{Target, Uses};
 use sdfc_syntax::ast::{self, Item};
@@ -10,7 +10,7 @@ use sdfc_syntax::ast::{self, Item};
 use crate::library::library;
 use crate::tree::{Node, nodes};
 
-/// What a name refers to.
+/// The thing that a name refers to.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Referent {
     /// Something whose declared name has this span.
@@ -32,7 +32,7 @@ pub enum Referent {
 pub struct Occurrence {
     /// Its position.
     pub span: Span,
-    /// What it refers to.
+    /// The thing that it refers to.
     pub referent: Referent,
     /// True if it declares what it refers to.
     pub declares: bool,
@@ -72,7 +72,7 @@ impl Analysis {
     }
 
     fn of(sources: Sources, file: FileId, inspection: Inspection) -> Self {
-        let Inspection { tree, imports, library: _, uses, diagnostics } = inspection;
+        let Inspection { tree, imports, uses, diagnostics } = inspection;
         let occurrences = Vec::new();
         Self { sources, file, tree, imports, uses, found: diagnostics, occurrences }
     }
@@ -107,6 +107,12 @@ impl Analysis {
         import.map(|import| &import.tree).or_else(|| library().tree(file))
     }
 
+    /// The file that an import of the scene names, if it was read.
+    pub(crate) fn imported_file(&self, written: &str) -> Option<&Imported> {
+        let path = locate("", written).ok()?;
+        self.imports.iter().find(|import| import.path == path)
+    }
+
     /// The trees of the scene and its imports.
     pub(crate) fn trees(&self) -> impl Iterator<Item = &ast::File> {
         std::iter::once(&self.tree).chain(self.imports.iter().map(|import| &import.tree))
@@ -128,10 +134,7 @@ impl Analysis {
     /// The declaration in a file or in the library whose name has this span.
     pub(crate) fn declaration(&self, name: Span) -> Option<&ast::Decl> {
         let items = self.tree_of(name.file)?.items.iter();
-        let mut own = items.filter_map(|item| match item {
-            Item::Decl(decl) => Some(&**decl),
-            Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
-        });
+        let mut own = items.filter_map(Item::as_decl);
         own.find(|decl| decl.name.span == name).or_else(|| library().declaration(name))
     }
 

@@ -17,82 +17,64 @@ pub struct OpenCall {
     pub argument_name: Option<String>,
 }
 
-/// The innermost call whose brackets hold the offset.
+/// Words that begin an item, which a call cannot reach beyond.
+const STARTS_ITEM: [&str; 6] = ["let", "param", "solid", "region", "shape", "import"];
+
+type Token = (Class, Range<usize>);
+
+/// Returns the innermost call whose brackets hold the offset.
 pub fn open_call(text: &str, offset: usize) -> Option<OpenCall> {
     let mut tokens = classes(text);
     tokens.retain(|(class, range)| {
-        range.start < offset && !matches!(class, Class::Comment | Class::Docs)
+        range.end <= offset && !matches!(class, Class::Comment | Class::Docs)
     });
-    let (mut depth, mut argument) = (0_usize, 0);
-    let mut start = tokens.len();
-    let mut first = None;
-    while let Some(at) = start.checked_sub(1) {
-        start = at;
-        let (class, range) = &tokens[at];
-        let is_inside = range.end <= offset;
-        match class {
-            Class::Close if is_inside => depth += 1,
-            Class::Open if depth > 0 => depth -= 1,
-            Class::Open if is_inside => {
-                first.get_or_insert(at + 1);
-                let name = at.checked_sub(1).map(|before| &tokens[before]);
-                if &text[range.clone()] != "(" {
-                    if &text[range.clone()] == "{" {
-                        return None;
-                    }
-                    // A list or a vector inside of the call.
-                    (depth, argument, first) = (0, 0, None);
-                    continue;
-                }
-                match name {
-                    Some((Class::Name, name)) => {
-                        let before = at.checked_sub(2).map(|it| &text[tokens[it].1.clone()]);
-                        let before_that = at.checked_sub(3).map(|it| &tokens[it].0);
-                        // A declaration is no call.
-                        if let Some(("solid" | "region" | "shape" | "fn", _)) =
-                            before.map(|before| (before, before_that))
-                        {
-                            return None;
-                        }
-                        let is_method = before == Some(".");
-                        let label = first.and_then(|at| argument_name(text, &tokens, at));
-                        let name = name.clone();
-                        return Some(OpenCall { name, is_method, argument, argument_name: label });
-                    }
-                    Some(_) | None => (depth, argument, first) = (0, 0, None),
-                }
+    // The number of brackets that are closed before the offset, the argument at the offset, and
+    // the index of its first token.
+    let (mut depth, mut argument, mut first) = (0_usize, 0, None);
+    for (at, (class, range)) in tokens.iter().enumerate().rev() {
+        let word = &text[range.clone()];
+        if *class == Class::Close {
+            depth += 1;
+        } else if *class == Class::Open && depth > 0 {
+            depth -= 1;
+        } else if *class == Class::Open {
+            let before = tokens[..at].last();
+            if let (Some((Class::Name, name)), "(") = (before, word) {
+                let first = first.unwrap_or(at + 1);
+                return call(text, &tokens, at - 1, name.clone(), (argument, first));
             }
-            Class::Punctuation if depth == 0 && &text[range.clone()] == "," && is_inside => {
-                first.get_or_insert(at + 1);
-                argument += 1;
-            }
-            Class::Keyword
-                if depth == 0
-                    && matches!(
-                        &text[range.clone()],
-                        "let" | "param" | "solid" | "region" | "import"
-                    ) =>
-            {
+            if word == "{" {
                 return None;
             }
-            Class::Comment
-            | Class::Docs
-            | Class::Keyword
-            | Class::Name
-            | Class::Number
-            | Class::Color
-            | Class::Text
-            | Class::Operator
-            | Class::Open
-            | Class::Close
-            | Class::Punctuation
-            | Class::Unknown => {}
+            // A list, a vector or parentheses inside of the call.
+            (argument, first) = (0, None);
+        } else if depth == 0 && word == "," {
+            first.get_or_insert(at + 1);
+            argument += 1;
+        } else if depth == 0 && *class == Class::Keyword && STARTS_ITEM.contains(&word) {
+            return None;
         }
     }
     None
 }
 
-fn argument_name(text: &str, tokens: &[(Class, Range<usize>)], at: usize) -> Option<String> {
+/// The call of the name at an index, unless that is the head of a declaration.
+fn call(
+    text: &str,
+    tokens: &[Token],
+    at: usize,
+    name: Range<usize>,
+    (argument, first): (usize, usize),
+) -> Option<OpenCall> {
+    let before = tokens[..at].last().map(|(_, range)| &text[range.clone()]);
+    if matches!(before, Some("solid" | "region" | "shape" | "fn")) {
+        return None;
+    }
+    let argument_name = argument_name(text, tokens, first);
+    Some(OpenCall { name, is_method: before == Some("."), argument, argument_name })
+}
+
+fn argument_name(text: &str, tokens: &[Token], at: usize) -> Option<String> {
     let ((class, name), (_, colon)) = (tokens.get(at)?, tokens.get(at + 1)?);
     let named = *class == Class::Name && &text[colon.clone()] == ":";
     named.then(|| text[name.clone()].to_owned())

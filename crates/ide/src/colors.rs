@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use sdfc_diagnostics::Span;
+use sdfc_lang::uses::Target;
 use sdfc_syntax::ast::{Arg, Element, ExprKind};
 
 use crate::analysis::Analysis;
@@ -20,34 +21,24 @@ pub struct Color {
 
 /// Returns all colours of the scene that are written as `#rrggbb` or `rgb(...)`.
 pub fn colors(analysis: &Analysis) -> Vec<Color> {
-    let found = nodes(&analysis.tree.items).filter_map(|node| match node {
-        Node::Expr(e) => {
-            let rgba = if let ExprKind::Color(bytes) = &e.kind {
-                Some(bytes.map(|byte| f64::from(byte) / 255.0))
-            } else if let ExprKind::Call(callee, args) = &e.kind
-                && is_rgb(analysis, callee.span)
-            {
-                parts(args)
-            } else {
-                None
-            };
-            rgba.map(|rgba| Color { range: range(e.span), rgba })
-        }
-        Node::Item(_)
-        | Node::Signature(_)
-        | Node::Parm(_)
-        | Node::Clause(_)
-        | Node::Type(_)
-        | Node::Let(_)
-        | Node::Arg(_)
-        | Node::For(_) => None,
+    let colors = nodes(&analysis.tree.items).filter_map(Node::expr).filter_map(|e| {
+        let rgba = if let ExprKind::Color(bytes) = &e.kind {
+            bytes.map(|byte| f64::from(byte) / 255.0)
+        } else if let ExprKind::Call(callee, args) = &e.kind
+            && is_rgb(analysis, callee.span)
+        {
+            parts(args)?
+        } else {
+            return None;
+        };
+        Some(Color { range: range(e.span), rgba })
     });
-    found.collect()
+    colors.collect()
 }
 
 /// True if a name is that of the kernel's `rgb`.
 fn is_rgb(analysis: &Analysis, callee: Span) -> bool {
-    analysis.uses.targets.get(&callee) == Some(&sdfc_lang::uses::Target::Kernel("rgb"))
+    analysis.uses.targets.get(&callee) == Some(&Target::Kernel("rgb"))
 }
 
 /// The values of `rgb(r, g, b, a)`, if they are plain numbers without names.

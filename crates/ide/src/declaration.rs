@@ -1,4 +1,4 @@
-//! What is declared at a position, and its description.
+//! The declaration of a name, and its description.
 
 use sdfc_diagnostics::Span;
 use sdfc_lang::hir::Type;
@@ -22,10 +22,9 @@ pub enum Declared<'a> {
 /// The declaration whose name has this span.
 pub fn declared(analysis: &Analysis, name: Span) -> Option<Declared<'_>> {
     let tree = analysis.tree_of(name.file)?;
-    let holds = |span: Span| span.start <= name.start && name.end <= span.end;
+    let item = tree.items.iter().find(|item| Node::Item(item).span().contains(name))?;
     let mut owner = None;
-    let item = tree.items.iter().find(|item| holds(Node::Item(item).span()))?;
-    for node in nodes_of(item) {
+    for node in nodes(std::slice::from_ref(item)) {
         let found = match node {
             Node::Item(Item::Decl(it)) => {
                 owner = Some(&**it);
@@ -51,10 +50,6 @@ pub fn declared(analysis: &Analysis, name: Span) -> Option<Declared<'_>> {
         }
     }
     None
-}
-
-fn nodes_of(item: &Item) -> impl Iterator<Item = Node<'_>> {
-    nodes(std::slice::from_ref(item))
 }
 
 /// Describes a declaration of a scene or the library as the reference does.

@@ -1,9 +1,9 @@
-//! Where a name is declared.
+//! The declaration of a name.
+
+use sdfc_syntax::ast::Item;
 
 use crate::analysis::{Analysis, Referent};
-use crate::edit::Location;
-use crate::tree::{Node, path};
-use sdfc_syntax::ast::Item;
+use crate::edit::{Location, range};
 
 /// Returns the declaration of the name at a byte offset. For the path of an import, that is the
 /// start of the imported file. Names of the kernel, settings and types have no source.
@@ -17,16 +17,9 @@ pub fn definition(analysis: &Analysis, offset: usize) -> Option<Location> {
 }
 
 fn imported_file(analysis: &Analysis, offset: usize) -> Option<Location> {
-    let Some(Node::Item(Item::Import(import))) = path(&analysis.tree, offset).first().copied()
-    else {
-        return None;
-    };
-    let at = import.path.span;
-    if !(at.start as usize..at.end as usize).contains(&offset) {
-        return None;
-    }
-    let wanted = import.path.text.trim_start_matches("./");
-    let imported = analysis.imports.iter().find(|import| import.path == wanted)?;
+    let imports = analysis.tree.items.iter().filter_map(Item::as_import);
+    let mut at_offset = imports.filter(|import| range(import.path.span).contains(&offset));
+    let imported = analysis.imported_file(&at_offset.next()?.path.text)?;
     let file = analysis.sources.name(imported.file).to_owned();
     Some(Location { file, start: 0, end: 0 })
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use sdfc_diagnostics::{Code, Diagnostic, Severity};
+use sdfc_syntax::ast::Item;
 
 use crate::analysis::Analysis;
 use crate::edit::{Location, range};
@@ -83,16 +84,10 @@ fn found(analysis: &Analysis, it: &Diagnostic) -> Found {
 /// The path of the import that leads to the file of a diagnostic; the start of the scene if it
 /// leads there only through other files.
 fn import_of(analysis: &Analysis, it: &Diagnostic) -> Range<usize> {
-    let path = analysis.imports.iter().find(|import| import.file == it.span.file);
-    let items = analysis.tree.items.iter().filter_map(|item| match item {
-        sdfc_syntax::ast::Item::Import(import) => Some(import),
-        sdfc_syntax::ast::Item::Param(_)
-        | sdfc_syntax::ast::Item::Decl(_)
-        | sdfc_syntax::ast::Item::Let(_)
-        | sdfc_syntax::ast::Item::Expr(_) => None,
-    });
-    let mut leading = items.filter(|import| {
-        path.is_some_and(|it| import.path.text.trim_start_matches("./") == it.path)
+    let imports = analysis.tree.items.iter().filter_map(Item::as_import);
+    let mut leading = imports.filter(|import| {
+        let imported = analysis.imported_file(&import.path.text);
+        imported.is_some_and(|imported| imported.file == it.span.file)
     });
     leading.next().map_or(0..0, |import| range(import.path.span))
 }

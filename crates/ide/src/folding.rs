@@ -6,9 +6,9 @@ use sdfc_syntax::ast::Item;
 use sdfc_syntax::{Class, classes};
 
 use crate::analysis::Analysis;
-use crate::tree::Node;
+use crate::edit::range;
 
-/// What is folded.
+/// The kind of text that is folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldKind {
     /// Code in brackets, or a declaration.
@@ -24,7 +24,7 @@ pub enum FoldKind {
 pub struct Fold {
     /// The range.
     pub range: Range<usize>,
-    /// What it is.
+    /// Its kind.
     pub kind: FoldKind,
 }
 
@@ -33,11 +33,8 @@ pub fn folds(analysis: &Analysis) -> Vec<Fold> {
     let text = analysis.text();
     let mut ranges = brackets(text);
     ranges.extend(comments(text));
-    let declarations = analysis.tree.items.iter().filter(|item| matches!(item, Item::Decl(_)));
-    ranges.extend(declarations.map(|item| {
-        let span = Node::Item(item).span();
-        Fold { range: span.start as usize..span.end as usize, kind: FoldKind::Code }
-    }));
+    let declarations = analysis.tree.items.iter().filter_map(Item::as_decl);
+    ranges.extend(declarations.map(|it| Fold { range: range(it.span), kind: FoldKind::Code }));
     ranges.extend(imports(analysis));
     ranges.retain(|it| text.get(it.range.clone()).is_some_and(|text| text.contains('\n')));
     ranges.sort_by_key(|it| (it.range.start, it.range.end));
@@ -83,11 +80,8 @@ fn comments(text: &str) -> Vec<Fold> {
 }
 
 fn imports(analysis: &Analysis) -> Option<Fold> {
-    let is_import = |item: &&Item| matches!(item, Item::Import(_));
-    let mut spans =
-        analysis.tree.items.iter().take_while(is_import).map(|it| Node::Item(it).span());
+    let mut spans = analysis.tree.items.iter().map_while(Item::as_import).map(|it| it.span);
     let first = spans.next()?;
     let last = spans.last()?;
-    let range = first.start as usize..last.end as usize;
-    Some(Fold { range, kind: FoldKind::Imports })
+    Some(Fold { range: range(first.to(last)), kind: FoldKind::Imports })
 }

@@ -9,7 +9,7 @@ use sdfc_syntax::ast::Item;
 use crate::analysis::Analysis;
 use crate::tree::{Node, nodes};
 
-/// What a hint says.
+/// The kind of a hint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HintKind {
     /// The name of the parameter of the argument behind it, `r:`.
@@ -25,7 +25,7 @@ pub struct Hint {
     pub at: usize,
     /// Its text.
     pub label: String,
-    /// What it says.
+    /// Its kind.
     pub kind: HintKind,
 }
 
@@ -51,12 +51,11 @@ fn parameters(analysis: &Analysis) -> Vec<Hint> {
             continue;
         }
         for argument in &call.arguments {
-            let is_alone =
-                |at: usize| call.arguments.iter().filter(|it| it.parameter == at).count();
+            let same = call.arguments.iter().filter(|it| it.parameter == argument.parameter);
             let is_plain = argument.name.is_none()
                 && argument.value.file == analysis.file
                 && argument.value.start > callee.end
-                && is_alone(argument.parameter) == 1;
+                && same.count() == 1;
             let Some(name) = call.parameters.get(argument.parameter).filter(|_| is_plain) else {
                 continue;
             };

@@ -1,4 +1,4 @@
-//! What is shown for the name under the mouse.
+//! The description of the name under the mouse.
 
 use std::ops::Range;
 

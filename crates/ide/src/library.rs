@@ -42,7 +42,7 @@ impl Library {
         let mut by_name = FxHashMap::default();
         for (file, tree) in trees.iter().enumerate() {
             for (at, item) in tree.items.iter().enumerate() {
-                if let Item::Decl(decl) = item {
+                if let Some(decl) = item.as_decl() {
                     by_name.insert(decl.name.span, (file, at));
                 }
             }
@@ -52,19 +52,13 @@ impl Library {
 
     /// All declarations.
     pub fn declarations(&self) -> impl Iterator<Item = &Decl> {
-        self.trees.iter().flat_map(|tree| &tree.items).filter_map(|item| match item {
-            Item::Decl(decl) => Some(&**decl),
-            Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
-        })
+        self.trees.iter().flat_map(|tree| &tree.items).filter_map(Item::as_decl)
     }
 
     /// The declaration whose name has this span.
     pub fn declaration(&self, name: Span) -> Option<&Decl> {
         let (file, at) = self.by_name.get(&name)?;
-        match self.trees.get(*file)?.items.get(*at)? {
-            Item::Decl(decl) => Some(decl),
-            Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => None,
-        }
+        self.trees.get(*file)?.items.get(*at)?.as_decl()
     }
 
     /// The tree of one of the library's files.

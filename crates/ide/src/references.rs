@@ -1,4 +1,4 @@
-//! Where a name is used.
+//! The uses of a name.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use sdfc_diagnostics::Span;
 use crate::analysis::{Analysis, Occurrence, Referent};
 use crate::edit::{Location, range};
 
-/// What a name refers to, independent of one analysis.
+/// The thing that a name refers to, independent of one analysis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// Something that is declared at a location.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use sdfc_diagnostics::Span;
 use sdfc_syntax::{Class, classes};
 
 use crate::analysis::{Analysis, Occurrence, Referent};
@@ -18,18 +19,18 @@ pub fn prepare_rename(analysis: &Analysis, offset: usize) -> Result<Range<usize>
     Ok(range(renamable(analysis, offset)?.0.span))
 }
 
-/// The name at an offset and the place where it is declared, if it can be renamed.
-fn renamable(analysis: &Analysis, offset: usize) -> Result<(&Occurrence, Location), String> {
+/// The name at an offset and the span of its declared name, if it can be renamed.
+fn renamable(analysis: &Analysis, offset: usize) -> Result<(&Occurrence, Span), String> {
     let at = analysis.occurrence(offset).ok_or("there is no name here")?;
     let written = analysis.slice(at.span);
     let Referent::Declared(name) = at.referent else {
         return Err(format!("`{written}` belongs to the language and cannot be renamed"));
     };
-    let declared = Location::of(&analysis.sources, name);
-    if library_files().iter().any(|(file, _)| *file == declared.file) {
+    let declared = analysis.sources.name(name.file);
+    if library_files().iter().any(|(file, _)| *file == declared) {
         return Err(format!("`{written}` belongs to the library and cannot be renamed"));
     }
-    Ok((at, declared))
+    Ok((at, name))
 }
 
 /// Renames what the name at a byte offset of a scene refers to: in the scene, its imports, and the
@@ -46,19 +47,19 @@ pub fn rename(
     offset: usize,
     to: &str,
 ) -> Result<Vec<Edit>, String> {
-    let (at, declared) = renamable(analysis, offset)?;
+    let (at, name) = renamable(analysis, offset)?;
     check_name(to)?;
     let written = analysis.slice(at.span);
     let file = analysis.sources.name(at.span.file);
     let wanted = subject(analysis, at);
-    let Referent::Declared(name) = at.referent else { return Err("there is no name here".into()) };
     let only = (analysis.slice(name) != written).then_some(file);
     let mut edits = Vec::new();
     for scene in std::iter::once(&analysis).chain(others) {
         edits.extend(edits_of(scene, &wanted, written, to, only)?);
     }
     if edits.is_empty() {
-        return Err(format!("`{written}` in {} cannot be renamed", declared.file));
+        let file = analysis.sources.name(name.file);
+        return Err(format!("`{written}` in {file} cannot be renamed"));
     }
     edits.sort();
     edits.dedup();

@@ -5,6 +5,7 @@ use sdfc_syntax::ast::Item;
 
 use crate::analysis::{Analysis, Referent};
 use crate::calls::open_call;
+use crate::declaration::describe;
 use crate::library::library;
 
 /// The signature of a call.
@@ -54,7 +55,7 @@ fn called(analysis: &Analysis, at: usize, name: &str) -> Vec<Entry> {
     match known.map(|it| &it.referent) {
         Some(Referent::Declared(span)) => {
             let decl = analysis.declaration(*span);
-            decl.map(|decl| crate::declaration::describe(analysis, decl)).into_iter().collect()
+            decl.map(|decl| describe(analysis, decl)).into_iter().collect()
         }
         Some(Referent::Kernel(name)) => {
             library().entry("kernel", name).cloned().into_iter().collect()
@@ -63,20 +64,14 @@ fn called(analysis: &Analysis, at: usize, name: &str) -> Vec<Entry> {
             library().entry("setting", name).cloned().into_iter().collect()
         }
         Some(Referent::Parameter(..) | Referent::Type(_) | Referent::Implicit) | None => {
-            let own = analysis.tree.items.iter().filter_map(|item| match item {
-                Item::Decl(decl) if decl.name.text == name => {
-                    Some(crate::declaration::describe(analysis, decl))
-                }
-                Item::Decl(_) | Item::Import(_) | Item::Param(_) | Item::Let(_) | Item::Expr(_) => {
-                    None
-                }
-            });
-            let own: Vec<Entry> = own.collect();
+            let own = analysis.tree.items.iter().filter_map(Item::as_decl);
+            let own = own.filter(|decl| decl.name.text == name);
+            let own: Vec<Entry> = own.map(|decl| describe(analysis, decl)).collect();
             if !own.is_empty() {
                 return own;
             }
-            let entries = library().entries.iter();
-            entries.filter(|entry| entry.name == name && entry.kind != "type").cloned().collect()
+            let entries = library().entries.iter().filter(|entry| entry.name == name);
+            entries.filter(|entry| !matches!(entry.kind, "type" | "syntax")).cloned().collect()
         }
     }
 }

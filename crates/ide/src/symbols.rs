@@ -78,14 +78,9 @@ fn symbol(analysis: &Analysis, item: &Item) -> Option<Symbol> {
                 Some(sdfc_lang::uses::Target::Setting(_))
             );
             let drawn = matches!(analysis.uses.types.get(&e.span), Some(Type::Shape(_)));
-            let kind = if is_setting && !drawn { SymbolKind::Setting } else { SymbolKind::Drawn };
-            let name = match kind {
-                SymbolKind::Setting => analysis.slice(callee).to_owned(),
-                SymbolKind::Function
-                | SymbolKind::Shape
-                | SymbolKind::Param
-                | SymbolKind::Let
-                | SymbolKind::Drawn => shortened(analysis, e.span),
+            let (kind, name) = match is_setting && !drawn {
+                true => (SymbolKind::Setting, analysis.slice(callee).to_owned()),
+                false => (SymbolKind::Drawn, shortened(analysis, e.span)),
             };
             let detail = String::new();
             Some(Symbol { name, detail, kind, range: range(whole), name_range: range(whole) })

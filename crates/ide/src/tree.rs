@@ -43,6 +43,21 @@ impl<'a> Node<'a> {
         }
     }
 
+    /// The expression, if it is one.
+    pub fn expr(self) -> Option<&'a Expr> {
+        match self {
+            Self::Expr(e) => Some(e),
+            Self::Item(_)
+            | Self::Signature(_)
+            | Self::Parm(_)
+            | Self::Clause(_)
+            | Self::Type(_)
+            | Self::Let(_)
+            | Self::Arg(_)
+            | Self::For(_) => None,
+        }
+    }
+
     /// Adds the nodes right below this one, in the order of the text.
     fn children(self, out: &mut Vec<Node<'a>>) {
         match self {

@@ -69,6 +69,9 @@ fn a_dot_is_completed_by_the_type_of_the_receiver() {
     assert_eq!(labels("let r = 0..1\nlet a = r.$0")[..2], ["lo", "hi"]);
     let own = labels("fn halved(a: solid) = a.scale(0.5)\nsphere(1).ha$0");
     assert!(own.contains(&"halved".into()));
+    // A colour is a pattern too.
+    let of_color = labels("fn dots(a: pattern) = a\nfn steep(a: blend) = a\n#fff.$0");
+    assert!(of_color.contains(&"dots".into()) && !of_color.contains(&"steep".into()));
 }
 
 #[test]
@@ -84,6 +87,11 @@ fn names_in_scope_are_completed() {
         assert!(top.contains(&name.into()), "{name}");
     }
     assert!(labels("solid a() = $0").contains(&"p".into()));
+    // Words of the syntax are no values.
+    let value = labels("let a = $0");
+    for word in ["exact", "copies", "import", "solid"] {
+        assert!(!value.contains(&word.into()), "{word}");
+    }
     assert!(labels("let a = sphere(1).displace(fn(q) = q$0)").contains(&"q".into()));
 }
 

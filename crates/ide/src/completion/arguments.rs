@@ -34,24 +34,11 @@ pub fn arguments(analysis: &Analysis, offset: usize) -> Vec<Completion> {
 
 /// The names that arguments of the call have already.
 fn given(analysis: &Analysis, offset: usize) -> Vec<String> {
-    let nodes = path(&analysis.tree, offset);
-    let call = nodes.iter().rev().find_map(|node| match node {
-        Node::Expr(e) => {
-            if let ExprKind::Call(_, args) = &e.kind {
-                Some(args)
-            } else {
-                None
-            }
-        }
-        Node::Item(_)
-        | Node::Signature(_)
-        | Node::Parm(_)
-        | Node::Clause(_)
-        | Node::Type(_)
-        | Node::Let(_)
-        | Node::Arg(_)
-        | Node::For(_) => None,
+    let around = path(&analysis.tree, offset).into_iter().rev().filter_map(Node::expr);
+    let call = around.filter_map(|e| {
+        let ExprKind::Call(_, args) = &e.kind else { return None };
+        Some(args)
     });
-    let names = call.into_iter().flatten().filter_map(|arg| arg.name.as_ref());
+    let names = call.take(1).flatten().filter_map(|arg| arg.name.as_ref());
     names.map(|name| name.text.clone()).filter(|name| name != CURSOR).collect()
 }

@@ -1,4 +1,4 @@
-//! What the cursor is at.
+//! The kind of text at the cursor.
 
 use sdfc_lang::hir::Type;
 use sdfc_syntax::ast::{ExprKind, Item, TypeExprKind};
@@ -8,7 +8,7 @@ use super::item::CURSOR;
 use crate::analysis::Analysis;
 use crate::tree::{Node, path};
 
-/// What the cursor is at.
+/// The kind of text at the cursor.
 pub enum Context {
     /// A name that is being declared, or nothing that is known.
     Nothing,

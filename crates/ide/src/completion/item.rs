@@ -7,7 +7,7 @@ use sdfc_lang::library::Entry;
 /// The name that marks the cursor in the text that is checked.
 pub(super) const CURSOR: &str = "cursor_of_the_editor";
 
-/// What a completion stands for.
+/// The kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CompletionKind {
     /// A variable, a parameter or a `let`.
@@ -39,9 +39,9 @@ pub enum CompletionKind {
 /// Something that can be written at the cursor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Completion {
-    /// What the list shows.
+    /// The text in the list.
     pub label: String,
-    /// What it stands for.
+    /// Its kind.
     pub kind: CompletionKind,
     /// Its signature or type.
     pub detail: String,
@@ -51,7 +51,7 @@ pub struct Completion {
     pub insert: String,
     /// The range that it replaces.
     pub replace: Range<usize>,
-    /// How well it fits: smaller ranks come first.
+    /// Its rank: completions that fit better have smaller ranks and come first.
     pub rank: u8,
 }
 

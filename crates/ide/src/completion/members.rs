@@ -1,6 +1,7 @@
-//! What can follow a dot.
+//! Completions after a dot.
 
 use sdfc_lang::hir::Type;
+use sdfc_lang::library::describe_declaration;
 use sdfc_lang::receivers::{kernel_takes, takes};
 use sdfc_syntax::ast::Decl;
 
@@ -29,15 +30,13 @@ pub fn members(analysis: &Analysis, ty: &Type) -> Vec<Completion> {
         it
     }));
     let of_library = library().declarations().filter(takes);
-    found.extend(of_library.map(|decl| {
-        let entry = sdfc_lang::library::describe_declaration(&library().sources, decl);
-        Completion::call(&entry, true, 3)
-    }));
+    found
+        .extend(of_library.map(|decl| {
+            Completion::call(&describe_declaration(&library().sources, decl), true, 3)
+        }));
     let kernel = library().entries.iter().filter(|entry| entry.kind == "kernel");
     let kernel = kernel.filter(|entry| kernel_takes(&entry.name, ty));
     found.extend(kernel.map(|entry| Completion::call(entry, true, 4)));
-    let mut seen = rustc_hash::FxHashSet::default();
-    found.retain(|it| seen.insert(it.label.clone()));
     found
 }
 

@@ -1,8 +1,8 @@
-//! What can be written at the cursor.
+//! The names and code that can be written at the cursor.
 //!
-//! - `context`: what the cursor is at;
+//! - `context`: the kind of text at the cursor;
 //! - `values`: names in scope;
-//! - `members`: what can follow a dot;
+//! - `members`: completions after a dot;
 //! - `arguments`: names of parameters;
 //! - `strings`: paths and choices between quotes;
 //! - `words`: types, clauses, imported names and snippets.
@@ -15,6 +15,9 @@ mod strings;
 mod values;
 mod words;
 
+use std::ops::Range;
+
+use rustc_hash::FxHashSet;
 use sdfc_lang::Resolver;
 use sdfc_syntax::{Class, classes};
 
@@ -74,6 +77,9 @@ pub fn complete(
             found
         }
     };
+    // The library declares some names twice, and a name in scope hides those behind it.
+    let mut seen = FxHashSet::default();
+    found.retain(|it| seen.insert(it.label.clone()));
     let called = text[word.end..].starts_with('(');
     for it in &mut found {
         it.replace = word.clone();
@@ -89,7 +95,7 @@ fn is_closed(text: &str) -> bool {
 }
 
 /// The letters, digits and `_` around an offset.
-fn word_around(text: &str, offset: usize) -> std::ops::Range<usize> {
+fn word_around(text: &str, offset: usize) -> Range<usize> {
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let before = text[..offset].trim_end_matches(is_part).len();
     let behind = text[offset..].trim_start_matches(is_part).len();

@@ -29,7 +29,7 @@ pub fn values(analysis: &Analysis, starts_item: bool) -> Vec<Completion> {
         Some(it)
     }));
     let shown = |entry: &&Entry| match entry.kind {
-        "type" => false,
+        "type" | "syntax" => false,
         "setting" => starts_item,
         _ => !entry.signature.starts_with("m."),
     };
@@ -43,7 +43,7 @@ pub fn values(analysis: &Analysis, starts_item: bool) -> Vec<Completion> {
         };
         Completion::call(entry, false, fits)
     }));
-    deduplicate(found)
+    found
 }
 
 /// A name that a file declares.
@@ -72,10 +72,4 @@ pub fn own(
         Declared::Parm(..) | Declared::For(_) => return None,
     };
     Some(it.docs(docs))
-}
-
-/// Keeps the first completion with each label; the library has some names twice.
-fn deduplicate(found: Vec<Completion>) -> Vec<Completion> {
-    let mut seen = rustc_hash::FxHashSet::default();
-    found.into_iter().filter(|it| seen.insert(it.label.clone())).collect()
 }

@@ -8,66 +8,53 @@ use crate::analysis::Analysis;
 use crate::declaration::Declared;
 use crate::library::library;
 
-/// Label, text to insert, and description of a snippet.
-type Snippet = (&'static str, &'static str, &'static str);
+/// The label and the text to insert of a snippet. The reference describes the label's word.
+type Snippet = (&'static str, &'static str);
 
-const ITEMS: [Snippet; 6] = [
-    ("let", "let ${1:name} = $0", "A name for a value."),
-    (
-        "param",
-        "param ${1:name} = ${2:1} in ${3:0..2}",
-        "A value that can change without a recompile.",
-    ),
-    ("fn", "fn ${1:name}(${2:x}) = $0", "A function."),
-    (
-        "solid",
-        "solid ${1:name}(${2:r: length = 1})\n  = ${3:length(p) - r}$0",
-        "A 3D shape: its formula is a signed distance at `p`.",
-    ),
-    (
-        "region",
-        "region ${1:name}(${2:r: length = 1})\n  = ${3:length(p) - r}$0",
-        "A 2D shape: its formula is a signed distance at `p`.",
-    ),
-    ("import", "import ${2:name} from \"${1:file.sdf}\"", "Names of another file."),
+const ITEMS: [Snippet; 7] = [
+    ("let", "let ${1:name} = $0"),
+    ("param", "param ${1:name} = ${2:1} in ${3:0..2}"),
+    ("fn", "fn ${1:name}(${2:x}) = $0"),
+    ("solid", "solid ${1:name}(${2:r: length = 1})\n  = ${3:length(p) - r}$0"),
+    ("region", "region ${1:name}(${2:r: length = 1})\n  = ${3:length(p) - r}$0"),
+    ("shape", "shape ${1:name}(${2:a: shape})\n  = ${3:a(p)}$0"),
+    ("import", "import ${2:name} from \"${1:file.sdf}\""),
 ];
 
 const EXPRESSIONS: [Snippet; 5] = [
-    ("if", "if ${1:condition} { $2 } else { $0 }", "One of two values."),
-    ("fn(...)", "fn(${1:q}) = $0", "A function without a name."),
-    ("for", "for ${1:i} in ${2:0..4}: $0", "A value for each element of a sequence."),
-    ("true", "true", "The bool that is true."),
-    ("false", "false", "The bool that is false."),
+    ("if", "if ${1:condition} { $2 } else { $0 }"),
+    ("fn(...)", "fn(${1:q}) = $0"),
+    ("for", "for ${1:i} in ${2:0..4}: $0"),
+    ("true", "true"),
+    ("false", "false"),
 ];
 
 const CLAUSES: [Snippet; 8] = [
-    ("exact", "exact", "The field is the distance to the surface."),
-    ("bound", "bound", "The field is at most the distance to the surface."),
-    ("lipschitz", "lipschitz ${1:1}", "The most that the field changes per unit of length."),
-    ("bounds", "bounds ${1:[-1, -1, -1]} .. ${2:[1, 1, 1]}", "A box around the shape."),
-    ("material", "material $0", "The material of the surface."),
-    ("intersect", "intersect $0", "The intervals of a ray that are inside."),
-    ("copies", "copies", "Shapes that are not sampled are at least as far as the formula says."),
-    (
-        "require",
-        "require ${1:condition}, \"${2:message}\"",
-        "A condition that the arguments must fulfil.",
-    ),
+    ("exact", "exact"),
+    ("bound", "bound"),
+    ("lipschitz", "lipschitz ${1:1}"),
+    ("bounds", "bounds ${1:[-1, -1, -1]} .. ${2:[1, 1, 1]}"),
+    ("material", "material $0"),
+    ("intersect", "intersect $0"),
+    ("copies", "copies"),
+    ("require", "require ${1:condition}, \"${2:message}\""),
 ];
 
 fn snippets(rows: &[Snippet], kind: CompletionKind) -> Vec<Completion> {
-    let item = |(label, insert, docs): &Snippet| {
-        Completion::new(kind, *label, 7).insert(*insert).docs(*docs)
+    let item = |(label, insert): &Snippet| {
+        let word = label.trim_end_matches("(...)");
+        let about = library().entry("syntax", word).map(|entry| entry.summary.clone());
+        Completion::new(kind, *label, 7).insert(*insert).docs(about.unwrap_or_default())
     };
     rows.iter().map(item).collect()
 }
 
-/// Returns what an item can begin with.
+/// Returns the declarations that an item can begin with.
 pub fn items() -> Vec<Completion> {
     snippets(&ITEMS, CompletionKind::Snippet)
 }
 
-/// Returns what an expression can begin with, apart from names.
+/// Returns the words that an expression can begin with.
 pub fn expressions() -> Vec<Completion> {
     snippets(&EXPRESSIONS, CompletionKind::Keyword)
 }
@@ -88,10 +75,7 @@ pub fn types() -> Vec<Completion> {
 
 /// Returns the public names of an imported file.
 pub fn imported(analysis: &Analysis, path: &str) -> Vec<Completion> {
-    let wanted = path.trim_start_matches("./");
-    let Some(file) = analysis.imports.iter().find(|import| import.path == wanted) else {
-        return Vec::new();
-    };
+    let Some(file) = analysis.imported_file(path) else { return Vec::new() };
     let named = file.tree.items.iter().filter_map(|item| match item {
         Item::Decl(it) => Some(Declared::Decl(it)),
         Item::Param(it) => Some(Declared::Param(it)),
