@@ -1,4 +1,4 @@
-//! What an editor asks about a scene while someone types.
+//! Answers the questions of an editor about a scene while someone types.
 //!
 //! # What
 //!
@@ -47,7 +47,7 @@ mod symbols;
 mod tokens;
 mod tree;
 
-pub use actions::{Action, actions};
+pub use actions::{Action, ActionKind, actions};
 pub use analysis::Analysis;
 pub use colors::{Color, color_presentations, colors};
 pub use completion::{Completion, CompletionKind, complete};

@@ -12,7 +12,8 @@ use serde_json::{Value, json};
 
 use crate::client::Client;
 use crate::convert::{
-    completion, fold_kind, hint_kind, location, semantic_tokens, symbol, workspace_edit,
+    action_kind, completion, fold_kind, hint_kind, location, semantic_tokens, symbol,
+    workspace_edit,
 };
 use crate::documents::Documents;
 use crate::lines::Lines;
@@ -156,7 +157,7 @@ impl About<'_, '_> {
         let shown = actions(scene, range).into_iter().map(|it| {
             json!({
                 "title": it.title,
-                "kind": "quickfix",
+                "kind": action_kind(it.kind),
                 "isPreferred": it.preferred,
                 "edit": workspace_edit(self.documents, &it.edits, self.client.encoding),
             })

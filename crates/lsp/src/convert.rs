@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use sdfc_ide::{
-    Analysis, Completion, CompletionKind, Edit, FoldKind, Found, HintKind, Location, Severity,
-    Symbol, SymbolKind, TokenRole, TokenSpan,
+    ActionKind, Analysis, Completion, CompletionKind, Edit, FoldKind, Found, HintKind, Location,
+    Severity, Symbol, SymbolKind, TokenRole, TokenSpan,
 };
 use serde_json::{Map, Value, json};
 
@@ -138,6 +138,19 @@ pub fn symbol(it: &Symbol, lines: &Lines<'_>) -> Value {
         "range": lines.range(it.range.clone()),
         "selectionRange": lines.range(it.name_range.clone()),
     })
+}
+
+/// The kinds of actions.
+pub const ACTION_KINDS: [&str; 3] = ["quickfix", "refactor.extract", "refactor.rewrite"];
+
+/// The kind of an action.
+pub fn action_kind(kind: ActionKind) -> &'static str {
+    let [fix, extract, rewrite] = ACTION_KINDS;
+    match kind {
+        ActionKind::Fix => fix,
+        ActionKind::Extract => extract,
+        ActionKind::Rewrite => rewrite,
+    }
 }
 
 /// The kind of a hint.

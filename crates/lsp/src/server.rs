@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::answers::answer;
 use crate::client::Client;
-use crate::convert::{TOKEN_MODIFIERS, TOKEN_TYPES, diagnostic};
+use crate::convert::{ACTION_KINDS, TOKEN_MODIFIERS, TOKEN_TYPES, diagnostic};
 use crate::documents::{Disk, Documents};
 use crate::lines::{Encoding, Lines};
 use crate::uri::{path, uri};
@@ -51,7 +51,7 @@ fn capabilities(client: Client) -> Value {
         "referencesProvider": true,
         "documentHighlightProvider": true,
         "documentSymbolProvider": true,
-        "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+        "codeActionProvider": { "codeActionKinds": ACTION_KINDS },
         "documentFormattingProvider": true,
         "renameProvider": { "prepareProvider": true },
         "foldingRangeProvider": true,
