@@ -1,6 +1,8 @@
 //! The cost of one evaluation, counted on the graph.
 
-use sdfc_graph::{Graph, LoopId, Node, NodeId, Stage, reachable};
+use sdfc_graph::{
+    Expander, Graph, LoopId, Node, NodeId, ShapeId, Stage, fold_transforms, reachable,
+};
 
 /// Counts of operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,6 +35,22 @@ pub fn cost(graph: &Graph, roots: &[NodeId]) -> Cost {
     let outside = nodes.into_iter().filter(|&node| graph.loops_around(node) == 0);
     cost.operations += in_loops(graph, outside);
     cost
+}
+
+/// The cost of evaluating shapes by themselves, each at its own point and without loops that stand
+/// for similar operands. `None` if one is built inside the formula of another, or if the expansion
+/// exceeds the node limit.
+pub fn cost_of_shapes(graph: &Graph, shapes: &[ShapeId]) -> Option<Cost> {
+    let mut extract = graph.extract(&[], shapes);
+    let copies: Option<Vec<ShapeId>> = shapes.iter().map(|it| extract.shape(*it)).collect();
+    let (graph, mut expander) = (&mut extract.graph, Expander::new());
+    let mut roots = Vec::with_capacity(shapes.len());
+    for shape in copies? {
+        let point = graph.point(0, graph.shape(shape).dim);
+        roots.push(expander.field(graph, shape, point).ok()?);
+    }
+    let folded = fold_transforms(graph, &roots);
+    Some(cost(graph, &folded.roots))
 }
 
 /// The operations of the loops among some nodes.

@@ -41,7 +41,7 @@ pub use certify::inexact::InexactOperator;
 pub use certify::promise::{Promise, Sides};
 pub use certify::quality::{Qualities, Quality};
 pub use certify::reason::{Constant, Reason};
-pub use cost::{Cost, cost};
+pub use cost::{Cost, cost, cost_of_shapes};
 pub use gradient::GradientReport;
 pub use prepare::{Prepared, prepare, prepare_with};
 pub use refute::claims::{LipschitzViolation, refute_lipschitz};

@@ -22,7 +22,7 @@ impl Editor {
     fn start(folder: &Path, encodings: Value) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
             .arg("lsp")
-            .env("XDG_CACHE_HOME", folder.join("cache"))
+            .env("XDG_CACHE_HOME", folder.join(".cache"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -35,7 +35,13 @@ impl Editor {
             "general": { "positionEncodings": encodings },
             "textDocument": { "completion": completion },
         });
-        let started = editor.ask("initialize", json!({ "capabilities": capabilities }));
+        let started = editor.ask(
+            "initialize",
+            json!({
+                "capabilities": capabilities,
+                "rootUri": format!("file://{}", folder.display()),
+            }),
+        );
         assert_eq!(started["serverInfo"]["name"], "sdfc");
         editor.notify("initialized", json!({}));
         editor
@@ -142,6 +148,17 @@ fn an_editor_is_served_from_start_to_end() {
     assert!(list.as_array().unwrap().iter().any(|it| it["label"] == "part"), "{list}");
     let hover = editor.ask("textDocument/hover", Editor::at(&uri, 2, 2));
     assert!(hover["contents"]["value"].as_str().unwrap().contains("solid sphere("), "{hover}");
+    assert!(hover["contents"]["value"].as_str().unwrap().contains("Here: exact;"), "{hover}");
+    let document = json!({ "textDocument": { "uri": uri } });
+    let lenses = editor.ask("textDocument/codeLens", document);
+    let title = lenses[0]["command"]["title"].as_str().unwrap();
+    assert!(title.ends_with("operations, 100 % of the scene"), "{title}");
+    let found = editor.ask("workspace/symbol", json!({ "query": "PAR" }));
+    assert_eq!(
+        (&found[0]["name"], found.as_array().unwrap().len()),
+        (&"part".into(), 1),
+        "{found}"
+    );
     let declared = editor.ask("textDocument/definition", Editor::at(&uri, 2, 2));
     let library = declared["uri"].as_str().unwrap().strip_prefix("file://").unwrap();
     assert!(std::fs::read_to_string(library).unwrap().contains("solid sphere("));

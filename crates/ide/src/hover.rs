@@ -8,6 +8,7 @@ use sdfc_lang::library::Entry;
 use crate::analysis::{Analysis, Referent};
 use crate::declaration::{Declared, declared, describe, documentation, headline};
 use crate::edit::range;
+use crate::facts::{Facts, facts_at};
 use crate::library::library;
 
 /// A text about a name.
@@ -19,10 +20,11 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// Describes the name at a byte offset: its signature, documentation, units, defaults and source.
-pub fn hover(analysis: &Analysis, offset: usize) -> Option<Hover> {
+/// Describes the name at a byte offset: its signature, documentation, units, defaults and source,
+/// and the facts about the shape that it stands for.
+pub fn hover(analysis: &Analysis, offset: usize, facts: &mut Facts<'_>) -> Option<Hover> {
     let at = analysis.occurrence(offset)?;
-    let markdown = match &at.referent {
+    let mut markdown = match &at.referent {
         Referent::Declared(name) => of_declared(analysis, *name),
         Referent::Implicit => of_implicit(analysis, at.span),
         Referent::Kernel(name) => library().entry("kernel", name).map(of_entry),
@@ -35,6 +37,9 @@ pub fn hover(analysis: &Analysis, offset: usize) -> Option<Hover> {
             Some(page(&format!("{}: {}", of, name), &[about.to_owned()]))
         }
     }?;
+    if let Some(known) = facts_at(analysis, offset, facts) {
+        markdown.push_str(&format!("\nHere: {}\n\n{}\n", known.quality, known.cost));
+    }
     Some(Hover { range: range(at.span), markdown })
 }
 

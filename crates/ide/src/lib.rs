@@ -16,7 +16,7 @@
 //! use sdfc_ide::{Analysis, NoFiles, hover};
 //!
 //! let scene = Analysis::new("scene.sdf", "let ball = sphere(0.5)\nball\n", &NoFiles);
-//! let shown = hover(&scene, 12).expect("there is a name at byte 12");
+//! let shown = hover(&scene, 12, &mut |_| None).expect("there is a name at byte 12");
 //! assert!(shown.markdown.contains("sphere(r: length"));
 //! ```
 //!
@@ -34,6 +34,7 @@ mod declaration;
 mod definition;
 mod diagnostics;
 mod edit;
+mod facts;
 mod folding;
 mod format;
 mod hints;
@@ -54,6 +55,7 @@ pub use completion::{Completion, CompletionKind, complete};
 pub use definition::definition;
 pub use diagnostics::{Found, Related, diagnostics};
 pub use edit::{Edit, Location};
+pub use facts::{Facts, Lens, ShapeFacts, facts_at, lenses};
 pub use folding::{Fold, FoldKind, folds};
 pub use format::format;
 pub use hints::{Hint, HintKind, hints};

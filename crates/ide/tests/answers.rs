@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use sdfc_ide::{
-    Analysis, Edit, Resolver, actions, colors, complete, definition, diagnostics, folds, hints,
-    hover, references, rename, selection, signature_help, symbols, tokens,
+    Analysis, Edit, Resolver, ShapeFacts, actions, colors, complete, definition, diagnostics,
+    folds, hints, hover, lenses, references, rename, selection, signature_help, symbols, tokens,
 };
 
 /// Files in memory.
@@ -43,7 +43,7 @@ fn labels(text: &str) -> Vec<String> {
 
 fn shown(text: &str) -> String {
     let (scene, offset) = at(text);
-    hover(&scene, offset).map(|it| it.markdown).unwrap_or_default()
+    hover(&scene, offset, &mut |_| None).map(|it| it.markdown).unwrap_or_default()
 }
 
 fn applied(text: &str, edits: &[Edit]) -> String {
@@ -143,6 +143,32 @@ fn hover_shows_signature_documentation_and_source() {
         .join("---\n")
     );
     });
+}
+
+#[test]
+fn facts_are_asked_of_the_call_that_a_name_stands_for() {
+    let asked = |marked: &str| {
+        let (scene, offset) = at(marked);
+        let mut calls = Vec::new();
+        let mut facts = |call: std::ops::Range<usize>| {
+            calls.push(scene.text()[call].to_owned());
+            None
+        };
+        hover(&scene, offset, &mut facts);
+        calls
+    };
+    assert_eq!(asked("sph$0ere(1).scale(2) | box(1)"), ["sphere(1)"]);
+    assert_eq!(asked("sphere(1).sc$0ale(2) | box(1)"), ["sphere(1).scale(2)"]);
+    assert_eq!(asked("sphere(1) $0| box(1)"), ["sphere(1) | box(1)"]);
+    assert_eq!(asked("let a = (box(1).scale(2))\nlet b = a\n$0b"), ["box(1).scale(2)"]);
+    assert_eq!(asked("sphere(sq$0rt(2))"), [""; 0]);
+    let (scene, _) = cursor("let a = box(1)\na\nsphere(1)\nbackground(#fff)\n(a - a)$0");
+    let scene = self::scene(&scene);
+    let mut facts = |call: std::ops::Range<usize>| {
+        Some(ShapeFacts { quality: String::new(), cost: scene.text()[call].to_owned() })
+    };
+    let labels: Vec<String> = lenses(&scene, &mut facts).into_iter().map(|it| it.label).collect();
+    assert_eq!(labels, ["box(1)", "sphere(1)", "a - a"]);
 }
 
 #[test]

@@ -5,9 +5,9 @@
 use std::path::{Path, PathBuf};
 
 use sdfc_ide::{
-    Analysis, Resolver, actions, colors, complete, definition, diagnostics, folds, format,
-    highlights, hints, hover, library_files, prepare_rename, references, rename, selection,
-    signature_help, symbols, tokens,
+    Analysis, Resolver, ShapeFacts, actions, colors, complete, definition, diagnostics, folds,
+    format, highlights, hints, hover, lenses, library_files, prepare_rename, references, rename,
+    selection, signature_help, symbols, tokens,
 };
 use sdfc_test_support::{example_sources, examples_folder};
 
@@ -38,7 +38,11 @@ fn ask_at(scene: &Analysis, offset: usize) {
     let inside = |range: &std::ops::Range<usize>| {
         assert!(text.get(range.clone()).is_some(), "{range:?} in {}", scene.name());
     };
-    hover(scene, offset).iter().for_each(|it| inside(&it.range));
+    let mut facts = |call: std::ops::Range<usize>| {
+        inside(&call);
+        None
+    };
+    hover(scene, offset, &mut facts).iter().for_each(|it| inside(&it.range));
     definition(scene, offset);
     references(scene, &[], offset, true);
     highlights(scene, offset).iter().for_each(|it| inside(&it.0));
@@ -62,6 +66,8 @@ fn ask_whole(scene: &Analysis) {
     tokens(scene).iter().for_each(|it| inside(&it.range));
     folds(scene).iter().for_each(|it| inside(&it.range));
     symbols(scene).iter().for_each(|it| inside(&it.range));
+    let mut known = |_| Some(ShapeFacts { quality: String::new(), cost: String::new() });
+    lenses(scene, &mut known).iter().for_each(|it| inside(&it.range));
     colors(scene).iter().for_each(|it| inside(&it.range));
     format(text);
 }

@@ -1,18 +1,19 @@
 //! The answer to each request.
 
+use std::ops::Range;
 use std::path::Path;
 use std::rc::Rc;
 
 use sdfc_ide::{
-    Analysis, actions, color_presentations, colors, complete, definition, folds, format,
-    highlights, hints, hover, prepare_rename, references, rename, selection, signature_help,
-    symbols, tokens,
+    Analysis, SymbolKind, actions, color_presentations, colors, complete, definition, folds,
+    format, highlights, hints, hover, lenses, prepare_rename, references, rename, selection,
+    signature_help, symbols, tokens,
 };
 use serde_json::{Value, json};
 
 use crate::client::Client;
 use crate::convert::{
-    action_kind, completion, fold_kind, hint_kind, location, semantic_tokens, symbol,
+    action_kind, completion, fold_kind, hint_kind, location, semantic_tokens, symbol, symbol_kind,
     workspace_edit,
 };
 use crate::documents::Documents;
@@ -36,6 +37,9 @@ pub fn answer(
 ) -> Option<Result<Value, String>> {
     let file = path(params["textDocument"]["uri"].as_str().unwrap_or_default());
     let mut about = About { documents, client, file: &file, params };
+    if method == "workspace/symbol" {
+        return Some(Ok(about.workspace_symbols()));
+    }
     let name = method.strip_prefix("textDocument/")?;
     if name == "completion" {
         return Some(Ok(about.completions()));
@@ -56,6 +60,7 @@ pub fn answer(
         "rename" => |it, scene| it.rename(scene),
         "foldingRange" => |it, scene| Ok(it.folds(scene)),
         "selectionRange" => |it, scene| Ok(it.selections(scene)),
+        "codeLens" => |it, scene| Ok(it.lenses(scene)),
         "documentColor" => |it, scene| Ok(it.colors(scene)),
         "inlayHint" => |it, scene| Ok(it.hints(scene)),
         "semanticTokens/full" => |it, scene| Ok(it.tokens(scene)),
@@ -92,8 +97,10 @@ impl About<'_, '_> {
         found.iter().map(|it| completion(it, &lines, self.client.snippets)).collect()
     }
 
-    fn hover(&self, scene: &Analysis) -> Value {
-        hover(scene, self.offset(scene)).map_or(Value::Null, |it| {
+    fn hover(&mut self, scene: &Analysis) -> Value {
+        let offset = self.offset(scene);
+        let found = hover(scene, offset, &mut |call| self.documents.facts(scene, call));
+        found.map_or(Value::Null, |it| {
             json!({
                 "contents": { "kind": "markdown", "value": it.markdown },
                 "range": self.lines(scene).range(it.range),
@@ -150,6 +157,35 @@ impl About<'_, '_> {
     fn symbols(&self, scene: &Analysis) -> Value {
         let lines = self.lines(scene);
         symbols(scene).iter().map(|it| symbol(it, &lines)).collect()
+    }
+
+    fn lenses(&mut self, scene: &Analysis) -> Value {
+        let found = lenses(scene, &mut |call| self.documents.facts(scene, call));
+        let lines = self.lines(scene);
+        let shown = found.into_iter().map(|it| {
+            let command = json!({ "title": it.label, "command": "" });
+            json!({ "range": lines.range(it.range), "command": command })
+        });
+        shown.collect()
+    }
+
+    fn workspace_symbols(&mut self) -> Value {
+        let wanted = self.params["query"].as_str().unwrap_or_default().to_lowercase();
+        let mut found = Vec::new();
+        for scene in self.documents.workspace() {
+            let file = scene.name().to_owned();
+            let named = symbols(&scene).into_iter().filter(|it| {
+                let has_name = !matches!(it.kind, SymbolKind::Setting | SymbolKind::Drawn);
+                has_name && it.name.to_lowercase().contains(&wanted)
+            });
+            found.extend(named.map(|it| {
+                let Range { start, end } = it.name_range;
+                let at = sdfc_ide::Location { file: file.clone(), start, end };
+                let location = self.location(&scene, &at);
+                json!({ "name": it.name, "kind": symbol_kind(it.kind), "location": location })
+            }));
+        }
+        Value::Array(found)
     }
 
     fn actions(&self, scene: &Analysis) -> Value {

@@ -121,20 +121,24 @@ pub fn completion(it: &Completion, lines: &Lines<'_>, snippets: bool) -> Value {
     })
 }
 
-/// A symbol of the outline.
-pub fn symbol(it: &Symbol, lines: &Lines<'_>) -> Value {
-    let kind = match it.kind {
+/// The kind of a symbol.
+pub fn symbol_kind(kind: SymbolKind) -> u8 {
+    match kind {
         SymbolKind::Function => 12,
         SymbolKind::Shape => 5,
         SymbolKind::Param => 14,
         SymbolKind::Let => 13,
         SymbolKind::Setting => 7,
         SymbolKind::Drawn => 19,
-    };
+    }
+}
+
+/// A symbol of the outline.
+pub fn symbol(it: &Symbol, lines: &Lines<'_>) -> Value {
     json!({
         "name": it.name,
         "detail": it.detail,
-        "kind": kind,
+        "kind": symbol_kind(it.kind),
         "range": lines.range(it.range.clone()),
         "selectionRange": lines.range(it.name_range.clone()),
     })

@@ -1,10 +1,11 @@
 //! Open files, and the files on disk.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use sdfc_ide::{Analysis, Resolver, library_files};
+use sdfc_ide::{Analysis, Resolver, ShapeFacts, library_files};
 use serde_json::Value;
 
 use crate::lines::{Encoding, Lines};
@@ -32,11 +33,24 @@ pub trait Disk {
     fn library(&self) -> Option<PathBuf>;
 }
 
-/// The open files and their analyses.
+/// The facts about the shapes of a compiled scene, by the byte range of the call that made them.
+pub type Compiled = Box<dyn Fn(Range<usize>) -> Option<ShapeFacts>>;
+
+/// The compiler.
+pub trait Compile {
+    /// Compiles a scene; `None` if it has errors.
+    fn compile(&self, name: &str, text: &str, resolver: &dyn Resolver) -> Option<Compiled>;
+}
+
+/// The open files, their analyses, and the scenes that were compiled for facts about shapes.
 pub struct Documents<'d> {
     open: BTreeMap<PathBuf, String>,
     analyses: BTreeMap<PathBuf, Rc<Analysis>>,
+    compiled: BTreeMap<PathBuf, Option<Compiled>>,
+    /// The folders that the editor has open.
+    folders: Vec<PathBuf>,
     disk: &'d dyn Disk,
+    compiler: &'d dyn Compile,
 }
 
 /// Resolves the imports of one scene: open files first.
@@ -63,8 +77,9 @@ fn folder_of(path: &Path) -> PathBuf {
 
 impl<'d> Documents<'d> {
     /// No open files.
-    pub fn new(disk: &'d dyn Disk) -> Self {
-        Self { open: BTreeMap::new(), analyses: BTreeMap::new(), disk }
+    pub fn new(folders: Vec<PathBuf>, disk: &'d dyn Disk, compiler: &'d dyn Compile) -> Self {
+        let (open, analyses, compiled) = Default::default();
+        Self { open, analyses, compiled, folders, disk, compiler }
     }
 
     /// The paths of all open files.
@@ -122,11 +137,14 @@ impl<'d> Documents<'d> {
         self.analyses.retain(|of, analysis| {
             of != path && analysis.imported().all(|imported| imported != name)
         });
+        let analyses = &self.analyses;
+        self.compiled.retain(|of, _| analyses.contains_key(of));
     }
 
     /// Drops all analyses.
     pub fn forget_all(&mut self) {
         self.analyses.clear();
+        self.compiled.clear();
     }
 
     /// The analysis of a file.
@@ -140,6 +158,29 @@ impl<'d> Documents<'d> {
         let analysis = Rc::new(analysis);
         self.analyses.insert(path.to_owned(), analysis.clone());
         Some(analysis)
+    }
+
+    /// The facts about the shapes that a call of a scene made. Compiles the scene when it is first
+    /// asked.
+    pub fn facts(&mut self, scene: &Analysis, call: Range<usize>) -> Option<ShapeFacts> {
+        let path = PathBuf::from(scene.name());
+        if !self.compiled.contains_key(&path) {
+            let compiler = self.compiler;
+            let compile =
+                |beside: &dyn Resolver| compiler.compile(scene.name(), scene.text(), beside);
+            let compiled = self.with_resolver(&path, compile);
+            self.compiled.insert(path.clone(), compiled);
+        }
+        self.compiled.get(&path)?.as_ref()?(call)
+    }
+
+    /// The scenes of the folders that the editor has open, and the open files.
+    pub fn workspace(&mut self) -> Vec<Rc<Analysis>> {
+        let mut paths = self.paths();
+        paths.extend(self.folders.iter().flat_map(|folder| self.disk.scenes(folder)));
+        paths.sort();
+        paths.dedup();
+        paths.iter().filter_map(|path| self.analysis(path)).collect()
     }
 
     /// Runs a function with the resolver for the imports of a scene.

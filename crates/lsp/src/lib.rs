@@ -13,6 +13,7 @@ mod lines;
 mod server;
 mod uri;
 
-pub use documents::Disk;
+pub use documents::{Compile, Compiled, Disk};
 pub use lsp_server::Connection;
+pub use sdfc_ide::{Resolver, ShapeFacts};
 pub use server::serve;

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::answers::answer;
 use crate::client::Client;
 use crate::convert::{ACTION_KINDS, TOKEN_MODIFIERS, TOKEN_TYPES, diagnostic};
-use crate::documents::{Disk, Documents};
+use crate::documents::{Compile, Disk, Documents};
 use crate::lines::{Encoding, Lines};
 use crate::uri::{path, uri};
 
@@ -19,7 +19,11 @@ use crate::uri::{path, uri};
 /// # Errors
 ///
 /// The connection fails, or the editor does not keep to the protocol.
-pub fn serve(connection: &Connection, disk: &dyn Disk) -> Result<(), String> {
+pub fn serve(
+    connection: &Connection,
+    disk: &dyn Disk,
+    compiler: &dyn Compile,
+) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
     let client = Client::new(&params);
     let result = json!({
@@ -30,11 +34,21 @@ pub fn serve(connection: &Connection, disk: &dyn Disk) -> Result<(), String> {
     let mut server = Server {
         connection,
         client,
-        documents: Documents::new(disk),
+        documents: Documents::new(folders(&params), disk, compiler),
         changed: BTreeSet::new(),
         waiting: VecDeque::new(),
     };
     server.run()
+}
+
+/// The folders that the editor has open.
+fn folders(params: &Value) -> Vec<PathBuf> {
+    let listed = params["workspaceFolders"].as_array().into_iter().flatten();
+    let mut uris: Vec<&str> = listed.filter_map(|folder| folder["uri"].as_str()).collect();
+    if uris.is_empty() {
+        uris.extend(params["rootUri"].as_str());
+    }
+    uris.into_iter().map(path).collect()
 }
 
 fn capabilities(client: Client) -> Value {
@@ -51,6 +65,8 @@ fn capabilities(client: Client) -> Value {
         "referencesProvider": true,
         "documentHighlightProvider": true,
         "documentSymbolProvider": true,
+        "workspaceSymbolProvider": true,
+        "codeLensProvider": {},
         "codeActionProvider": { "codeActionKinds": ACTION_KINDS },
         "documentFormattingProvider": true,
         "renameProvider": { "prepareProvider": true },

@@ -197,7 +197,7 @@ impl std::fmt::Display for Explanation {
 }
 
 /// Returns a number with up to four decimal places.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     format!("{value:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 

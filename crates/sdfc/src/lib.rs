@@ -66,6 +66,7 @@ mod rebase;
 mod reflection;
 mod scene;
 mod shader;
+mod shape_facts;
 mod source_id;
 mod tapes;
 mod uniforms;
@@ -87,6 +88,7 @@ pub use reflection::{
 };
 pub use scene::{FrontTimes, Scene};
 pub use shader::{Emit, ShaderOptions, VIEW_SIZE};
+pub use shape_facts::ShapeFacts;
 pub use uniforms::uniform_bytes;
 
 pub use sdfc_analyze::LoopStrategy;

@@ -50,7 +50,7 @@ impl Scene {
     }
 
     /// Returns the results of the analysis, without the location.
-    fn quality_row(&self, shape: &ShapeReport, name: &str) -> QualityRow {
+    pub(crate) fn quality_row(&self, shape: &ShapeReport, name: &str) -> QualityRow {
         let uncertified = self.report.uncertified.iter().find(|u| u.shape == shape.shape);
         let lipschitz = match shape.lipschitz {
             Lipschitz::Number(value) => Some(value),

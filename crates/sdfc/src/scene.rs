@@ -46,6 +46,8 @@ pub struct Scene {
     pub(crate) intervals_prove: OnceLock<bool>,
     /// The tapes that evaluate the field. Built on first use.
     pub(crate) tapes: OnceLock<Result<Option<Tapes>, TapeError>>,
+    /// The operations of all shapes by themselves. Counted on first use.
+    pub(crate) operations: OnceLock<Option<usize>>,
     pub(crate) times: FrontTimes,
     pub(crate) id: SourceId,
 }
@@ -60,7 +62,7 @@ impl Scene {
         id: SourceId,
     ) -> Self {
         let Prepared { program, report } = prepared;
-        let (rebased, bounds, intervals_prove, tapes) = Default::default();
+        let (rebased, bounds, intervals_prove, tapes, operations) = Default::default();
         Self {
             diagnostics,
             elaborated,
@@ -71,6 +73,7 @@ impl Scene {
             bounds,
             intervals_prove,
             tapes,
+            operations,
             times,
             id,
         }

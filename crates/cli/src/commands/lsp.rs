@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use sdfc_lsp::{Connection, Disk, serve};
+use sdfc_lsp::{Compile, Compiled, Connection, Disk, Resolver, ShapeFacts, serve};
 
 use crate::cache::user_folder;
 use crate::failure::Failure;
@@ -22,7 +22,7 @@ const MAX_SCENES: usize = 256;
 pub fn run() -> Result<(), Failure> {
     let (connection, threads) = Connection::stdio();
     let files = Files { library: write_library() };
-    let served = serve(&connection, &files);
+    let served = serve(&connection, &files, &Compiler);
     drop(connection);
     let joined = threads.join().map_err(|e| Failure::Machine(format!("stdin or stdout: {e}")));
     served.map_err(|why| Failure::Machine(format!("the editor's connection: {why}")))?;
@@ -70,6 +70,19 @@ impl Disk for Files {
 
     fn library(&self) -> Option<PathBuf> {
         self.library.clone()
+    }
+}
+
+/// The compiler of this program.
+struct Compiler;
+
+impl Compile for Compiler {
+    fn compile(&self, name: &str, text: &str, resolver: &dyn Resolver) -> Option<Compiled> {
+        let scene = sdfc::Compiler::new().resolver(resolver).compile(name, text).ok()?;
+        Some(Box::new(move |call| {
+            let facts = scene.shape_facts(call)?;
+            Some(ShapeFacts { cost: facts.cost(), quality: facts.quality })
+        }))
     }
 }
 
