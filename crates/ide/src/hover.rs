@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use sdfc_diagnostics::Span;
 use sdfc_lang::library::Entry;
+use sdfc_syntax::{Class, classes};
 
 use crate::analysis::{Analysis, Referent};
 use crate::declaration::{Declared, declared, describe, documentation, headline};
@@ -21,9 +22,9 @@ pub struct Hover {
 }
 
 /// Describes the name at a byte offset: its signature, documentation, units, defaults and source,
-/// and the facts about the shape that it stands for.
+/// and the facts about the shape that it stands for. Describes words of the syntax too.
 pub fn hover(analysis: &Analysis, offset: usize, facts: &mut Facts<'_>) -> Option<Hover> {
-    let at = analysis.occurrence(offset)?;
+    let Some(at) = analysis.occurrence(offset) else { return of_word(analysis, offset) };
     let mut markdown = match &at.referent {
         Referent::Declared(name) => of_declared(analysis, *name),
         Referent::Implicit => of_implicit(analysis, at.span),
@@ -41,6 +42,19 @@ pub fn hover(analysis: &Analysis, offset: usize, facts: &mut Facts<'_>) -> Optio
         markdown.push_str(&format!("\nHere: {}\n\n{}\n", known.quality, known.cost));
     }
     Some(Hover { range: range(at.span), markdown })
+}
+
+/// Describes a word of the syntax, such as `let` or `exact`.
+fn of_word(analysis: &Analysis, offset: usize) -> Option<Hover> {
+    let text = analysis.text();
+    let mut tokens = classes(text).into_iter();
+    let (class, range) = tokens.find(|(_, range)| range.start <= offset && offset < range.end)?;
+    let is_member = text[..range.start].trim_end().ends_with('.');
+    if !matches!(class, Class::Keyword | Class::Name) || is_member {
+        return None;
+    }
+    let entry = library().entry("syntax", &text[range.clone()])?;
+    Some(Hover { range, markdown: of_entry(entry) })
 }
 
 fn of_declared(analysis: &Analysis, name: Span) -> Option<String> {
@@ -74,7 +88,7 @@ pub fn of_entry(entry: &Entry) -> String {
         (text, false) => format!("{label}: {text}"),
     };
     let head = match entry.kind {
-        "kernel" | "setting" | "type" => entry.signature.clone(),
+        "kernel" | "setting" | "type" | "syntax" => entry.signature.clone(),
         kind => format!("{kind} {}", entry.signature),
     };
     page(

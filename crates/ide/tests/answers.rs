@@ -143,6 +143,9 @@ fn hover_shows_signature_documentation_and_source() {
         .join("---\n")
     );
     });
+    assert!(shown("solid a() ex$0act = length(p)\na()").contains("the distance is exact"));
+    assert!(shown("le$0t a = 1\nsphere(a)").starts_with("```sdf\nlet name = value\n```"));
+    assert_eq!(shown("let a = [1, 2].bou$0nds\nsphere(a)"), "");
 }
 
 #[test]
