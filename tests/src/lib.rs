@@ -1,8 +1,10 @@
 //! Helpers that several tests of this folder share.
 
+pub mod agree;
 mod examples;
 mod markdown;
 mod pictures;
+pub mod validators;
 
 pub use examples::{compiled_example, compiled_examples};
 pub use markdown::wrapped;

@@ -7,31 +7,12 @@
 mod draw;
 mod paste;
 mod table;
-mod tools;
 
 use libtest_mimic::{Arguments, Failed, Trial};
-use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
+use sdfc::{Scene, Target};
 use sdfc_render::testing;
 use sdfc_tests::compiled_examples;
-
-/// A part of a shader, with the options that select it.
-#[derive(Clone, Copy, Debug)]
-pub struct Part {
-    /// The name in messages and in the table.
-    pub name: &'static str,
-    /// The part.
-    pub emit: Emit,
-    /// The stage of the part, if it has one.
-    pub stage: Stage,
-}
-
-/// All parts.
-pub const PARTS: [Part; 4] = [
-    Part { name: "field", emit: Emit::Field, stage: Stage::Compute },
-    Part { name: "march", emit: Emit::March, stage: Stage::Compute },
-    Part { name: "compute", emit: Emit::Render, stage: Stage::Compute },
-    Part { name: "fragment", emit: Emit::Render, stage: Stage::Fragment },
-];
+use sdfc_tests::validators::{PARTS, TOOLS, Tool, is_supported, write};
 
 fn main() {
     let mut trials = vec![
@@ -43,7 +24,7 @@ fn main() {
         let name = format!("every_example_is_written_as_{}", target.name());
         trials.push(Trial::test(name, move || every_example_is_written(target)));
     }
-    for tool in tools::TOOLS {
+    for tool in TOOLS {
         let name = format!("{}_accepts_{}", tool.program, tool.target.name());
         let trial = Trial::test(name, move || every_example_is_accepted(tool));
         trials.push(trial.with_ignored_flag(!tool.is_installed()));
@@ -60,18 +41,6 @@ fn main() {
 
 /// Draws a scene in two ways and compares the pictures.
 type Compared = fn(&draw::Devices, &Scene) -> Result<(), Failed>;
-
-/// Returns true if a target supports a part.
-pub fn is_supported(target: Target, part: Part) -> bool {
-    let has_stage = part.emit != Emit::Render || target.has_stage(part.stage);
-    has_stage && (target != Target::Shadertoy || part.emit == Emit::Render)
-}
-
-fn write(scene: &Scene, target: Target, part: Part) -> Result<Code, sdfc::Error> {
-    let Part { emit, stage, .. } = part;
-    let options = ShaderOptions::new().target(target).emit(emit).stage(stage);
-    Ok(scene.write_shader(&options)?.code)
-}
 
 fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
     let devices = draw::Devices::open()?;
@@ -94,7 +63,7 @@ fn every_example_is_written(target: Target) -> Result<(), Failed> {
     Ok(())
 }
 
-fn every_example_is_accepted(tool: &tools::Tool) -> Result<(), Failed> {
+fn every_example_is_accepted(tool: &Tool) -> Result<(), Failed> {
     for (name, scene) in compiled_examples()? {
         for part in PARTS.into_iter().filter(|part| is_supported(tool.target, *part)) {
             let code = write(&scene, tool.target, part).map_err(|e| e.to_string())?;

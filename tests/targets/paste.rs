@@ -6,8 +6,7 @@ use libtest_mimic::Failed;
 use sdfc::{Code, Compiler, Emit, Scene, ShaderOptions, Stage, Target};
 use sdfc_tests::compiled_examples;
 
-use crate::Part;
-use crate::tools::Tool;
+use sdfc_tests::validators::{Part, Tool};
 
 const TEXT_TARGETS: [Target; 5] =
     [Target::Wgsl, Target::Glsl, Target::GlslEs, Target::Hlsl, Target::Msl];

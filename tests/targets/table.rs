@@ -6,8 +6,7 @@ use libtest_mimic::Failed;
 use sdfc::Target;
 use sdfc_tests::{compiled_examples, repository};
 
-use crate::tools::TOOLS;
-use crate::{PARTS, write};
+use sdfc_tests::validators::{PARTS, TOOLS, write};
 
 const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
 const END: &str = "<!-- End of the table. -->\n";

@@ -4,9 +4,6 @@
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
-#[path = "../../sdfc/tests/common/mod.rs"]
-mod common;
-
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::Method;
 use sdfc_measure::chart::Row;

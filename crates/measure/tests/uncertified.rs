@@ -4,15 +4,12 @@
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
-#[path = "../../sdfc/tests/common/mod.rs"]
-mod common;
-
-use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::{Method, Scene};
 use sdfc_measure::chart::Row;
 use sdfc_measure::{ChartOptions, OracleOptions, chart};
 use sdfc_render::{Gpu, no_progress, testing};
+use sdfc_tests::agree;
 
 const SIZE: [u32; 2] = [96, 54];
 /// Largest error in depth (99th percentile), in widths of a pixel.
@@ -70,7 +67,7 @@ fn main() {
     for (name, text) in SCENES {
         let right = move || proven_is_right(name, text);
         trials.push(Trial::test(format!("right/{name}"), right).with_ignored_flag(without_gpu));
-        let same = move || agree::devices(&agree::scene(name, text)?).map(drop);
+        let same = move || Ok(agree::devices(&agree::scene(name, text)?).map(drop)?);
         trials.push(Trial::test(format!("same/{name}"), same).with_ignored_flag(without_gpu));
     }
     for (name, text) in FALSE_CLAUSES {

@@ -3,7 +3,8 @@
 //! # What
 //!
 //! [`generate()`] makes a program from a seed, and [`repair()`] one that the checker accepts.
-//! [`shrink()`] makes a program as small as it can be while something holds of it.
+//! [`shrink()`] makes a program as small as it can be while something holds of it. The list
+//! [`oracles::ORACLES`] states what must hold of every program, and [`campaign::run`] asks for it.
 //!
 //! # How
 //!
@@ -15,9 +16,11 @@
 //! The generator writes what type checks. Texts with errors in them are left to tests of the
 //! parser.
 
+pub mod campaign;
 pub mod catalogue;
 mod generate;
 mod kernel;
+pub mod oracles;
 mod repair;
 mod shrink;
 pub mod tree;

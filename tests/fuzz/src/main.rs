@@ -1,30 +1,124 @@
-//! Prints the program of a seed: `cargo run -p sdfc-fuzz -- SEED`.
+//! The campaign as a program.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program prints")]
+#![allow(clippy::print_stdout, reason = "a program prints")]
 
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
+use clap::Parser;
+use sdfc_fuzz::campaign::{Event, Found, Options, Table, run};
 use sdfc_fuzz::catalogue::Catalogue;
+use sdfc_fuzz::oracles::ORACLES;
 use sdfc_fuzz::{generate, repair};
 
+/// Generates programs and tests what must hold of each. Ends with status 1 if something does not.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// How long
+    #[arg(long, value_name = "MINUTES", default_value_t = 3.0)]
+    minutes: f64,
+    /// The most programs
+    #[arg(long, value_name = "COUNT", default_value_t = u64::MAX)]
+    programs: u64,
+    /// The seed of the first program; the next programs have the next seeds
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+    /// What is tested; may be given several times [default: everything]
+    #[arg(long, value_name = "NAME")]
+    oracle: Vec<String>,
+    /// The folder for the programs with faults
+    #[arg(long, value_name = "FOLDER", default_value = "target/fuzz")]
+    out: PathBuf,
+    /// Only prints the program of the seed
+    #[arg(long)]
+    print: bool,
+}
+
 fn main() -> ExitCode {
-    let seed = std::env::args().nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
-    let catalogue = match Catalogue::read() {
-        Ok(catalogue) => catalogue,
+    let arguments = Arguments::parse();
+    let result = if arguments.print { print(arguments.seed) } else { campaign(&arguments) };
+    match result {
+        Ok(code) => code,
         Err(error) => {
-            eprintln!("{error}");
-            return ExitCode::FAILURE;
-        }
-    };
-    match repair(generate(&catalogue, seed)) {
-        Ok(accepted) => {
-            print!("{}", accepted.program.text());
-            ExitCode::SUCCESS
-        }
-        Err((program, errors)) => {
-            print!("{}", program.text());
-            eprintln!("{errors}");
-            ExitCode::FAILURE
+            println!("error: {error}");
+            ExitCode::from(2)
         }
     }
+}
+
+fn print(seed: u64) -> Result<ExitCode, String> {
+    let accepted = repair(generate(&Catalogue::read()?, seed));
+    let accepted = accepted.map_err(|(program, errors)| program.text() + &errors)?;
+    print!("{}", accepted.program.text());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn campaign(arguments: &Arguments) -> Result<ExitCode, String> {
+    let names = &arguments.oracle;
+    let known = |name: &String| ORACLES.iter().any(|oracle| oracle.name == name);
+    if let Some(name) = names.iter().find(|name| !known(name)) {
+        let names: Vec<&str> = ORACLES.iter().map(|oracle| oracle.name).collect();
+        return Err(format!("there is no oracle `{name}`; there are {}", names.join(", ")));
+    }
+    let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
+    let options = Options {
+        time: Duration::try_from_secs_f64(60.0 * arguments.minutes).map_err(|e| e.to_string())?,
+        programs: arguments.programs,
+        seed: arguments.seed,
+        oracles: ORACLES.into_iter().filter(|oracle| is_asked(oracle.name)).collect(),
+    };
+    let folder = &arguments.out;
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut failed = None;
+    let table = run(&options, &mut |event| {
+        if let Err(error) = save(folder, event) {
+            failed.get_or_insert(error);
+        }
+    })?;
+    println!("{}", as_text(&table));
+    match failed {
+        Some(error) => Err(format!("{}: {error}", folder.display())),
+        None if table.found.is_empty() => Ok(ExitCode::SUCCESS),
+        None => Ok(ExitCode::FAILURE),
+    }
+}
+
+/// Keeps the program that is judged, in case it ends the process, and writes findings.
+fn save(folder: &Path, event: &Event<'_>) -> std::io::Result<()> {
+    match event {
+        Event::Program(seed, text) => {
+            std::fs::write(folder.join("running.sdf"), format!("// seed {seed}\n{text}"))
+        }
+        Event::Found(found) => {
+            let Found { oracle, seed, finding, text } = found;
+            println!("{oracle}, seed {seed}: {}", finding.kind);
+            let message = finding.message.replace('\n', "\n// ");
+            let head = format!("// {oracle}, seed {seed}: {}\n// {message}\n", finding.kind);
+            std::fs::write(folder.join(format!("{oracle}_{seed}.sdf")), head + text)
+        }
+    }
+}
+
+/// The table of a campaign, as documents show it.
+fn as_text(table: &Table) -> String {
+    let Table { programs, valid, parts, rows, found, time } = table;
+    let mut text = format!(
+        "{programs} programs, {valid} valid with {parts} parts, {} findings, {:.1} minutes\n\n\
+         | oracle | statement | run | left out | findings |\n|---|---|---|---|---|\n",
+        found.len(),
+        time.as_secs_f64() / 60.0
+    );
+    for row in rows {
+        let summary = ORACLES.iter().find(|oracle| oracle.name == row.oracle);
+        let summary = summary.map_or("", |oracle| oracle.summary);
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "| `{}` | {summary} | {} | {} | {} |",
+            row.oracle, row.run, row.left_out, row.findings
+        );
+    }
+    text
 }

@@ -15,9 +15,6 @@
     reason = "a test stops where it fails, and this one prints a table"
 )]
 
-#[path = "../common/mod.rs"]
-mod common;
-
 mod claims;
 mod contract;
 mod examples;
@@ -32,10 +29,10 @@ mod variants;
 
 use std::sync::Arc;
 
-use common::agree;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc_lang::library::{self, Entry};
 use sdfc_render::testing;
+use sdfc_tests::agree;
 
 use table::{Column, Table};
 

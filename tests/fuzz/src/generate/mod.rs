@@ -97,7 +97,8 @@ struct Generator<'c> {
 
 impl Generator<'_> {
     fn program(&mut self) -> Program {
-        let shapes = MOST_SHAPES.powf(self.rng.f64()).round() as usize;
+        // Half of the programs ask for at most four shapes: small programs are judged quickly.
+        let shapes = MOST_SHAPES.powf(self.rng.f64().powi(2)).round() as usize;
         Program { statements: self.statements(shapes) }
     }
 

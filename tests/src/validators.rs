@@ -1,17 +1,53 @@
-//! External validators.
+//! The parts of shaders that can be written, and programs that validate them.
 
-use std::path::Path;
+use std::io::Write;
 use std::process::{Command, Stdio};
 
-use sdfc::{Code, Emit, Stage, Target};
+use sdfc::{Code, Emit, Scene, ShaderOptions, Stage, Target};
 
-use crate::Part;
+const SHADERTOY: &str = include_str!("../targets/shadertoy.glsl");
 
-const SHADERTOY: &str = include_str!("shadertoy.glsl");
+/// A part of a shader, with the options that select it.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// The name in messages and in the table.
+    pub name: &'static str,
+    /// The part.
+    pub emit: Emit,
+    /// The stage of the part, if it has one.
+    pub stage: Stage,
+}
+
+/// All parts.
+pub const PARTS: [Part; 4] = [
+    Part { name: "field", emit: Emit::Field, stage: Stage::Compute },
+    Part { name: "march", emit: Emit::March, stage: Stage::Compute },
+    Part { name: "compute", emit: Emit::Render, stage: Stage::Compute },
+    Part { name: "fragment", emit: Emit::Render, stage: Stage::Fragment },
+];
+
+/// Returns true if a target supports a part.
+pub fn is_supported(target: Target, part: Part) -> bool {
+    let has_stage = part.emit != Emit::Render || target.has_stage(part.stage);
+    has_stage && (target != Target::Shadertoy || part.emit == Emit::Render)
+}
+
+/// Writes a part of a scene's shader.
+///
+/// # Errors
+///
+/// As [`Scene::write_shader`].
+pub fn write(scene: &Scene, target: Target, part: Part) -> Result<Code, sdfc::Error> {
+    let Part { emit, stage, .. } = part;
+    let options = ShaderOptions::new().target(target).emit(emit).stage(stage);
+    Ok(scene.write_shader(&options)?.code)
+}
 
 /// A validator and its target.
 pub struct Tool {
+    /// The program that is run.
     pub program: &'static str,
+    /// The language that it validates.
     pub target: Target,
     /// The argument that prints its version; empty for a library.
     version: &'static str,
@@ -19,6 +55,7 @@ pub struct Tool {
     arguments: fn(Part) -> &'static [&'static str],
 }
 
+/// All validators.
 pub const TOOLS: &[Tool] = &[
     Tool { program: "naga", target: Target::Wgsl, version: "", arguments: |_| &[] },
     Tool {
@@ -82,6 +119,7 @@ impl Tool {
         self.version.is_empty()
     }
 
+    /// Returns true if the validator can be run.
     pub fn is_installed(&self) -> bool {
         let mut command = Command::new(self.program);
         command.arg(self.version).stdout(Stdio::null()).stderr(Stdio::null());
@@ -93,18 +131,24 @@ impl Tool {
         TOOLS.iter().find(|tool| tool.target == target && tool.is_installed())
     }
 
-    /// Validates the code. The error is the output of the tool.
+    /// Validates the code.
+    ///
+    /// # Errors
+    ///
+    /// The output of the tool.
     pub fn check(&self, part: Part, code: &Code) -> Result<(), String> {
         if self.is_library() {
             return check_with_naga(code);
         }
-        let name = format!("{}.{}.{}", self.program, part.name, self.target.name());
-        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let before = if self.target == Target::Shadertoy { SHADERTOY } else { "" };
         let bytes = [before.as_bytes(), &code.clone().into_bytes()].concat();
-        std::fs::write(&file, bytes).map_err(|e| e.to_string())?;
+        // Some tools tell the language by the end of the name.
+        let ending = format!(".{}", self.target.name());
+        let file = tempfile::Builder::new().suffix(&ending).tempfile();
+        let mut file = file.map_err(|e| e.to_string())?;
+        file.write_all(&bytes).map_err(|e| e.to_string())?;
         let mut command = Command::new(self.program);
-        command.args((self.arguments)(part)).arg(&file).stdin(Stdio::null());
+        command.args((self.arguments)(part)).arg(file.path()).stdin(Stdio::null());
         let output = command.output().map_err(|e| e.to_string())?;
         if output.status.success() {
             return Ok(());

@@ -3,9 +3,12 @@
 //! the rounding of coordinates. Where a picture says that it proves nothing, rays are sampled at
 //! points that depend on rounding, so there a small part of the pixels may differ.
 
-use libtest_mimic::Failed;
-use sdfc::{Backend, Compiler, FrameValues, Method, PictureOptions, Scene, no_progress};
-use sdfc_render::{CpuScene, Difference, HIT, Image, compare, edges, is_unproven};
+use std::fmt;
+
+use sdfc::{
+    Backend, Compiler, Diagnostics, Error, FrameValues, Method, PictureOptions, Scene, no_progress,
+};
+use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare, edges, is_unproven};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -23,24 +26,84 @@ const EDGES: f64 = 0.5;
 /// Mandelbulb, whose details are smaller than the steps.
 const UNPROVEN: f64 = 0.05;
 const METHOD: Method = Method::Auto;
+/// Ray methods are compared with a tolerance this many times finer than that of pictures, within
+/// which their hits may differ.
+const FINER: f64 = 64.0;
+
+/// Why two pictures do not agree.
+#[derive(Debug)]
+pub enum Disagreement {
+    /// They show too little to be compared: nothing is seen, or most pixels are edges.
+    TooLittle(String),
+    /// They differ.
+    Differ(String),
+    /// One of them cannot be drawn.
+    Error(Error),
+}
+
+impl fmt::Display for Disagreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLittle(why) | Self::Differ(why) => f.write_str(why),
+            Self::Error(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<E: Into<Error>> From<E> for Disagreement {
+    fn from(error: E) -> Self {
+        Self::Error(error.into())
+    }
+}
 
 /// Compiles a scene.
-pub fn scene(name: &str, text: &str) -> Result<Scene, Failed> {
-    Ok(Compiler::new().compile(name, text)?)
+///
+/// # Errors
+///
+/// The errors of the scene.
+pub fn scene(name: &str, text: &str) -> Result<Scene, Diagnostics> {
+    Compiler::new().compile(name, text)
 }
 
 /// Compares f32 with f64 on the CPU. Returns the number of pixels with a hit, and the difference.
-pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Failed> {
+///
+/// # Errors
+///
+/// The pictures do not agree.
+pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
     let Depths { single, double, limit } = Depths::of(scene)?;
     let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
     if hit == 0 {
-        return Err("nothing is seen".into());
+        return Err(Disagreement::TooLittle("nothing is seen".to_owned()));
     }
     Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
 }
 
+/// Compares `auto` with `interval` on the CPU in f64, which finds the first hit of every ray that it
+/// proves.
+///
+/// # Errors
+///
+/// The pictures do not agree.
+pub fn methods(scene: &Scene) -> Result<Difference, Disagreement> {
+    let frame = FrameValues::defaults(scene.params());
+    let view = scene.view(&frame, [SIDE; 2])?;
+    let view = View { tolerance: view.tolerance / FINER, ..view };
+    let depths = |method| -> Result<Image, Disagreement> {
+        let marched = scene.marched_on_cpu(method);
+        Ok(CpuScene::new(&marched.program)?.depth_map::<f64>(&view, &frame, marched.method)?)
+    };
+    let (auto, interval) = (depths(METHOD)?, depths(Method::Interval)?);
+    let limit = depth_limit(&view, &interval);
+    agree(&auto, &interval, "`auto` and `interval`", limit, None)
+}
+
 /// Compares the GPU with the CPU in f32, and its depths with f64.
-pub fn devices(scene: &Scene) -> Result<Difference, Failed> {
+///
+/// # Errors
+///
+/// The pictures do not agree.
+pub fn devices(scene: &Scene) -> Result<Difference, Disagreement> {
     let picture = |backend| {
         let method = METHOD;
         // One ray for each pixel, through its centre, as in the depth images.
@@ -64,17 +127,22 @@ struct Depths {
 }
 
 impl Depths {
-    fn of(scene: &Scene) -> Result<Self, Failed> {
+    fn of(scene: &Scene) -> Result<Self, Disagreement> {
         let frame = FrameValues::defaults(scene.params());
         let view = scene.view(&frame, [SIDE; 2])?;
         let marched = scene.marched_on_cpu(METHOD);
         let (cpu, method) = (CpuScene::new(&marched.program)?, marched.method);
         let double = cpu.depth_map::<f64>(&view, &frame, method)?;
-        let hits = double.pixels().iter().filter(|pixel| pixel.status == HIT);
-        let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
-        let limit = DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING);
+        let limit = depth_limit(&view, &double);
         Ok(Self { single: cpu.depth_map::<f32>(&view, &frame, method)?, double, limit })
     }
+}
+
+/// Returns the largest difference of depth that is allowed in a picture.
+fn depth_limit(view: &View, picture: &Image) -> f32 {
+    let hits = picture.pixels().iter().filter(|pixel| pixel.status == HIT);
+    let scale = view.eye.length() as f32 + hits.map(|pixel| pixel.depth).fold(0.0, f32::max);
+    DEPTH.min(scale * DEPTH_PART).max(scale * ROUNDING)
 }
 
 fn agree(
@@ -83,17 +151,19 @@ fn agree(
     pair: &str,
     depth: f32,
     color: Option<u8>,
-) -> Result<Difference, Failed> {
-    let b = &without_unproven(a, b, depth).map_err(|why| format!("{pair}: {why}"))?;
-    let found = compare(a, b).ok_or("the sizes differ")?;
+) -> Result<Difference, Disagreement> {
+    let differ = |why: String| Disagreement::Differ(format!("{pair}: {why}"));
+    let b = &without_unproven(a, b, depth).map_err(differ)?;
+    let found = compare(a, b).ok_or_else(|| differ("the sizes differ".to_owned()))?;
     let edges = found.edges as f64 / f64::from(SIDE * SIDE);
-    if found.depth > depth || found.status > 0 || edges > EDGES {
-        return Err(format!("{pair}: {found:?}, {edges:.2} of the pixels are edges").into());
+    if found.depth > depth || found.status > 0 || color.is_some_and(|limit| found.color > limit) {
+        return Err(differ(format!("{found:?}")));
     }
-    match color {
-        Some(limit) if found.color > limit => Err(format!("{pair}: {found:?}").into()),
-        Some(_) | None => Ok(found),
+    if edges > EDGES {
+        let why = format!("{pair}: {edges:.2} of the pixels are edges");
+        return Err(Disagreement::TooLittle(why));
     }
+    Ok(found)
 }
 
 /// Returns `b` with the pixels of `a` where one of them is unproven, if nearly all of these agree.
