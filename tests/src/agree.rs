@@ -79,8 +79,8 @@ pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
     Ok((hit, agree(&single, &double, "f32 and f64", limit, None)?))
 }
 
-/// Compares `auto` with `interval` on the CPU in f64, which finds the first hit of every ray that it
-/// proves.
+/// Compares `auto` with `interval` on the CPU in f64. Of every ray that it proves, `interval` finds
+/// the first hit.
 ///
 /// # Errors
 ///
