@@ -209,3 +209,28 @@ fn ten_thousand_shapes_become_one_union() {
     let text = "union(for i in 0..10000: sphere(0.1).translate(x: i))";
     assert_at(text, &[([9999.0, 0.0, 0.0], -0.1)]);
 }
+
+/// Copies of shapes without an end along an axis on which nothing is repeated.
+#[test]
+fn endless_shapes_are_repeated_along_the_other_axes() {
+    let bars = |half: f64, copies: &str| {
+        format!(
+            "solid bar() bounds [-{half}, -{half}, -inf]..[{half}, {half}, inf]
+             = max(abs(p.x), abs(p.y)) - {half}
+             bar().{copies}"
+        )
+    };
+    let within = [([0.0, 0.0, 5.0], -0.2), ([0.25, 0.0, -3.0], 0.05), ([0.5, 0.0, 7.0], 0.3)];
+    assert_at(&bars(0.2, "repeat([1, 1, 0])"), &within);
+    assert_at(&bars(0.48, "repeat([1, 1, 0])"), &[([0.5, 0.0, 3.0], 0.02)]);
+    let limited = "limited_repeat([1, 1, 0], count: [3, 3, 1])";
+    assert_at(&bars(0.2, limited), &[([0.0, 0.0, 5.0], -0.2), ([2.0, 0.0, 5.0], 0.8)]);
+    assert_at(&bars(0.48, limited), &[([0.5, 0.0, 3.0], 0.02), ([2.0, 0.0, 5.0], 0.52)]);
+    let strips = |copies: &str| {
+        let strip = "region strip() bounds [-0.2, -inf]..[0.2, inf] = abs(p.x) - 0.2";
+        format!("{strip}\nstrip().{copies}.extrude(2)")
+    };
+    assert_at(&strips("repeat([1, 0])"), &[([0.0, 9.0, 0.0], -0.2), ([0.5, 9.0, 0.0], 0.3)]);
+    let limited = "limited_repeat([1, 0], count: [3, 1])";
+    assert_at(&strips(limited), &[([0.0, 9.0, 0.0], -0.2), ([2.0, 9.0, 0.0], 0.8)]);
+}
