@@ -209,7 +209,7 @@ const SLOW: &str = "slow";
 const PANIC: &str = "panic";
 
 /// Asks oracles about a program on a thread of its own. The answers come in the order of the
-/// oracles; there are none if the program has errors.
+/// oracles; there are none if the program has errors or draws nothing.
 fn asked(text: String, oracles: Vec<Oracle>) -> Receiver<Outcome> {
     let (sender, receiver) = channel();
     std::thread::spawn(move || answer(text, &oracles, &sender));
@@ -218,6 +218,9 @@ fn asked(text: String, oracles: Vec<Oracle>) -> Receiver<Outcome> {
 
 fn answer(text: String, oracles: &[Oracle], sender: &Sender<Outcome>) {
     let Ok(scene) = Compiler::new().compile(NAME, &text) else { return };
+    if !scene.draws() {
+        return;
+    }
     let subject = Subject { text, scene };
     for oracle in oracles {
         let outcome = catch_unwind(AssertUnwindSafe(|| (oracle.holds)(&subject)));

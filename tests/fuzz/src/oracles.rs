@@ -199,7 +199,9 @@ fn targets(subject: &Subject) -> Outcome {
 }
 
 fn methods(subject: &Subject) -> Outcome {
-    if !subject.scene.is_certified() || !is_drawn(&subject.scene) {
+    // The methods need different numbers of steps, so a limit ends different rays.
+    let has_limit = subject.scene.program().settings.march.steps.is_some();
+    if has_limit || !subject.scene.is_certified() || !is_drawn(&subject.scene) {
         return Ok(Verdict::LeftOut);
     }
     agreed(agree::methods(&subject.scene).map(drop))
