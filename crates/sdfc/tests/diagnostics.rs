@@ -66,8 +66,8 @@ fn no_clause_of_the_library_is_refuted() {
 #[test]
 fn a_field_without_a_constant_is_a_warning_with_its_reason() {
     let found = diagnostics("solid odd() = p.x * p.y - 0.1\nsphere(1)\nodd() | box(1)");
-    let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no bounds limit it; state \
-         `lipschitz`, or finite `bounds`";
+    let reason = "`odd` is uncertified: the slope of `*` depends on the point, and no limit of it is known; state \
+         `lipschitz`, or finite `bounds` that limit it";
     assert_eq!(found, [("W0602", 3, reason.to_owned())]);
     // A problem of a shape that an entry of the library builds is reported at the scene's call.
     assert_eq!(codes("sphere(1)\nbox(1)\n  - plane().twist(20deg)"), [("W0602", 3)]);

@@ -224,8 +224,8 @@ fn a_field_without_a_constant_is_reported_with_its_reason() {
         scene.report().uncertified.iter().map(|found| found.reason.to_string()).collect();
     assert_eq!(
         reasons,
-        ["the slope of `*` depends on the point, and no bounds limit it; state \
-         `lipschitz`, or finite `bounds`"]
+        ["the slope of `*` depends on the point, and no limit of it is known; state \
+         `lipschitz`, or finite `bounds` that limit it"]
     );
 }
 

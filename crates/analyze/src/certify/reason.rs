@@ -30,8 +30,8 @@ impl std::fmt::Display for Reason {
             Self::Unbounded(what) => {
                 write!(
                     f,
-                    "the slope of `{what}` depends on the point, and no bounds limit it; state \
-                     `lipschitz`, or finite `bounds`"
+                    "the slope of `{what}` depends on the point, and no limit of it is known; state \
+                     `lipschitz`, or finite `bounds` that limit it"
                 )
             }
             Self::SteepInPlaces(what) => {
