@@ -86,3 +86,25 @@ pub fn distinct(scene: &Path, outputs: &[&Path]) -> Result<(), Failure> {
     }
     Ok(())
 }
+
+/// Returns the default output of a scene: `ball.png` in the current folder for `scenes/ball.sdf`.
+pub fn named_after(scene: &Path, extension: &str) -> PathBuf {
+    let stem = scene.file_stem().filter(|stem| *stem != "-");
+    let mut name = stem.map_or_else(|| "scene".into(), ToOwned::to_owned);
+    name.push(".");
+    name.push(extension);
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outputs_are_named_after_their_scenes() {
+        let name = |scene: &str| named_after(Path::new(scene), "png");
+        assert_eq!(name("a/b.c/ball.sdf"), Path::new("ball.png"));
+        assert_eq!(name("ball"), Path::new("ball.png"));
+        assert_eq!(name("-"), Path::new("scene.png"));
+    }
+}

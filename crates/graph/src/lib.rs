@@ -71,6 +71,7 @@ mod scene;
 mod schedule;
 mod shape;
 mod simplify;
+mod srgb;
 mod transforms;
 mod uniforms;
 mod walk;
@@ -101,6 +102,7 @@ pub use scene::{
 pub use schedule::{live_lanes, schedule};
 pub use shape::{Arg, Contract, FAR, MaterialRule, Shape, SidePromise};
 pub use simplify::function::{SoftExtreme, SoftKind};
+pub use srgb::linear_to_srgb8;
 pub use transforms::{Rewritten, fold_transforms};
 pub use uniforms::uniforms;
 pub use walk::{reachable, reachable_where};

@@ -68,4 +68,4 @@ mod write;
 pub use error::{MeshError, MeshOptions, Phase, Progress};
 pub use make::mesh;
 pub use surface::{Mesh, MeshCertificate};
-pub use write::{MeshFormat, TooCoarse};
+pub use write::{EncodeError, MeshFormat};

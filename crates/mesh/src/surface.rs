@@ -63,13 +63,28 @@ impl MeshCertificate {
     }
 }
 
+/// One line that says what is proven.
+impl std::fmt::Display for MeshCertificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { error, is_proven, undecided, undecided_volume, .. } = self;
+        if *is_proven {
+            return write!(f, "mesh and surface are proven to be within {error} of each other");
+        }
+        write!(
+            f,
+            "mesh and surface are within {error} of each other, except in {undecided} undecided \
+             boxes with a volume of {undecided_volume:.3e}"
+        )
+    }
+}
+
 impl Mesh {
-    /// The corners of a triangle.
+    /// Returns the corners of a triangle.
     pub fn corners(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {
         triangle.map(|id| self.vertices[id as usize])
     }
 
-    /// The volume that the mesh encloses.
+    /// Returns the volume that the mesh encloses.
     pub fn volume(&self) -> f64 {
         // About a point near the mesh, because far from it digits cancel.
         let near = self.vertices.first().copied().unwrap_or_default();
@@ -80,7 +95,7 @@ impl Mesh {
         self.triangles.iter().map(part).sum()
     }
 
-    /// The area of all triangles.
+    /// Returns the area of all triangles.
     pub fn area(&self) -> f64 {
         let part = |triangle: &[u32; 3]| {
             let [a, b, c] = self.corners(*triangle);
@@ -89,7 +104,7 @@ impl Mesh {
         self.triangles.iter().map(part).sum()
     }
 
-    /// Lowest and highest corner of a box around the mesh; `None` without vertices.
+    /// Returns the lowest and the highest corner of a box around the mesh; `None` without vertices.
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.vertices.first()?;
         Some(self.vertices.iter().fold([first; 2], |[lo, hi], point| {
@@ -98,7 +113,7 @@ impl Mesh {
         }))
     }
 
-    /// Number of edges that do not belong to exactly two triangles with opposite directions: 0 for
+    /// Counts the edges that do not belong to exactly two triangles with opposite directions: 0 for
     /// a closed, consistently oriented mesh.
     pub fn open_edges(&self) -> usize {
         let mut counts: FxHashMap<[u32; 2], u32> = FxHashMap::default();

@@ -5,9 +5,10 @@
 //! found by depth alone: where the material or the normal changes while the depth is smooth, pixels
 //! are compared as elsewhere.
 
+use sdfc_graph::linear_to_srgb8;
 use sdfc_march::PixelBlock;
 
-use crate::image::{HIT, Image, linear_to_srgb8};
+use crate::image::{HIT, Image};
 
 /// A pixel is an edge if the depth bends by more than this many pixel widths over three
 /// neighbouring pixels.

@@ -73,10 +73,10 @@ pub use gpu::{Gpu, Pipeline, testing};
 #[cfg(feature = "files")]
 pub use image::Animation;
 pub use image::{
-    CAPPED, HIT, Image, MISS, NOT_FINITE_COLOR, PixelCounts, is_finite, is_unproven,
-    linear_to_srgb, linear_to_srgb8, sample_offsets,
+    CAPPED, HIT, Image, MISS, NOT_FINITE_COLOR, PixelCounts, is_finite, is_unproven, sample_offsets,
 };
 pub use limits::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+pub use sdfc_graph::linear_to_srgb8;
 pub use stats::{AdapterInfo, CompileTimes, EvaluationCounts, LeafEvaluations, Stats, Why};
 pub use tiles::{Tile, TileSize};
 pub use view::footprint::Footprint;

@@ -29,15 +29,13 @@ impl DerivedBounds {
 
     /// Returns the corners at a frame, infinite where the scene has no limit.
     pub(crate) fn at(&self, frame: &FrameValues) -> Option<Corners> {
-        let values = evaluate_frame(&self.graph, &self.corners, frame);
-        let corner = |lanes: &[f64; 4]| [lanes[0], lanes[1], lanes[2]];
-        Some([corner(values.first()?), corner(values.get(1)?)])
+        corners_at(&self.graph, self.corners, frame)
     }
 }
 
-/// The corners of what a fitted camera looks at, at one frame alone: of the bounded parts if the
-/// scene has no limit and there are any, else of everything. Corners for one frame may be tighter
-/// than those that hold for all values of the params.
+/// Returns the corners of what a fitted camera looks at, at one frame alone: of the bounded parts
+/// if the scene has no limit and there are any, else of everything. Corners for one frame may be
+/// tighter than those that hold for all values of the params.
 pub(crate) fn focus_at_one_frame(scene: &Scene, frame: &FrameValues) -> Option<Corners> {
     let (mut graph, root) = scene.shapes_at(frame)?;
     let mut bounds = Bounds::new(&[]);
@@ -69,12 +67,16 @@ fn corners_of(
     frame: &FrameValues,
 ) -> Option<Corners> {
     let corners = bounds.of(graph, shape);
+    corners_at(graph, corners, frame)
+}
+
+fn corners_at(graph: &Graph, corners: [NodeId; 2], frame: &FrameValues) -> Option<Corners> {
     let values = evaluate_frame(graph, &corners, frame);
     let corner = |index: usize| values.get(index).copied();
     Some([corner(0)?, corner(1)?].map(|[x, y, z, _]| [x, y, z]))
 }
 
-/// The shapes that a shape's formula samples at its own point.
+/// Returns the shapes that a shape's formula samples at its own point.
 fn joined(graph: &Graph, shape: ShapeId) -> Vec<ShapeId> {
     let shape = graph.shape(shape);
     let inside = |id| !matches!(graph.node(id), Node::Sample(..));

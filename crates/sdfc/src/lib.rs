@@ -104,8 +104,8 @@ pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Progress as MeshProgress,
-    TooCoarse,
+    EncodeError, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
+    Progress as MeshProgress,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

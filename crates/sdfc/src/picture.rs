@@ -328,7 +328,7 @@ impl Painter<'_> {
 
     /// Returns what part of a picture with these pixels is unproven, and counts it.
     fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
-        let all = pixels.hit + pixels.miss + pixels.capped + pixels.nan;
+        let all = pixels.all();
         let why = if self.scene.trusts_uncertified(self.method) {
             pixels.unproven = all;
             "the field is uncertified, and its value is the length of the steps"

@@ -1,9 +1,8 @@
 //! `sdfc mesh`: writes a closed mesh of a scene, with a proven error.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use sdfc::{Error, FrameValues, Mesh, MeshCertificate, MeshError, MeshFormat, MeshOptions};
-use sdfc::{MeshSize, Scene};
+use sdfc::{Error, Mesh, MeshCertificate, MeshError, MeshFormat, MeshOptions, MeshSize, Scene};
 use serde::Serialize;
 
 use crate::args;
@@ -32,7 +31,7 @@ struct Report<'a> {
 /// value; the error is too small; two of the outputs and the scene are the same file; an output
 /// cannot be written; Ctrl-C.
 pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
-    let path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
+    let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "stl"));
     let format = MeshFormat::of(&path).map_err(Failure::Call)?;
     let paths = [Some(path.as_path()), args.json.as_deref()];
     output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
@@ -41,7 +40,8 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let report = args.json.as_deref().map(Output::new);
     output.check()?;
     report.as_ref().map_or(Ok(()), Output::check)?;
-    let options = MeshOptions::new().error(size(args)).frame(values(&scene, args)?);
+    let options =
+        MeshOptions::new().error(size(args)).frame(super::values(&scene, &args.set, args.time)?);
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
     let mesh = make(&scene, &options, console)?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;
@@ -59,16 +59,6 @@ fn size(args: &args::Mesh) -> MeshSize {
         (None, Some(part)) => MeshSize::Relative(part),
         (None, None) => MeshOptions::new().error,
     }
-}
-
-fn values(scene: &Scene, args: &args::Mesh) -> Result<FrameValues, Failure> {
-    let mut values = scene.defaults();
-    for set in &args.set {
-        let done = scene.set_param(&mut values, &set.name, &set.value);
-        done.map_err(|error| Failure::Call(error.to_string()))?;
-    }
-    values.time = args.time;
-    Ok(values)
 }
 
 fn make(scene: &Scene, options: &MeshOptions, console: &Console) -> Result<Mesh, Failure> {
@@ -101,30 +91,9 @@ fn describe(mesh: &Mesh) -> Report<'_> {
 
 fn print(path: &Path, mesh: &Mesh, console: &Console) {
     let certificate = &mesh.certificate;
-    let error = certificate.error;
-    let name = path.display();
-    let triangles = mesh.triangles.len();
-    if certificate.is_proven {
-        console.note(&format!(
-            "{name}: {triangles} triangles; mesh and surface are proven to be within {error} of \
-             each other"
-        ));
-        return;
-    }
-    let [count, volume] = [certificate.undecided as f64, certificate.undecided_volume];
-    console.note(&format!(
-        "{name}: {triangles} triangles; mesh and surface are within {error} of each other, except \
-         in {count} undecided boxes with a volume of {volume:.3e}"
-    ));
+    let (name, triangles) = (path.display(), mesh.triangles.len());
+    console.note(&format!("{name}: {triangles} triangles; {certificate}"));
     if let Some([lo, hi]) = certificate.undecided_boxes.first() {
         console.note(&format!("the first undecided box is from {lo:?} to {hi:?}"));
     }
-}
-
-/// Returns the default output: `ball.stl` in the current folder for `scenes/ball.sdf`.
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().filter(|stem| *stem != "-");
-    let mut name = stem.map_or_else(|| "scene".into(), ToOwned::to_owned);
-    name.push(".stl");
-    PathBuf::from(name)
 }

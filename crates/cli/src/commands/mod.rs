@@ -17,10 +17,11 @@ pub mod view;
 
 use std::path::{Path, PathBuf};
 
-use sdfc::{Compiler, Diagnostics, Error, Scene};
+use sdfc::{Compiler, Diagnostics, Error, FrameValues, Scene};
 use sdfc_measure::MeasureError;
 use sdfc_render::{Gpu, RenderError};
 
+use crate::args::Assignment;
 use crate::console::Console;
 use crate::failure::Failure;
 
@@ -33,6 +34,21 @@ fn scene(path: &Path, compiler: Compiler<'_>, console: &Console) -> Result<Scene
     let input = sdfc_files::read(path)?;
     let folder = sdfc_files::Folder::of(path);
     shown(compiler.resolver(&folder).compile(&input.name, &input.text), console)
+}
+
+/// Returns the frame of a time, with values for some params.
+///
+/// # Errors
+///
+/// A param does not take its value.
+fn values(scene: &Scene, set: &[Assignment], time: f64) -> Result<FrameValues, Failure> {
+    let mut values = scene.defaults();
+    for assignment in set {
+        let done = scene.set_param(&mut values, &assignment.name, &assignment.value);
+        done.map_err(|error| Failure::Call(error.to_string()))?;
+    }
+    values.time = time;
+    Ok(values)
 }
 
 /// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so

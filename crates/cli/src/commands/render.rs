@@ -56,7 +56,7 @@ struct Outputs {
 
 impl Outputs {
     fn new(args: &Render) -> Result<Self, Failure> {
-        let path = args.output.clone().unwrap_or_else(|| default_output(&args.file));
+        let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "png"));
         let format = Format::of(&path).map_err(Failure::Call)?;
         let paths: Vec<&Path> =
             [Some(path.as_path()), args.depth.as_deref(), args.stats.as_deref()]
@@ -129,12 +129,7 @@ fn options(args: &Render) -> PictureOptions {
 
 /// Returns the values of params, time and frame.
 fn values(scene: &Scene, args: &Render) -> Result<FrameValues, Failure> {
-    let mut values = FrameValues::defaults(scene.params());
-    for set in &args.set {
-        let done = scene.set_param(&mut values, &set.name, &set.value);
-        done.map_err(|error| Failure::Call(error.to_string()))?;
-    }
-    values.time = args.time;
+    let mut values = super::values(scene, &args.set, args.time)?;
     values.frame = (args.time * args.fps).round();
     Ok(values)
 }
@@ -290,11 +285,11 @@ impl Job<'_> {
     fn print_notes(&self, picture: &Picture) {
         let counts = &picture.stats.pixels;
         if counts.nan > 0 {
-            let all = counts.hit + counts.miss + counts.capped + counts.nan;
             self.console.warning(&format!(
-                "{} of {all} pixels are not finite numbers, and are drawn in magenta: a formula \
+                "{} of {} pixels are not finite numbers, and are drawn in magenta: a formula \
                  divides by 0 or overflows",
-                counts.nan
+                counts.nan,
+                counts.all()
             ));
         }
         if let Some(note) = &picture.note {
@@ -324,24 +319,4 @@ impl Job<'_> {
 
 fn adapter(picture: &Picture) -> &str {
     picture.stats.adapter.as_deref().unwrap_or("the CPU")
-}
-
-/// Returns the default output: `ball.png` in the current folder for `scenes/ball.sdf`.
-fn default_output(scene: &Path) -> PathBuf {
-    let stem = scene.file_stem().filter(|stem| *stem != "-");
-    let mut name = stem.map_or_else(|| "scene".into(), ToOwned::to_owned);
-    name.push(".png");
-    PathBuf::from(name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pictures_are_named_after_their_scenes() {
-        assert_eq!(default_output(Path::new("a/b.c/ball.sdf")), Path::new("ball.png"));
-        assert_eq!(default_output(Path::new("ball")), Path::new("ball.png"));
-        assert_eq!(default_output(Path::new("-")), Path::new("scene.png"));
-    }
 }

@@ -3,7 +3,6 @@
 use rustc_hash::FxHashMap;
 use serde_json::json;
 
-use super::common::summary;
 use crate::surface::Mesh;
 use crate::vector::{add, cross, dot, scale, sub, unit};
 
@@ -18,7 +17,8 @@ struct Vertex {
     id: u32,
 }
 
-/// Vertices, and three indices for each triangle. Vertices on sharp edges occur several times.
+/// Returns vertices, and three indices for each triangle. Vertices on sharp edges occur several
+/// times.
 fn split(mesh: &Mesh, center: [f64; 3]) -> (Vec<Vertex>, Vec<u32>) {
     let mut known: FxHashMap<(u32, [u32; 3]), u32> = FxHashMap::default();
     let mut vertices = Vec::new();
@@ -44,9 +44,9 @@ fn split(mesh: &Mesh, center: [f64; 3]) -> (Vec<Vertex>, Vec<u32>) {
     (vertices, indices)
 }
 
-/// The file. Positions are relative to the node's translation if they need more digits than 32-bit
-/// floats have.
-pub(super) fn glb(mesh: &Mesh) -> Vec<u8> {
+/// Writes the file. Positions are relative to the node's translation if they need more digits than
+/// 32-bit floats have. `None` if the file is too large for the format.
+pub(super) fn glb(mesh: &Mesh) -> Option<Vec<u8>> {
     let [lo, hi] = mesh.bounds().unwrap_or_default();
     let center = match mesh.is_single_precision {
         true => [0.0; 3],
@@ -90,7 +90,7 @@ pub(super) fn glb(mesh: &Mesh) -> Vec<u8> {
     }));
     let base = if mesh.colors.is_empty() { 0.8 } else { 1.0 };
     let document = json!({
-        "asset": { "version": "2.0", "generator": "sdfc", "extras": { "certificate": summary(mesh) } },
+        "asset": { "version": "2.0", "generator": "sdfc", "extras": { "certificate": mesh.certificate.to_string() } },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "mesh": 0, "translation": center }],
@@ -108,17 +108,17 @@ pub(super) fn glb(mesh: &Mesh) -> Vec<u8> {
     container(document.to_string().into_bytes(), binary)
 }
 
-fn container(mut text: Vec<u8>, mut binary: Vec<u8>) -> Vec<u8> {
+fn container(mut text: Vec<u8>, mut binary: Vec<u8>) -> Option<Vec<u8>> {
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
     let length = 12 + 8 + text.len() + 8 + binary.len();
     let mut file = b"glTF".to_vec();
     file.extend(2u32.to_le_bytes());
-    file.extend((length as u32).to_le_bytes());
+    file.extend(u32::try_from(length).ok()?.to_le_bytes());
     for (kind, chunk) in [(b"JSON", text), (b"BIN\0", binary)] {
         file.extend((chunk.len() as u32).to_le_bytes());
         file.extend(kind);
         file.extend(chunk);
     }
-    file
+    Some(file)
 }

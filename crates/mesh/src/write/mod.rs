@@ -1,6 +1,5 @@
 //! Mesh files, as bytes: STL, OBJ, PLY, glTF (GLB) and 3MF.
 
-mod common;
 mod glb;
 mod package;
 mod plain;
@@ -24,19 +23,34 @@ pub enum MeshFormat {
     ThreeMf,
 }
 
-/// The format loses digits that the error needs.
+/// The reason why a format cannot hold a mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "STL stores 32-bit floats, which are too coarse for an error of {error} this far from the \
-     origin; write .obj, .ply or .3mf, or move the scene to the origin"
-)]
-pub struct TooCoarse {
-    /// The error of the mesh.
-    pub error: f64,
+#[non_exhaustive]
+pub enum EncodeError {
+    /// The format loses digits that the error needs.
+    #[error(
+        "STL stores 32-bit floats, which are too coarse for an error of {error} this far from the \
+         origin; write .obj, .ply or .3mf, or move the scene to the origin"
+    )]
+    TooCoarse {
+        /// The error of the mesh.
+        error: f64,
+    },
+    /// The format stores sizes in 32 bits.
+    #[error(
+        "the mesh has {triangles} triangles, but {format} files are limited to 4 GiB; write .stl, \
+         .obj or .ply, or allow a larger error"
+    )]
+    TooLarge {
+        /// The name of the format.
+        format: &'static str,
+        /// The number of triangles.
+        triangles: usize,
+    },
 }
 
 impl MeshFormat {
-    /// The format for the extension of a path.
+    /// Returns the format for the extension of a path.
     ///
     /// # Errors
     ///
@@ -61,17 +75,18 @@ impl MeshFormat {
     ///
     /// # Errors
     ///
-    /// [`TooCoarse`].
-    pub fn encode(self, mesh: &Mesh) -> Result<Vec<u8>, TooCoarse> {
+    /// [`EncodeError`].
+    pub fn encode(self, mesh: &Mesh) -> Result<Vec<u8>, EncodeError> {
+        let too_large = |format| EncodeError::TooLarge { format, triangles: mesh.triangles.len() };
         match self {
             Self::Stl if !mesh.is_single_precision => {
-                Err(TooCoarse { error: mesh.certificate.error })
+                Err(EncodeError::TooCoarse { error: mesh.certificate.error })
             }
             Self::Stl => Ok(plain::stl(mesh)),
             Self::Obj => Ok(plain::obj(mesh)),
             Self::Ply => Ok(plain::ply(mesh)),
-            Self::Glb => Ok(glb::glb(mesh)),
-            Self::ThreeMf => Ok(package::three_mf(mesh)),
+            Self::Glb => glb::glb(mesh).ok_or_else(|| too_large("GLB")),
+            Self::ThreeMf => package::three_mf(mesh).ok_or_else(|| too_large("3MF")),
         }
     }
 }

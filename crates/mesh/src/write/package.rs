@@ -6,8 +6,8 @@ use std::io::Write as _;
 use flate2::write::DeflateEncoder;
 use flate2::{Compression, Crc};
 use rustc_hash::FxHashMap;
+use sdfc_graph::linear_to_srgb8;
 
-use super::common::{srgb, summary};
 use crate::surface::Mesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -18,7 +18,8 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
-pub(super) fn three_mf(mesh: &Mesh) -> Vec<u8> {
+/// Writes the file; `None` if it is too large for the format.
+pub(super) fn three_mf(mesh: &Mesh) -> Option<Vec<u8>> {
     archive(&[
         ("[Content_Types].xml", TYPES.as_bytes()),
         ("_rels/.rels", RELATIONS.as_bytes()),
@@ -26,15 +27,16 @@ pub(super) fn three_mf(mesh: &Mesh) -> Vec<u8> {
     ])
 }
 
-/// The model. Writing to a string does not fail.
+/// Writes the model.
 fn model(mesh: &Mesh) -> String {
     let mut text = String::from(
         r#"<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02">
 "#,
     );
+    // Writing to a string does not fail.
     let _ = writeln!(text, r#"<metadata name="Application">sdfc</metadata>"#);
-    let _ = writeln!(text, r#"<metadata name="Description">{}</metadata>"#, summary(mesh));
+    let _ = writeln!(text, r#"<metadata name="Description">{}</metadata>"#, mesh.certificate);
     text += "<resources>\n";
     let (palette, indices) = palette(mesh);
     if !palette.is_empty() {
@@ -65,12 +67,12 @@ fn model(mesh: &Mesh) -> String {
     text
 }
 
-/// The distinct colours, and for each vertex the index of its colour.
+/// Returns the distinct colours, and for each vertex the index of its colour.
 fn palette(mesh: &Mesh) -> (Vec<[u8; 3]>, Vec<usize>) {
     let mut known: FxHashMap<[u8; 3], usize> = FxHashMap::default();
     let mut palette = Vec::new();
     let index = |color: &[f32; 3]| {
-        *known.entry(color.map(srgb)).or_insert_with_key(|color| {
+        *known.entry(color.map(linear_to_srgb8)).or_insert_with_key(|color| {
             palette.push(*color);
             palette.len() - 1
         })
@@ -79,8 +81,9 @@ fn palette(mesh: &Mesh) -> (Vec<[u8; 3]>, Vec<usize>) {
     (palette, indices)
 }
 
-/// A ZIP archive: <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>.
-fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+/// Packs files into a ZIP archive: <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>.
+/// `None` if a size needs more than 32 bits.
+fn archive(files: &[(&str, &[u8])]) -> Option<Vec<u8>> {
     let mut archive = Vec::new();
     let mut directory = Vec::new();
     for (name, content) in files {
@@ -92,12 +95,13 @@ fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
         let mut header = Vec::new();
         // Version 2.0, no flags, deflate, 1 January 1980.
         [20u16, 0, 8, 0, 0x21].iter().for_each(|field| header.extend(field.to_le_bytes()));
-        let sizes = [crc.sum(), packed.len() as u32, content.len() as u32, name.len() as u32];
+        let size = |length: usize| u32::try_from(length).ok();
+        let sizes = [crc.sum(), size(packed.len())?, size(content.len())?, size(name.len())?];
         sizes.iter().for_each(|field| header.extend(field.to_le_bytes()));
         directory.extend(b"PK\x01\x02\x14\x00");
         directory.extend(&header);
         directory.extend([0; 10]);
-        directory.extend((archive.len() as u32).to_le_bytes());
+        directory.extend(size(archive.len())?.to_le_bytes());
         directory.extend(name.as_bytes());
         archive.extend(b"PK\x03\x04");
         archive.extend(&header);
@@ -105,11 +109,11 @@ fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
         archive.extend(packed);
     }
     let count = files.len() as u16;
-    let start = archive.len() as u32;
+    let [start, length] = [archive.len(), directory.len()].map(|size| u32::try_from(size).ok());
     archive.extend(&directory);
     archive.extend(b"PK\x05\x06\0\0\0\0");
     [count, count].iter().for_each(|field| archive.extend(field.to_le_bytes()));
-    [directory.len() as u32, start].iter().for_each(|field| archive.extend(field.to_le_bytes()));
+    [length?, start?].iter().for_each(|field| archive.extend(field.to_le_bytes()));
     archive.extend([0; 2]);
-    archive
+    Some(archive)
 }

@@ -2,13 +2,14 @@
 
 use std::fmt::Write;
 
-use super::common::{srgb, summary};
+use sdfc_graph::linear_to_srgb8;
+
 use crate::surface::Mesh;
 use crate::vector::{cross, sub, unit};
 
 /// Binary STL: <https://www.loc.gov/preservation/digital/formats/fdd/fdd000505.shtml>.
 pub(super) fn stl(mesh: &Mesh) -> Vec<u8> {
-    let mut file = format!("sdfc: {}", summary(mesh)).into_bytes();
+    let mut file = format!("sdfc: {}", mesh.certificate).into_bytes();
     file.resize(80, b' ');
     file.extend((mesh.triangles.len() as u32).to_le_bytes());
     for triangle in &mesh.triangles {
@@ -23,7 +24,7 @@ pub(super) fn stl(mesh: &Mesh) -> Vec<u8> {
 }
 
 pub(super) fn obj(mesh: &Mesh) -> Vec<u8> {
-    let mut text = format!("# sdfc: {}\n", summary(mesh));
+    let mut text = format!("# sdfc: {}\n", mesh.certificate);
     // Writing to a string does not fail.
     for [x, y, z] in &mesh.vertices {
         let _ = writeln!(text, "v {x} {y} {z}");
@@ -41,7 +42,7 @@ pub(super) fn ply(mesh: &Mesh) -> Vec<u8> {
         "ply\nformat binary_little_endian 1.0\ncomment sdfc: {}\nelement vertex {}\n\
          property {number} x\nproperty {number} y\nproperty {number} z\n\
          property float nx\nproperty float ny\nproperty float nz\n",
-        summary(mesh),
+        mesh.certificate,
         mesh.vertices.len(),
     );
     if !mesh.colors.is_empty() {
@@ -62,7 +63,7 @@ pub(super) fn ply(mesh: &Mesh) -> Vec<u8> {
         }
         normal.iter().for_each(|value| file.extend((*value as f32).to_le_bytes()));
         if let Some(color) = mesh.colors.get(index) {
-            file.extend(color.map(srgb));
+            file.extend(color.map(linear_to_srgb8));
         }
     }
     for triangle in &mesh.triangles {

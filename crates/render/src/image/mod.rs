@@ -4,6 +4,7 @@
 mod file;
 mod samples;
 
+use sdfc_graph::linear_to_srgb8;
 use sdfc_march::PixelBlock;
 
 use crate::error::RenderError;
@@ -46,6 +47,13 @@ pub struct PixelCounts {
     /// The ray ran out of steps, or it, a reflection or a shadow ray passed a stretch without a
     /// proof that it is free, however the ray ended.
     pub unproven: u64,
+}
+
+impl PixelCounts {
+    /// Returns the number of all pixels.
+    pub fn all(&self) -> u64 {
+        self.hit + self.miss + self.capped + self.nan
+    }
 }
 
 impl Image {
@@ -154,31 +162,9 @@ pub fn is_unproven(pixel: &PixelBlock) -> bool {
     pixel.unproven != 0 || pixel.status == CAPPED
 }
 
-/// The transfer function of sRGB (IEC 61966-2-1), 0 to 1 on both sides.
-pub fn linear_to_srgb(linear: f32) -> f32 {
-    let linear = linear.clamp(0.0, 1.0);
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// A linear channel as 8 bits of sRGB; below 0 and NaN are 0, above 1 is 255.
-pub fn linear_to_srgb8(linear: f32) -> u8 {
-    // `as` saturates, and makes 0 of NaN.
-    (linear_to_srgb(linear) * 255.0).round() as u8
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn srgb_has_its_known_values() {
-        // 0.5 in linear light is 188 (187.5 rounded), 0.2140411 is the middle grey 127.5.
-        let cases = [(0.0, 0), (1.0, 255), (0.5, 188), (0.002, 7), (-1.0, 0), (3.0, 255)];
-        for (linear, expected) in cases {
-            assert_eq!(linear_to_srgb8(linear), expected, "{linear}");
-        }
-        assert_eq!(linear_to_srgb8(f32::NAN), 0);
-    }
 
     #[test]
     fn sizes_outside_the_limits_are_refused() {
