@@ -4,7 +4,7 @@ mod common;
 
 use common::{each_node, graph, steps};
 use proptest::prelude::*;
-use sdfc_graph::eval::{BranchPath, FrameValues, Interval, Number, Packet, Tape};
+use sdfc_graph::eval::{Affine, BranchPath, Dual, FrameValues, Interval, Number, Packet, Tape};
 use sdfc_graph::{Dim, Graph, NodeId, Ternary, Type};
 
 /// Coordinates of all sizes, whole and half numbers among them.
@@ -134,6 +134,51 @@ proptest! {
                     "node {} = {:?}: {value} at {point:?}, {param} is on none of {found:?}",
                     root.index(), graph.node(root),
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn a_tape_that_is_specialized_to_a_box_gives_the_same_there(
+        steps in steps(24),
+        ranges in prop::array::uniform3(range()),
+        param in coordinate(),
+        fractions in prop::collection::vec(prop::array::uniform3(0.0..1.0), 12),
+    ) {
+        let graph = graph(&steps);
+        let frame = frame(param);
+        let axis = |i: usize| {
+            let [lo, hi] = ranges[i];
+            let mut half = [0.0; 3];
+            half[i] = (0.5 * (hi - lo)).next_up();
+            Affine::coordinate(0.5 * lo + 0.5 * hi, half)
+        };
+        let region = [axis(0), axis(1), axis(2)];
+        for root in graph.ids() {
+            let tape = Tape::new(&graph, &[root]).unwrap();
+            let Some(special) = tape.specialized(&frame, region) else { continue };
+            prop_assert!(special.operations() <= tape.operations());
+            let bounds = tape.prepare::<Affine>(&frame).scalar(region).range();
+            let (mut values, mut slopes) = (tape.prepare::<f64>(&frame), tape.prepare(&frame));
+            let mut same_values = special.prepare::<f64>(&frame);
+            let mut same_slopes = special.prepare::<Dual>(&frame);
+            for fraction in &fractions {
+                let point = [0, 1, 2].map(|i| within(ranges[i], fraction[i]));
+                let nodes = each_node(&graph, point, param);
+                // An undefined argument of a minimum may be left out.
+                if nodes[..=root.index()].iter().any(Option::is_none) {
+                    continue;
+                }
+                let value = values.scalar(point);
+                prop_assert!(bounds.contains(value), "{value} at {point:?} is not in {bounds:?}");
+                let found = same_values.scalar(point);
+                prop_assert!(found == value, "{root:?}: {value} and {found} at {point:?}");
+                let [a, b] = [&mut slopes, &mut same_slopes].map(|it| it.scalar(Dual::point(point)));
+                let is_defined = a.partials.iter().all(|x| x.is_finite());
+                // In a box without width, a number that changes may round to a constant.
+                let is_wide = ranges.iter().all(|[lo, hi]| hi - lo > 1e-6);
+                let is_same = a.partials == b.partials;
+                prop_assert!(is_same || !is_defined || !is_wide, "{a:?} {b:?} at {point:?}");
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Running a tape.
 
+use super::affine::Affine;
 use super::frame::FrameValues;
 use super::interval::{BranchPath, Interval};
 use super::number::Number;
@@ -19,7 +20,8 @@ impl Tape {
         self.evaluator(frame, |value| value)
     }
 
-    fn evaluator<F: Number, N: Number>(
+    /// An evaluator for a frame, whose values are computed in one number type and then converted.
+    pub(super) fn evaluator<F: Number, N: Number>(
         &self,
         frame: &FrameValues<F>,
         convert: impl Fn(F) -> N,
@@ -107,6 +109,15 @@ impl Evaluator<'_, Interval> {
     /// The first lane of the first root over a box, on one path through its jumps. The path records
     /// which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Interval; 3], path: &mut BranchPath) -> Interval {
+        path.begin();
+        self.run(&[point], &mut { path });
+        self.first()
+    }
+}
+
+impl Evaluator<'_, Affine> {
+    /// Like [`Evaluator::<Interval>::scalar_along`], over a box that may be rotated.
+    pub fn scalar_along(&mut self, point: [Affine; 3], path: &mut BranchPath) -> Affine {
         path.begin();
         self.run(&[point], &mut { path });
         self.first()

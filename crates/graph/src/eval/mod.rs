@@ -1,4 +1,5 @@
-//! Evaluation of flat math: in f32 (as the shader computes), f64, intervals and dual numbers.
+//! Evaluation of flat math: in f32 (as the shader computes), f64, intervals, affine forms and dual
+//! numbers.
 //!
 //! [`Number`] names the scalar operations of the closed set; each number type implements them. One
 //! place turns nodes into scalar operations for all number types: a [`Tape`] records them once and
@@ -34,6 +35,7 @@
 //! # Ok::<(), sdfc_graph::eval::TapeError>(())
 //! ```
 
+mod affine;
 mod allocate;
 mod compile;
 pub(crate) mod direct;
@@ -50,9 +52,11 @@ mod packet;
 mod record;
 mod sample;
 mod scalarise;
+mod specialize;
 mod tape;
 mod tracer;
 
+pub use affine::Affine;
 pub use dual::Dual;
 pub use evaluator::Evaluator;
 pub use fold::fold;

@@ -2,7 +2,74 @@
 
 use super::Number;
 
+/// Passes all operations to a macro, each with the method of [`Number`] that computes it.
 macro_rules! operations {
+    ($receiver:ident) => {
+        $receiver! {
+            unary {
+                Neg = neg,
+                Abs = abs,
+                Sign = sign,
+                Floor = floor,
+                Ceil = ceil,
+                Round = round,
+                Trunc = trunc,
+                Fract = fract,
+                Square = square,
+                Sqrt = sqrt,
+                InverseSqrt = inverse_sqrt,
+                Exp = exp,
+                Exp2 = exp2,
+                Log = log,
+                Log2 = log2,
+                Sin = sin,
+                Cos = cos,
+                Tan = tan,
+                Asin = asin,
+                Acos = acos,
+                Atan = atan,
+                Sinh = sinh,
+                Cosh = cosh,
+                Tanh = tanh,
+                Saturate = saturate,
+                Not = not,
+            }
+            binary {
+                Add = add,
+                Sub = sub,
+                Mul = mul,
+                Div = div,
+                Rem = rem,
+                Min = min,
+                Max = max,
+                Pow = pow,
+                Atan2 = atan2,
+                Step = step,
+                Hash = hash,
+                NormalizeLane = normalize_lane,
+                FractWithFloor = fract_with_floor,
+                Lt = lt,
+                Le = le,
+                Eq = eq,
+                Ne = ne,
+                And = and,
+                Or = or,
+            }
+            ternary {
+                Mix = mix,
+                Clamp = clamp,
+                Smoothstep = smoothstep,
+                Select = select,
+                XTimesOneMinusX = x_times_one_minus_x,
+                ClampResidual = clamp_residual,
+                RemWithQuotient = rem_with_quotient,
+            }
+        }
+    };
+}
+pub(super) use operations;
+
+macro_rules! define_op {
     (
         unary { $($unary:ident = $unary_method:ident,)* }
         binary { $($binary:ident = $binary_method:ident,)* }
@@ -35,66 +102,7 @@ macro_rules! operations {
     };
 }
 
-operations! {
-    unary {
-        Neg = neg,
-        Abs = abs,
-        Sign = sign,
-        Floor = floor,
-        Ceil = ceil,
-        Round = round,
-        Trunc = trunc,
-        Fract = fract,
-        Square = square,
-        Sqrt = sqrt,
-        InverseSqrt = inverse_sqrt,
-        Exp = exp,
-        Exp2 = exp2,
-        Log = log,
-        Log2 = log2,
-        Sin = sin,
-        Cos = cos,
-        Tan = tan,
-        Asin = asin,
-        Acos = acos,
-        Atan = atan,
-        Sinh = sinh,
-        Cosh = cosh,
-        Tanh = tanh,
-        Saturate = saturate,
-        Not = not,
-    }
-    binary {
-        Add = add,
-        Sub = sub,
-        Mul = mul,
-        Div = div,
-        Rem = rem,
-        Min = min,
-        Max = max,
-        Pow = pow,
-        Atan2 = atan2,
-        Step = step,
-        Hash = hash,
-        NormalizeLane = normalize_lane,
-        FractWithFloor = fract_with_floor,
-        Lt = lt,
-        Le = le,
-        Eq = eq,
-        Ne = ne,
-        And = and,
-        Or = or,
-    }
-    ternary {
-        Mix = mix,
-        Clamp = clamp,
-        Smoothstep = smoothstep,
-        Select = select,
-        XTimesOneMinusX = x_times_one_minus_x,
-        ClampResidual = clamp_residual,
-        RemWithQuotient = rem_with_quotient,
-    }
-}
+operations!(define_op);
 
 impl Op {
     /// True if the result can jump where the arguments do not. A tracer sees these operations.

@@ -194,7 +194,8 @@ impl Recorder {
         Some((Op::ClampResidual, [x, range[0], range[1]]))
     }
 
-    fn define_apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
+    /// Records an operation as it is.
+    pub(super) fn define_apply(&mut self, op: Op, arguments: [u32; 3]) -> u32 {
         let varying = arguments.iter().take(op.arity()).any(|&a| self.varying[a as usize]);
         self.define(Definition::Apply(op, arguments), varying)
     }

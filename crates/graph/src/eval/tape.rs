@@ -119,6 +119,11 @@ impl Tape {
         operations(&self.body)
     }
 
+    /// True if there are loops, which may run fewer iterations at a point than over a region.
+    pub fn has_loops(&self) -> bool {
+        self.body.iter().any(|code| matches!(code, Code::Loop(_)))
+    }
+
     /// Number of registers of an evaluator.
     pub fn registers(&self) -> usize {
         self.registers

@@ -1,6 +1,7 @@
 //! One choice of results at the jumps of a field over a box.
 
 use super::Interval;
+use crate::eval::Affine;
 use crate::eval::op::Op;
 use crate::eval::tracer::Tracer;
 
@@ -138,6 +139,14 @@ impl Tracer<Interval> for &mut BranchPath {
             Some(taken) => Interval { lo: taken, hi: taken },
             None => result,
         }
+    }
+}
+
+impl Tracer<Affine> for &mut BranchPath {
+    fn jumped(&mut self, op: Op, arguments: [Affine; 3], result: Affine) -> Affine {
+        let ranges = arguments.map(Affine::range);
+        let chosen = Tracer::<Interval>::jumped(self, op, ranges, result.range());
+        if chosen == result.range() { result } else { Affine::from_range(chosen) }
     }
 }
 

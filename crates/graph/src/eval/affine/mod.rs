@@ -3,7 +3,7 @@
 mod arithmetic;
 mod functions;
 
-use sdfc_graph::eval::{Interval, Number};
+use crate::eval::{Interval, Number};
 
 /// Relative bound of the rounding errors of one operation on affine forms.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// at most `error`; it also lies in `range`. Where the formula is smooth, the error shrinks with
 /// the square of the box, and that of an [`Interval`] only with the box.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Affine {
+pub struct Affine {
     center: f64,
     slopes: [f64; 3],
     error: f64,
@@ -24,12 +24,12 @@ pub(crate) struct Affine {
 impl Affine {
     /// Returns the coordinate of a point in a box: `center` in the middle, changing by `slopes`
     /// to the ends of the box's three axes.
-    pub(crate) fn coordinate(center: f64, slopes: [f64; 3]) -> Self {
+    pub fn coordinate(center: f64, slopes: [f64; 3]) -> Self {
         Self::new(center, slopes, 0.0, Interval::ENTIRE)
     }
 
     /// Returns the range of the values.
-    pub(crate) fn range(self) -> Interval {
+    pub fn range(self) -> Interval {
         self.range
     }
 
@@ -51,7 +51,7 @@ impl Affine {
     }
 
     /// Makes a form of which only the range is known.
-    fn from_range(range: Interval) -> Self {
+    pub(in crate::eval) fn from_range(range: Interval) -> Self {
         let center = 0.5 * range.lo() + 0.5 * range.hi();
         let error = (0.5 * range.hi() - 0.5 * range.lo()) * (1.0 + ROUNDING)
             + ROUNDING * range.lo().abs().max(range.hi().abs());
@@ -125,7 +125,7 @@ impl Affine {
         Self::new(self.center * y.center, slopes, error, self.range.mul(y.range))
     }
 
-    /// The same form within a smaller range.
+    /// Returns the same form within a smaller range.
     fn within(self, range: Interval) -> Self {
         Self::new(self.center, self.slopes, self.error, range)
     }

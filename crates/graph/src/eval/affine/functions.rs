@@ -1,8 +1,7 @@
 //! Functions of one and two affine forms.
 
-use sdfc_graph::eval::{Interval, Number};
-
 use super::Affine;
+use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
     Interval::constant(value)
@@ -65,7 +64,7 @@ impl Affine {
         number(1.0).sub(self.range.square()).inverse_sqrt()
     }
 
-    /// The lesser and the greater of two numbers.
+    /// Returns the lesser of two numbers, or the greater.
     pub(super) fn extreme(self, y: Self, greater: bool) -> Self {
         let difference = self.minus(y);
         let sign = if greater { -1.0 } else { 1.0 };
@@ -87,7 +86,7 @@ impl Affine {
         twice.scaled(0.5, number(0.0), range)
     }
 
-    /// A comparison of two numbers, by the range of their difference.
+    /// Compares two numbers, also by the range of their difference.
     pub(super) fn compared(self, y: Self, f: impl Fn(Interval, Interval) -> Interval) -> Self {
         let direct = f(self.range, y.range);
         if direct.lo() == direct.hi() {

@@ -1,8 +1,7 @@
 //! The operations of the closed set.
 
-use sdfc_graph::eval::{Interval, Number};
-
 use super::Affine;
+use crate::eval::{Interval, Number};
 
 fn number(value: f64) -> Interval {
     Interval::constant(value)
@@ -192,7 +191,7 @@ impl Number for Affine {
     }
 }
 
-/// The reciprocal of a number that is positive; all numbers if it may not be.
+/// Returns the reciprocal of a positive number; all numbers if it may not be positive.
 fn positive_reciprocal(x: Interval) -> Interval {
     if x.lo() > 0.0 { number(1.0).div(x) } else { Interval::ENTIRE }
 }

@@ -1,0 +1,238 @@
+//! Specialising a tape to a region: leaving out what cannot matter there.
+//!
+//! The tape is evaluated once over the region, in numbers that record the operations they come
+//! from. An operation whose result is one of its arguments everywhere in the region, such as a
+//! minimum of numbers in a known order, is not recorded. Loops become straight code of the
+//! iterations that can run. What the result no longer needs is dropped.
+
+use std::cell::RefCell;
+
+use super::affine::Affine;
+use super::frame::FrameValues;
+use super::number::Number;
+use super::op::{Op, operations};
+use super::record::Recorder;
+use super::scalarise::{Lanes, ScalarBackend};
+use super::tape::Tape;
+use crate::node::{Dim, Node};
+
+/// A specialised tape records at most this many operations.
+const MOST_OPERATIONS: usize = 1 << 17;
+
+impl Tape {
+    /// The tape that computes the first lane of the first root in a region, for one frame. `None`
+    /// if it would be too long.
+    ///
+    /// At the points of the region, f64 and dual numbers give the same results as with the whole
+    /// tape. Bounds of a box hold for the part of the box within the region. They may be tighter.
+    ///
+    /// ```
+    /// use sdfc_graph::eval::{Affine, FrameValues, Tape};
+    /// use sdfc_graph::{Dim, Graph};
+    ///
+    /// let mut graph = Graph::new();
+    /// let p = graph.point(0, Dim::Three);
+    /// let (x, y) = (graph.component(p, 0), graph.component(p, 1));
+    /// let root = graph.min(x, y);
+    /// let tape = Tape::new(&graph, &[root])?;
+    /// let frame = FrameValues::default();
+    ///
+    /// // x is from 0 to 2 there, and y from 3 to 5.
+    /// let x = Affine::coordinate(1.0, [1.0, 0.0, 0.0]);
+    /// let y = Affine::coordinate(4.0, [0.0, 1.0, 0.0]);
+    /// let only_x = tape.specialized(&frame, [x, y, y]).expect("a short tape");
+    /// assert_eq!((tape.operations(), only_x.operations()), (1, 0));
+    /// assert_eq!(only_x.prepare::<f64>(&frame).scalar([1.5, 3.5, 3.5]), 1.5);
+    /// # Ok::<(), sdfc_graph::eval::TapeError>(())
+    /// ```
+    pub fn specialized(&self, frame: &FrameValues, region: [Affine; 3]) -> Option<Self> {
+        let trace = Trace::default();
+        let axes = trace.0.borrow_mut().input(&Node::Point(0, Dim::Three))?;
+        let point = std::array::from_fn(|axis| Traced {
+            form: region[axis],
+            constant: None,
+            source: Some((&trace, axes.get(axis))),
+        });
+        let kept = |value: f64| Traced {
+            source: Some((&trace, trace.0.borrow_mut().constant(value))),
+            ..Traced::constant(value)
+        };
+        let result = self.evaluator(frame, kept).scalar(point);
+        let output = result.id(&trace)?;
+        let recorder = trace.0.take();
+        (recorder.definitions.len() <= MOST_OPERATIONS)
+            .then(|| recorder.finish(vec![Lanes::scalar(output)]))
+    }
+}
+
+/// The operations recorded so far.
+#[derive(Default)]
+struct Trace(RefCell<Recorder>);
+
+/// A number over the region, and where it comes from.
+#[derive(Clone, Copy)]
+struct Traced<'t> {
+    form: Affine,
+    /// The value, if it is the same everywhere.
+    constant: Option<f64>,
+    /// The recorded operation. `None` for constants that belong to no tape yet, and for what is
+    /// computed from such constants alone with rounding, which cannot be recorded.
+    source: Option<(&'t Trace, u32)>,
+}
+
+impl<'t> Traced<'t> {
+    /// Returns the value's index in the recorder.
+    fn id(self, trace: &Trace) -> Option<u32> {
+        match (self.source, self.constant) {
+            (Some((_, id)), _) => Some(id),
+            (None, Some(constant)) => Some(trace.0.borrow_mut().constant(constant)),
+            (None, None) => None,
+        }
+    }
+
+    fn is(self, value: f64) -> bool {
+        self.constant == Some(value)
+    }
+
+    /// Returns true if the number is less than another one everywhere.
+    fn is_below(self, other: Self) -> bool {
+        Number::sub(self.form, other.form).range().hi() < 0.0
+    }
+
+    /// Returns an operation's result: one of its arguments if it is that everywhere.
+    fn apply(op: Op, x: [Self; 3]) -> Self {
+        let form: Affine = op.apply(|i| x[i].form);
+        match Self::picked(op, x) {
+            Some(i) => Self { form, ..x[i] },
+            None => Self::recorded(op, x, form),
+        }
+    }
+
+    /// Returns the argument that an operation's result is equal to everywhere.
+    fn picked(op: Op, [a, b, c]: [Self; 3]) -> Option<usize> {
+        let first_of = |conditions: [bool; 3]| conditions.iter().position(|is_equal| *is_equal);
+        let is_true = |x: Self| !x.form.range().contains(0.0);
+        first_of(match op {
+            Op::Min => [a.is_below(b), b.is_below(a), false],
+            Op::Max => [b.is_below(a), a.is_below(b), false],
+            Op::Abs => [a.form.range().lo() > 0.0, false, false],
+            Op::Saturate => {
+                let range = a.form.range();
+                [range.lo() > 0.0 && range.hi() < 1.0, false, false]
+            }
+            Op::Clamp => [b.is_below(a) && a.is_below(c), false, false],
+            Op::Select => [false, is_true(a), a.form.is_definitely_false()],
+            Op::And => [b.is(1.0), a.is(1.0), false],
+            Op::Or | Op::Add => [b.is(0.0), a.is(0.0), false],
+            Op::Sub => [b.is(0.0), false, false],
+            Op::Mul => [b.is(1.0), a.is(1.0), false],
+            Op::Mix => [c.is(0.0), c.is(1.0), false],
+            Op::Neg
+            | Op::Sign
+            | Op::Floor
+            | Op::Ceil
+            | Op::Round
+            | Op::Trunc
+            | Op::Fract
+            | Op::Square
+            | Op::Sqrt
+            | Op::InverseSqrt
+            | Op::Exp
+            | Op::Exp2
+            | Op::Log
+            | Op::Log2
+            | Op::Sin
+            | Op::Cos
+            | Op::Tan
+            | Op::Asin
+            | Op::Acos
+            | Op::Atan
+            | Op::Sinh
+            | Op::Cosh
+            | Op::Tanh
+            | Op::Not
+            | Op::Div
+            | Op::Rem
+            | Op::Pow
+            | Op::Atan2
+            | Op::Step
+            | Op::Hash
+            | Op::NormalizeLane
+            | Op::FractWithFloor
+            | Op::Lt
+            | Op::Le
+            | Op::Eq
+            | Op::Ne
+            | Op::Smoothstep
+            | Op::XTimesOneMinusX
+            | Op::ClampResidual
+            | Op::RemWithQuotient => return None,
+        })
+    }
+
+    /// Records an operation, unless its result is a constant.
+    fn recorded(op: Op, x: [Self; 3], form: Affine) -> Self {
+        let arguments = &x[..op.arity()];
+        let range = form.range();
+        let is_fixed = range.lo() == range.hi();
+        let constant = is_fixed.then(|| match x.map(|x| x.constant) {
+            // The sign of zero may differ from that of the range.
+            [Some(a), Some(b), Some(c)] => op.apply(|i| [a, b, c][i]),
+            _ => range.lo(),
+        });
+        let trace = arguments.iter().find_map(|x| x.source).map(|(trace, _)| trace);
+        let source = trace.and_then(|trace| {
+            if let Some(constant) = constant {
+                return Some((trace, trace.0.borrow_mut().constant(constant)));
+            }
+            let [a, b, c] = x.map(|x| x.id(trace));
+            let ids = [a?, b?, c?];
+            let mut recorder = trace.0.borrow_mut();
+            // A tape that is too long is given up at the end.
+            let is_full = recorder.definitions.len() > MOST_OPERATIONS;
+            Some((trace, if is_full { ids[0] } else { recorder.define_apply(op, ids) }))
+        });
+        Self { form, constant, source }
+    }
+}
+
+macro_rules! traced_number {
+    (
+        unary { $($unary:ident = $unary_method:ident,)* }
+        binary { $($binary:ident = $binary_method:ident,)* }
+        ternary { $($ternary:ident = $ternary_method:ident,)* }
+    ) => {
+        impl Number for Traced<'_> {
+            fn constant(value: f64) -> Self {
+                Self { form: Affine::constant(value), constant: Some(value), source: None }
+            }
+            fn is_definitely_false(self) -> bool {
+                self.form.is_definitely_false()
+            }
+            fn element(self, list: &[f64]) -> Self {
+                let form = self.form.element(list);
+                let constant = self.constant.map(|at| at.element(list));
+                let source = self.source.map(|(trace, at)| {
+                    let mut recorder = trace.0.borrow_mut();
+                    let id = match constant {
+                        Some(constant) => recorder.constant(constant),
+                        None => recorder.lookup(list.to_vec(), at),
+                    };
+                    (trace, id)
+                });
+                Self { form, constant, source }
+            }
+            $(fn $unary_method(self) -> Self {
+                Self::apply(Op::$unary, [self; 3])
+            })*
+            $(fn $binary_method(self, y: Self) -> Self {
+                Self::apply(Op::$binary, [self, y, self])
+            })*
+            $(fn $ternary_method(self, y: Self, z: Self) -> Self {
+                Self::apply(Op::$ternary, [self, y, z])
+            })*
+        }
+    };
+}
+
+operations!(traced_number);
