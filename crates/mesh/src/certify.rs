@@ -4,14 +4,14 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use crate::error::{MeshError, Phase};
-use crate::field::{Frame, Prism, Prober};
+use crate::field::{Frame, LocalField, Prism, Prober};
 use crate::nearness::{Clipped, clip, crosses_once, distance};
 use crate::refine::{OnProgress, report};
 use crate::surface::{Mesh, MeshCertificate};
 use crate::vector::{Vec3, add, between, length, scale, sub, unit};
 
-/// Boxes that are examined between two reports of progress.
-const CHUNK: usize = 4096;
+/// Boxes that are divided between two reports of progress.
+const CHUNK: usize = 1024;
 /// A box with more triangles about it is divided without a try.
 const MANY: usize = 48;
 /// A box is not divided below this fraction of the error.
@@ -35,33 +35,39 @@ const LINES: [Vec3; 5] = [
 ];
 
 /// A box to be proven, and the triangles that may be within the error of it.
-struct Task {
+struct Part {
     bounds: [Vec3; 2],
     triangles: Vec<u32>,
     /// The changes that may be within the error of it, if there is an earlier proof.
     changes: Option<Vec<u32>>,
 }
 
-/// What is known of a box.
-enum Outcome {
+/// A box to be divided, and the field around it.
+struct Task<'f> {
+    part: Part,
+    field: LocalField<'f>,
+}
+
+/// The result of examining a box.
+enum Outcome<'f> {
     Kept,
     Empty,
     Sheet,
     Small,
-    Undecided,
-    Divided(Vec<Task>),
+    Undecided([Vec3; 2]),
+    Divided(Task<'f>),
 }
 
-/// What proofs are made from.
+/// A mesh and the field that it is compared with.
 pub(crate) struct Prover<'a, 'f> {
-    pub(crate) prober: &'a Prober<'f>,
+    pub(crate) field: &'a LocalField<'f>,
     pub(crate) mesh: &'a Mesh,
     pub(crate) error: f64,
     /// Boxes around all that differs from an earlier proof: changed triangles, undecided boxes.
     pub(crate) changes: Option<Vec<[Vec3; 2]>>,
 }
 
-/// Boxes around the triangles that only one of two meshes has.
+/// Returns boxes around the triangles that only one of two meshes has.
 pub(crate) fn changes(before: &Mesh, after: &Mesh) -> Vec<[Vec3; 2]> {
     let key = |corners: [Vec3; 3]| {
         let mut bits = corners.map(|corner| corner.map(f64::to_bits));
@@ -89,7 +95,7 @@ pub(crate) struct Proof {
     pub(crate) undecided: Vec<[Vec3; 2]>,
 }
 
-impl Prover<'_, '_> {
+impl<'f> Prover<'_, 'f> {
     /// Divides a box until everything in it is proven or tiny. Boxes that are far from all changes
     /// keep their earlier proof.
     pub(crate) fn prove(
@@ -101,30 +107,29 @@ impl Prover<'_, '_> {
         let triangles = (0..self.mesh.triangles.len() as u32).collect();
         let count = |changes: &Vec<[Vec3; 2]>| (0..changes.len() as u32).collect();
         let changes = self.changes.as_ref().map(count);
-        let mut waiting = vec![Task { bounds, triangles, changes }];
+        let part = Part { bounds, triangles, changes };
+        let mut waiting = vec![Task { part, field: self.field.clone() }];
         let mut certificate = MeshCertificate { error: self.error, ..MeshCertificate::default() };
         let mut undecided = Vec::new();
         let mut done = 0;
         while !waiting.is_empty() {
             let chunk = waiting.split_off(waiting.len().saturating_sub(CHUNK));
             done += chunk.len();
-            let boxes: Vec<[Vec3; 2]> = chunk.iter().map(|task| task.bounds).collect();
             let finest = if undecided.len() < FLOOD { FINEST } else { COARSE };
-            let examine = |prober: &mut Prober<'_>, task| self.examine(prober, task, finest);
-            let outcomes: Vec<Outcome> =
-                chunk.into_par_iter().map_init(|| self.prober.clone(), examine).collect();
-            for (bounds, outcome) in boxes.into_iter().zip(outcomes) {
+            let outcomes: Vec<[Outcome<'f>; 8]> =
+                chunk.into_par_iter().map(|task| self.divide(task, finest)).collect();
+            for outcome in outcomes.into_iter().flatten() {
                 match outcome {
                     Outcome::Kept => {}
                     Outcome::Empty => certificate.empty_boxes += 1,
                     Outcome::Sheet => certificate.sheet_boxes += 1,
                     Outcome::Small => certificate.small_boxes += 1,
-                    Outcome::Undecided => undecided.push(bounds),
-                    Outcome::Divided(tasks) => waiting.extend(tasks),
+                    Outcome::Undecided(bounds) => undecided.push(bounds),
+                    Outcome::Divided(task) => waiting.push(task),
                 }
             }
-            if done as u64 > max_boxes {
-                undecided.extend(waiting.drain(..).map(|task| task.bounds));
+            if (8 * done) as u64 > max_boxes {
+                undecided.extend(waiting.drain(..).map(|task| task.part.bounds));
             }
             report(progress, Phase::Proving, done, done + waiting.len())?;
         }
@@ -140,27 +145,14 @@ impl Prover<'_, '_> {
         self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id as usize])
     }
 
-    fn examine(&self, prober: &mut Prober<'_>, task: Task, finest: f64) -> Outcome {
-        let Task { bounds, triangles, changes } = task;
-        if changes.as_ref().is_some_and(Vec::is_empty) {
-            return Outcome::Kept;
-        }
-        let is_absent = prober.side_over(&Prism::aligned(bounds)).is_some();
-        if is_absent && !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0)) {
-            return Outcome::Empty;
-        }
-        let few = !triangles.is_empty() && triangles.len() <= MANY;
-        if few && self.is_sheet(prober, bounds, &triangles) == Some(true) {
-            return Outcome::Sheet;
-        }
-        if self.is_small(prober, bounds, &triangles, is_absent) {
-            return Outcome::Small;
-        }
-        if bounds[1][0] - bounds[0][0] <= finest * self.error {
-            return Outcome::Undecided;
-        }
+    /// Specialises the field to what proofs about a box evaluate, and examines its eighths.
+    fn divide(&self, Task { part, field }: Task<'f>, finest: f64) -> [Outcome<'f>; 8] {
+        let Part { bounds, triangles, changes } = part;
+        let side = bounds[1][0] - bounds[0][0];
+        let field = field.around(bounds, self.error + 0.5 * side);
+        let mut prober = field.prober();
         let is_crowded = triangles.len() > 8 * MANY;
-        let tasks = eighths(bounds).into_iter().map(|bounds| {
+        eighths(bounds).map(|bounds| {
             let is_near = |t: &u32| match is_crowded {
                 true => overlaps(self.corners(*t), bounds, self.error),
                 false => meets(self.corners(*t), bounds, self.error),
@@ -173,9 +165,37 @@ impl Prover<'_, '_> {
             let changes = changes.as_ref();
             let changes = changes.map(|list| list.iter().copied().filter(is_changed).collect());
             let triangles = triangles.iter().copied().filter(is_near).collect();
-            Task { bounds, triangles, changes }
-        });
-        Outcome::Divided(tasks.collect())
+            self.examine(&mut prober, &field, Part { bounds, triangles, changes }, finest)
+        })
+    }
+
+    fn examine(
+        &self,
+        prober: &mut Prober<'_>,
+        field: &LocalField<'f>,
+        part: Part,
+        finest: f64,
+    ) -> Outcome<'f> {
+        let Part { bounds, triangles, changes } = &part;
+        let bounds = *bounds;
+        if changes.as_ref().is_some_and(Vec::is_empty) {
+            return Outcome::Kept;
+        }
+        let is_absent = prober.side_over(&Prism::aligned(bounds)).is_some();
+        if is_absent && !triangles.iter().any(|t| meets(self.corners(*t), bounds, 0.0)) {
+            return Outcome::Empty;
+        }
+        let few = !triangles.is_empty() && triangles.len() <= MANY;
+        if few && self.is_sheet(prober, bounds, triangles) == Some(true) {
+            return Outcome::Sheet;
+        }
+        if self.is_small(prober, bounds, triangles, is_absent) {
+            return Outcome::Small;
+        }
+        if bounds[1][0] - bounds[0][0] <= finest * self.error {
+            return Outcome::Undecided(bounds);
+        }
+        Outcome::Divided(Task { part, field: field.clone() })
     }
 
     /// True if the mesh about the box is nearly flat, and the field has different signs at the
@@ -272,7 +292,8 @@ fn changes_sign(prober: &mut Prober<'_>, middle: Vec3, reach: f64) -> bool {
     false
 }
 
-/// The distances along a direction at which a line through a point of a box enters and leaves it.
+/// Returns the distances along a direction at which a line through a point of a box enters and
+/// leaves it.
 fn within(bounds: [Vec3; 2], point: Vec3, direction: Vec3) -> [f64; 2] {
     let mut range = [f64::NEG_INFINITY, f64::INFINITY];
     for axis in 0..3 {

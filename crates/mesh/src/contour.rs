@@ -13,7 +13,7 @@ use crate::surface::Mesh;
 use crate::tree::{Tangled, Tree};
 use crate::vector::{SurfacePoint, Vec3};
 
-/// What the contour is made from.
+/// The octree, the signs at its corners, and the field that they come from.
 pub(crate) struct Contour<'a, 'f> {
     pub(crate) prober: &'a Prober<'f>,
     pub(crate) grid: &'a Grid,

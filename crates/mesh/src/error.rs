@@ -18,7 +18,7 @@ impl MeshOptions {
     /// The default of `max_cells`: some gigabytes of memory.
     pub const MAX_CELLS: u64 = 50_000_000;
 
-    /// Options for a box and an error, in scene units.
+    /// Returns options for a box and an error, in scene units.
     pub fn new(bounds: [[f64; 3]; 2], error: f64) -> Self {
         Self { bounds, error, max_cells: Self::MAX_CELLS }
     }

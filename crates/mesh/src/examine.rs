@@ -1,4 +1,4 @@
-//! Decides whether a cell is empty, is small enough, or is split.
+//! The decision about a cell: its verdict.
 
 use crate::field::{Frame, Prism, Prober, is_inside};
 use crate::grid::{Cell, Corner, Edge, Grid};
@@ -34,7 +34,7 @@ const ESTIMATE: f64 = 0.5;
 /// A cell has one sheet if the surface is within this fraction of its size from a plane.
 const THICK: f64 = 0.3;
 
-/// Decides about a cell.
+/// Decides whether a cell is empty, is small enough, or is split.
 pub(crate) fn examine(placer: &mut Placer<'_, '_>, cell: Cell, sizes: Sizes) -> Verdict {
     let bounds = placer.grid.bounds(cell);
     if placer.prober.side_over(&Prism::aligned(bounds)).is_some() {
@@ -128,7 +128,7 @@ fn is_near(placer: &mut Placer<'_, '_>, cell: Cell, loops: &[Vec<LoopStep>]) -> 
     })
 }
 
-/// The corners of the triangles that fill a loop.
+/// Returns the corners of the triangles that fill a loop.
 fn positions(vertices: &[LoopVertex], filling: Filling) -> impl Iterator<Item = [Vec3; 3]> + '_ {
     let count = vertices.len();
     let at = move |index: usize| vertices[index % count].point.position;
@@ -140,7 +140,7 @@ fn positions(vertices: &[LoopVertex], filling: Filling) -> impl Iterator<Item = 
 }
 
 impl Sizes {
-    /// The sizes for a grid.
+    /// Returns the sizes for a grid.
     pub(crate) fn of(grid: &Grid) -> Self {
         Self { unproven: (grid.size / 16).max(4), uncrossed: 8 }
     }

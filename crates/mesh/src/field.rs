@@ -1,10 +1,13 @@
 //! The field of a scene, in the number types that meshing needs.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use sdfc_graph::Program;
-use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Interval, Number, Tape, TapeError};
+use sdfc_graph::eval::{
+    Affine, BranchPath, Dual, Evaluator, FrameValues, Interval, Number, Tape, TapeError,
+};
 
-use crate::affine::Affine;
 use crate::vector::{Vec3, add, between, dot, length, scale, sub, tangents};
 
 /// A box that may be rotated: its center and its half axes.
@@ -15,7 +18,7 @@ pub(crate) struct Prism {
 }
 
 impl Prism {
-    /// The box with edges along the axes of coordinates.
+    /// Returns the box with edges along the axes of coordinates.
     pub(crate) fn aligned([lo, hi]: [Vec3; 2]) -> Self {
         let center = between(lo, hi, 0.5);
         let mut axes = [[0.0; 3]; 3];
@@ -25,6 +28,12 @@ impl Prism {
             axes[axis][axis] = half.next_up();
         }
         Self { center, axes }
+    }
+
+    /// Returns the coordinates of the box's points.
+    fn coordinates(&self) -> [Affine; 3] {
+        let [a, b, c] = self.axes;
+        [0, 1, 2].map(|i| Affine::coordinate(self.center[i], [a[i], b[i], c[i]]))
     }
 }
 
@@ -39,7 +48,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// The frame of a unit normal around a box.
+    /// Returns the frame of a unit normal around a box.
     pub(crate) fn around([lo, hi]: [Vec3; 2], normal: Vec3) -> Self {
         let center = between(lo, hi, 0.5);
         let half = scale(sub(hi, lo), 0.5);
@@ -48,7 +57,7 @@ impl Frame {
         Self { center, normal, tangents: [u, v], half: [reach(normal), reach(u), reach(v)] }
     }
 
-    /// The part of the frame between two heights over its center, as wide as the box.
+    /// Returns the part of the frame between two heights over its center, as wide as the box.
     pub(crate) fn part(&self, from: f64, to: f64) -> Prism {
         let [u, v] = self.tangents;
         let [_, by_u, by_v] = self.half;
@@ -57,7 +66,7 @@ impl Frame {
         Prism { center, axes: [scale(self.normal, height), scale(u, by_u), scale(v, by_v)] }
     }
 
-    /// The height and the two other coordinates of a point.
+    /// Returns the height and the two other coordinates of a point.
     pub(crate) fn coordinates(&self, point: Vec3) -> Vec3 {
         let offset = sub(point, self.center);
         let [u, v] = self.tangents;
@@ -85,7 +94,7 @@ impl Field {
         Ok(Some(Self { distance: tape(&[distance])?, material }))
     }
 
-    /// The linear colour at each point; nothing if the scene has no materials.
+    /// Returns the linear colour at each point; nothing if the scene has no materials.
     pub(crate) fn colors(&self, frame: &FrameValues, points: &[Vec3]) -> Vec<[f32; 3]> {
         let Some(material) = &self.material else { return Vec::new() };
         let color = |field: &mut Evaluator<'_, f64>, point: &Vec3| {
@@ -99,26 +108,88 @@ impl Field {
         points.par_iter().map_init(|| material.prepare(frame), color).collect()
     }
 
-    pub(crate) fn prober(&self, frame: &FrameValues) -> Prober<'_> {
+    /// Returns the tape of the distance.
+    pub(crate) fn distance(&self) -> &Tape {
+        &self.distance
+    }
+}
+
+/// A tape with fewer operations is not specialised to boxes.
+const FEW_OPERATIONS: usize = 16;
+/// A specialised tape is used if it has at most this fraction of the operations.
+const SHORTER: f64 = 0.75;
+/// A box is this many times smaller than the one that the tape in use was made for before the tape
+/// is specialised again.
+const ZOOM: f64 = 3.0;
+
+/// The field around a box.
+#[derive(Clone, Debug)]
+pub(crate) struct LocalField<'f> {
+    /// The field everywhere.
+    whole: &'f Tape,
+    frame: &'f FrameValues,
+    /// The field around the box, if that is much shorter.
+    short: Option<Arc<Tape>>,
+    /// The side of the last box that it was specialised to.
+    side: f64,
+}
+
+impl<'f> LocalField<'f> {
+    /// Returns the field everywhere.
+    pub(crate) fn new(whole: &'f Tape, frame: &'f FrameValues) -> Self {
+        Self { whole, frame, short: None, side: f64::INFINITY }
+    }
+
+    /// Returns the same field, which is not specialised further.
+    #[cfg(test)]
+    pub(crate) fn fixed(self) -> Self {
+        Self { side: 0.0, ..self }
+    }
+
+    fn tape(&self) -> &Tape {
+        self.short.as_deref().unwrap_or(self.whole)
+    }
+
+    /// Returns the field in a cube that is grown by a margin.
+    pub(crate) fn around(self, [lo, hi]: [Vec3; 2], margin: f64) -> Self {
+        let side = hi[0] - lo[0];
+        let operations = self.tape().operations();
+        if operations < FEW_OPERATIONS || side * ZOOM > self.side {
+            return self;
+        }
+        let grown = [lo.map(|x| x - margin), hi.map(|x| x + margin)];
+        let coordinates = Prism::aligned(grown).coordinates();
+        let is_short = |tape: &Tape| tape.operations() as f64 <= SHORTER * operations as f64;
+        let found = self.tape().specialized(self.frame, coordinates).filter(is_short);
+        Self { short: found.map(Arc::new).or(self.short), side, ..self }
+    }
+
+    /// Returns the field with registers.
+    pub(crate) fn prober(&self) -> Prober<'_> {
+        let boxes = self.tape();
+        // At a point, a loop may end long before it ends over a box.
+        let points = if self.whole.has_loops() { self.whole } else { boxes };
         Prober {
-            value: self.distance.prepare(frame),
-            slope: self.distance.prepare(frame),
-            interval: self.distance.prepare(frame),
-            affine: self.distance.prepare(frame),
+            value: points.prepare(self.frame),
+            slope: points.prepare(self.frame),
+            interval: boxes.prepare(self.frame),
+            affine: boxes.prepare(self.frame),
+            path: BranchPath::default(),
         }
     }
 }
 
-/// A [`Field`] with the registers of its evaluators. Each thread uses its own clone.
+/// A field with the registers of its evaluators. Each thread uses its own clone.
 #[derive(Clone, Debug)]
 pub(crate) struct Prober<'f> {
     value: Evaluator<'f, f64>,
     slope: Evaluator<'f, Dual>,
     interval: Evaluator<'f, Interval>,
     affine: Evaluator<'f, Affine>,
+    path: BranchPath,
 }
 
-/// The side of the surface that a point lies on. A point without a value counts as outside.
+/// Returns true if a point with this value is inside. A point without a value counts as outside.
 pub(crate) fn is_inside(value: f64) -> bool {
     value < 0.0
 }
@@ -128,31 +199,42 @@ impl Prober<'_> {
         self.value.scalar(point)
     }
 
-    /// The value and the gradient.
+    /// Returns the value and the gradient.
     pub(crate) fn sample(&mut self, point: Vec3) -> (f64, Vec3) {
         let Dual { value, partials } = self.slope.scalar(Dual::point(point));
         (value, partials)
     }
 
-    /// An estimate of the distance to the surface: the value divided by the gradient's length.
+    /// Estimates the distance to the surface: the value divided by the gradient's length.
     pub(crate) fn distance(&mut self, point: Vec3) -> f64 {
         let (value, gradient) = self.sample(point);
         let distance = value.abs() / length(gradient);
         if distance.is_finite() { distance } else { value.abs() }
     }
 
-    /// The sign at a point, if it is proven in spite of rounding: true for inside.
+    /// Returns the side of a point, if it is proven in spite of rounding: true for inside.
     pub(crate) fn proven_side(&mut self, point: Vec3) -> Option<bool> {
         proven(self.interval.scalar(point.map(Interval::constant)))
     }
 
-    /// The sign everywhere in a box, if it is proven.
+    /// Returns the side of a whole box, if it is proven that all of it is on one side. Where the
+    /// formula jumps, as at the borders of repeated cells, it is proven for each result of the jump.
     pub(crate) fn side_over(&mut self, prism: &Prism) -> Option<bool> {
-        let coordinate = |axis: usize| {
-            let [a, b, c] = prism.axes;
-            Affine::coordinate(prism.center[axis], [a[axis], b[axis], c[axis]])
-        };
-        proven(self.affine.scalar([coordinate(0), coordinate(1), coordinate(2)]).range())
+        let box_ = prism.coordinates();
+        self.path.clear();
+        let mut side = None;
+        for _ in 0..MOST_PATHS {
+            match proven(self.affine.scalar_along(box_, &mut self.path).range()) {
+                Some(found) if side.is_some_and(|side| side != found) => return None,
+                Some(found) => side = Some(found),
+                None if self.path.fork(MOST_JUMPS) => continue,
+                None => return None,
+            }
+            if !self.path.advance() {
+                return side;
+            }
+        }
+        None
     }
 
     /// True if it is proven that the surface in a frame lies between two heights, with the inside
@@ -196,7 +278,12 @@ impl Prober<'_> {
     }
 }
 
+/// Steps of a search for a root.
 const MOST_STEPS: u32 = 60;
+/// Evaluations of a box with different results of jumps.
+const MOST_PATHS: u32 = 16;
+/// Jumps in a formula over a box that are decided.
+const MOST_JUMPS: usize = 3;
 
 fn proven(range: Interval) -> Option<bool> {
     if range.lo() > 0.0 {

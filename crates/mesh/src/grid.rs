@@ -31,7 +31,7 @@ pub(crate) struct Edge {
     pub(crate) axis: u8,
 }
 
-/// A position moved along an axis.
+/// Returns a position moved along an axis.
 fn moved(mut at: Corner, axis: usize, by: u32) -> Corner {
     at[axis] += by;
     at
@@ -52,13 +52,13 @@ impl Cell {
         })
     }
 
-    /// The lower and the upper side along an axis.
+    /// Returns the lower or the upper side along an axis.
     pub(crate) fn side(self, axis: u8, is_upper: bool) -> Face {
         let by = if is_upper { self.size } else { 0 };
         Face { at: moved(self.at, usize::from(axis), by), size: self.size, axis }
     }
 
-    /// Bits of the sides that contain a position: `1 << 2 * axis` for the lower one.
+    /// Returns bits of the sides that contain a position: `1 << 2 * axis` for the lower one.
     pub(crate) fn sides(self, at: Corner) -> u8 {
         let mut sides = 0;
         for axis in 0..3 {
@@ -70,8 +70,8 @@ impl Cell {
 }
 
 impl Face {
-    /// The cells below and above that have the face's size. The face at the lower limit of the
-    /// grid has none below.
+    /// Returns the cells below and above that have the face's size. The face at the lower limit of
+    /// the grid has none below.
     pub(crate) fn cells(self) -> [Option<Cell>; 2] {
         let axis = usize::from(self.axis);
         let below = self.at[axis].checked_sub(self.size).map(|x| {
@@ -91,14 +91,14 @@ impl Face {
         })
     }
 
-    /// The axes of the face's plane, so that they and `axis` are right-handed.
+    /// Returns the axes of the face's plane, so that `axis` and they are right-handed.
     pub(crate) fn plane(self) -> [usize; 2] {
         let axis = usize::from(self.axis);
         [(axis + 1) % 3, (axis + 2) % 3]
     }
 
-    /// The sides, counter-clockwise as seen from above. The flag tells if a side is run through
-    /// against its axis.
+    /// Returns the sides, counter-clockwise as seen from above. The flag tells if a side is run
+    /// through against its axis.
     pub(crate) fn sides(self) -> [(Edge, bool); 4] {
         let [u, v] = self.plane();
         let edge = |at, axis: usize| Edge { at, size: self.size, axis: axis as u8 };
@@ -122,7 +122,7 @@ impl Edge {
         [Self { size, ..self }, Self { at: upper, size, ..self }]
     }
 
-    /// The cells of the edge's size around it.
+    /// Returns the cells of the edge's size around it.
     pub(crate) fn cells(self) -> impl Iterator<Item = Cell> {
         let axis = usize::from(self.axis);
         let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -134,7 +134,7 @@ impl Edge {
         })
     }
 
-    /// Bits of the sides of a cell that contain the edge without its ends.
+    /// Returns bits of the sides of a cell that contain the edge without its ends.
     pub(crate) fn sides_in(self, cell: Cell) -> u8 {
         let own = 3 << (2 * self.axis);
         cell.sides(self.at) & !own
@@ -202,12 +202,13 @@ impl Grid {
         [lo, lo.map(|x| x + self.length(cell.size))]
     }
 
-    /// The distance that vertices keep from the ends of edges and the sides of faces and cells.
+    /// Returns the distance that vertices keep from the ends of edges and the sides of faces and
+    /// cells.
     pub(crate) fn margin(&self, size: u32) -> f64 {
         (self.length(size) / 32.0).min(self.unit / 8.0)
     }
 
-    /// A vertex, rounded to a 32-bit float if the whole grid consists of such.
+    /// Rounds a vertex to 32-bit floats if the whole grid consists of such.
     pub(crate) fn rounded(&self, point: Vec3) -> Vec3 {
         if self.is_single { point.map(|x| f64::from(x as f32)) } else { point }
     }

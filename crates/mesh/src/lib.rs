@@ -16,7 +16,7 @@
 //! 3. The mesh is compared with the field, independent of the octree (`certify`). Where that fails,
 //!    cells are divided and the mesh is made again.
 //!
-//! All bounds are computed by affine arithmetic (`affine`).
+//! All bounds are computed by affine arithmetic ([`Affine`](sdfc_graph::eval::Affine)).
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -47,7 +47,6 @@
 
 #![allow(clippy::needless_range_loop, reason = "an index is an axis, of several vectors")]
 
-mod affine;
 mod certify;
 mod contour;
 mod error;

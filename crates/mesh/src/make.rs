@@ -10,7 +10,7 @@ use crate::certify::{Proof, Prover, changes};
 use crate::contour::Contour;
 use crate::error::{MeshError, MeshOptions, Progress};
 use crate::examine::Sizes;
-use crate::field::{Field, Prober};
+use crate::field::{Field, LocalField};
 use crate::grid::{Cell, Grid};
 use crate::refine::{OnProgress, Refiner, Signs};
 use crate::surface::Mesh;
@@ -35,7 +35,8 @@ pub fn mesh(
 ) -> Result<Mesh, MeshError> {
     let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
     let grid = grid(options)?;
-    let maker = Maker { prober: &field.prober(frame), grid: &grid, options };
+    let local = LocalField::new(field.distance(), frame);
+    let maker = Maker { field: &local, grid: &grid, options };
     let mut mesh = maker.mesh(progress)?;
     if mesh.open_edges() > 0 {
         return Err(MeshError::Open);
@@ -44,7 +45,7 @@ pub fn mesh(
     Ok(mesh)
 }
 
-/// The grid for the options.
+/// Returns the grid for the options.
 fn grid(options: &MeshOptions) -> Result<Grid, MeshError> {
     let MeshOptions { bounds, error, .. } = *options;
     if !(error > 0.0 && error.is_finite()) {
@@ -62,17 +63,19 @@ fn grid(options: &MeshOptions) -> Result<Grid, MeshError> {
     })
 }
 
-struct Maker<'a, 'f> {
-    prober: &'a Prober<'f>,
+struct Maker<'a> {
+    field: &'a LocalField<'a>,
     grid: &'a Grid,
     options: &'a MeshOptions,
 }
 
-impl Maker<'_, '_> {
+impl Maker<'_> {
     fn mesh(&self, progress: OnProgress<'_>) -> Result<Mesh, MeshError> {
-        let (prober, grid, error) = (self.prober, self.grid, self.options.error);
-        let max_cells = self.options.max_cells;
-        let mut refiner = Refiner { prober, grid, error, sizes: Sizes::of(grid), max_cells };
+        let Self { field, grid, .. } = *self;
+        let prober = &field.prober();
+        let MeshOptions { error, max_cells, .. } = *self.options;
+        let sizes = Sizes::of(grid);
+        let mut refiner = Refiner { prober, field, grid, error, sizes, max_cells };
         let mut tree = Tree::default();
         let mut signs = Signs::default();
         refiner.grow(&mut tree, vec![grid.root()], progress)?;
@@ -86,7 +89,7 @@ impl Maker<'_, '_> {
                 found.extend(undecided);
                 found
             });
-            let prover = Prover { prober, mesh: &mesh, error, changes };
+            let prover = Prover { field, mesh: &mesh, error, changes };
             let Proof { certificate, undecided } =
                 prover.prove(grid.bounds(grid.root()), max_cells, progress)?;
             mesh.certificate = certificate;
@@ -109,7 +112,7 @@ impl Maker<'_, '_> {
     }
 }
 
-/// Splits the leaves about undecided boxes and returns their children.
+/// Takes the leaves about undecided boxes out of the tree.
 fn divide(tree: &mut Tree, grid: &Grid, undecided: &[[Vec3; 2]]) -> Vec<Cell> {
     let mut wanted: FxHashSet<Cell> = FxHashSet::default();
     for [lo, hi] in undecided {
@@ -127,6 +130,57 @@ fn divide(tree: &mut Tree, grid: &Grid, undecided: &[[Vec3; 2]]) -> Vec<Cell> {
     let (divided, kept): (Vec<Cell>, Vec<Cell>) =
         leaves.into_iter().partition(|cell| cell.size > 1 && wanted.contains(cell));
     tree.leaves = kept;
-    divided.iter().for_each(|cell| tree.split(*cell));
-    divided.into_iter().flat_map(Cell::children).collect()
+    divided
+}
+
+#[cfg(test)]
+mod tests {
+    use sdfc_graph::{Dim, Graph, NodeId, Type};
+
+    use super::*;
+
+    /// Returns a ring of balls, a cube and a smooth blend, cut by a ball.
+    fn program() -> Program {
+        let mut graph = Graph::new();
+        let p = graph.point(0, Dim::Three);
+        let ball = |graph: &mut Graph, center: [f64; 3], radius: f64| -> NodeId {
+            let center = graph.constant(Type::Vec3, &center);
+            let offset = graph.sub(p, center);
+            let (length, radius) = (graph.length(offset), graph.number(radius));
+            graph.sub(length, radius)
+        };
+        let mut root = ball(&mut graph, [0.0, 0.0, 0.1], 0.3);
+        for i in 0..8 {
+            let (sine, cosine) = (f64::from(i) * 0.7).sin_cos();
+            let next = ball(&mut graph, [0.7 * cosine, 0.7 * sine, 0.0], 0.2);
+            root = graph.min(root, next);
+        }
+        let sides = [0, 1, 2].map(|axis| {
+            let (x, half) = (graph.component(p, axis), graph.number(0.25));
+            let x = graph.abs(x);
+            graph.sub(x, half)
+        });
+        let cube = sides.into_iter().reduce(|a, b| graph.max(a, b));
+        root = cube.map_or(root, |cube| graph.min(root, cube));
+        let cutter = ball(&mut graph, [0.5, 0.3, 0.6], 0.5);
+        let outside = graph.neg(cutter);
+        root = graph.max(root, outside);
+        Program { graph, distance: Some(root), ..Program::default() }
+    }
+
+    #[test]
+    fn a_field_that_is_specialized_to_boxes_gives_the_same_mesh_and_certificate() {
+        let (program, frame) = (program(), FrameValues::default());
+        let options = MeshOptions::new([[-1.0; 3], [1.0; 3]], 0.03);
+        let field = Field::new(&program).ok().flatten();
+        let grid = grid(&options).ok();
+        let (Some(field), Some(grid)) = (field, grid) else { panic!("a field and its grid") };
+        let whole = LocalField::new(field.distance(), &frame);
+        let [local, fixed] = [whole.clone(), whole.fixed()].map(|field| {
+            let maker = Maker { field: &field, grid: &grid, options: &options };
+            maker.mesh(&mut |_| ControlFlow::Continue(()))
+        });
+        assert!(local.as_ref().is_ok_and(|mesh| mesh.triangles.len() > 1000));
+        assert_eq!(local, fixed);
+    }
 }

@@ -54,7 +54,7 @@ pub(crate) fn crosses_once(triangles: &[[Vec3; 3]], line: [f64; 2], ends: [f64; 
     crossings(triangles, line, ends).is_some_and(|count| count % 2 == 1)
 }
 
-/// The number of triangles around a line; `None` if it is too near to an edge to tell.
+/// Counts the triangles around a line; `None` if it is too near to an edge to tell.
 fn crossings(triangles: &[[Vec3; 3]], [u, v]: [f64; 2], ends: [f64; 2]) -> Option<usize> {
     let close = 1e-9 * (ends[1] - ends[0]);
     let mut count = 0;
@@ -92,7 +92,7 @@ fn side(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).abs()
 }
 
-/// The distance of a point from a triangle.
+/// Returns the distance of a point from a triangle.
 pub(crate) fn distance(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
     let normal = cross(sub(b, a), sub(c, a));
     let above = |from: Vec3, to: Vec3| dot(cross(sub(to, from), sub(point, from)), normal) >= 0.0;

@@ -164,7 +164,7 @@ impl Placer<'_, '_> {
     }
 }
 
-/// The box, smaller by a margin on all sides.
+/// Returns the box, smaller by a margin on all sides.
 fn inner([lo, hi]: [Vec3; 2], margin: f64) -> [Vec3; 2] {
     [lo.map(|x| x + margin), hi.map(|x| x - margin)]
 }
@@ -173,7 +173,7 @@ fn clamped(point: Vec3, [lo, hi]: [Vec3; 2]) -> Vec3 {
     std::array::from_fn(|axis| point[axis].clamp(lo[axis], hi[axis]))
 }
 
-/// The last point within a box on the way from a point of it to another point.
+/// Returns the last point within a box on the way from a point of it to another point.
 fn clipped(from: Vec3, to: Vec3, limits: [Vec3; 2]) -> Vec3 {
     let mut t: f64 = 1.0;
     for axis in 0..3 {

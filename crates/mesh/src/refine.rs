@@ -7,14 +7,14 @@ use rustc_hash::FxHashMap;
 
 use crate::error::{MeshError, Phase, Progress};
 use crate::examine::{Sizes, Verdict, examine};
-use crate::field::{Prober, is_inside};
+use crate::field::{LocalField, Prober, is_inside};
 use crate::grid::{Cell, Corner, Grid};
 use crate::loops::loops;
 use crate::patch::Placer;
 use crate::tree::Tree;
 
-/// Cells that are examined between two reports of progress.
-const CHUNK: usize = 16_384;
+/// Cells that are divided between two reports of progress.
+const CHUNK: usize = 2048;
 
 /// The signs of corners: true for inside.
 pub(crate) type Signs = FxHashMap<Corner, bool>;
@@ -36,39 +36,44 @@ pub(crate) fn report(
     }
 }
 
-/// What refinement needs.
+/// The field, the grid and the limits that decide where cells are split.
 pub(crate) struct Refiner<'a, 'f> {
     pub(crate) prober: &'a Prober<'f>,
+    pub(crate) field: &'a LocalField<'f>,
     pub(crate) grid: &'a Grid,
     pub(crate) error: f64,
     pub(crate) sizes: Sizes,
     pub(crate) max_cells: u64,
 }
 
-impl Refiner<'_, '_> {
-    /// Examines cells and their descendants, and adds them to the tree.
+/// A cell that is split, and the field around it.
+struct Task<'f> {
+    cell: Cell,
+    field: LocalField<'f>,
+}
+
+impl<'f> Refiner<'_, 'f> {
+    /// Splits cells, examines their descendants, and adds all to the tree.
     pub(crate) fn grow(
         &self,
         tree: &mut Tree,
         cells: Vec<Cell>,
         progress: OnProgress<'_>,
     ) -> Result<(), MeshError> {
-        let mut waiting = cells;
+        let task = |cell| Task { cell, field: self.field.clone() };
+        let mut waiting: Vec<Task<'_>> = cells.into_iter().map(task).collect();
         let mut done = 0;
         while !waiting.is_empty() {
             let chunk = waiting.split_off(waiting.len().saturating_sub(CHUNK));
             done += chunk.len();
-            let verdicts: Vec<Verdict> = chunk
-                .par_iter()
-                .map_init(|| self.prober.clone(), |prober, cell| self.examine(prober, *cell))
-                .collect();
-            for (cell, verdict) in chunk.into_iter().zip(verdicts) {
-                match verdict {
-                    Verdict::Empty => {}
-                    Verdict::Leaf => tree.leaves.push(cell),
-                    Verdict::Split => {
-                        tree.split(cell);
-                        waiting.extend(cell.children());
+            let found: Vec<_> = chunk.into_par_iter().map(|task| self.divide(task)).collect();
+            for (task, verdicts) in found {
+                tree.split(task.cell);
+                for (cell, verdict) in task.cell.children().into_iter().zip(verdicts) {
+                    match verdict {
+                        Verdict::Empty => {}
+                        Verdict::Leaf => tree.leaves.push(cell),
+                        Verdict::Split => waiting.push(Task { cell, field: task.field.clone() }),
                     }
                 }
             }
@@ -80,9 +85,14 @@ impl Refiner<'_, '_> {
         Ok(())
     }
 
-    fn examine(&self, prober: &mut Prober<'_>, cell: Cell) -> Verdict {
-        let mut placer = Placer { prober, grid: self.grid, error: self.error };
-        examine(&mut placer, cell, self.sizes)
+    /// Specialises the field to a cell, and examines its children.
+    fn divide(&self, Task { cell, field }: Task<'f>) -> (Task<'f>, [Verdict; 8]) {
+        let field = field.around(self.grid.bounds(cell), self.grid.length(cell.size));
+        let mut prober = field.prober();
+        let mut placer = Placer { prober: &mut prober, grid: self.grid, error: self.error };
+        let verdicts = cell.children().map(|child| examine(&mut placer, child, self.sizes));
+        drop(prober);
+        (Task { cell, field }, verdicts)
     }
 
     /// Splits leaves until the surface crosses the boundary of each in one loop, except in cells of
@@ -102,16 +112,11 @@ impl Refiner<'_, '_> {
                 return Ok(());
             }
             let leaves = std::mem::take(&mut tree.leaves);
-            let mut children = Vec::new();
+            let mut divided = Vec::new();
             for (cell, is_tangled) in leaves.into_iter().zip(tangled) {
-                if is_tangled {
-                    tree.split(cell);
-                    children.extend(cell.children());
-                } else {
-                    tree.leaves.push(cell);
-                }
+                if is_tangled { divided.push(cell) } else { tree.leaves.push(cell) }
             }
-            self.grow(tree, children, progress)?;
+            self.grow(tree, divided, progress)?;
         }
     }
 

@@ -28,12 +28,12 @@ impl Tree {
         self.split.insert(cell);
     }
 
-    /// Number of cells that are split.
+    /// Returns the number of cells that are split.
     pub(crate) fn splits(&self) -> usize {
         self.split.len()
     }
 
-    /// The leaf below a cell that contains the smallest cell at a position.
+    /// Returns the leaf below a cell that contains the smallest cell at a position.
     pub(crate) fn leaf_at(&self, mut cell: Cell, at: Corner) -> Cell {
         while self.split.contains(&cell) {
             let size = cell.size / 2;
@@ -71,8 +71,8 @@ impl Tree {
         }
     }
 
-    /// The chords in which the surface crosses a smallest face, each from an edge to an edge, with
-    /// the inside on the left as seen from above.
+    /// Returns the chords in which the surface crosses a smallest face, each from an edge to an
+    /// edge, with the inside on the left as seen from above.
     ///
     /// Where four edges are crossed, the inside is connected across the face.
     pub(crate) fn chords(
