@@ -116,7 +116,8 @@ impl Evaluator<'_, Interval> {
 }
 
 impl Evaluator<'_, Affine> {
-    /// Like [`Evaluator::<Interval>::scalar_along`], over a box that may be rotated.
+    /// The first lane of the first root over a box that may be rotated, on one path through its
+    /// jumps, without comparisons. The path records which jumps it leaves open.
     pub fn scalar_along(&mut self, point: [Affine; 3], path: &mut BranchPath) -> Affine {
         path.begin();
         self.run(&[point], &mut { path });
