@@ -150,11 +150,13 @@ impl<'f> LocalField<'f> {
         self.short.as_deref().unwrap_or(self.whole)
     }
 
-    /// Returns the field in a cube that is grown by a margin.
+    /// Returns the field in a cube that is grown by a margin. A field with loops stays as it is: the
+    /// conditions of loops leave out most of their iterations over a small box.
     pub(crate) fn around(self, [lo, hi]: [Vec3; 2], margin: f64) -> Self {
         let side = hi[0] - lo[0];
         let operations = self.tape().operations();
-        if operations < FEW_OPERATIONS || side * ZOOM > self.side {
+        let has_few = operations < FEW_OPERATIONS;
+        if has_few || side * ZOOM > self.side || self.whole.has_loops() {
             return self;
         }
         let grown = [lo.map(|x| x - margin), hi.map(|x| x + margin)];
@@ -166,14 +168,12 @@ impl<'f> LocalField<'f> {
 
     /// Returns the field with registers.
     pub(crate) fn prober(&self) -> Prober<'_> {
-        let boxes = self.tape();
-        // At a point, a loop may end long before it ends over a box.
-        let points = if self.whole.has_loops() { self.whole } else { boxes };
+        let tape = self.tape();
         Prober {
-            value: points.prepare(self.frame),
-            slope: points.prepare(self.frame),
-            interval: boxes.prepare(self.frame),
-            affine: boxes.prepare(self.frame),
+            value: tape.prepare(self.frame),
+            slope: tape.prepare(self.frame),
+            interval: tape.prepare(self.frame),
+            affine: tape.prepare(self.frame),
             path: BranchPath::default(),
         }
     }
