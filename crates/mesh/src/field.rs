@@ -150,8 +150,8 @@ impl<'f> LocalField<'f> {
         self.short.as_deref().unwrap_or(self.whole)
     }
 
-    /// Returns the field in a cube that is grown by a margin. A field with loops stays as it is: the
-    /// conditions of loops leave out most of their iterations over a small box.
+    /// Returns the field in a cube that is grown by a margin. A field with loops stays as it is:
+    /// their conditions leave out most iterations over a small box.
     pub(crate) fn around(self, [lo, hi]: [Vec3; 2], margin: f64) -> Self {
         let side = hi[0] - lo[0];
         let operations = self.tape().operations();
@@ -218,7 +218,7 @@ impl Prober<'_> {
     }
 
     /// Returns the side of a whole box, if it is proven that all of it is on one side. Where the
-    /// formula jumps, as at the borders of repeated cells, it is proven for each result of the jump.
+    /// formula jumps, as at the borders of repeated cells, it is proven for each result.
     pub(crate) fn side_over(&mut self, prism: &Prism) -> Option<bool> {
         let box_ = prism.coordinates();
         self.path.clear();

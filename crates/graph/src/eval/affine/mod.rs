@@ -2,6 +2,7 @@
 
 mod arithmetic;
 mod functions;
+mod path;
 
 use crate::eval::{Interval, Number};
 
@@ -51,7 +52,7 @@ impl Affine {
     }
 
     /// Makes a form of which only the range is known.
-    pub(in crate::eval) fn from_range(range: Interval) -> Self {
+    fn from_range(range: Interval) -> Self {
         let center = 0.5 * range.lo() + 0.5 * range.hi();
         let error = (0.5 * range.hi() - 0.5 * range.lo()) * (1.0 + ROUNDING)
             + ROUNDING * range.lo().abs().max(range.hi().abs());

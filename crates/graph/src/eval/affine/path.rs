@@ -1,0 +1,19 @@
+//! Choosing results at the jumps of a field over a box that may be rotated.
+
+use super::Affine;
+use crate::eval::op::Op;
+use crate::eval::tracer::Tracer;
+use crate::eval::{BranchPath, Interval};
+
+/// Comparisons are not decided: what is selected by them often meets where they change, so that
+/// affine forms of both sides serve.
+impl Tracer<Affine> for &mut BranchPath {
+    fn jumped(&mut self, op: Op, arguments: [Affine; 3], result: Affine) -> Affine {
+        if matches!(op, Op::Lt | Op::Le | Op::Eq | Op::Ne | Op::Step) {
+            return result;
+        }
+        let ranges = arguments.map(Affine::range);
+        let chosen = Tracer::<Interval>::jumped(self, op, ranges, result.range());
+        if chosen == result.range() { result } else { Affine::from_range(chosen) }
+    }
+}
