@@ -1,14 +1,17 @@
 //! Checks that GPU, CPU in f32 and CPU in f64 render the same surface at 64x64. Outside edges,
 //! depths differ by at most 1e-3, by less in small scenes, and far from the origin by no more than
 //! the rounding of coordinates. Where a picture says that it proves nothing, rays are sampled at
-//! points that depend on rounding, so there a small part of the pixels may differ.
+//! points that depend on rounding, so a small part of these pixels may differ.
 
 use std::fmt;
 
 use sdfc::{
     Backend, Compiler, Diagnostics, Error, FrameValues, Method, PictureOptions, Scene, no_progress,
 };
-use sdfc_render::{CpuScene, Difference, HIT, Image, View, compare, edges, is_unproven};
+use sdfc_march::PixelBlock;
+use sdfc_render::{
+    CpuScene, Difference, HIT, Image, View, compare, edges, is_unproven, linear_to_srgb8,
+};
 
 /// Width and height in pixels.
 const SIDE: u32 = 64;
@@ -153,7 +156,7 @@ fn agree(
     color: Option<u8>,
 ) -> Result<Difference, Disagreement> {
     let differ = |why: String| Disagreement::Differ(format!("{pair}: {why}"));
-    let b = &without_unproven(a, b, depth).map_err(differ)?;
+    let b = &with_unproven_of(a, b, depth, color).map_err(differ)?;
     let found = compare(a, b).ok_or_else(|| differ("the sizes differ".to_owned()))?;
     let edges = found.edges as f64 / f64::from(SIDE * SIDE);
     if found.depth > depth || found.status > 0 || color.is_some_and(|limit| found.color > limit) {
@@ -166,20 +169,31 @@ fn agree(
     Ok(found)
 }
 
-/// Returns `b` with the pixels of `a` where one of them is unproven, if nearly all of these agree.
-fn without_unproven(a: &Image, b: &Image, depth: f32) -> Result<Image, String> {
+/// Returns `b` with the pixels of `a` where both differ and one is unproven, if these are few.
+fn with_unproven_of(a: &Image, b: &Image, depth: f32, color: Option<u8>) -> Result<Image, String> {
     let is_edge: Vec<bool> = edges(a).into_iter().zip(edges(b)).map(|(a, b)| a || b).collect();
     let (mut unproven, mut differing, mut other) = (0, 0, b.clone());
     for ((a, b), is_edge) in a.pixels().iter().zip(other.pixels_mut()).zip(is_edge) {
-        if is_unproven(a) || is_unproven(b) {
-            let is_same = a.status == b.status && (a.depth - b.depth).abs() <= depth;
-            unproven += usize::from(!is_edge);
-            differing += usize::from(!is_edge && !is_same);
+        if is_edge || !(is_unproven(a) || is_unproven(b)) {
+            continue;
+        }
+        unproven += 1;
+        if !is_same(a, b, depth, color) {
+            differing += 1;
             *b = *a;
         }
     }
-    if differing as f64 > UNPROVEN * f64::from(unproven as u32) {
+    if f64::from(differing) > UNPROVEN * f64::from(unproven) {
         return Err(format!("{differing} of {unproven} unproven pixels differ"));
     }
     Ok(other)
+}
+
+fn is_same(a: &PixelBlock, b: &PixelBlock, depth: f32, color: Option<u8>) -> bool {
+    let step = |channel: usize| {
+        linear_to_srgb8(a.color[channel]).abs_diff(linear_to_srgb8(b.color[channel]))
+    };
+    a.status == b.status
+        && (a.depth - b.depth).abs() <= depth
+        && color.is_none_or(|limit| (0..3).all(|channel| step(channel) <= limit))
 }

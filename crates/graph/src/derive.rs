@@ -29,16 +29,20 @@ pub(crate) use self::sweep::TINY;
 pub use self::sweep::adjoints;
 
 use crate::graph::Graph;
-use crate::node::{NodeId, Type};
+use crate::node::NodeId;
 
 /// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
 pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
     let found = sweep::adjoints(graph, root, &[point]);
-    merged(graph, &found)
+    match loops::merged(graph, &found)[..] {
+        [gradient] => gradient,
+        _ => sweep::zero(graph, graph.ty(point)),
+    }
 }
 
-/// The same gradient, summed up at every scalar that alone needs at least `least` lanes of other
-/// values. `None` if there is no such scalar, or if the parts between them share too much.
+/// The same gradient as [`gradient`], by one sweep for each part of the formula. A part ends at
+/// every scalar that alone needs at least `least` lanes of other values. `None` if there is no such
+/// scalar, or if the parts share so much that the sweeps would take quadratic time.
 ///
 /// It takes more operations than one sweep, and keeps far fewer values alive.
 pub fn gradient_in_parts(
@@ -48,10 +52,5 @@ pub fn gradient_in_parts(
     least: usize,
 ) -> Option<NodeId> {
     let found = parts::gradient(graph, root, point, least)?;
-    Some(merged(graph, &[found]))
-}
-
-fn merged(graph: &mut Graph, found: &[NodeId]) -> NodeId {
-    let merged = loops::merged(graph, found);
-    merged.first().copied().unwrap_or_else(|| sweep::zero(graph, Type::Vec3))
+    loops::merged(graph, &[found]).pop()
 }

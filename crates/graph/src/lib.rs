@@ -105,4 +105,4 @@ pub use simplify::function::{SoftExtreme, SoftKind};
 pub use srgb::linear_to_srgb8;
 pub use transforms::{Rewritten, fold_transforms};
 pub use uniforms::uniforms;
-pub use walk::{reachable, reachable_where};
+pub use walk::{operands, reachable, reachable_where};

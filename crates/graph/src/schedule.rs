@@ -5,7 +5,7 @@
 //! No order is best for all graphs. [`schedule`] tries three and keeps the one with the fewest live
 //! values: ascending ids, and two depth-first orders that visit large arguments first.
 
-mod dag;
+pub(crate) mod dag;
 mod lanes;
 mod order;
 

@@ -2,7 +2,7 @@
 
 use crate::graph::Graph;
 use crate::ids::IdSet;
-use crate::node::{Const, Node, NodeId, Ternary};
+use crate::node::{Binary, Const, Node, NodeId, Ternary};
 
 /// The nodes that the roots are computed from, the roots included, in ascending order: arguments
 /// come before their uses.
@@ -35,6 +35,32 @@ pub(crate) fn computed_where(
             pending.extend(graph.inputs(id));
         }
     })
+}
+
+/// Returns the operands of nested binary operations, such as the terms of a sum, in no particular
+/// order. `is_nested` is given an operation and its second operand, and returns true if the
+/// operation is one of them. `None` if there are more than `limit` operands.
+pub fn operands(
+    graph: &Graph,
+    root: NodeId,
+    limit: usize,
+    is_nested: impl Fn(Binary, NodeId) -> bool,
+) -> Option<Vec<NodeId>> {
+    let (mut operands, mut at) = (vec![root], 0);
+    while let Some(&operand) = operands.get(at) {
+        if let Node::Binary(op, a, b) = graph.node(operand)
+            && is_nested(op, b)
+        {
+            operands[at] = a;
+            operands.push(b);
+        } else {
+            at += 1;
+        }
+        if operands.len() > limit {
+            return None;
+        }
+    }
+    Some(operands)
 }
 
 /// Up to this many nodes, a linear search is faster than a set.

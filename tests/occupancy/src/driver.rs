@@ -38,13 +38,9 @@ impl Device {
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut version);
         // SAFETY: the device is of this instance, and the structures are valid.
         unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
-        let text = |name: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = name.iter().map(|&letter| letter as u8).collect();
-            CStr::from_bytes_until_nul(&bytes)
-                .map(|text| text.to_string_lossy().into_owned())
-                .unwrap_or_default()
-        };
-        let driver = format!("{} ({})", text(&version.driver_info), text(&version.driver_name));
+        let text = |name: Result<&CStr, _>| name.unwrap_or_default().to_string_lossy().into_owned();
+        let [info, name] = [version.driver_info_as_c_str(), version.driver_name_as_c_str()];
+        let driver = format!("{} ({})", text(info), text(name));
 
         let queue = [vk::DeviceQueueCreateInfo::default().queue_priorities(&[1.0])];
         let extensions = [executable::NAME.as_ptr()];

@@ -4,7 +4,7 @@
 //! positive, the first one elsewhere. So it changes by no more than v does, whereas the sum of the
 //! constants of its terms is 2.
 
-use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Unary};
+use sdfc_graph::{Binary, Graph, Node, NodeId, Stage, Unary, operands};
 
 /// Largest number of terms of the sum: the two, and constants.
 const MAX_TERMS: usize = 6;
@@ -21,22 +21,8 @@ pub(crate) fn corner_distance(graph: &mut Graph, node: NodeId) -> Option<NodeId>
 /// The terms of a sum that depend on the point.
 fn varying_terms(graph: &Graph, sum: NodeId) -> Option<Vec<NodeId>> {
     let varies = |node: NodeId| graph.stage(node) == Stage::Point;
-    let (mut terms, mut at) = (vec![sum], 0);
-    while let Some(&term) = terms.get(at) {
-        if let Node::Binary(Binary::Add, a, b) = graph.node(term) {
-            terms[at] = a;
-            terms.push(b);
-        } else if let Node::Binary(Binary::Sub, a, b) = graph.node(term)
-            && !varies(b)
-        {
-            terms[at] = a;
-        } else {
-            at += 1;
-        }
-        if terms.len() > MAX_TERMS {
-            return None;
-        }
-    }
+    let is_sum = |op, b| op == Binary::Add || op == Binary::Sub && !varies(b);
+    let terms = operands(graph, sum, MAX_TERMS, is_sum)?;
     Some(terms.into_iter().filter(|&term| varies(term)).collect())
 }
 
@@ -46,12 +32,13 @@ fn of_terms(graph: &mut Graph, outer: NodeId, inner: NodeId) -> Option<NodeId> {
     let greatest = with_zero(graph, Binary::Min, inner)?;
     let width = graph.ty(v).width() as u8;
     let mut components: Vec<NodeId> = (0..width).map(|lane| graph.component(v, lane)).collect();
-    let mut operands = operands_of_max(graph, greatest)?;
-    components.sort_unstable();
-    components.dedup();
-    operands.sort_unstable();
-    operands.dedup();
-    (components == operands).then_some(v)
+    let is_max = |op, _| op == Binary::Max;
+    let mut compared = operands(graph, greatest, MAX_COMPONENTS, is_max)?;
+    for nodes in [&mut components, &mut compared] {
+        nodes.sort_unstable();
+        nodes.dedup();
+    }
+    (components == compared).then_some(v)
 }
 
 /// x of `max(x, 0)` or `min(x, 0)`.
@@ -66,20 +53,4 @@ fn with_zero(graph: &Graph, op: Binary, node: NodeId) -> Option<NodeId> {
         (true, true, false) => Some(b),
         (true, false, false) | (false, ..) => None,
     }
-}
-
-fn operands_of_max(graph: &Graph, root: NodeId) -> Option<Vec<NodeId>> {
-    let (mut operands, mut at) = (vec![root], 0);
-    while let Some(&operand) = operands.get(at) {
-        if let Node::Binary(Binary::Max, a, b) = graph.node(operand) {
-            operands[at] = a;
-            operands.push(b);
-        } else {
-            at += 1;
-        }
-        if operands.len() > MAX_COMPONENTS {
-            return None;
-        }
-    }
-    Some(operands)
 }

@@ -123,23 +123,14 @@ pub(crate) fn scheduled(
     members: &[NodeId],
     inputs: &Inputs,
 ) -> Vec<NodeId> {
-    schedule(graph, roots, members, |id| match graph.node(id) {
-        _ if inputs.is_slot(id) => Vec::new(),
-        Node::Loop(looped, ..) => graph.loop_inputs(looped),
-        Node::Const(_)
-        | Node::Point(..)
-        | Node::Frame(..)
-        | Node::Unary(..)
-        | Node::Binary(..)
-        | Node::Ternary(..)
-        | Node::Splat(..)
-        | Node::Compose(..)
-        | Node::Swizzle(..)
-        | Node::Transform(..)
-        | Node::Variable(..)
-        | Node::Element(..)
-        | Node::Sample(..)
-        | Node::MaterialAt(..) => operands(graph, id).collect(),
+    schedule(graph, roots, members, |id| {
+        if inputs.is_slot(id) {
+            Vec::new()
+        } else if let Node::Loop(looped, ..) = graph.node(id) {
+            graph.loop_inputs(looped)
+        } else {
+            operands(graph, id).collect()
+        }
     })
 }
 

@@ -3,7 +3,8 @@
 use crate::dominators::DominatorTree;
 use crate::graph::Graph;
 use crate::ids::{IdMap, IdSet};
-use crate::node::{Node, NodeId, Stage, Type};
+use crate::node::{NodeId, Stage, Type};
+use crate::schedule::dag::{Dag, Exclusive};
 
 /// A scalar whose derivative is computed before that of what it is a part of.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +33,9 @@ pub(super) fn cuts(
     let (Some(top), Some(bottom)) = (positions.get(root), positions.get(point)) else {
         return Vec::new();
     };
-    let users = users_tree(graph, order, &positions, top, point);
-    let lanes = exclusive_lanes(graph, order, &users, top);
+    let per_point = |id| id != point && graph.stage(id) == Stage::Point;
+    let operands = |id| if per_point(id) { graph.inputs(id) } else { Vec::new() };
+    let Exclusive { users, lanes } = Dag::new(graph, &[root], order, operands).exclusive();
     let is_cut = |position: usize| {
         let id = order[position];
         let rest = lanes[users.parent(position)].saturating_sub(lanes[position]);
@@ -60,75 +62,6 @@ pub(super) fn cuts(
         order[position]
     };
     chosen.iter().map(|&position| Cut { value: order[position], frame: frame(position) }).collect()
-}
-
-/// The dominators of all nodes seen from the root: what alone uses them.
-fn users_tree(
-    graph: &Graph,
-    order: &[NodeId],
-    positions: &IdMap<usize>,
-    top: usize,
-    point: NodeId,
-) -> DominatorTree {
-    let mut tree = DominatorTree::new(order.len(), top);
-    let mut found: Vec<Option<usize>> = vec![None; order.len()];
-    for position in (0..order.len()).rev() {
-        if let Some(parent) = found[position] {
-            tree.add(position, parent);
-        } else if position != top {
-            continue;
-        }
-        if order[position] == point {
-            continue;
-        }
-        for argument in graph.inputs(order[position]) {
-            let Some(argument) = positions.get(argument) else { continue };
-            found[argument] =
-                Some(found[argument].map_or(position, |known| tree.common(known, position)));
-        }
-    }
-    tree
-}
-
-/// The lanes of the values that only a node uses, its own included.
-fn exclusive_lanes(
-    graph: &Graph,
-    order: &[NodeId],
-    users: &DominatorTree,
-    top: usize,
-) -> Vec<usize> {
-    let mut lanes: Vec<usize> = order.iter().map(|&id| own_lanes(graph, id)).collect();
-    // A node's dominator has a greater id.
-    for position in (0..order.len()).filter(|&position| position != top) {
-        lanes[users.parent(position)] += lanes[position];
-    }
-    lanes
-}
-
-fn own_lanes(graph: &Graph, id: NodeId) -> usize {
-    match graph.node(id) {
-        Node::Const(_)
-        | Node::Frame(..)
-        | Node::Point(..)
-        | Node::Variable(..)
-        | Node::Splat(..)
-        | Node::Compose(..)
-        | Node::Swizzle(..) => 0,
-        Node::Unary(..)
-        | Node::Binary(..)
-        | Node::Ternary(..)
-        | Node::Transform(..)
-        | Node::Loop(..)
-        | Node::Element(..)
-        | Node::Sample(..)
-        | Node::MaterialAt(..) => {
-            if graph.stage(id) == Stage::Point {
-                graph.ty(id).width()
-            } else {
-                0
-            }
-        }
-    }
 }
 
 /// The dominators of the live nodes seen from the point: what they depend on it through.

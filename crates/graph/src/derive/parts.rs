@@ -70,9 +70,10 @@ fn region(
     })
 }
 
-/// Differentiates a cut by the frame of the part that it is in, if no other cut of that part has
-/// its frame: then the way from frame to frame is taken before the derivative is weighted, and
-/// conditions on the weights are not needed before it. `None` beyond the limit.
+/// Gives a cut the frame of the part that contains it, if no other cut of that part has the same
+/// frame. Its derivative then includes the maps between the two frames. So they are applied before
+/// the derivative is weighted, and the conditions of the weights are not computed before it.
+/// Returns `None` beyond the limit.
 fn widen_frames(
     graph: &Graph,
     [root, point]: [NodeId; 2],
@@ -90,9 +91,12 @@ fn widen_frames(
         let inner = nodes.into_iter().filter(|&id| id != value && id != frame);
         let inner: Vec<(NodeId, NodeId)> =
             inner.filter_map(|id| Some((id, frames.get(id)?))).collect();
+        let mut counts: IdMap<usize> = IdMap::default();
+        for &(_, own) in &inner {
+            *counts.entry(own).get_or_insert_default() += 1;
+        }
         for &(id, own) in &inner {
-            let shares = inner.iter().filter(|&&(_, other)| other == own).count() > 1;
-            let is_only = !shares && found.get(id).is_none();
+            let is_only = counts.get(own) == Some(1) && found.get(id).is_none();
             found.insert(id, Place { part: value, is_only });
         }
     }

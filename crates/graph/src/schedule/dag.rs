@@ -1,11 +1,12 @@
 //! The nodes of one function, and which of them each reads.
 
+use crate::dominators::DominatorTree;
 use crate::graph::Graph;
 use crate::ids::IdMap;
 use crate::node::{Node, NodeId, Type};
 
 /// Nodes by position, each after the nodes that it reads.
-pub(super) struct Dag {
+pub(crate) struct Dag {
     /// The nodes, ascending.
     pub(super) nodes: Vec<NodeId>,
     /// The positions of the nodes that each node reads.
@@ -18,8 +19,17 @@ pub(super) struct Dag {
     pub(super) lanes: Vec<[Option<(usize, u8)>; 4]>,
 }
 
+/// What is needed for one node alone, by position.
+pub(crate) struct Exclusive {
+    /// The dominators of the nodes, seen from their users. The root stands for all that reads the
+    /// nodes of the function; its position is their number.
+    pub(crate) users: DominatorTree,
+    /// The number of lanes that are computed for each node alone, its own included.
+    pub(crate) lanes: Vec<usize>,
+}
+
 impl Dag {
-    pub(super) fn new(
+    pub(crate) fn new(
         graph: &Graph,
         roots: &[NodeId],
         members: &[NodeId],
@@ -54,6 +64,31 @@ impl Dag {
         self.lanes[position].iter().flatten().filter(|lane| lane.0 == position).count()
     }
 
+    /// Returns what is needed for each node alone.
+    pub(crate) fn exclusive(&self) -> Exclusive {
+        let count = self.nodes.len();
+        let mut users = DominatorTree::new(count + 1, count);
+        let mut found: Vec<Option<usize>> = vec![None; count];
+        for &root in &self.roots {
+            found[root] = Some(count);
+        }
+        for position in (0..count).rev() {
+            users.add(position, found[position].unwrap_or(count));
+            for &argument in &self.arguments[position] {
+                let common =
+                    found[argument].map_or(position, |known| users.common(known, position));
+                found[argument] = Some(common);
+            }
+        }
+        let mut lanes: Vec<usize> = (0..count).map(|position| self.own_lanes(position)).collect();
+        lanes.push(0);
+        // A node's dominator has a greater position.
+        for position in 0..count {
+            lanes[users.parent(position)] += lanes[position];
+        }
+        Exclusive { users, lanes }
+    }
+
     fn lanes_of(
         &self,
         graph: &Graph,
@@ -64,7 +99,8 @@ impl Dag {
     ) -> [Option<(usize, u8)>; 4] {
         let lane_of = |id: NodeId, lane: usize| Some(self.lanes[positions.get(id)?][lane]);
         let mut lanes = [None; 4];
-        let width = graph.ty(id).width();
+        // Conditions take no register.
+        let width = if graph.ty(id) == Type::Bool { 0 } else { graph.ty(id).width() };
         match graph.node(id) {
             Node::Swizzle(_, vector, from) => {
                 for (lane, from) in lanes.iter_mut().zip(from).take(width) {
@@ -79,9 +115,8 @@ impl Dag {
             Node::Splat(_, scalar) => lanes[..width].fill(lane_of(scalar, 0).flatten()),
             // Loaded once for all threads, where it is read.
             Node::Const(_) | Node::Frame(..) => {}
-            Node::Point(..)
-            | Node::Variable(..)
-            | Node::Loop(..)
+            Node::Point(..) | Node::Variable(..) => lanes = computed_lanes(position, width),
+            Node::Loop(..)
             | Node::Element(..)
             | Node::Sample(..)
             | Node::MaterialAt(..)
@@ -89,14 +124,21 @@ impl Dag {
             | Node::Binary(..)
             | Node::Ternary(..)
             | Node::Transform(..) => {
-                let is_input = matches!(graph.node(id), Node::Point(..) | Node::Variable(..));
-                if graph.ty(id) != Type::Bool && (is_input || !reads_nothing) {
-                    for (lane, index) in lanes.iter_mut().zip(0..).take(width) {
-                        *lane = Some((position, index));
-                    }
+                // What reads no member is the same for all threads.
+                if !reads_nothing {
+                    lanes = computed_lanes(position, width);
                 }
             }
         }
         lanes
     }
+}
+
+/// The lanes of a value that its own node computes.
+fn computed_lanes(position: usize, width: usize) -> [Option<(usize, u8)>; 4] {
+    let mut lanes = [None; 4];
+    for (lane, index) in lanes.iter_mut().zip(0..).take(width) {
+        *lane = Some((position, index));
+    }
+    lanes
 }

@@ -1,7 +1,6 @@
 //! Depth-first orders.
 
 use super::dag::Dag;
-use crate::dominators::DominatorTree;
 
 /// What is left to do for a node.
 #[derive(Clone, Copy)]
@@ -22,7 +21,7 @@ enum Task {
 /// before light ones across several levels: a sum of weighted derivatives needs all derivatives
 /// before the weights, each of which depends on all values that the derivatives share.
 pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
-    let sizes = sizes(dag);
+    let sizes = dag.exclusive().lanes;
     let count = dag.nodes.len();
     let (mut order, mut done) = (Vec::with_capacity(count), vec![false; count]);
     // The last task is taken first, so larger arguments are sorted to the end.
@@ -65,28 +64,4 @@ pub(super) fn depth_first(dag: &Dag, heavy: usize) -> Vec<usize> {
         }
     }
     order
-}
-
-/// The number of lanes that are computed for each node alone, its own included.
-fn sizes(dag: &Dag) -> Vec<usize> {
-    let count = dag.nodes.len();
-    let mut users = DominatorTree::new(count + 1, count);
-    let mut found: Vec<Option<usize>> = vec![None; count];
-    for &root in &dag.roots {
-        found[root] = Some(count);
-    }
-    for position in (0..count).rev() {
-        users.add(position, found[position].unwrap_or(count));
-        for &argument in &dag.arguments[position] {
-            let common = found[argument].map_or(position, |known| users.common(known, position));
-            found[argument] = Some(common);
-        }
-    }
-    let mut sizes: Vec<usize> = (0..count).map(|position| dag.own_lanes(position)).collect();
-    sizes.push(0);
-    // A node's dominator has a greater position.
-    for position in 0..count {
-        sizes[users.parent(position)] += sizes[position];
-    }
-    sizes
 }

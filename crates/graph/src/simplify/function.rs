@@ -2,6 +2,7 @@
 
 use crate::graph::Graph;
 use crate::node::{Binary, Node, NodeId, Stage, Type, Unary};
+use crate::walk::operands;
 
 /// Largest number of terms of a sum of exponentials whose logarithm is rewritten.
 const MAX_EXPONENTIALS: usize = 16;
@@ -92,21 +93,7 @@ impl Graph {
 
     /// The terms of a sum; `None` if there are more than `limit`.
     fn terms(&self, sum: NodeId, limit: usize) -> Option<Vec<NodeId>> {
-        let mut terms = vec![sum];
-        let mut at = 0;
-        while let Some(&term) = terms.get(at) {
-            match self.as_binary(Binary::Add, term) {
-                Some((a, b)) => {
-                    terms[at] = a;
-                    terms.push(b);
-                }
-                None => at += 1,
-            }
-            if terms.len() > limit {
-                return None;
-            }
-        }
-        Some(terms)
+        operands(self, sum, limit, |op, _| op == Binary::Add)
     }
 
     /// The logarithm of a sum of exponentials, term by term as

@@ -20,21 +20,14 @@ fn shade_hit(view_ray: Ray, found: Trace) -> SurfaceHit {
     hit.evaluations = found.evaluations;
     if found.status == HIT {
         hit.surface = surface_at(view_ray, found.t);
-        var ambient = view.ambient;
+        var open = 1.0;
+        if OCCLUSION {
+            open = unoccluded_fraction(hit.surface.point, hit.surface.normal);
+            hit.evaluations += OCCLUSION_SAMPLES;
+        }
+        hit.color = ambient_light(hit.surface, open * view.ambient);
         if MIRRORS_SKY {
-            var open = 1.0;
-            if OCCLUSION {
-                open = unoccluded_fraction(hit.surface.point, hit.surface.normal);
-                hit.evaluations += OCCLUSION_SAMPLES;
-            }
-            ambient *= open;
-            hit.color = ambient_light(hit.surface, ambient) + open * mirrored_sky(hit.surface);
-        } else {
-            if OCCLUSION {
-                ambient *= unoccluded_fraction(hit.surface.point, hit.surface.normal);
-                hit.evaluations += OCCLUSION_SAMPLES;
-            }
-            hit.color = ambient_light(hit.surface, ambient);
+            hit.color += open * mirrored_sky(hit.surface);
         }
         if FOG {
             hit.clear = exp(-view.fog_density * found.t);
@@ -65,9 +58,8 @@ fn picture(pixel: vec2u) -> Pixel {
     var hit: SurfaceHit;
     var color = vec3f();
     var evaluations = 0u;
-    // Factor of the light along the current view ray, and the part of it that mirrors have left.
-    var weight = 1.0;
-    var mirrored = vec3f(1.0);
+    // Factor of the light along the current view ray.
+    var weight = vec3f(1.0);
     var reflections = 0u;
     // The number of lights handled for the current surface. The ray leads to the last of them, or
     // is the view ray.
@@ -95,17 +87,11 @@ fn picture(pixel: vec2u) -> Pixel {
                 evaluations += found.evaluations;
             } else {
                 hit = shade_hit(view_ray, found);
-                if REFLECTIONS {
-                    hit.color *= mirrored;
-                }
                 color += weight * hit.color;
                 evaluations += hit.evaluations;
             }
         } else {
             hit = shade_hit(view_ray, found);
-            if REFLECTIONS {
-                hit.color *= mirrored;
-            }
             color += weight * hit.color;
             evaluations += hit.evaluations;
         }
@@ -121,9 +107,6 @@ fn picture(pixel: vec2u) -> Pixel {
                     lights_done++;
                     let incoming = light_at(light, hit.surface.point);
                     pending_light = through * reflected_light(hit.surface, incoming);
-                    if REFLECTIONS {
-                        pending_light *= mirrored;
-                    }
                     needs_ray = light.shadow != SHADOW_OFF && any(pending_light > vec3f());
                     if needs_ray {
                         ray = shadow_ray(hit.surface, view_ray, hit.trace.t, incoming);
@@ -137,19 +120,14 @@ fn picture(pixel: vec2u) -> Pixel {
             } else {
                 for (var i = 0u; i < light_count; i++) {
                     let incoming = light_at(view.lights[i], hit.surface.point);
-                    if REFLECTIONS {
-                        color += mirrored * (through * reflected_light(hit.surface, incoming));
-                    } else {
-                        color += through * reflected_light(hit.surface, incoming);
-                    }
+                    color += through * reflected_light(hit.surface, incoming);
                 }
             }
             if REFLECTIONS {
                 if reflections < min(view.reflections, MAX_REFLECTIONS) {
                     reflections++;
                     lights_done = 0u;
-                    weight = through * view.reflection_strength;
-                    mirrored *= mirrored_fraction(hit.surface, -view_ray.direction);
+                    weight = through * view.reflection_strength * mirrored_fraction(hit.surface, -view_ray.direction);
                     view_ray = reflected_ray(hit.surface, view_ray, hit.trace.t);
                     ray = view_ray;
                     continue;
