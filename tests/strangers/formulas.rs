@@ -49,7 +49,7 @@ fn two([x, y, z]: [f64; 3]) -> [f64; 2] {
 const PHI2: f64 = 2.618_033_988_749_895;
 
 /// All formulas. A `max` with a ball ends surfaces that go on for ever.
-pub static FORMULAS: [Formula; 43] = [
+pub static FORMULAS: [Formula; 46] = [
     formula("sphere as a polynomial", 5.0, "x * x + y * y + z * z - 1", |[x, y, z]| {
         x * x + y * y + z * z - 1.0
     }),
@@ -416,6 +416,42 @@ pub static FORMULAS: [Formula; 43] = [
             let [x, y, z] = p.map(|x| (2.0 * x - (2.0 * x).floor() - 0.5).abs());
             let bars = (x * x + y * y).min(y * y + z * z).min(x * x + z * z).sqrt() - 0.12;
             bars.max(ball(p, 1.4))
+        },
+    ),
+    formula(
+        "Kummer's quartic",
+        6.0,
+        "let w = x * x + y * y + z * z - 1.69
+         let s = 1.4142135623730951
+         let planes = (1 - z - s * x) * (1 - z + s * x) * (1 + z + s * y) * (1 + z - s * y)
+         max(w * w - 3.1 * planes, length(p) - 1.8)",
+        |[x, y, z]| {
+            let s = 2.0_f64.sqrt();
+            let planes = (square(1.0 - z) - square(s * x)) * (square(1.0 + z) - square(s * y));
+            let quartic = square(x * x + y * y + z * z - 1.69) - 3.1 * planes;
+            quartic.max(ball([x, y, z], 1.8))
+        },
+    ),
+    formula(
+        "surface of genus two",
+        6.0,
+        "let threefold = 2 * y * (y * y - 3 * x * x) * (1 - z * z)
+         let r = x * x + y * y
+         max(threefold + r * r - (9 * z * z - 1) * (1 - z * z), length(p) - 2)",
+        |[x, y, z]| {
+            let threefold = 2.0 * y * (y * y - 3.0 * x * x) * (1.0 - z * z);
+            let quartic = threefold + square(x * x + y * y) - (9.0 * z * z - 1.0) * (1.0 - z * z);
+            quartic.max(ball([x, y, z], 2.0))
+        },
+    ),
+    // Beyond a height of 1 the mitre is a line without an inside, of which a pixel may show some.
+    formula(
+        "mitre in a ball",
+        5.0,
+        "max(4 * x * x * (x * x + y * y + z * z) - y * y * (1 - y * y - z * z), length(p) - 0.95)",
+        |[x, y, z]| {
+            let mitre = 4.0 * x * x * (x * x + y * y + z * z) - y * y * (1.0 - y * y - z * z);
+            mitre.max(ball([x, y, z], 0.95))
         },
     ),
 ];

@@ -14,7 +14,7 @@ const MAX_RELAXATION: f32 = 4.0;
 // Bounds of a secant step: the distance divided by this slope, or this fraction of the tolerance.
 const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
-// Bound of the last secant, which places the hit: the distance divided by this slope.
+// The least slope at which a small distance is a hit, if it was measured over a short step.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
@@ -69,6 +69,18 @@ fn march_copies(ray: Ray, end: f32) -> Trace {
     return Trace(t, CAPPED, STEP_BUDGET_FACTOR * ray.steps);
 }
 
+// True if the field falls so fast at the end of a step that a small distance is near the surface.
+// Where a loose Lipschitz constant divides the field, a small distance may be far from it.
+fn falls_enough(stride: f32, gain: f32, near: f32) -> bool {
+    if SOFT_SHADOWS {
+        // These rays step no farther than the distance: they would hardly move.
+        if records_clearance {
+            return true;
+        }
+    }
+    return stride > 0.0 && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, stride <= near);
+}
+
 fn march(ray: Ray, end: f32) -> Trace {
     var bracket: Bracket;
     // The step from the last sample outside.
@@ -97,8 +109,8 @@ fn march(ray: Ray, end: f32) -> Trace {
         }
         record_sample(t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
-        if abs(distance) < hit {
-            return Trace(t + distance / max(-gain, MIN_FINAL_SLOPE), HIT, step + 1u);
+        if abs(distance) < hit && falls_enough(stride, gain, near) {
+            return Trace(t - distance / min(gain, -MIN_FINAL_SLOPE), HIT, step + 1u);
         }
         bracket = with_sample(bracket, t, distance);
         if bracket.crossed {
@@ -116,11 +128,9 @@ fn march(ray: Ray, end: f32) -> Trace {
         slope = mix(slope, gain, SLOPE_WEIGHT);
         close = distance < near;
         if close {
-            stride = distance / max(-gain, MIN_SLOPE);
-            // A ray along the surface need not take shorter steps.
-            if gain > -MIN_SLOPE {
-                stride = max(stride, MIN_STEP_FRACTION * near);
-            }
+            // A ray along the surface, or whose slope is not known yet, need not take shorter steps.
+            let shortest = select(0.0, MIN_STEP_FRACTION * near, gain > -MIN_SLOPE || stride == 0.0);
+            stride = max(distance / max(-gain, MIN_SLOPE), shortest);
         } else {
             // Two spheres touch at a step z = r + (r + slope z).
             stride = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0) * distance;

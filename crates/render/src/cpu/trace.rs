@@ -20,7 +20,8 @@ const MAX_RELAXATION: f64 = 4.0;
 /// tolerance.
 const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
-/// Bound of the last secant, which places the hit: the distance divided by this slope.
+/// The least slope at which a small distance is a hit of `auto`, if it was measured over a short
+/// step.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
 
 /// The limits of all rays of a picture.
@@ -222,8 +223,8 @@ impl<T: Real> Walk<T> {
         } else {
             T::constant(-1.0)
         };
-        if distance.abs() < hit {
-            return Next::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
+        if distance.abs() < hit && (limits.records_clearance || self.falls_enough(gain, near)) {
+            return Next::Hit(self.t - distance.div(gain.min(T::constant(-MIN_FINAL_SLOPE))));
         }
         self.record(distance);
         if let Some(next) = self.false_position(hit) {
@@ -241,9 +242,9 @@ impl<T: Real> Walk<T> {
         self.slope = self.slope + T::constant(SLOPE_WEIGHT) * (gain - self.slope);
         self.close = distance < near;
         let step = if self.close {
-            let step = secant(distance, gain, MIN_SLOPE);
-            // Along a surface no step need be shorter.
-            if gain > T::constant(-MIN_SLOPE) {
+            let step = distance.div((zero - gain).max(T::constant(MIN_SLOPE)));
+            // Along a surface, or while the slope is not known, no step need be shorter.
+            if gain > T::constant(-MIN_SLOPE) || self.stride <= zero {
                 step.max(T::constant(MIN_STEP_FRACTION) * near)
             } else {
                 step
@@ -259,6 +260,14 @@ impl<T: Real> Walk<T> {
         // A sum that is rounded up may be past the end, where the ray would count as a miss without
         // a sample.
         Next::At((self.t + self.stride).min(end))
+    }
+
+    /// True if the field falls so fast at the end of a step that a small distance is near the
+    /// surface. Where a loose Lipschitz constant divides the field, a small distance may be far from
+    /// it.
+    fn falls_enough(&self, gain: T, near: T) -> bool {
+        let least = if self.stride <= near { MIN_FINAL_SLOPE } else { MIN_SLOPE };
+        self.stride > T::constant(0.0) && gain <= T::constant(-least)
     }
 
     /// The distance from the surface below which a sample is a hit.
@@ -284,12 +293,6 @@ impl<T: Real> Walk<T> {
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
         Some(Next::At(last + part * (first - last)))
     }
-}
-
-/// The distance to the surface along the ray if the field falls by `-gain` per unit of length, with
-/// a slope of at least `least`.
-fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
-    distance.div((T::constant(0.0) - gain).max(T::constant(least)))
 }
 
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
