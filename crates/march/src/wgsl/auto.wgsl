@@ -16,6 +16,9 @@ const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
 // The least slope at which a small distance is a hit, if it was measured over a short step.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
+// Before a ray has moved, the slope is unknown. It starts on a surface if the distance is within
+// this fraction of that of a hit.
+const ON_SURFACE_FRACTION: f32 = 0.0625;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return footprint_tolerance(ray, t);
@@ -69,16 +72,19 @@ fn march_copies(ray: Ray, end: f32) -> Trace {
     return Trace(t, CAPPED, STEP_BUDGET_FACTOR * ray.steps);
 }
 
-// True if the field falls so fast at the end of a step that a small distance is near the surface.
-// Where a loose Lipschitz constant divides the field, a small distance may be far from it.
-fn falls_enough(stride: f32, gain: f32, near: f32) -> bool {
+// True if the distance at the end of a step is that of a hit. Where a loose Lipschitz constant
+// divides the field, a small distance may be far from the surface, unless the field falls fast.
+fn is_hit(distance: f32, hit: f32, stride: f32, gain: f32, near: f32) -> bool {
     if SOFT_SHADOWS {
         // These rays step no farther than the distance: they would hardly move.
         if records_clearance {
-            return true;
+            return abs(distance) < hit;
         }
     }
-    return stride > 0.0 && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, stride <= near);
+    if stride == 0.0 {
+        return abs(distance) < ON_SURFACE_FRACTION * hit;
+    }
+    return abs(distance) < hit && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, stride <= near);
 }
 
 fn march(ray: Ray, end: f32) -> Trace {
@@ -109,7 +115,7 @@ fn march(ray: Ray, end: f32) -> Trace {
         }
         record_sample(t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
-        if abs(distance) < hit && falls_enough(stride, gain, near) {
+        if is_hit(distance, hit, stride, gain, near) {
             return Trace(t - distance / min(gain, -MIN_FINAL_SLOPE), HIT, step + 1u);
         }
         bracket = with_sample(bracket, t, distance);
@@ -128,7 +134,7 @@ fn march(ray: Ray, end: f32) -> Trace {
         slope = mix(slope, gain, SLOPE_WEIGHT);
         close = distance < near;
         if close {
-            // A ray along the surface, or whose slope is not known yet, need not take shorter steps.
+            // A ray along the surface, or whose slope is unknown, need not take shorter steps.
             let shortest = select(0.0, MIN_STEP_FRACTION * near, gain > -MIN_SLOPE || stride == 0.0);
             stride = max(distance / max(-gain, MIN_SLOPE), shortest);
         } else {

@@ -23,6 +23,9 @@ const MIN_STEP_FRACTION: f64 = 0.25;
 /// The least slope at which a small distance is a hit of `auto`, if it was measured over a short
 /// step.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
+/// Before a ray of `auto` has moved, the slope is unknown. It starts on a surface if the distance
+/// is within this fraction of that of a hit.
+const ON_SURFACE_FRACTION: f64 = 0.0625;
 
 /// The limits of all rays of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -223,7 +226,7 @@ impl<T: Real> Walk<T> {
         } else {
             T::constant(-1.0)
         };
-        if distance.abs() < hit && (limits.records_clearance || self.falls_enough(gain, near)) {
+        if self.is_hit(distance, hit, gain, near, limits) {
             return Next::Hit(self.t - distance.div(gain.min(T::constant(-MIN_FINAL_SLOPE))));
         }
         self.record(distance);
@@ -262,12 +265,19 @@ impl<T: Real> Walk<T> {
         Next::At((self.t + self.stride).min(end))
     }
 
-    /// True if the field falls so fast at the end of a step that a small distance is near the
-    /// surface. Where a loose Lipschitz constant divides the field, a small distance may be far from
-    /// it.
-    fn falls_enough(&self, gain: T, near: T) -> bool {
+    /// True if the distance at the end of a step is that of a hit. Where a loose Lipschitz constant
+    /// divides the field, a small distance may be far from the surface, unless the field falls
+    /// fast.
+    fn is_hit(&self, distance: T, hit: T, gain: T, near: T, limits: &Limits<T>) -> bool {
+        // Rays with a clearance step no farther than the distance: they would hardly move.
+        if limits.records_clearance {
+            return distance.abs() < hit;
+        }
+        if self.stride <= T::constant(0.0) {
+            return distance.abs() < T::constant(ON_SURFACE_FRACTION) * hit;
+        }
         let least = if self.stride <= near { MIN_FINAL_SLOPE } else { MIN_SLOPE };
-        self.stride > T::constant(0.0) && gain <= T::constant(-least)
+        distance.abs() < hit && gain <= T::constant(-least)
     }
 
     /// The distance from the surface below which a sample is a hit.
