@@ -27,7 +27,6 @@
 mod analytic;
 mod certify;
 mod cost;
-mod gradient;
 mod leaves;
 mod prepare;
 mod refute;
@@ -42,7 +41,6 @@ pub use certify::promise::{Promise, Sides};
 pub use certify::quality::{Qualities, Quality};
 pub use certify::reason::{Constant, Reason};
 pub use cost::{Cost, cost, cost_of_shapes};
-pub use gradient::GradientReport;
 pub use prepare::{Prepared, prepare, prepare_with};
 pub use refute::claims::{LipschitzViolation, refute_lipschitz};
 pub use refute::clauses::{Clause, Violation, refute};

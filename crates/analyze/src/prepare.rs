@@ -2,7 +2,7 @@
 
 use sdfc_graph::{
     Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, ShapeId,
-    fold_transforms, uniforms,
+    best_gradient, fold_transforms, uniforms,
 };
 
 use crate::analytic::operands::Operands;
@@ -12,7 +12,6 @@ use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
-use crate::gradient::best_gradient;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;

@@ -1,7 +1,7 @@
 //! The report of the passes on a scene and its shapes.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use sdfc_graph::{Graph, ShapeId};
+use sdfc_graph::{GradientReport, Graph, ShapeId};
 
 use crate::certify::conservative::Uncertified;
 use crate::certify::inexact::InexactOperator;
@@ -9,7 +9,6 @@ use crate::certify::promise::Sides;
 use crate::certify::quality::Qualities;
 use crate::certify::reason::Reason;
 use crate::cost::Cost;
-use crate::gradient::GradientReport;
 use crate::reroll::rewrite::RerolledLoop;
 use crate::shapes::shapes_below;
 

@@ -18,6 +18,7 @@
 //! | `x % y` | 1 for x, `-floor(x / y)` for y |
 
 mod cuts;
+mod gradient;
 mod live;
 mod loops;
 mod parts;
@@ -25,32 +26,6 @@ mod rules;
 mod sweep;
 mod terms;
 
+pub use self::gradient::{GradientReport, best_gradient, gradient, gradient_in_parts};
 pub(crate) use self::sweep::TINY;
 pub use self::sweep::adjoints;
-
-use crate::graph::Graph;
-use crate::node::NodeId;
-
-/// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
-pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
-    let found = sweep::adjoints(graph, root, &[point]);
-    match loops::merged(graph, &found)[..] {
-        [gradient] => gradient,
-        _ => sweep::zero(graph, graph.ty(point)),
-    }
-}
-
-/// The same gradient as [`gradient`], by one sweep for each part of the formula. A part ends at
-/// every scalar that alone needs at least `least` lanes of other values. `None` if there is no such
-/// scalar, or if the parts share so much that the sweeps would take quadratic time.
-///
-/// It takes more operations than one sweep, and keeps far fewer values alive.
-pub fn gradient_in_parts(
-    graph: &mut Graph,
-    root: NodeId,
-    point: NodeId,
-    least: usize,
-) -> Option<NodeId> {
-    let found = parts::gradient(graph, root, point, least)?;
-    loops::merged(graph, &[found]).pop()
-}

@@ -79,7 +79,7 @@ mod walk;
 pub use blend::{Blend, Blends, blend_at, substitute};
 pub use bounds::{Bounds, bounds};
 pub use coefficient::Coefficient;
-pub use derive::{adjoints, gradient, gradient_in_parts};
+pub use derive::{GradientReport, adjoints, best_gradient, gradient, gradient_in_parts};
 pub use dump::{dump, operation_count};
 pub use enclose::{enclosure, slope_enclosure, tight_enclosure};
 pub use expand::{ExpandError, Expander, NODE_LIMIT};

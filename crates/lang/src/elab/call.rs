@@ -3,7 +3,7 @@
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{LipschitzClaim, NodeId, Stage};
 
-use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison};
+use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison, Within};
 use super::limits::MAX_RECURSION;
 use super::output::Claimed;
 use super::report::{show_lanes, show_number};
@@ -140,9 +140,9 @@ impl<'p> Elaborator<'p> {
                 _ => {}
             }
         }
-        let outer = std::mem::replace(&mut self.in_clause, true);
+        let outer = std::mem::replace(&mut self.within, Within::Clause);
         let constant = self.stated_constant(env, stated);
-        self.in_clause = outer;
+        self.within = outer;
         let constant = constant?;
         let known = match self.graph.stage(constant) {
             Stage::Const => self.graph.as_number(constant).is_some_and(f64::is_finite),

@@ -72,6 +72,17 @@ pub(super) struct PendingIntersection<'p> {
     pub frames: Vec<CallFrame<'p>>,
 }
 
+/// The parts of a declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Within {
+    /// The formula, and all that is outside of declarations.
+    Formula,
+    /// A clause, where infinite values mean "unknown".
+    Clause,
+    /// The material. No constants are derived from it, so it may contain loops.
+    Material,
+}
+
 /// The state of elaboration.
 pub(super) struct Elaborator<'p> {
     pub(super) program: &'p hir::Program,
@@ -102,8 +113,8 @@ pub(super) struct Elaborator<'p> {
     pub(super) stopped: bool,
     /// The first span whose value is missing from the scene.
     pub(super) missing: Option<Span>,
-    /// True within a clause, where infinite values mean "unknown".
-    pub(super) in_clause: bool,
+    /// The part of a declaration that is being evaluated.
+    pub(super) within: Within,
     /// True if `bounds(a)` was used since this was last set to false.
     pub(super) used_bounds: bool,
     /// Instances with the clause `intersect`, by definition.
@@ -144,7 +155,7 @@ impl<'p> Elaborator<'p> {
             steps: 0,
             stopped: false,
             missing: None,
-            in_clause: false,
+            within: Within::Formula,
             used_bounds: false,
             intersections: BTreeMap::new(),
             literals: LiteralUses::new(first_literal),

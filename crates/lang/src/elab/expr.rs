@@ -5,7 +5,7 @@ use std::rc::Rc;
 use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::{Expander, FrameInput, Node, NodeId, ShapeId, Stage, Type};
 
-use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::kernel::Application;
 use super::value::{Closure, Code, Value, highest};
 use crate::hir::{self, Expr, ExprKind, GlobalId, MaterialField};
@@ -115,7 +115,7 @@ impl<'p> Elaborator<'p> {
     /// A shape's distance at a point. In a clause, at a point that is known at compile time or per
     /// frame, the shape is expanded if possible, since the compiler needs the values of clauses.
     fn sample(&mut self, shape: ShapeId, point: NodeId) -> NodeId {
-        if self.in_clause
+        if self.within == Within::Clause
             && self.graph.stage(point) < Stage::Point
             && let Ok(value) = Expander::new().field(&mut self.graph, shape, point)
         {

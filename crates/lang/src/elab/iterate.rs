@@ -1,5 +1,7 @@
 //! The loop `iterate`: unrolled if it is short, a loop of the graph if it is long.
 //!
+//! In materials, short loops with large bodies stay loops, too.
+//!
 //! A loop of the graph needs a body that is the same in each iteration. The body is elaborated once
 //! over variables. If that fails, because it needs constants or builds or samples shapes that
 //! differ between iterations, the loop is unrolled. A loop that does not depend on a point is
@@ -8,7 +10,7 @@
 use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{Const, Loop, LoopVar, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, reachable};
 
-use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::expr::node_type;
 use super::limits::{MAX_ITERATIONS, MAX_NESTED_ITERATIONS};
 use super::report::show_number;
@@ -19,6 +21,9 @@ use crate::hir::{Expr, Type};
 const UNROLLED: usize = 16;
 /// The same for loops with a condition: a loop can end early, unrolled iterations are all computed.
 const UNROLLED_WHILE: usize = 4;
+/// The largest number of operations, in all iterations, of a loop that is unrolled in a material.
+/// Formulas have no such limit, because a loop has no Lipschitz constant.
+const UNROLLED_OPERATIONS: usize = 200;
 
 /// The iterations of a loop.
 struct Iterations<'p> {
@@ -56,9 +61,11 @@ impl<'p> Elaborator<'p> {
         let condition = rest.first().map(|expr| self.function(env, expr)).transpose()?;
         let most = if condition.is_some() { UNROLLED_WHILE } else { UNROLLED };
         let steps = Steps { step, with_item, condition, span };
-        if iterations.items.len() > most
+        let is_long = iterations.items.len() > most;
+        let least = if is_long { 0 } else { UNROLLED_OPERATIONS };
+        if (is_long || self.within == Within::Material && iterations.items.len() > 1)
             && let Value::Node(start) = state
-            && let Some(end) = self.as_graph_loop(&iterations, start, &steps)?
+            && let Some(end) = self.as_graph_loop(&iterations, start, &steps, least)?
         {
             return Ok(Value::Node(end));
         }
@@ -111,12 +118,14 @@ impl<'p> Elaborator<'p> {
         self.apply(&steps.step, args, steps.span)
     }
 
-    /// The state after a loop of the graph; `None` if the loop must be unrolled.
+    /// The state after a loop of the graph; `None` if the loop must be unrolled, or if all its
+    /// iterations have at most `least` operations.
     fn as_graph_loop(
         &mut self,
         iterations: &Iterations<'p>,
         start: NodeId,
         steps: &Steps<'p>,
+        least: usize,
     ) -> Outcome<Option<NodeId>> {
         let depth = self.loop_depth;
         if depth >= MAX_LOOP_DEPTH {
@@ -159,10 +168,12 @@ impl<'p> Elaborator<'p> {
             is_shape && self.graph.loops_around(id) & bit != 0
         };
         let nodes = reachable(&self.graph, &roots);
-        let outside = nodes.iter().filter(|&&id| self.graph.loops_around(id) & bit == 0);
-        let mut read = outside.chain([&start]);
+        let is_outside = |&&id: &&NodeId| self.graph.loops_around(id) & bit == 0;
+        let operations = nodes.len() - nodes.iter().filter(is_outside).count();
+        let mut read = nodes.iter().filter(is_outside).chain([&start]);
         let at_points = read.any(|&id| self.graph.stage(id) == Stage::Point);
-        if nodes.iter().any(differs) || !at_points {
+        let is_small = operations.saturating_mul(iterations.items.len()) <= least;
+        if nodes.iter().any(differs) || !at_points || is_small {
             self.take_back(before);
             return Ok(None);
         }

@@ -4,7 +4,7 @@ use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::eval::{FrameValues, evaluate_frame};
 use sdfc_graph::{Binary, NodeId, Shadow, Stage, Ternary, Unary};
 
-use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::report::show_lanes;
 use super::value::Value;
 use crate::hir::{Expr, Kernel};
@@ -175,7 +175,7 @@ impl<'p> Elaborator<'p> {
             self.as_lanes(*node).is_some_and(|(lanes, _)| lanes.iter().any(|v| v.is_infinite()))
         };
         let inherited = args.iter().any(infinite) && !lanes.iter().any(|lane| lane.is_nan());
-        if inherited || self.in_clause || lanes.iter().all(|lane| lane.is_finite()) {
+        if inherited || self.within == Within::Clause || lanes.iter().all(|lane| lane.is_finite()) {
             return Ok(Value::Node(result));
         }
         let (name, value) = (name(at.op), show_lanes(lanes));

@@ -4,7 +4,7 @@ use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 use sdfc_graph::{FrameInput, Node, NodeId, Stage};
 
-use super::elaborator::{Elaborator, Outcome, Poison};
+use super::elaborator::{Elaborator, Outcome, Poison, Within};
 use super::limits::{MAX_NODES, MAX_STEPS};
 
 /// The number of enclosing calls that a message shows.
@@ -15,7 +15,7 @@ pub(super) struct Attempt {
     diagnostics: usize,
     reported: FxHashSet<Span>,
     sites: usize,
-    in_clause: bool,
+    within: Within,
 }
 
 impl<'p> Elaborator<'p> {
@@ -66,7 +66,7 @@ impl<'p> Elaborator<'p> {
             diagnostics: self.diagnostics.len(),
             reported: self.reported.clone(),
             sites: self.sites.len(),
-            in_clause: self.in_clause,
+            within: self.within,
         }
     }
 
@@ -77,7 +77,7 @@ impl<'p> Elaborator<'p> {
         for site in self.sites.drain(attempt.sites..) {
             self.seen_sites.remove(&(site.shape, site.span));
         }
-        self.in_clause = attempt.in_clause;
+        self.within = attempt.within;
     }
 
     /// Reports that a limit is exceeded and ends elaboration.

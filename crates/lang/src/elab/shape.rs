@@ -6,7 +6,7 @@ use sdfc_graph::{
     Binary, Contract, Graph, MaterialRule, Node, NodeId, Shape, ShapeId, SidePromise, Stage,
 };
 
-use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison};
+use super::elaborator::{CallFrame, Elaborator, Env, Outcome, Poison, Within};
 use super::limits::MAX_DEPTH;
 use super::output::Site;
 use super::report::show_lanes;
@@ -36,9 +36,9 @@ impl<'p> Elaborator<'p> {
         let program = self.program;
         let definition = program.shapes.get(id.0 as usize).ok_or(Poison)?;
         self.frames.push(CallFrame { name: &definition.name, span });
-        let in_clause = std::mem::replace(&mut self.in_clause, false);
+        let within = std::mem::replace(&mut self.within, Within::Formula);
         let result = self.instance_inside(definition, id, given, span);
-        self.in_clause = in_clause;
+        self.within = within;
         self.frames.pop();
         result
     }
@@ -145,7 +145,10 @@ impl<'p> Elaborator<'p> {
         let Some(stated) = definition.material.as_ref().filter(|_| self.has_materials) else {
             return Ok(MaterialRule::Weighted(formula));
         };
-        match self.eval(env, stated)? {
+        let outer = std::mem::replace(&mut self.within, Within::Material);
+        let value = self.eval(env, stated);
+        self.within = outer;
+        match value? {
             Value::Material(fields) => Ok(MaterialRule::Explicit(fields)),
             Value::Node(shares) => Ok(MaterialRule::Weighted(shares)),
             other => Err(self.unexpected(stated.span, "a material or a number", &other)),
@@ -155,9 +158,9 @@ impl<'p> Elaborator<'p> {
     /// Evaluates the clauses to constants and per-frame values. A clause that depends on an outer
     /// formula's point is ignored.
     fn contract(&mut self, env: &mut Env<'p>, definition: &'p ShapeDef) -> Outcome<Contract> {
-        self.in_clause = true;
+        let outer = std::mem::replace(&mut self.within, Within::Clause);
         let contract = self.clauses(env, definition);
-        self.in_clause = false;
+        self.within = outer;
         contract
     }
 

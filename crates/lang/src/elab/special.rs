@@ -4,10 +4,10 @@ use sdfc_diagnostics::{Code as ErrorCode, Span};
 use sdfc_graph::eval::HASH_COUNT;
 use sdfc_graph::{
     Binary, Bounds, Dim, Expander, MaterialField, Node, NodeId, ShapeId, Ternary, Type, Unary,
-    reachable,
+    best_gradient, gradient, reachable,
 };
 
-use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::kernel::Application;
 use super::value::{Closure, Value};
 use crate::hir;
@@ -121,13 +121,23 @@ impl<'p> Elaborator<'p> {
         let mut expander = Expander::new();
         let gradient =
             expander.field_under(&mut self.graph, shape, &points, own).and_then(|field| {
-                let gradient = sdfc_graph::gradient(&mut self.graph, field, own);
+                let gradient = self.derivative(field, own);
                 points.push(position);
                 expander.node(&mut self.graph, gradient, &points)
             });
         gradient.map(Value::Node).map_err(|error| {
             self.fail(ErrorCode::TOO_MANY_NODES, at.span, format!("`gradient`: {error}"))
         })
+    }
+
+    /// The gradient of a field. In a material it is the one that keeps the fewest values alive: a
+    /// ray needs it once, but its registers are taken from the whole shader.
+    fn derivative(&mut self, field: NodeId, point: NodeId) -> NodeId {
+        if self.within == Within::Material {
+            best_gradient(&mut self.graph, field, point).0
+        } else {
+            gradient(&mut self.graph, field, point)
+        }
     }
 
     /// The node of an outer formula's point in the formulas of a shape.

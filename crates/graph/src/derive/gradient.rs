@@ -1,8 +1,10 @@
-//! The choice of how the gradient is derived.
+//! The gradient of a scalar: by one sweep, part by part, and the choice between them.
 
-use sdfc_graph::{Graph, NodeId, gradient, gradient_in_parts, live_lanes};
-
-use crate::cost::cost;
+use super::{loops, parts, sweep};
+use crate::dump::operation_count;
+use crate::graph::Graph;
+use crate::node::NodeId;
+use crate::schedule::live_lanes;
 
 /// The number of live lanes up to which fewer gain nothing: the rest of a picture's shader needs
 /// about as many.
@@ -26,13 +28,34 @@ pub struct GradientReport {
     pub live_lanes_of_sweep: usize,
 }
 
-/// The gradient of a scalar with respect to a point: of one reverse sweep and of sums over parts,
-/// the one that keeps the fewest lanes alive, and of equals the one with the fewest operations.
-pub(crate) fn best_gradient(
+/// The gradient of a scalar root with respect to a point (or any other node), a vector of its type.
+pub fn gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> NodeId {
+    let found = sweep::adjoints(graph, root, &[point]);
+    match loops::merged(graph, &found)[..] {
+        [gradient] => gradient,
+        _ => sweep::zero(graph, graph.ty(point)),
+    }
+}
+
+/// The same gradient as [`gradient`], by one sweep for each part of the formula. A part ends at
+/// every scalar that alone needs at least `least` lanes of other values. `None` if there is no such
+/// scalar, or if the parts share so much that the sweeps would take quadratic time.
+///
+/// It takes more operations than one sweep, and keeps far fewer values alive.
+pub fn gradient_in_parts(
     graph: &mut Graph,
     root: NodeId,
     point: NodeId,
-) -> (NodeId, GradientReport) {
+    least: usize,
+) -> Option<NodeId> {
+    let found = parts::gradient(graph, root, point, least)?;
+    loops::merged(graph, &[found]).pop()
+}
+
+/// Returns the gradient of a scalar with respect to a point: of one reverse sweep and of sums over
+/// parts, the one that keeps the fewest lanes alive, and of equals the one with the fewest
+/// operations.
+pub fn best_gradient(graph: &mut Graph, root: NodeId, point: NodeId) -> (NodeId, GradientReport) {
     let sweep = gradient(graph, root, point);
     let live_lanes_of_sweep = live_lanes(graph, &[sweep]);
     let mut report =
@@ -46,7 +69,7 @@ pub(crate) fn best_gradient(
         let live_lanes = live_lanes(graph, &[found]);
         let rank = |graph: &Graph, id: NodeId, lanes: usize| {
             let groups = lanes.max(FREE_LANES).div_ceil(LANES_OF_GROUP);
-            (groups, cost(graph, &[id]).operations)
+            (groups, operation_count(graph, &[id]))
         };
         if rank(graph, found, live_lanes) < rank(graph, best, report.live_lanes) {
             best = found;
