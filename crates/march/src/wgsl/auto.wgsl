@@ -134,9 +134,11 @@ fn march(ray: Ray, end: f32) -> Trace {
         slope = mix(slope, gain, SLOPE_WEIGHT);
         close = distance < near;
         if close {
-            // A ray along the surface, or whose slope is unknown, need not take shorter steps.
-            let shortest = select(0.0, MIN_STEP_FRACTION * near, gain > -MIN_SLOPE || stride == 0.0);
-            stride = max(distance / max(-gain, MIN_SLOPE), shortest);
+            stride = distance / max(-gain, MIN_SLOPE);
+            // A ray along the surface need not take shorter steps.
+            if gain > -MIN_SLOPE {
+                stride = max(stride, MIN_STEP_FRACTION * near);
+            }
         } else {
             // Two spheres touch at a step z = r + (r + slope z).
             stride = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0) * distance;

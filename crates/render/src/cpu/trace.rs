@@ -246,8 +246,8 @@ impl<T: Real> Walk<T> {
         self.close = distance < near;
         let step = if self.close {
             let step = distance.div((zero - gain).max(T::constant(MIN_SLOPE)));
-            // Along a surface, or while the slope is not known, no step need be shorter.
-            if gain > T::constant(-MIN_SLOPE) || self.stride <= zero {
+            // Along a surface no step need be shorter.
+            if gain > T::constant(-MIN_SLOPE) {
                 step.max(T::constant(MIN_STEP_FRACTION) * near)
             } else {
                 step
