@@ -14,7 +14,8 @@ const MAX_RELAXATION: f32 = 4.0;
 // Bounds of a secant step: the distance divided by this slope, or this fraction of the tolerance.
 const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
-// The least slope at which a small distance is a hit, if it was measured over a short step.
+// The least slope at which a small distance is a hit, if it was measured over a step of a fraction of
+// the tolerance. Over shorter steps rounding decides, over longer ones the slope may change.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
 // Before a ray has moved, the slope is unknown. It starts on a surface if the distance is within
 // this fraction of that of a hit.
@@ -84,7 +85,8 @@ fn is_hit(distance: f32, hit: f32, stride: f32, gain: f32, near: f32) -> bool {
     if stride == 0.0 {
         return abs(distance) < ON_SURFACE_FRACTION * hit;
     }
-    return abs(distance) < hit && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, stride <= near);
+    let is_local = stride >= MIN_STEP_FRACTION * near && stride <= near;
+    return abs(distance) < hit && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, is_local);
 }
 
 fn march(ray: Ray, end: f32) -> Trace {

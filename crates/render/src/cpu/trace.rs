@@ -20,8 +20,9 @@ const MAX_RELAXATION: f64 = 4.0;
 /// tolerance.
 const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
-/// The least slope at which a small distance is a hit of `auto`, if it was measured over a short
-/// step.
+/// The least slope at which a small distance is a hit of `auto`, if it was measured over a step of
+/// a fraction of the tolerance. Over shorter steps rounding decides, over longer ones the slope may
+/// change.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
 /// Before a ray of `auto` has moved, the slope is unknown. It starts on a surface if the distance
 /// is within this fraction of that of a hit.
@@ -276,7 +277,8 @@ impl<T: Real> Walk<T> {
         if self.stride <= T::constant(0.0) {
             return distance.abs() < T::constant(ON_SURFACE_FRACTION) * hit;
         }
-        let least = if self.stride <= near { MIN_FINAL_SLOPE } else { MIN_SLOPE };
+        let is_local = self.stride >= T::constant(MIN_STEP_FRACTION) * near && self.stride <= near;
+        let least = if is_local { MIN_FINAL_SLOPE } else { MIN_SLOPE };
         distance.abs() < hit && gain <= T::constant(-least)
     }
 
