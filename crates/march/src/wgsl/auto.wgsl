@@ -14,8 +14,8 @@ const MAX_RELAXATION: f32 = 4.0;
 // Bounds of a secant step: the distance divided by this slope, or this fraction of the tolerance.
 const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
-// The least slope at which a small distance is a hit, if it was measured over a step of a fraction of
-// the tolerance. Over shorter steps rounding decides, over longer ones the slope may change.
+// The least slope at which a small distance is a hit, if it was measured over a step that is no
+// longer than the tolerance, and if the field fell by more than rounding.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
 // Before a ray has moved, the slope is unknown. It starts on a surface if the distance is within
 // this fraction of that of a hit.
@@ -75,7 +75,9 @@ fn march_copies(ray: Ray, end: f32) -> Trace {
 
 // True if the distance at the end of a step is that of a hit. Where a loose Lipschitz constant
 // divides the field, a small distance may be far from the surface, unless the field falls fast.
-fn is_hit(distance: f32, hit: f32, stride: f32, gain: f32, near: f32) -> bool {
+fn is_hit(ray: Ray, t: f32, distance: f32, stride: f32, gain: f32) -> bool {
+    let near = tolerance(ray, t);
+    let hit = hit_within(ray, t, near);
     if SOFT_SHADOWS {
         // These rays step no farther than the distance: they would hardly move.
         if records_clearance {
@@ -85,7 +87,7 @@ fn is_hit(distance: f32, hit: f32, stride: f32, gain: f32, near: f32) -> bool {
     if stride == 0.0 {
         return abs(distance) < ON_SURFACE_FRACTION * hit;
     }
-    let is_local = stride >= MIN_STEP_FRACTION * near && stride <= near;
+    let is_local = stride <= near && -gain * stride > rounding(ray, t);
     return abs(distance) < hit && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, is_local);
 }
 
@@ -117,7 +119,7 @@ fn march(ray: Ray, end: f32) -> Trace {
         }
         record_sample(t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
-        if is_hit(distance, hit, stride, gain, near) {
+        if is_hit(ray, t, distance, stride, gain) {
             return Trace(t - distance / min(gain, -MIN_FINAL_SLOPE), HIT, step + 1u);
         }
         bracket = with_sample(bracket, t, distance);

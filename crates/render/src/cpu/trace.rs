@@ -20,9 +20,8 @@ const MAX_RELAXATION: f64 = 4.0;
 /// tolerance.
 const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
-/// The least slope at which a small distance is a hit of `auto`, if it was measured over a step of
-/// a fraction of the tolerance. Over shorter steps rounding decides, over longer ones the slope may
-/// change.
+/// The least slope at which a small distance is a hit of `auto`, if it was measured over a step that
+/// is no longer than the tolerance, and if the field fell by more than rounding.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
 /// Before a ray of `auto` has moved, the slope is unknown. It starts on a surface if the distance
 /// is within this fraction of that of a hit.
@@ -277,7 +276,8 @@ impl<T: Real> Walk<T> {
         if self.stride <= T::constant(0.0) {
             return distance.abs() < T::constant(ON_SURFACE_FRACTION) * hit;
         }
-        let is_local = self.stride >= T::constant(MIN_STEP_FRACTION) * near && self.stride <= near;
+        let fall = (T::constant(0.0) - gain) * self.stride;
+        let is_local = self.stride <= near && fall > self.ray.rounding(self.t);
         let least = if is_local { MIN_FINAL_SLOPE } else { MIN_SLOPE };
         distance.abs() < hit && gain <= T::constant(-least)
     }
