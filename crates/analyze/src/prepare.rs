@@ -13,7 +13,7 @@ use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
-use crate::report::{Report, shape_reports};
+use crate::report::{Lipschitz, Report, ShapeReport, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
 use crate::reroll::rewrite::{reroll, similar_groups};
@@ -28,6 +28,11 @@ pub struct Prepared {
     /// The findings and decisions of the passes.
     pub report: Report,
 }
+
+/// The largest Lipschitz constant by which a field is divided without a loss of accuracy. `auto`
+/// takes 1/256 of the tolerance, a quarter of a pixel, for a hit; eight times that is 1/128 of a
+/// pixel.
+const LOOSE: f64 = 8.0;
 
 /// Turns a scene into a flat program: derives promises and constants, expands the conservative
 /// field and the materials, splits off analytic operands, folds transforms, rerolls loops, derives
@@ -109,6 +114,8 @@ fn flatten(
     program.material = material.try_into().ok();
     let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
     program.gradient = Some(gradient);
+    let shapes = shape_reports(graph, &qualities, root, &field.divided);
+    program.is_loose = shapes.iter().any(is_loose);
     program.cullable_loops = cullable_loops(graph, &fields, lipschitz);
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
         program.loop_bounds = looped_bounds(graph, &mut bounds, root);
@@ -128,11 +135,22 @@ fn flatten(
         marched_cost: cost(graph, copies.or(marched).as_slice()),
         analytic: operands.analytic.iter().map(|operand| operand.shape).collect(),
         marched: operands.marched.iter().map(|operand| operand.shape).collect(),
-        shapes: shape_reports(graph, &qualities, root, &field.divided),
+        shapes,
         uncertified: field.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
         inexact_outside: inexact_outside(graph, &qualities, root),
     })
+}
+
+/// True if the field of a shape is divided by a large constant, or by one per frame, which may have
+/// any value.
+fn is_loose(shape: &ShapeReport) -> bool {
+    shape.divided
+        && match shape.lipschitz {
+            Lipschitz::Number(constant) => constant > LOOSE,
+            Lipschitz::PerFrame => true,
+            Lipschitz::Unknown(_) => false,
+        }
 }
 
 /// The Lipschitz constant of the scene's field: infinite if it depends on a param, `None` if there

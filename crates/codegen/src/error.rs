@@ -18,7 +18,7 @@ pub enum Error {
     /// A prefix is not the start of a WGSL identifier.
     #[error("`{0}` cannot start a name: expected letters, digits and single `_`, no digit first")]
     BadPrefix(String),
-    /// A constant is infinite, not a number, or beyond the range of f32.
+    /// A constant is not a number, or beyond the range of f32.
     #[error("node {} is {value}, which 32-bit floats cannot hold", .node.index())]
     NotFinite {
         /// The constant.

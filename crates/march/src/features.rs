@@ -54,6 +54,8 @@ pub struct Features {
     pub proved: bool,
     /// Pixels tell whether a ray passed a stretch without a proof that it is free.
     pub records_gaps: bool,
+    /// The field is divided by a large Lipschitz constant.
+    pub loose: bool,
 }
 
 impl Features {
@@ -69,7 +71,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 27] {
+    pub fn overrides(self) -> [(&'static str, bool); 28] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
@@ -95,6 +97,7 @@ impl Features {
             instrumented,
             proved,
             records_gaps,
+            loose,
         } = self;
         [
             ("ANALYTIC", analytic),
@@ -124,6 +127,7 @@ impl Features {
             ("INSTRUMENTED", instrumented),
             ("PROVED", proved),
             ("RECORDS_GAPS", records_gaps),
+            ("LOOSE", loose),
         ]
     }
 

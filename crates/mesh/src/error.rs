@@ -59,6 +59,9 @@ pub enum MeshError {
     /// The scene draws nothing.
     #[error("the scene draws nothing: every solid that stands alone on a line is drawn")]
     NothingDrawn,
+    /// The bounds contain nothing.
+    #[error("the scene is empty: the solids that it draws have no inside")]
+    Empty,
     /// The program is not flat.
     #[error("the program is not flat: {0}")]
     NotFlat(#[from] TapeError),
@@ -101,6 +104,7 @@ impl MeshError {
         match self {
             Self::Error(_) | Self::TooFine { .. } | Self::TooManyCells { .. } => true,
             Self::NothingDrawn
+            | Self::Empty
             | Self::NotFlat(_)
             | Self::Unbounded { .. }
             | Self::Open

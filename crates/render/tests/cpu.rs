@@ -316,6 +316,17 @@ fn rays_out_of_steps_are_capped() {
 }
 
 #[test]
+fn a_ray_whose_steps_end_before_a_proof_is_unproven() {
+    let mut program = common::sphere().with_segment_bounds(true, false);
+    program.settings.march.steps = Some(1);
+    let image = draw(&program, [32, 32], Method::Interval, TileSize::default()).image;
+    let misses = image.pixels().iter().filter(|pixel| pixel.status == MISS);
+    let (proven, unproven): (Vec<_>, Vec<_>) = misses.partition(|pixel| pixel.unproven == 0);
+    assert!(unproven.len() > 50, "{} misses are unproven", unproven.len());
+    assert!(proven.iter().all(|pixel| pixel.evaluations == 1));
+}
+
+#[test]
 fn odd_sizes_are_drawn_and_impossible_ones_refused() {
     for size in [[1, 1], [4097, 3]] {
         let frame = draw(&common::sphere(), size, Method::Sphere, TileSize::default());

@@ -150,6 +150,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         instrumented: _,
         proved: _,
         records_gaps: _,
+        loose: _,
     } = features;
     let names = [
         ("material", materials),

@@ -79,8 +79,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Mesh`]: the scene has no limit, the error is too small, the mesh needs too many
-    /// cells, or `progress` stopped the work.
+    /// [`Error::Mesh`]: the scene is empty or has no limit, the error is too small, the mesh needs
+    /// too many cells, or `progress` stopped the work.
     pub fn mesh(
         &self,
         options: &MeshOptions,
@@ -88,6 +88,9 @@ impl Scene {
     ) -> Result<Mesh, Error> {
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let bounds = self.bounds_at(&frame).ok_or(MeshError::NothingDrawn)?;
+        if (0..3).any(|axis| bounds[0][axis] > bounds[1][axis]) {
+            return Err(MeshError::Empty.into());
+        }
         let error = match options.error {
             MeshSize::Length(length) => length,
             MeshSize::Relative(part) => {

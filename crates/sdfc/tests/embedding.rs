@@ -187,6 +187,20 @@ const READERS: [&str; 6] = [
 ];
 
 #[test]
+fn shapes_whose_end_depends_on_a_param_are_written_for_every_target() {
+    let repeated = "param b = true\n(if b { sphere(0.5) } else { helix() }).repeat(spacing: 3)";
+    let sheared = "param k = 1 in 0.5..2\n\
+                   polar_repeat(ellipse([1, k]).extrude().shear(sin(time)))";
+    for text in [repeated, sheared] {
+        let scene = Compiler::new().compile("a.sdf", text).unwrap_or_else(|e| panic!("{e}"));
+        for target in Target::ALL.into_iter().filter(|target| *target != Target::Shadertoy) {
+            let options = ShaderOptions::new().target(target).emit(Emit::Field);
+            scene.write_shader(&options).unwrap_or_else(|e| panic!("{}: {e}", target.name()));
+        }
+    }
+}
+
+#[test]
 fn a_scene_reads_no_file_unless_its_resolver_does() {
     for text in READERS {
         // These files exist in the repository, so a file access would succeed.

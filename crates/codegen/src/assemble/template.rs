@@ -31,6 +31,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
         clipped: pre_intersects && clip.is_some(),
         copies: pre_intersects && copies.is_some(),
         proved: program.range.is_some(),
+        loose: program.is_loose,
         ..Features::default()
     }
 }

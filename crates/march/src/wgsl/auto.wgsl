@@ -14,12 +14,8 @@ const MAX_RELAXATION: f32 = 4.0;
 // Bounds of a secant step: the distance divided by this slope, or this fraction of the tolerance.
 const MIN_SLOPE: f32 = 0.25;
 const MIN_STEP_FRACTION: f32 = 0.25;
-// The least slope at which a small distance is a hit, if it was measured over a step that is no
-// longer than the tolerance, and if the field fell by more than rounding.
+// Bound of the last secant, which places the hit: the distance divided by this slope.
 const MIN_FINAL_SLOPE: f32 = 0.0078125;
-// Before a ray has moved, the slope is unknown. It starts on a surface if the distance is within
-// this fraction of that of a hit.
-const ON_SURFACE_FRACTION: f32 = 0.0625;
 
 fn tolerance(ray: Ray, t: f32) -> f32 {
     return footprint_tolerance(ray, t);
@@ -73,22 +69,17 @@ fn march_copies(ray: Ray, end: f32) -> Trace {
     return Trace(t, CAPPED, STEP_BUDGET_FACTOR * ray.steps);
 }
 
-// True if the distance at the end of a step is that of a hit. Where a loose Lipschitz constant
-// divides the field, a small distance may be far from the surface, unless the field falls fast.
-fn is_hit(ray: Ray, t: f32, distance: f32, stride: f32, gain: f32) -> bool {
-    let near = tolerance(ray, t);
-    let hit = hit_within(ray, t, near);
-    if SOFT_SHADOWS {
-        // These rays step no farther than the distance: they would hardly move.
-        if records_clearance {
-            return abs(distance) < hit;
+// True if a small distance means that the surface is near. Otherwise only a change of sign tells
+// where it is.
+fn small_is_near() -> bool {
+    if LOOSE {
+        if SOFT_SHADOWS {
+            // These rays step no farther than the distance: they would hardly move.
+            return records_clearance;
         }
+        return false;
     }
-    if stride == 0.0 {
-        return abs(distance) < ON_SURFACE_FRACTION * hit;
-    }
-    let is_local = stride <= near && -gain * stride > rounding(ray, t);
-    return abs(distance) < hit && -gain >= select(MIN_SLOPE, MIN_FINAL_SLOPE, is_local);
+    return true;
 }
 
 fn march(ray: Ray, end: f32) -> Trace {
@@ -119,8 +110,8 @@ fn march(ray: Ray, end: f32) -> Trace {
         }
         record_sample(t, distance);
         let gain = select(-1.0, (distance - last.y) / stride, stride > 0.0);
-        if is_hit(ray, t, distance, stride, gain) {
-            return Trace(t - distance / min(gain, -MIN_FINAL_SLOPE), HIT, step + 1u);
+        if abs(distance) < hit && small_is_near() {
+            return Trace(t + distance / max(-gain, MIN_FINAL_SLOPE), HIT, step + 1u);
         }
         bracket = with_sample(bracket, t, distance);
         if bracket.crossed {

@@ -48,3 +48,5 @@ override INSTRUMENTED: bool;
 override PROVED: bool;
 // Pixels tell whether a ray passed a stretch without a proof that it is free.
 override RECORDS_GAPS: bool;
+// The field is divided by a large Lipschitz constant: a small value may be far from the surface.
+override LOOSE: bool;

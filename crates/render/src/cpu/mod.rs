@@ -52,6 +52,8 @@ pub struct CpuScene {
     range: Option<Tape>,
     gradient: Option<Tape>,
     material: Option<Tape>,
+    /// True if a small value of the field may be far from the surface.
+    is_loose: bool,
 }
 
 impl CpuScene {
@@ -74,6 +76,7 @@ impl CpuScene {
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: program.material.map(|fields| tape(&fields)).transpose()?,
+            is_loose: program.is_loose,
         })
     }
 
@@ -145,6 +148,7 @@ impl CpuScene {
                 epsilon: T::constant(view.epsilon),
                 steps: view.steps,
                 records_clearance: false,
+                is_loose: self.is_loose,
             },
             field: prepare(&self.field),
             pre_intersection: self

@@ -20,12 +20,8 @@ const MAX_RELAXATION: f64 = 4.0;
 /// tolerance.
 const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
-/// The least slope at which a small distance is a hit of `auto`, if it was measured over a step that
-/// is no longer than the tolerance, and if the field fell by more than rounding.
+/// Bound of the last secant, which places the hit: the distance divided by this slope.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
-/// Before a ray of `auto` has moved, the slope is unknown. It starts on a surface if the distance
-/// is within this fraction of that of a hit.
-const ON_SURFACE_FRACTION: f64 = 0.0625;
 
 /// The limits of all rays of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +31,8 @@ pub(super) struct Limits<T> {
     pub(super) steps: u32,
     /// True if rays record how narrowly they pass what they do not hit.
     pub(super) records_clearance: bool,
+    /// True if a small value of the field may be far from the surface.
+    pub(super) is_loose: bool,
 }
 
 impl<T: Real> Limits<T> {
@@ -226,8 +224,10 @@ impl<T: Real> Walk<T> {
         } else {
             T::constant(-1.0)
         };
-        if self.is_hit(distance, hit, gain, near, limits) {
-            return Next::Hit(self.t - distance.div(gain.min(T::constant(-MIN_FINAL_SLOPE))));
+        // Rays with a clearance step no farther than the distance: they would hardly move.
+        let small_is_near = !limits.is_loose || limits.records_clearance;
+        if distance.abs() < hit && small_is_near {
+            return Next::Hit(self.t + secant(distance, gain, MIN_FINAL_SLOPE));
         }
         self.record(distance);
         if let Some(next) = self.false_position(hit) {
@@ -245,7 +245,7 @@ impl<T: Real> Walk<T> {
         self.slope = self.slope + T::constant(SLOPE_WEIGHT) * (gain - self.slope);
         self.close = distance < near;
         let step = if self.close {
-            let step = distance.div((zero - gain).max(T::constant(MIN_SLOPE)));
+            let step = secant(distance, gain, MIN_SLOPE);
             // Along a surface no step need be shorter.
             if gain > T::constant(-MIN_SLOPE) {
                 step.max(T::constant(MIN_STEP_FRACTION) * near)
@@ -263,23 +263,6 @@ impl<T: Real> Walk<T> {
         // A sum that is rounded up may be past the end, where the ray would count as a miss without
         // a sample.
         Next::At((self.t + self.stride).min(end))
-    }
-
-    /// True if the distance at the end of a step is that of a hit. Where a loose Lipschitz constant
-    /// divides the field, a small distance may be far from the surface, unless the field falls
-    /// fast.
-    fn is_hit(&self, distance: T, hit: T, gain: T, near: T, limits: &Limits<T>) -> bool {
-        // Rays with a clearance step no farther than the distance: they would hardly move.
-        if limits.records_clearance {
-            return distance.abs() < hit;
-        }
-        if self.stride <= T::constant(0.0) {
-            return distance.abs() < T::constant(ON_SURFACE_FRACTION) * hit;
-        }
-        let fall = (T::constant(0.0) - gain) * self.stride;
-        let is_local = self.stride <= near && fall > self.ray.rounding(self.t);
-        let least = if is_local { MIN_FINAL_SLOPE } else { MIN_SLOPE };
-        distance.abs() < hit && gain <= T::constant(-least)
     }
 
     /// The distance from the surface below which a sample is a hit.
@@ -305,6 +288,12 @@ impl<T: Real> Walk<T> {
         let part = above.div(above - below).clamp(T::constant(0.1), T::constant(0.9));
         Some(Next::At(last + part * (first - last)))
     }
+}
+
+/// The distance to the surface along the ray if the field falls by `-gain` per unit of length, with
+/// a slope of at least `least`.
+fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
+    distance.div((T::constant(0.0) - gain).max(T::constant(least)))
 }
 
 /// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.

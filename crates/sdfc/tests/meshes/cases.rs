@@ -1,6 +1,7 @@
 //! Scenes that are hard for meshes.
 
 use proptest::prelude::*;
+use sdfc::Scene;
 
 use crate::{check, mesh, scene};
 
@@ -32,6 +33,14 @@ fn hard_scenes_give_valid_meshes() {
     }
 }
 
+/// True if no point of a grid is inside.
+fn is_empty(scene: &Scene) -> bool {
+    let mut field = scene.field(&scene.defaults()).unwrap();
+    let at = |index: usize| -1.5 + 0.1 * index as f64;
+    let mut points = (0..31 * 31 * 31).map(|i| [at(i % 31), at(i / 31 % 31), at(i / 961)]);
+    points.all(|point| field.distance(point) > 0.0)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(6))]
 
@@ -48,7 +57,9 @@ proptest! {
             "{operator}(box([1, 0.8, 0.9]), torus(0.5, 0.3).rotate(x: {angle}deg)\
              .translate([{x}, {y}, {z}]), blend: smooth({width}))"
         );
-        let mesh = mesh(&scene(&source), 0.03);
-        check(&mesh, &source);
+        let scene = scene(&source);
+        if !is_empty(&scene) {
+            check(&mesh(&scene, 0.03), &source);
+        }
     }
 }

@@ -20,6 +20,13 @@ fn an_unbounded_solid_is_refused_with_the_way_to_bound_it() {
 }
 
 #[test]
+fn an_empty_scene_is_refused() {
+    let source = "box([1, 0.8, 0.9]) & sphere(0.5).translate(x: 3)";
+    let error = refusal(source, &MeshOptions::new());
+    assert_eq!(error, MeshError::Empty);
+}
+
+#[test]
 fn an_error_below_rounding_is_refused_with_the_smallest_possible_one() {
     let source = "sphere(1).translate(x: 1000000)";
     let at = |error: f64| MeshOptions::new().error(MeshSize::Length(error));

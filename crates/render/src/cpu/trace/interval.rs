@@ -50,24 +50,25 @@ impl<T: Real> Walk<T> {
         if self.t >= self.ray.t_max {
             return Next::At(self.ray.t_max + self.ray.t_max);
         }
-        match range.filter(|_| self.evaluations < limits.steps) {
-            Some(range) => self.proven_step([last, above], limits, range),
-            None => {
-                self.unproven = true;
-                let step = self.sampling_step(distance, limits);
-                self.evaluations += 1;
-                Next::At((self.t + step).min(self.ray.t_max))
-            }
+        if let Some(range) = range
+            && let Some(end) = self.proven_end([last, above], limits, range)
+        {
+            return Next::At(end);
         }
+        self.unproven = true;
+        let step = self.sampling_step(distance, limits);
+        self.evaluations += 1;
+        Next::At((self.t + step).min(self.ray.t_max))
     }
 
-    /// Returns the position up to which the ray is free, or which is too near to tell.
-    fn proven_step(
+    /// Returns the position up to which the ray is free, or which is too near to tell; `None` if
+    /// the steps for proofs are spent before.
+    fn proven_end(
         &mut self,
         [last, above]: [T; 2],
         limits: &Limits<T>,
         range: &mut Evaluator<'_, T>,
-    ) -> Next<T> {
+    ) -> Option<T> {
         let zero = T::constant(0.0);
         let near = limits.tolerance(&self.ray, last);
         let rounding = self.ray.rounding(self.t);
@@ -76,9 +77,8 @@ impl<T: Real> Walk<T> {
             self.segment = self.segment.min(above.max(near));
         }
         let mut shortened = false;
-        let mut end = last;
         while self.evaluations < limits.steps {
-            end = (last + self.segment).min(self.ray.t_max);
+            let end = (last + self.segment).min(self.ray.t_max);
             self.evaluations += 1;
             let least = range.eval_ray(self.ray.at(last), self.ray.at(end))[0][0];
             let spent = f64::from(self.evaluations) / f64::from(limits.steps);
@@ -87,7 +87,8 @@ impl<T: Real> Walk<T> {
             if least > zero || self.segment <= finest {
                 let proven = least > zero || end - last <= near.max(rounding);
                 self.unproven = self.unproven || !proven;
-                break;
+                self.segment = if shortened { zero } else { self.segment + self.segment };
+                return Some(end);
             }
             // As far as the field would stay positive if it fell linearly to its lower bound.
             let fall = (above - least).max(T::constant(1e-30));
@@ -96,8 +97,7 @@ impl<T: Real> Walk<T> {
             self.segment = (part * (end - last)).max(finest);
             shortened = true;
         }
-        self.segment = if shortened { zero } else { self.segment + self.segment };
-        Next::At(end)
+        None
     }
 
     /// How steep the field has been of late, with one more sample.
