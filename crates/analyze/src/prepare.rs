@@ -13,7 +13,7 @@ use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
 use crate::leaves::count_leaves;
-use crate::report::{Lipschitz, Report, ShapeReport, shape_reports};
+use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
 use crate::reroll::rewrite::{reroll, similar_groups};
@@ -114,8 +114,7 @@ fn flatten(
     program.material = material.try_into().ok();
     let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
     program.gradient = Some(gradient);
-    let shapes = shape_reports(graph, &qualities, root, &field.divided);
-    program.is_loose = shapes.iter().any(is_loose);
+    program.is_loose = field.divided.iter().any(|&shape| is_loose(graph, &qualities, shape));
     program.cullable_loops = cullable_loops(graph, &fields, lipschitz);
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
         program.loop_bounds = looped_bounds(graph, &mut bounds, root);
@@ -135,22 +134,17 @@ fn flatten(
         marched_cost: cost(graph, copies.or(marched).as_slice()),
         analytic: operands.analytic.iter().map(|operand| operand.shape).collect(),
         marched: operands.marched.iter().map(|operand| operand.shape).collect(),
-        shapes,
+        shapes: shape_reports(graph, &qualities, root, &field.divided),
         uncertified: field.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
         inexact_outside: inexact_outside(graph, &qualities, root),
     })
 }
 
-/// True if the field of a shape is divided by a large constant, or by one per frame, which may have
-/// any value.
-fn is_loose(shape: &ShapeReport) -> bool {
-    shape.divided
-        && match shape.lipschitz {
-            Lipschitz::Number(constant) => constant > LOOSE,
-            Lipschitz::PerFrame => true,
-            Lipschitz::Unknown(_) => false,
-        }
+/// True if the field of a shape is divided by a constant that can be large.
+fn is_loose(graph: &Graph, qualities: &Qualities, shape: ShapeId) -> bool {
+    let constant = qualities.get(shape).and_then(|quality| quality.lipschitz.as_ref().ok());
+    constant.is_some_and(|&constant| graph.range(constant).hi > LOOSE)
 }
 
 /// The Lipschitz constant of the scene's field: infinite if it depends on a param, `None` if there

@@ -134,6 +134,10 @@ fn march(ray: Ray, end: f32) -> Trace {
             if gain > -MIN_SLOPE {
                 stride = max(stride, MIN_STEP_FRACTION * near);
             }
+            if LOOSE {
+                // Nor a ray that must find a change of sign.
+                stride = max(stride, MIN_STEP_FRACTION * near);
+            }
         } else {
             // Two spheres touch at a step z = r + (r + slope z).
             stride = 2.0 / clamp(1.0 - slope, 2.0 / MAX_RELAXATION, 2.0) * distance;

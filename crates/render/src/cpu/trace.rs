@@ -246,8 +246,8 @@ impl<T: Real> Walk<T> {
         self.close = distance < near;
         let step = if self.close {
             let step = secant(distance, gain, MIN_SLOPE);
-            // Along a surface no step need be shorter.
-            if gain > T::constant(-MIN_SLOPE) {
+            // Along a surface, or where a change of sign is looked for, no step need be shorter.
+            if limits.is_loose || gain > T::constant(-MIN_SLOPE) {
                 step.max(T::constant(MIN_STEP_FRACTION) * near)
             } else {
                 step
