@@ -66,8 +66,8 @@ pub struct Program {
     pub distance: Option<NodeId>,
     /// Gradient of `distance`, a 3-vector.
     pub gradient: Option<NodeId>,
-    /// True if `distance` is divided by a large Lipschitz constant, so that a small value may be far
-    /// from the surface.
+    /// True if `distance` is divided by a large Lipschitz constant, so that a small value may be
+    /// far from the surface.
     pub is_loose: bool,
     /// Functions of a ray that replace or restrict marching `distance`.
     pub rays: Rays,
