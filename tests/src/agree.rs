@@ -33,7 +33,7 @@ const METHOD: Method = Method::Auto;
 /// which their hits may differ.
 const FINER: f64 = 64.0;
 
-/// Why two pictures do not agree.
+/// The reason why two pictures do not agree.
 #[derive(Debug)]
 pub enum Disagreement {
     /// They show too little to be compared: nothing is seen, or most pixels are edges.

@@ -193,6 +193,7 @@ fn shapes_whose_end_depends_on_a_param_are_written_for_every_target() {
                    polar_repeat(ellipse([1, k]).extrude().shear(sin(time)))";
     for text in [repeated, sheared] {
         let scene = Compiler::new().compile("a.sdf", text).unwrap_or_else(|e| panic!("{e}"));
+        // Shadertoy has pictures only.
         for target in Target::ALL.into_iter().filter(|target| *target != Target::Shadertoy) {
             let options = ShaderOptions::new().target(target).emit(Emit::Field);
             scene.write_shader(&options).unwrap_or_else(|e| panic!("{}: {e}", target.name()));

@@ -22,7 +22,7 @@ const WORTH_SHRINKING: usize = 3;
 /// The most programs that are tried while one is shrunk.
 const TRIES: usize = 2000;
 
-/// What a campaign does.
+/// The limits of a campaign, and its oracles.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The campaign ends after this time, or after the finding that it is shrinking then.
@@ -31,7 +31,7 @@ pub struct Options {
     pub programs: u64,
     /// The seed of the first program. The next programs have the next seeds.
     pub seed: u64,
-    /// What is asked.
+    /// The oracles that judge each program.
     pub oracles: Vec<Oracle>,
 }
 
@@ -46,7 +46,7 @@ pub struct Table {
     pub parts: usize,
     /// One row for each oracle.
     pub rows: Vec<Row>,
-    /// What does not hold.
+    /// The faults, in the order in which they were found.
     pub found: Vec<Found>,
     /// The time it took.
     pub time: Duration,
@@ -78,7 +78,7 @@ pub struct Found {
     pub text: String,
 }
 
-/// What happens in a campaign.
+/// An event of a campaign.
 #[derive(Debug)]
 pub enum Event<'e> {
     /// A program with this seed and text is about to be judged.

@@ -16,8 +16,8 @@ use sdfc_fuzz::{generate, repair};
 /// Generates programs and tests what must hold of each. Ends with status 1 if something does not.
 #[derive(Debug, Parser)]
 struct Arguments {
-    /// How long
-    #[arg(long, value_name = "MINUTES", default_value_t = 3.0)]
+    /// The time that the campaign runs for, in minutes
+    #[arg(long, value_name = "NUMBER", default_value_t = 3.0)]
     minutes: f64,
     /// The most programs
     #[arg(long, value_name = "COUNT", default_value_t = u64::MAX)]
@@ -25,7 +25,7 @@ struct Arguments {
     /// The seed of the first program; the next programs have the next seeds
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
-    /// What is tested; may be given several times [default: everything]
+    /// The name of an oracle to ask; may be given several times [default: all oracles]
     #[arg(long, value_name = "NAME")]
     oracle: Vec<String>,
     /// The folder for the programs with faults

@@ -21,7 +21,7 @@ pub struct Subject {
 pub struct Finding {
     /// The fault in a word or two. While a program is shrunk, its fault stays the same.
     pub kind: String,
-    /// What was found.
+    /// The fault in full.
     pub message: String,
 }
 
@@ -34,7 +34,7 @@ pub enum Verdict {
     LeftOut,
 }
 
-/// What an oracle says of a program.
+/// The answer of an oracle.
 pub type Outcome = Result<Verdict, Finding>;
 
 /// A statement about programs.
@@ -57,9 +57,9 @@ pub const ORACLES: [Oracle; 8] = [
     },
     Oracle { name: "compile", summary: "every part is written for every target", holds: compile },
     Oracle {
-        name: "finite",
-        summary: "the field is a finite number wherever it is sampled",
-        holds: finite,
+        name: "number",
+        summary: "the field is a number, not NaN, wherever it is sampled",
+        holds: number,
     },
     Oracle {
         name: "live",
@@ -135,7 +135,7 @@ fn points() -> impl Iterator<Item = [f64; 3]> {
     (0..POINTS).map(|at| [0.0, 1.0, 2.0].map(|axis| 4.0 * (f64::from(at) * (1.7 + axis)).sin()))
 }
 
-fn finite(subject: &Subject) -> Outcome {
+fn number(subject: &Subject) -> Outcome {
     let Subject { scene, .. } = subject;
     let mut field = scene.field(&scene.defaults()).map_err(|e| finding("no field", e))?;
     for point in points() {

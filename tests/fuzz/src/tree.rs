@@ -11,7 +11,7 @@ use crate::types::Ty;
 pub struct Tree {
     /// The type.
     pub ty: Ty,
-    /// What is printed, in order.
+    /// The pieces of its text, in order.
     pub pieces: Vec<Piece>,
 }
 

@@ -272,8 +272,8 @@ impl<'a> Lowering<'a> {
     /// A number, rounded to 32 bits. Shader languages have no infinite literals, so the bounds of a
     /// shape without an end become the largest finite numbers.
     pub(super) fn number(&mut self, node: NodeId, value: f64) -> Result<Value, Error> {
-        let limit = f64::from(f32::MAX);
-        let rounded = if value.is_infinite() { value.clamp(-limit, limit) } else { value } as f32;
+        let rounded = value as f32;
+        let rounded = if value.is_infinite() { f32::MAX.copysign(rounded) } else { rounded };
         if !rounded.is_finite() {
             return Err(Error::NotFinite { node, value });
         }

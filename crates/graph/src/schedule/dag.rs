@@ -19,7 +19,7 @@ pub(crate) struct Dag {
     pub(super) lanes: Vec<[Option<(usize, u8)>; 4]>,
 }
 
-/// What is needed for one node alone, by position.
+/// The dominators of the nodes, and the lanes that one node alone needs, by position.
 pub(crate) struct Exclusive {
     /// The dominators of the nodes, seen from their users. The root stands for all that reads the
     /// nodes of the function; its position is their number.
@@ -64,7 +64,7 @@ impl Dag {
         self.lanes[position].iter().flatten().filter(|lane| lane.0 == position).count()
     }
 
-    /// Returns what is needed for each node alone.
+    /// Returns the dominators, and the number of lanes that each node alone needs.
     pub(crate) fn exclusive(&self) -> Exclusive {
         let count = self.nodes.len();
         let mut users = DominatorTree::new(count + 1, count);

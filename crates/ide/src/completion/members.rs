@@ -29,11 +29,11 @@ pub fn members(analysis: &Analysis, ty: &Type) -> Vec<Completion> {
         it.label = name.clone();
         it
     }));
+    let sources = &library().sources;
     let of_library = library().declarations().filter(takes);
-    found
-        .extend(of_library.map(|decl| {
-            Completion::call(&describe_declaration(&library().sources, decl), true, 3)
-        }));
+    found.extend(
+        of_library.map(|decl| Completion::call(&describe_declaration(sources, decl), true, 3)),
+    );
     let kernel = library().entries.iter().filter(|entry| entry.kind == "kernel");
     let kernel = kernel.filter(|entry| kernel_takes(&entry.name, ty));
     found.extend(kernel.map(|entry| Completion::call(entry, true, 4)));

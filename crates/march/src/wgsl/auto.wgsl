@@ -135,7 +135,7 @@ fn march(ray: Ray, end: f32) -> Trace {
                 stride = max(stride, MIN_STEP_FRACTION * near);
             }
             if LOOSE {
-                // Nor a ray that must find a change of sign.
+                // A ray that must find a change of sign needs no shorter steps either.
                 stride = max(stride, MIN_STEP_FRACTION * near);
             }
         } else {

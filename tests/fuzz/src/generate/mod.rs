@@ -17,10 +17,10 @@ use crate::types::Ty;
 
 /// The most shapes that a program asks for. Comprehensions make more of them.
 const MOST_SHAPES: f64 = 300.0;
-/// How deep calculations nest.
+/// The number of levels that calculations nest.
 const DEPTH: usize = 3;
 
-/// When a value is computed.
+/// The rate at which a value is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Rate {
     /// When the scene compiles.
@@ -43,7 +43,7 @@ struct Variable {
     texts: Vec<String>,
 }
 
-/// What a place asks of its value.
+/// The demands of a place on its value.
 #[derive(Clone, Copy, Debug)]
 struct Want {
     /// The value is computed at this rate or an earlier one.
@@ -52,7 +52,7 @@ struct Want {
     range: Option<[f64; 2]>,
     /// About how many shapes it has.
     shapes: usize,
-    /// How deep it may nest calculations.
+    /// The number of levels that it may nest calculations.
     depth: usize,
 }
 
@@ -87,7 +87,7 @@ pub fn generate(catalogue: &Catalogue, seed: u64) -> Program {
 struct Generator<'c> {
     catalogue: &'c Catalogue,
     rng: Rng,
-    /// What the program declares.
+    /// The functions and shapes that the program declares.
     declared: Vec<Callable>,
     /// The names that are visible.
     scope: Vec<Variable>,
