@@ -140,6 +140,10 @@ pub struct Compile {
     /// Output file for names, layouts and properties of the field, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub reflect: Option<PathBuf>,
+    /// Set a param: its value, if it is a constant of the shader, otherwise its default. The value
+    /// is written as in a scene: 0.5, 90deg, true, #d94f30, or the name of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
     /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
     /// recompiling
     #[arg(long)]
@@ -362,6 +366,10 @@ pub struct View {
 pub struct Explain {
     /// The scene; `-` is stdin
     pub file: PathBuf,
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
     /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,

@@ -44,6 +44,21 @@ fn params_and_time_move_the_picture() {
 }
 
 #[test]
+fn a_param_that_decides_what_is_built_is_set_like_any_other() {
+    let scene = "param n: int = 2 in 1..9\nparam r = 0.3\n\
+                 union(for i in 0..n: sphere(r).translate(x: i))\ncamera(eye: [0, 0, 9])\n";
+    let folder = folder(&[("params.sdf", scene)]);
+    let plain = drawn(&folder, "");
+    assert_ne!(drawn(&folder, "--set n=4"), plain);
+    assert_ne!(drawn(&folder, "--set n=4 --set r=0.5"), drawn(&folder, "--set n=4"));
+    assert_eq!(drawn(&folder, "--set n=2 --set r=0.3"), plain);
+    refused(&folder, "--set n=10", "the param `n` takes 1..9; 10 is outside");
+    let explained = run(&folder, "explain params.sdf --set n=4");
+    let text = String::from_utf8_lossy(&explained.stdout).into_owned();
+    assert!(text.contains("n: decides what the scene consists of"), "{text}");
+}
+
+#[test]
 fn wrong_values_are_refused_by_name() {
     let folder = with_params();
     refused(&folder, "--set q=1", "it has r, tilt, paint");

@@ -167,8 +167,8 @@ codes! {
 
     NOT_COMPILE_TIME "E0402" "Value not known at compile time"
         "These must be known when the scene compiles: the sequence of a `for`, list indices, \
-         strings, and the condition around a recursive call. A param can change later, without a \
-         recompile."
+         strings, and the condition around a recursive call. `time` and the point are not known \
+         then. A param is: another value compiles the scene again."
         "write the value here, or make it a `let`";
     RECURSION "E0405" "Recursion deeper than 64 levels"
         "Functions are inlined at each call, so recursion must end at compile time."

@@ -14,12 +14,34 @@ pub struct Param {
     pub ty: Type,
     /// Its default, as lanes of its type; for a choice, the index.
     pub default: [f64; 4],
+    /// The value that the scene was compiled with, if it is a constant of the graph because it
+    /// decides what the scene consists of; `None` if the value can change from frame to frame.
+    pub fixed: Option<[f64; 4]>,
     /// Lowest and highest value, if it has a range.
     pub range: Option<[f64; 2]>,
     /// Names of the choices.
     pub choices: Vec<String>,
     /// First line of its documentation.
     pub summary: String,
+}
+
+impl Param {
+    /// True if the param can have a value: it is finite, within the range, and an integer, a truth
+    /// value or an index of a choice where the kind needs that.
+    pub fn accepts(&self, lanes: [f64; 4]) -> bool {
+        let [number, ..] = lanes;
+        let in_range = self.range.is_none_or(|[lo, hi]| (lo..=hi).contains(&number));
+        let fits = match self.kind {
+            ParamKind::Number | ParamKind::Angle => in_range,
+            ParamKind::Int => in_range && number.fract() == 0.0,
+            ParamKind::Bool => number == 0.0 || number == 1.0,
+            ParamKind::Color => true,
+            ParamKind::Choice => {
+                number >= 0.0 && number.fract() == 0.0 && (number as usize) < self.choices.len()
+            }
+        };
+        fits && lanes.iter().all(|lane| lane.is_finite())
+    }
 }
 
 /// Kinds of params, as a user interface shows them.

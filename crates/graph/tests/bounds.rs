@@ -171,6 +171,7 @@ impl Scene {
             kind: ParamKind::Number,
             ty: Type::Scalar,
             default: [default; 4],
+            fixed: None,
             range,
             choices: Vec::new(),
             summary: String::new(),

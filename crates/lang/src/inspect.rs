@@ -27,7 +27,8 @@ pub struct Inspection {
 pub fn inspect(sources: &mut Sources, file: FileId, resolver: &dyn Resolver) -> Inspection {
     let (mut inspection, program) = inspect_with(sources, file, resolver, Uses::default());
     if !has_errors(&inspection.diagnostics) {
-        let (_, found) = elab::elaborate(&program, &Fonts::new(resolver));
+        let (_, found) =
+            elab::elaborate(&program, &Fonts::new(resolver), &elab::CompileValues::new());
         inspection.diagnostics.extend(found);
     }
     inspection

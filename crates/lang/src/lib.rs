@@ -55,7 +55,7 @@ use sdfc_diagnostics::{Code, Diagnostic, FileId, Sources, has_errors};
 use sdfc_syntax::ast;
 
 pub use check::{check, check_library, check_with_imports};
-pub use elab::{Claimed, Declared, DeclaredPromise, Elaborated, Site};
+pub use elab::{Claimed, CompileValues, Declared, DeclaredPromise, Elaborated, Site};
 pub use import::{NoFiles, Resolver};
 
 /// Parses, checks and elaborates a scene without imports.
@@ -78,13 +78,15 @@ pub fn front_with_imports(
 }
 
 /// Options of the front end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options<'v> {
     /// Numbers written in the scene become params, see [`live_literals`].
     pub live_literals: bool,
     /// If the scene has more than [`live_literals::MAX_LIVE_LITERALS`] literals, those nearest to
     /// this byte offset become params; the first ones if it is `None`.
     pub focus: Option<u32>,
+    /// Values for the params that decide what the scene consists of; `None` for their defaults.
+    pub values: Option<&'v CompileValues>,
 }
 
 /// Like [`front_with_imports`], with options.
@@ -92,7 +94,7 @@ pub fn front_with(
     sources: &mut Sources,
     file: FileId,
     resolver: &dyn Resolver,
-    options: Options,
+    options: Options<'_>,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
     let checked = check_scene(sources, file, resolver, None);
     let (program, mut found) = (checked.program, checked.found);
@@ -100,10 +102,12 @@ pub fn front_with(
         return (None, found);
     }
     let fonts = font::Fonts::new(resolver);
+    let defaults = CompileValues::new();
+    let values = options.values.unwrap_or(&defaults);
     let (elaborated, of_elaboration) = if options.live_literals {
-        live_literals::elaborate(&program, &fonts, sources, file, options.focus)
+        live_literals::elaborate(&program, &fonts, sources, file, options.focus, values)
     } else {
-        elab::elaborate(&program, &fonts)
+        elab::elaborate(&program, &fonts, values)
     };
     found.extend(of_elaboration);
     (elaborated, found)

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use sdfc_diagnostics::{Diagnostic, FileId, Sources, Span};
 
 pub use crate::elab::LiveLiteral;
-use crate::elab::{self, Elaborated};
+use crate::elab::{self, CompileValues, Elaborated, ParamInputs};
 use crate::font::Fonts;
 use crate::hir::{self, Element, Expr, ExprKind, ParamId, Program};
 
@@ -37,11 +37,13 @@ pub(crate) fn elaborate(
     sources: &Sources,
     file: FileId,
     focus: Option<u32>,
+    values: &CompileValues,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let plain = elab::elaborate(program, fonts);
-    if plain.0.is_none() {
-        return plain;
-    }
+    let plain = elab::elaborate(program, fonts, values);
+    let Some(found) = &plain.0 else { return plain };
+    let mut params = ParamInputs::new(program.params.len(), values);
+    let declared = found.scene.params.iter().enumerate();
+    params.fix(&declared.filter(|(_, param)| param.fixed.is_some()).map(|(i, _)| i).collect());
     let mut facts = LiteralFacts::default();
     for _ in 0..MAX_ELABORATIONS {
         let mut lifted = program.clone();
@@ -51,7 +53,8 @@ pub(crate) fn elaborate(
         if literals.is_empty() {
             return plain;
         }
-        let (elaborated, _, uses) = elab::elaborate_with(&lifted, fonts, program.params.len());
+        let result = elab::elaborate_with(&lifted, fonts, params.clone());
+        let (elaborated, uses) = (result.elaborated, result.literals);
         let span = |param: &usize| literals.iter().find(|s| s.param == *param).map(|s| s.span);
         let mut learned = facts.clone();
         learned.fixed.extend(uses.fixed.iter().filter_map(span));

@@ -27,7 +27,7 @@ macro_rules! words {
 /// All words, declarations first and clauses last.
 pub(crate) const WORDS: &[SyntaxWord] = words! {
     "let" "let name = value", "Names a value. It is visible on the lines below, in this file or block.", "let r = 0.5; sphere(r)";
-    "param" "param name: type = default in lo..hi", "Declares a value that a user can change without a recompile: a number, int, angle, bool, colour, or a choice of strings.", "param r = 0.5 in 0..1; sphere(r)";
+    "param" "param name: type = default in lo..hi", "Declares a value that a user can change, with `--set` or a slider: a number, int, angle, bool, colour, or a choice of strings.", "param r = 0.5 in 0..1; sphere(r)";
     "fn" "fn name(x: type = default) -> type = value", "Declares a function. `fn(x) = value` without a name is a value: a pattern, a blend or a field.", "fn twice(x) = 2 * x; sphere(twice(0.3))";
     "solid" "solid name(x: type = default) = distance", "Declares a shape in space by its signed distance at the point `p`.", "solid ball(r: length = 1 in 0..inf) = length(p) - r; ball()";
     "region" "region name(x: type = default) = distance", "Declares a shape in the plane by its signed distance at the point `p`.", "region dot(r: length = 1 in 0..inf) = length(p) - r; dot().extrude(0.2)";

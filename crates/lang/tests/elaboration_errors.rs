@@ -19,7 +19,7 @@ shows! {
     an_argument_outside_its_range_is_an_error: "let r = -0.2\nsphere(r)\n";
     a_vector_outside_its_range_is_an_error: "box([1, -1, 2])\n";
     a_param_that_can_leave_the_range_is_an_error: "param r = 0.5 in -1..1\nsphere(r * 2)\n";
-    a_param_without_a_range_can_be_out_of_range: "param r = 0.5\nsphere(r)\n";
+    a_param_without_a_range_goes_from_0_to_twice_its_default: "param r = 0.5\nsphere(r - 1)\n";
     a_default_outside_the_range_of_its_param_is_an_error: "param r = 3 in 0..1\nsphere(r)\n";
     a_false_requirement_is_an_error: "plane(normal: [0, 0, 0])\n";
     a_requirement_that_a_param_violates_is_an_error: "param s = 0.5 in 0..1\nsphere(1).scale(s)\n";
@@ -30,11 +30,11 @@ shows! {
     an_error_in_nested_functions_shows_their_calls:
         "fn leg(r: length) = cylinder(r: r)\nfn pair(r: length) = leg(r) | leg(r - 1)\npair(0.5)\n";
     an_error_in_the_library_is_shown_at_the_call: "union(blend: smooth(1))\n";
-    a_sequence_that_depends_on_a_param_is_an_error: "param teeth: int = 8 in 3..12\nunion(for i in 0..teeth: sphere(i))\n";
+    a_sequence_that_depends_on_time_is_an_error: "union(for i in 0..floor(time): sphere(i))\n";
     an_index_past_the_end_is_an_error: "let radii = [1, 2]\nsphere(radii[2])\n";
     endless_recursion_is_an_error: "fn f(n: int) -> solid = f(n - 1)\nf(7)\n";
-    recursion_on_a_param_is_an_error:
-        "param n: int = 3 in 0..5\nfn f(n: int) -> solid = if n == 0 { sphere(1) } else { f(n - 1).round(0.1) }\nf(n)\n";
+    recursion_on_time_is_an_error:
+        "fn f(n: number) -> solid = if n <= 0 { sphere(1) } else { f(n - 1).round(0.1) }\nf(time)\n";
     too_many_nodes_are_an_error:
         "union(for x in 0..200: for y in 0..200: for z in 0..200: sphere(0.1).translate([x, y, z]))\n";
     a_sequence_that_is_too_long_is_an_error: "union(for x in 0..10000000: sphere(x))\n";

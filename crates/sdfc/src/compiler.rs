@@ -5,13 +5,26 @@ use std::sync::Arc;
 use sdfc_analyze::{LoopStrategy, prepare_with};
 use sdfc_codegen::Stopwatch;
 use sdfc_diagnostics::{Code, Diagnostic, Sources, Span, has_errors};
-use sdfc_lang::{NoFiles, Options, Resolver};
+use sdfc_lang::{CompileValues, NoFiles, Options, Resolver};
 
 use crate::diagnostics::Diagnostics;
 use crate::diagnostics::refutations::refutations;
 use crate::diagnostics::warnings::warnings;
+use crate::params::ParamError;
 use crate::scene::{FrontTimes, Scene};
 use crate::source_id::SourceId;
+
+/// Why [`Compiler::compile_with`] gives no scene.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompileWithError {
+    /// The scene has errors.
+    #[error(transparent)]
+    Scene(#[from] Diagnostics),
+    /// A param does not take its value.
+    #[error(transparent)]
+    Param(#[from] ParamError),
+}
 
 /// Compiles scenes: a builder of options, and [`compile`](Self::compile).
 ///
@@ -33,7 +46,7 @@ use crate::source_id::SourceId;
 pub struct Compiler<'r> {
     resolver: &'r dyn Resolver,
     verify: bool,
-    options: Options,
+    options: Options<'r>,
     loops: LoopStrategy,
 }
 
@@ -107,7 +120,28 @@ impl<'r> Compiler<'r> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn live_literals(self, focus: Option<u32>) -> Self {
-        Self { options: Options { live_literals: true, focus }, ..self }
+        Self { options: Options { live_literals: true, focus, ..self.options }, ..self }
+    }
+
+    /// Sets the values of the params that decide what a scene consists of: counts, lengths of
+    /// lists, strings ([`Scene::is_fixed`]). They are constants of the compiled scene, by default
+    /// with the defaults that the scene declares.
+    ///
+    /// Values of other params are ignored, as are values that a param does not take. Values for
+    /// all params come from [`Scene::param_value`]; [`Compiler::compile_with`] does that.
+    ///
+    /// ```
+    /// use sdfc::{Compiler, CompileValues};
+    ///
+    /// let text = "param n: int = 2 in 1..9\nunion([for i in 0..n: sphere(1).translate(x: 4 * i)])";
+    /// let values = CompileValues::from([("n".to_owned(), [3.0, 0.0, 0.0, 0.0])]);
+    /// let scene = Compiler::new().values(&values).compile("row.sdf", text)?;
+    /// assert_eq!(scene.distance([8.0, 0.0, 0.0])?, -1.0);
+    /// assert!(scene.is_fixed("n"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn values(self, values: &'r CompileValues) -> Self {
+        Self { options: Options { values: Some(values), ..self.options }, ..self }
     }
 
     /// Chooses between loops over similar parts of the scene and unrolled code. The default picks
@@ -153,6 +187,44 @@ impl<'r> Compiler<'r> {
         }
         let diagnostics = Diagnostics::new(sources, found);
         Ok(Scene::new(diagnostics, elaborated, prepared, self.loops, times, id))
+    }
+
+    /// Compiles the source of a scene with values for some params, written as in a scene (see
+    /// [`Scene::set_param`]). They are the defaults of the compiled scene.
+    ///
+    /// ```
+    /// use sdfc::Compiler;
+    ///
+    /// let text = "param n: int = 2 in 1..9\nparam r = 1 in 0..2\n\
+    ///             union([for i in 0..n: sphere(r).translate(x: 4 * i)])";
+    /// let scene = Compiler::new().compile_with("row.sdf", text, &[("n", "3"), ("r", "0.5")])?;
+    /// assert_eq!(scene.distance([8.0, 0.0, 0.0])?, -0.5);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`CompileWithError`]: the scene has errors, also with these values only, or a param does not
+    /// take its value.
+    pub fn compile_with(
+        &self,
+        name: &str,
+        text: &str,
+        set: &[(&str, &str)],
+    ) -> Result<Scene, CompileWithError> {
+        let mut scene = self.compile(name, text)?;
+        let mut values = CompileValues::new();
+        for (param, value) in set {
+            values.insert((*param).to_owned(), scene.param_value(param, value)?);
+        }
+        if scene.needs_compile(&values) {
+            scene = self.values(&values).compile(name, text)?;
+        }
+        let declared = &mut scene.elaborated.scene.params;
+        for param in scene.program.params.iter_mut().chain(declared) {
+            param.default = values.get(&param.name).copied().unwrap_or(param.default);
+        }
+        Ok(scene)
     }
 
     /// Compiles the source of a scene and returns all errors and warnings.

@@ -102,8 +102,8 @@ impl Scene {
             .enumerate()
             .map(|(index, param)| Input {
                 name: param.name.clone(),
-                stage: "frame",
-                used: is_used(FrameInput::Param(index as u32)),
+                stage: if param.fixed.is_some() { "compile" } else { "frame" },
+                used: param.fixed.is_some() || is_used(FrameInput::Param(index as u32)),
             })
             .collect();
         for (name, input) in [("time", FrameInput::Time), ("frame", FrameInput::Frame)] {

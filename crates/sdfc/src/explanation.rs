@@ -85,7 +85,8 @@ impl Bounds {
 pub struct Input {
     /// Its name.
     pub name: String,
-    /// Evaluation rate: `frame`, since it changes without recompiling.
+    /// Evaluation rate: `frame` if it changes without recompiling, `compile` if the scene is
+    /// compiled again for another value.
     pub stage: &'static str,
     /// True if the field, the material or a setting uses it.
     pub used: bool,
@@ -160,7 +161,11 @@ impl std::fmt::Display for Explanation {
         writeln!(f, "bounds              {}", self.bounds)?;
         for input in &self.inputs {
             let unused = if input.used { "" } else { ", unused" };
-            writeln!(f, "param               {}: per {}{unused}", input.name, input.stage)?;
+            let rate = match input.stage {
+                "compile" => "decides what the scene consists of; another value recompiles it",
+                _ => "per frame",
+            };
+            writeln!(f, "param               {}: {rate}{unused}", input.name)?;
         }
         if !self.quality.is_empty() {
             writeln!(

@@ -71,7 +71,7 @@ mod source_id;
 mod tapes;
 mod uniforms;
 
-pub use compiler::{Compiler, format};
+pub use compiler::{CompileWithError, Compiler, format};
 pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
 pub use explanation::{Bounds, Explanation, Input, QualityRow};
@@ -100,7 +100,7 @@ pub use sdfc_diagnostics::{Diagnostic, FileId, LineColumn, Located, Severity, So
 pub use sdfc_graph::eval::{FieldSample, FrameValues};
 pub use sdfc_graph::{Param, ParamKind};
 pub use sdfc_lang::live_literals::{LiveLiteral, MAX_LIVE_LITERALS};
-pub use sdfc_lang::{NoFiles, Resolver};
+pub use sdfc_lang::{CompileValues, NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{

@@ -3,6 +3,7 @@
 use sdfc_diagnostics::{Sources, has_errors};
 use sdfc_graph::eval::FrameValues;
 use sdfc_graph::{Param, ParamKind};
+use sdfc_lang::CompileValues;
 
 use crate::scene::Scene;
 
@@ -27,6 +28,15 @@ pub enum ParamError {
         text: String,
         /// The values that the param takes.
         expected: String,
+    },
+    /// The param is a constant of the compiled scene.
+    #[error(
+        "the param `{name}` decides what the scene consists of, so it cannot change in a compiled \
+         scene: compile the scene with the value"
+    )]
+    Fixed {
+        /// The param.
+        name: String,
     },
     /// The value lies outside the param's range.
     #[error("the param `{name}` takes {range}; {text} is outside")]
@@ -108,6 +118,49 @@ impl std::fmt::Display for Value<'_> {
 }
 
 impl Scene {
+    /// Returns the value of a param that a text states, written as for [`Self::set_param`]. The param
+    /// may be [fixed](Self::is_fixed).
+    ///
+    /// # Errors
+    ///
+    /// [`ParamError`], except [`ParamError::Fixed`].
+    pub fn param_value(&self, name: &str, text: &str) -> Result<[f64; 4], ParamError> {
+        let (_, param) = find(self.params(), name)?;
+        value(param, text)
+    }
+
+    /// True if a param decides what the scene consists of: a count, the length of a list, a string.
+    /// It is a constant of the compiled scene; [`Compiler::values`](crate::Compiler::values) sets
+    /// it.
+    pub fn is_fixed(&self, name: &str) -> bool {
+        self.params().iter().any(|param| param.name == name && param.fixed.is_some())
+    }
+
+    /// True if the scene must be compiled again for these values, since a param that is
+    /// [fixed](Self::is_fixed) has another one. Values that a param does not take are ignored.
+    pub fn needs_compile(&self, values: &CompileValues) -> bool {
+        self.params().iter().any(|param| {
+            let given = values.get(&param.name).filter(|lanes| param.accepts(**lanes));
+            param.fixed.is_some_and(|fixed| fixed != *given.unwrap_or(&param.default))
+        })
+    }
+
+    /// The values of fixed params as arguments of `sdfc compile`.
+    pub(crate) fn fixed_arguments(&self) -> String {
+        let argument = |param: &Param| {
+            let [number, ..] = param.fixed?;
+            let value = match param.kind {
+                ParamKind::Number | ParamKind::Int => number.to_string(),
+                ParamKind::Angle => degrees(number),
+                ParamKind::Bool => (number != 0.0).to_string(),
+                ParamKind::Color => format!("{:?}", param.fixed?),
+                ParamKind::Choice => param.choices.get(number as usize)?.clone(),
+            };
+            Some(format!(" --set {}={value}", param.name))
+        };
+        self.params().iter().filter_map(argument).collect()
+    }
+
     /// Sets one param of a frame.
     ///
     /// ```
@@ -175,18 +228,25 @@ pub(crate) fn set(
     })
 }
 
+fn find<'p>(params: &'p [Param], name: &str) -> Result<(usize, &'p Param), ParamError> {
+    let found = params.iter().enumerate().find(|(_, param)| param.name == name);
+    found.ok_or_else(|| {
+        let known = params.iter().map(|param| param.name.clone()).collect();
+        ParamError::Unknown { name: name.to_owned(), known }
+    })
+}
+
 fn put(
     params: &[Param],
     frame: &mut FrameValues,
     name: &str,
     value: impl FnOnce(&Param) -> Result<[f64; 4], ParamError>,
 ) -> Result<(), ParamError> {
-    let found = params.iter().position(|param| param.name == name);
-    let known = || params.iter().map(|param| param.name.clone()).collect();
-    let Some((index, param)) = found.and_then(|i| Some((i, params.get(i)?))) else {
-        return Err(ParamError::Unknown { name: name.to_owned(), known: known() });
-    };
+    let (index, param) = find(params, name)?;
     let value = value(param)?;
+    if param.fixed.is_some_and(|fixed| fixed != value) {
+        return Err(ParamError::Fixed { name: name.to_owned() });
+    }
     if frame.params.len() < params.len() {
         frame.params = FrameValues::defaults(params).params;
     }
@@ -257,7 +317,8 @@ fn within_range(param: &Param, lanes: [f64; 4], text: &str) -> Result<[f64; 4], 
 /// Returns kind and lanes of a constant. It is parsed as the default of a param, so that values are
 /// written as in a scene.
 fn literal(text: &str) -> Option<(ParamKind, [f64; 4])> {
-    if text.contains(['\n', '\r']) {
+    // A range would be part of the declaration.
+    if text.contains(['\n', '\r']) || text.split_whitespace().any(|word| word == "in") {
         return None;
     }
     let mut sources = Sources::new();
@@ -265,9 +326,7 @@ fn literal(text: &str) -> Option<(ParamKind, [f64; 4])> {
     let (elaborated, found) = sdfc_lang::front(&mut sources, file);
     let params = elaborated.filter(|_| !has_errors(&found))?.scene.params;
     match &params[..] {
-        [param] if param.range.is_none() && param.choices.is_empty() => {
-            Some((param.kind, param.default))
-        }
+        [param] if param.choices.is_empty() => Some((param.kind, param.default)),
         _ => None,
     }
 }
@@ -286,8 +345,7 @@ fn expected(param: &Param) -> String {
 /// Returns a range as a scene writes it.
 fn range(kind: ParamKind, ends: [f64; 2]) -> String {
     let [lo, hi] = ends.map(|end| match kind {
-        // Hides the rounding of the conversion from degrees to radians and back.
-        ParamKind::Angle => format!("{}deg", (end.to_degrees() * 1e9).round() / 1e9),
+        ParamKind::Angle => degrees(end),
         ParamKind::Number
         | ParamKind::Int
         | ParamKind::Bool
@@ -295,6 +353,11 @@ fn range(kind: ParamKind, ends: [f64; 2]) -> String {
         | ParamKind::Choice => end.to_string(),
     });
     format!("{lo}..{hi}")
+}
+
+/// Returns an angle in degrees, without the rounding of the conversion from degrees and back.
+fn degrees(radians: f64) -> String {
+    format!("{}deg", (radians.to_degrees() * 1e9).round() / 1e9)
 }
 
 #[cfg(test)]

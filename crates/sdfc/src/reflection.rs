@@ -27,6 +27,9 @@ pub struct ShaderReflection {
     pub functions: Vec<FunctionRow>,
     /// Members of the uniform structure, in order.
     pub params: Vec<ParamRow>,
+    /// Params that are constants of the shader, because they decide what the scene consists of.
+    /// Another value takes another shader.
+    pub fixed_params: Vec<FixedParamRow>,
     /// The uniform buffer; null if the shader reads no params.
     pub uniform: Option<UniformRow>,
     /// All buffers that a host binds, including the uniform buffer.
@@ -76,6 +79,25 @@ pub struct ParamRow {
     pub size: u32,
     /// Default value, one number per lane.
     pub default: Vec<f64>,
+    /// Lowest value; null without a range.
+    pub min: Option<f64>,
+    /// Highest value; null without a range.
+    pub max: Option<f64>,
+    /// Names of the choices, in order of their indices.
+    pub choices: Vec<String>,
+}
+
+/// A param that is a constant of the shader.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct FixedParamRow {
+    /// Name in the scene.
+    pub param: String,
+    /// As in [`ParamRow`].
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// The value that the shader was written with, one number per lane.
+    pub value: Vec<f64>,
     /// Lowest value; null without a range.
     pub min: Option<f64>,
     /// Highest value; null without a range.
@@ -219,6 +241,7 @@ impl Scene {
             target: options.target.name(),
             functions: functions.collect(),
             params: found.members.iter().map(|member| self.param_row(member)).collect(),
+            fixed_params: self.fixed_params(),
             uniform,
             buffers: found.buffers.iter().map(buffer_row).collect(),
             lists: found.lists.as_flattened().to_vec(),
@@ -237,6 +260,21 @@ impl Scene {
         let bytes = self.default_view().unwrap_or_default();
         let words = bytes.as_chunks::<4>().0;
         words.iter().map(|word| u32::from_ne_bytes(*word)).collect()
+    }
+
+    fn fixed_params(&self) -> Vec<FixedParamRow> {
+        let row = |param: &Param| {
+            let [min, max] = finite_ends(param.range);
+            Some(FixedParamRow {
+                param: param.name.clone(),
+                kind: kind_name(param.kind),
+                value: param.fixed?[..lanes(param.ty)].to_vec(),
+                min,
+                max,
+                choices: param.choices.clone(),
+            })
+        };
+        self.params().iter().filter_map(row).collect()
     }
 
     fn param_row(&self, member: &Member) -> ParamRow {
@@ -259,10 +297,11 @@ impl Scene {
         let Some(Param { name, kind, default, range, choices, .. }) = param else {
             return row(&member.name, "number");
         };
+        let [min, max] = finite_ends(*range);
         ParamRow {
             default: default[..lanes(member.ty)].to_vec(),
-            min: range.map(|range| range[0]).filter(|end| end.is_finite()),
-            max: range.map(|range| range[1]).filter(|end| end.is_finite()),
+            min,
+            max,
             choices: choices.clone(),
             ..row(name, kind_name(*kind))
         }
@@ -287,6 +326,10 @@ impl Scene {
             parts: self.quality_rows(),
         }
     }
+}
+
+fn finite_ends(range: Option<[f64; 2]>) -> [Option<f64>; 2] {
+    [0, 1].map(|end| range.map(|ends| ends[end]).filter(|end| end.is_finite()))
 }
 
 fn buffer_row(buffer: &Buffer) -> BufferRow {

@@ -187,7 +187,7 @@ impl Scene {
         let shader = self.shader(options)?;
         let (version, name) = (env!("CARGO_PKG_VERSION"), &self.id.name);
         let doubt = if self.is_certified() { "" } else { ", field uncertified" };
-        let (hash, how) = (self.source_hash(), options.as_arguments());
+        let (hash, how) = (self.source_hash(), options.as_arguments() + &self.fixed_arguments());
         let comment = format!("sdfc {version}, {name}, source {hash}{doubt}, {how}");
         Ok(shader.write(options.target, &comment)?)
     }

@@ -26,9 +26,10 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 9] = [
+    let tests: [(&str, Test); 10] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("a_changed_number_in_a_rerolled_scene_makes_no_pipeline", many),
+        ("a_param_that_decides_what_is_built_compiles_the_scene_again", counts),
         ("a_broken_scene_keeps_model_and_picture", broken),
         ("a_picture_is_refined_to_full_resolution_and_then_antialiased", refined),
         ("all_views_are_computed_from_one_image", views),
@@ -118,6 +119,33 @@ fn numbers() -> Result<(), Failed> {
     fixture.until(|it| it.model.as_ref().is_some_and(|it| it.source.contains(" - ")))?;
     expect(fixture.model()?.pipelines == 2, "another structure made no pipeline")?;
     fixture.finish()
+}
+
+/// The other param of the scene changes without a compilation.
+fn counts() -> Result<(), Failed> {
+    let text = "param n: int = 2 in 1..9\nparam r = 0.3 in 0.1..0.4\n\
+                union(for i in 0..n: sphere(r).translate(x: i - 1))\n\
+                camera(eye: [0, 0, 12], target: 0, fov: 40deg)\nsun()\n";
+    let mut fixture = Fixture::new(text)?;
+    fixture.finish()?;
+    let (first, before) = (fixture.model()?, fixture.picture()?.counts.hit);
+    let set = |fixture: &mut Fixture, name: &str, value: f64| {
+        let params = &mut fixture.session.param_values.params;
+        params.insert(name.to_owned(), [value, 0.0, 0.0, 0.0]);
+    };
+    set(&mut fixture, "n", 4.0);
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.serial > first.serial))?;
+    fixture.finish()?;
+    let (second, after) = (fixture.model()?, fixture.picture()?.counts.hit);
+    expect(after > before * 3 / 2, "there are not more balls")?;
+    expect(second.serial == first.serial + 1, "the scene was compiled more than once")?;
+    set(&mut fixture, "r", 0.1);
+    let hits = |it: &Session| it.picture.as_ref().map_or(after, |it| it.counts.hit);
+    fixture.until(|it| hits(it) < after / 4)?;
+    expect(fixture.model()?.serial == second.serial, "a per-frame param compiled the scene")?;
+    fixture.session.param_values.params.clear();
+    fixture.until(|it| it.model.as_ref().is_some_and(|it| it.serial > second.serial))?;
+    fixture.until(|it| hits(it) == before)
 }
 
 /// The numbers of a rerolled scene are in lists.

@@ -13,14 +13,15 @@ use crate::output::{self, Output};
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing; the target does not support the options;
-/// an output is not writable.
+/// The scene cannot be read, has errors or draws nothing; a param does not take its value; the
+/// target does not support the options; an output is not writable.
 pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let paths: Vec<&Path> =
         [Some(&args.output), args.reflect.as_ref()].into_iter().flatten().map(|p| &**p).collect();
     output::distinct(&args.file, &paths)?;
     let options = options(args)?;
-    let scene = super::scene(&args.file, super::compiler_with(args.live_literals), console)?;
+    let compiler = super::compiler_with(args.live_literals);
+    let scene = super::scene_with(&args.file, compiler, &args.set, console)?;
     let written = scene.write_shader(&options).map_err(|e| super::lowering(&e, console))?;
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {

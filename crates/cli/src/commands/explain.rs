@@ -9,9 +9,9 @@ use crate::output;
 ///
 /// # Errors
 ///
-/// The scene cannot be read, has errors or draws nothing.
+/// The scene cannot be read, has errors or draws nothing; a param does not take its value.
 pub fn run(args: &Explain, console: &Console) -> Result<(), Failure> {
-    let scene = super::scene(&args.file, super::compiler(), console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.set, console)?;
     let explanation = scene.explain().map_err(|e| super::lowering(&e, console))?;
     let bytes =
         if args.json { super::json(&explanation)? } else { explanation.to_string().into_bytes() };

@@ -35,13 +35,12 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let format = MeshFormat::of(&path).map_err(Failure::Call)?;
     let paths = [Some(path.as_path()), args.json.as_deref()];
     output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
-    let scene = super::scene(&args.file, super::compiler(), console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.set, console)?;
     let output = Output::new(&path);
     let report = args.json.as_deref().map(Output::new);
     output.check()?;
     report.as_ref().map_or(Ok(()), Output::check)?;
-    let options =
-        MeshOptions::new().error(size(args)).frame(super::values(&scene, &args.set, args.time)?);
+    let options = MeshOptions::new().error(size(args)).frame(super::values(&scene, args.time));
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
     let mesh = make(&scene, &options, console)?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;

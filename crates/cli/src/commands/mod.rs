@@ -17,7 +17,7 @@ pub mod view;
 
 use std::path::{Path, PathBuf};
 
-use sdfc::{Compiler, Diagnostics, Error, FrameValues, Scene};
+use sdfc::{CompileWithError, Compiler, Diagnostics, Error, FrameValues, Scene};
 use sdfc_measure::MeasureError;
 use sdfc_render::{Gpu, RenderError};
 
@@ -36,19 +36,34 @@ fn scene(path: &Path, compiler: Compiler<'_>, console: &Console) -> Result<Scene
     shown(compiler.resolver(&folder).compile(&input.name, &input.text), console)
 }
 
-/// Returns the frame of a time, with values for some params.
+/// Like [`scene`], with values for some params. They are the defaults of the scene.
 ///
 /// # Errors
 ///
-/// A param does not take its value.
-fn values(scene: &Scene, set: &[Assignment], time: f64) -> Result<FrameValues, Failure> {
-    let mut values = scene.defaults();
-    for assignment in set {
-        let done = scene.set_param(&mut values, &assignment.name, &assignment.value);
-        done.map_err(|error| Failure::Call(error.to_string()))?;
+/// The scene cannot be read, or has errors, or a param does not take its value.
+fn scene_with(
+    path: &Path,
+    compiler: Compiler<'_>,
+    set: &[Assignment],
+    console: &Console,
+) -> Result<Scene, Failure> {
+    if set.is_empty() {
+        return scene(path, compiler, console);
     }
-    values.time = time;
-    Ok(values)
+    let input = sdfc_files::read(path)?;
+    let folder = sdfc_files::Folder::of(path);
+    let set: Vec<_> = set.iter().map(|it| (it.name.as_str(), it.value.as_str())).collect();
+    let compiled = compiler.resolver(&folder).compile_with(&input.name, &input.text, &set);
+    match compiled {
+        Ok(scene) => shown(Ok(scene), console),
+        Err(CompileWithError::Scene(errors)) => shown(Err(errors), console),
+        Err(error) => Err(Failure::Call(error.to_string())),
+    }
+}
+
+/// Returns the frame of a time, with the params' defaults.
+fn values(scene: &Scene, time: f64) -> FrameValues {
+    FrameValues { time, ..scene.defaults() }
 }
 
 /// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so

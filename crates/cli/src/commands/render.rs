@@ -29,11 +29,11 @@ const MAX_GIF_RATE: f64 = 50.0;
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     let outputs = Outputs::new(args)?;
     let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
-    let scene = super::scene(&args.file, compiler, console)?;
+    let scene = super::scene_with(&args.file, compiler, &args.set, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }
-    let values = values(&scene, args)?;
+    let values = values(&scene, args);
     outputs.check(args.frames)?;
     let interrupt = Interrupt::watch();
     let options = options(args).hdr(outputs.format == Format::Exr);
@@ -128,10 +128,8 @@ fn options(args: &Render) -> PictureOptions {
 }
 
 /// Returns the values of params, time and frame.
-fn values(scene: &Scene, args: &Render) -> Result<FrameValues, Failure> {
-    let mut values = super::values(scene, &args.set, args.time)?;
-    values.frame = (args.time * args.fps).round();
-    Ok(values)
+fn values(scene: &Scene, args: &Render) -> FrameValues {
+    FrameValues { frame: (args.time * args.fps).round(), ..super::values(scene, args.time) }
 }
 
 /// Everything that drawing needs.

@@ -100,6 +100,7 @@ pub fn number_param(name: &str, default: f64) -> Param {
         kind: ParamKind::Number,
         ty: Type::Scalar,
         default: [default, 0.0, 0.0, 0.0],
+        fixed: None,
         range: None,
         choices: Vec::new(),
         summary: String::new(),

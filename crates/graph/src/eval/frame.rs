@@ -19,7 +19,7 @@ pub struct FrameValues<N = f64> {
 impl FrameValues {
     /// The defaults of the params, time 0 and frame 0.
     pub fn defaults(params: &[Param]) -> Self {
-        let params = params.iter().map(|param| param.default).collect();
+        let params = params.iter().map(|param| param.fixed.unwrap_or(param.default)).collect();
         Self { params, time: 0.0, frame: 0.0 }
     }
 }

@@ -1,14 +1,15 @@
 //! The state of elaboration.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_diagnostics::{Diagnostic, Span};
-use sdfc_graph::{Bounds, Graph, ShapeId};
+use sdfc_graph::{Bounds, Graph, NodeId, ShapeId};
 
 use super::definitions::{definition_names, has_materials};
 use super::literal_uses::LiteralUses;
 use super::output::{Claimed, Site};
+use super::param_inputs::ParamInputs;
 use super::value::{ClosureKey, Value};
 use crate::font::Fonts;
 use crate::hir;
@@ -121,6 +122,12 @@ pub(super) struct Elaborator<'p> {
     pub(super) intersections: BTreeMap<hir::ShapeDefId, PendingIntersections<'p>>,
     /// How params that stand for literals are used.
     pub(super) literals: LiteralUses,
+    /// Which params are constants.
+    pub(super) inputs: ParamInputs<'p>,
+    /// Per-frame params that would have to be constants.
+    pub(super) structural: BTreeSet<usize>,
+    /// The conditions of the branches that are being elaborated and that are not constant.
+    pub(super) conditions: Vec<NodeId>,
     /// The number of loops around the current body.
     pub(super) loop_depth: u8,
     /// The number of iterations of these loops, multiplied.
@@ -128,11 +135,11 @@ pub(super) struct Elaborator<'p> {
 }
 
 impl<'p> Elaborator<'p> {
-    /// The state before elaboration. Params from index `first_literal` on stand for literals.
+    /// The state before elaboration.
     pub(super) fn new(
         program: &'p hir::Program,
         fonts: &'p Fonts<'p>,
-        first_literal: usize,
+        inputs: ParamInputs<'p>,
     ) -> Self {
         Self {
             program,
@@ -158,7 +165,10 @@ impl<'p> Elaborator<'p> {
             within: Within::Formula,
             used_bounds: false,
             intersections: BTreeMap::new(),
-            literals: LiteralUses::new(first_literal),
+            literals: LiteralUses::new(inputs.first_literal),
+            inputs,
+            structural: BTreeSet::new(),
+            conditions: Vec::new(),
             loop_depth: 0,
             loop_iterations: 1,
         }

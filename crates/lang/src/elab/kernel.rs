@@ -219,7 +219,10 @@ impl<'p> Elaborator<'p> {
             Some(_) => Ok(Value::Node(self.number(env, b)?)),
             None => {
                 self.must_stay_constant(a);
-                let b = self.number(env, b)?;
+                self.conditions.push(a);
+                let b = self.number(env, b);
+                self.conditions.pop();
+                let b = b?;
                 Ok(Value::Node(self.graph.binary(op, a, b)))
             }
         }

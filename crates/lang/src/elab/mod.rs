@@ -27,6 +27,8 @@ mod limits;
 mod literal_uses;
 mod literals;
 mod output;
+mod param_inputs;
+mod params;
 mod probe;
 mod report;
 mod scene;
@@ -37,42 +39,67 @@ mod special;
 mod text;
 mod value;
 
+use std::collections::BTreeSet;
+
 use sdfc_diagnostics::Diagnostic;
 
 use crate::font::Fonts;
 use crate::hir;
 use elaborator::Elaborator;
 use literal_uses::LiteralUses;
+pub(crate) use param_inputs::ParamInputs;
 
 pub use limits::{
     MAX_DEPTH, MAX_ITERATIONS, MAX_NESTED_ITERATIONS, MAX_NODES, MAX_RECURSION, MAX_STEPS,
 };
 pub use output::{Claimed, Declared, DeclaredPromise, Elaborated, LiveLiteral, Site};
+pub use param_inputs::CompileValues;
 
 /// Elaborates a checked scene. If there is no scene, at least one diagnostic is an error; if there
 /// is one, there may be warnings.
+///
+/// A param that decides what the scene consists of is a constant: its value among `values`, or its
+/// default. All other params are per-frame inputs.
 pub fn elaborate(
     program: &hir::Program,
     fonts: &Fonts<'_>,
+    values: &CompileValues,
 ) -> (Option<Elaborated>, Vec<Diagnostic>) {
-    let (elaborated, diagnostics, _) = elaborate_with(program, fonts, program.params.len());
-    (elaborated, diagnostics)
+    let mut params = ParamInputs::new(program.params.len(), values);
+    loop {
+        let result = elaborate_with(program, fonts, params.clone());
+        if result.elaborated.is_some() || !params.fix(&result.structural) {
+            return (result.elaborated, result.diagnostics);
+        }
+    }
 }
 
-/// Like [`elaborate`], for a scene whose params from index `first_literal` on stand for literals.
-/// Also returns how these are used.
+/// The result of one elaboration.
+pub(crate) struct Elaboration {
+    /// The scene; `None` after an error.
+    pub elaborated: Option<Elaborated>,
+    pub diagnostics: Vec<Diagnostic>,
+    /// How params that stand for literals are used.
+    pub literals: LiteralUses,
+    /// Per-frame params that would have to be constants.
+    pub structural: BTreeSet<usize>,
+}
+
+/// Elaborates a scene once.
 pub(crate) fn elaborate_with(
     program: &hir::Program,
     fonts: &Fonts<'_>,
-    first_literal: usize,
-) -> (Option<Elaborated>, Vec<Diagnostic>, LiteralUses) {
-    let mut elaborator = Elaborator::new(program, fonts, first_literal);
+    params: ParamInputs<'_>,
+) -> Elaboration {
+    let mut elaborator = Elaborator::new(program, fonts, params);
     let scene = elaborator.scene();
     elaborator.explain_silence();
     let failed = sdfc_diagnostics::has_errors(&elaborator.diagnostics);
     let declared = definitions::declared(program, &elaborator.definitions);
-    let Elaborator { soft_shadows, sites, claims, diagnostics, literals, .. } = elaborator;
+    let Elaborator { soft_shadows, sites, claims, diagnostics, literals, structural, .. } =
+        elaborator;
     let live_literals = Vec::new();
     let elaborated = Elaborated { scene, sites, live_literals, declared, claims, soft_shadows };
-    ((!failed).then_some(elaborated), diagnostics, literals)
+    let elaborated = (!failed).then_some(elaborated);
+    Elaboration { elaborated, diagnostics, literals, structural }
 }

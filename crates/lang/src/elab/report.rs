@@ -1,5 +1,7 @@
 //! Diagnostics of elaboration: their positions, and the limits that end it.
 
+use std::collections::BTreeSet;
+
 use rustc_hash::FxHashSet;
 use sdfc_diagnostics::{Code, Diagnostic, Note, Span};
 use sdfc_graph::{FrameInput, Node, NodeId, Stage};
@@ -16,6 +18,7 @@ pub(super) struct Attempt {
     reported: FxHashSet<Span>,
     sites: usize,
     within: Within,
+    structural: BTreeSet<usize>,
 }
 
 impl<'p> Elaborator<'p> {
@@ -67,6 +70,7 @@ impl<'p> Elaborator<'p> {
             reported: self.reported.clone(),
             sites: self.sites.len(),
             within: self.within,
+            structural: self.structural.clone(),
         }
     }
 
@@ -78,10 +82,15 @@ impl<'p> Elaborator<'p> {
             self.seen_sites.remove(&(site.shape, site.span));
         }
         self.within = attempt.within;
+        self.structural = attempt.structural;
     }
 
-    /// Reports that a limit is exceeded and ends elaboration.
+    /// Reports that a limit is exceeded and ends elaboration. If the params of the conditions
+    /// around it were constants, only one branch of each would be elaborated.
     pub(super) fn stop(&mut self, found: Diagnostic) -> Poison {
+        for condition in std::mem::take(&mut self.conditions) {
+            self.decides_structure(condition);
+        }
         if !self.stopped {
             self.report(found);
         }
@@ -126,9 +135,10 @@ impl<'p> Elaborator<'p> {
     /// Reports a value that must be known at compile time, and why it is not.
     pub(super) fn not_constant(&mut self, span: Span, what: &str, node: NodeId) -> Poison {
         self.must_stay_constant(node);
+        self.decides_structure(node);
         let why = self.why_not_constant(node);
         let message = format!("{what} must be known at compile time; {why}");
-        let help = "write the value here, or define it with `let`";
+        let help = "write the value here, or define it with `let` or `param`";
         self.report(Diagnostic::error(Code::NOT_COMPILE_TIME, span, message).help(help))
     }
 
@@ -142,7 +152,7 @@ impl<'p> Elaborator<'p> {
                 return match input {
                     FrameInput::Param(index) => {
                         let name = self.params.get(index as usize).map_or("", |param| &param.name);
-                        format!("`{name}` is a param, which can change without a recompile")
+                        format!("`{name}` changes without a recompile")
                     }
                     FrameInput::Time => "`time` changes from frame to frame".to_owned(),
                     FrameInput::Frame => "`frame` changes from frame to frame".to_owned(),

@@ -1,11 +1,10 @@
 //! The whole scene: params, lets, settings and the shapes to draw.
 
 use rustc_hash::FxHashSet;
-use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
-use sdfc_graph::{FrameInput, Graph, MaterialRule, ParamKind, Range, Scene, ShapeId, Type};
+use sdfc_diagnostics::{Code as ErrorCode, Span};
+use sdfc_graph::{Graph, MaterialRule, Scene, ShapeId};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
-use super::expr::node_type;
 use super::report::{show_lanes, show_number};
 use super::value::Value;
 use crate::hir;
@@ -61,76 +60,6 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// Adds a param. A param with an error is added too, so that indices do not change.
-    fn param(&mut self, param: &'p hir::Param) {
-        let ty = node_type(&param.ty).unwrap_or(Type::Scalar);
-        let default = self.param_constant(&param.default, ty, &param.choices);
-        let default = default.unwrap_or_default();
-        let range = param.range.as_ref().and_then(|expr| self.param_range(expr));
-        if let Some([lo, hi]) = range.filter(|[lo, hi]| !(*lo..=*hi).contains(&default[0])) {
-            let message = format!(
-                "the default of `{}` is {}, outside its range {}..{}",
-                param.name,
-                show_number(default[0]),
-                show_number(lo),
-                show_number(hi)
-            );
-            self.fail(ErrorCode::OUT_OF_RANGE, param.default.span, message);
-        }
-        if let (Some([lo, hi]), Type::Scalar) = (range, ty) {
-            let input = FrameInput::Param(self.params.len() as u32);
-            let node = self.graph.frame_input(input, ty);
-            self.graph.assume_range(node, Range::new(lo, hi));
-        }
-        self.params.push(sdfc_graph::Param {
-            name: param.name.clone(),
-            kind: kind(&param.ty),
-            ty,
-            default,
-            range,
-            choices: param.choices.clone(),
-            summary: param.docs.first().cloned().unwrap_or_default(),
-        });
-    }
-
-    fn param_constant(
-        &mut self,
-        expr: &'p hir::Expr,
-        ty: Type,
-        choices: &[String],
-    ) -> Option<[f64; 4]> {
-        match self.eval(&mut Env::new(self.program.locals), expr).ok()? {
-            Value::Text(text) => {
-                let index = choices.iter().position(|choice| choice.as_str() == &*text);
-                if index.is_none() {
-                    let message = format!("\"{text}\" is not one of the choices");
-                    let help = format!("the choices are {}", choices.join(", "));
-                    let error = Diagnostic::error(ErrorCode::OUT_OF_RANGE, expr.span, message);
-                    self.report(error.help(help));
-                }
-                Some([index? as f64, 0.0, 0.0, 0.0])
-            }
-            Value::Node(node) => {
-                let node = self.graph.splat(ty, node);
-                self.constant_lanes(node, expr.span, "the default of a param").ok()
-            }
-            other => {
-                self.unexpected(expr.span, "a number, bool, color or string", &other);
-                None
-            }
-        }
-    }
-
-    fn param_range(&mut self, expr: &'p hir::Expr) -> Option<[f64; 2]> {
-        let Value::Range(lo, hi) = self.eval(&mut Env::new(self.program.locals), expr).ok()? else {
-            return None;
-        };
-        let what = "the range of a param";
-        let lo = self.constant_lanes(lo, expr.span, what).ok()?;
-        let hi = self.constant_lanes(hi, expr.span, what).ok()?;
-        Some([lo[0], hi[0]])
-    }
-
     /// The components of a node that must be constant.
     pub(super) fn constant_lanes(
         &mut self,
@@ -142,21 +71,6 @@ impl<'p> Elaborator<'p> {
             Some((lanes, _)) => Ok(lanes),
             None => Err(self.not_constant(span, what, node)),
         }
-    }
-
-    /// The value of a param, a per-frame input.
-    pub(super) fn param_value(&mut self, index: usize) -> Outcome<Value<'p>> {
-        let param = self.params.get(index).ok_or(Poison)?;
-        let (kind, ty) = (param.kind, param.ty);
-        let node = self.graph.frame_input(FrameInput::Param(index as u32), ty);
-        Ok(match kind {
-            ParamKind::Choice => Value::Choice(node, index),
-            ParamKind::Number
-            | ParamKind::Int
-            | ParamKind::Angle
-            | ParamKind::Bool
-            | ParamKind::Color => Value::Node(node),
-        })
     }
 
     /// Evaluates a number that must be constant and within a range.
@@ -180,25 +94,6 @@ impl<'p> Elaborator<'p> {
             _ => format!("{what} is {value}, but must be above 0 and finite"),
         };
         Err(self.fail(ErrorCode::OUT_OF_RANGE, expr.span, message))
-    }
-}
-
-fn kind(ty: &hir::Type) -> ParamKind {
-    match ty {
-        hir::Type::Int => ParamKind::Int,
-        hir::Type::Angle => ParamKind::Angle,
-        hir::Type::Bool => ParamKind::Bool,
-        hir::Type::Color => ParamKind::Color,
-        hir::Type::Text => ParamKind::Choice,
-        hir::Type::Number
-        | hir::Type::Vec(_)
-        | hir::Type::Range(_)
-        | hir::Type::List(_)
-        | hir::Type::Fn(..)
-        | hir::Type::Shape(_)
-        | hir::Type::Material
-        | hir::Type::Shadow
-        | hir::Type::Error => ParamKind::Number,
     }
 }
 

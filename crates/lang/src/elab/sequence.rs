@@ -217,7 +217,9 @@ impl<'p> Elaborator<'p> {
             Some(false) => self.eval(env, no),
             None => {
                 self.must_stay_constant(chosen);
+                self.conditions.push(chosen);
                 let (yes, no) = (self.eval(env, yes), self.eval(env, no));
+                self.conditions.pop();
                 self.select(chosen, &yes?, &no?, span)
             }
         }

@@ -175,6 +175,7 @@ pub fn sphere_of_param() -> Program {
         kind: ParamKind::Number,
         ty: Type::Scalar,
         default: [1.0, 0.0, 0.0, 0.0],
+        fixed: None,
         range: None,
         choices: Vec::new(),
         summary: String::new(),

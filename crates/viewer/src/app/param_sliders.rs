@@ -151,7 +151,11 @@ fn hint(param: &Param) -> String {
     };
     let summary = if param.summary.is_empty() { &param.name } else { &param.summary };
     let default = value_text(param, param.default);
-    format!("{summary}\n{kind}; default {default}")
+    let note = match param.fixed {
+        Some(_) => "\nIt decides what the scene consists of: each change compiles the scene again.",
+        None => "",
+    };
+    format!("{summary}\n{kind}; default {default}{note}")
 }
 
 /// The widget for a param of any kind.

@@ -41,6 +41,7 @@ impl LastRead {
     /// True if `request` reads the same files and compiles them to the same scene.
     fn gives_same_scene(&self, request: &BuildRequest, document: &Document) -> bool {
         (&self.request.path, self.request.live_literals) == (&request.path, request.live_literals)
+            && self.request.values == request.values
             && self.source == document.source
             && self.imports.are_unchanged()
     }
@@ -136,7 +137,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         let imports = Imports::new(&request.path);
         let focus = self.focus(request, &document.source);
         let compiled = self.compile(request, &document, &imports, focus);
-        let diagnostics = self.diagnostics(&document, &imports, &compiled);
+        let diagnostics = self.diagnostics(request, &document, &imports, &compiled);
         let scene = compiled.ok();
         let shapes = scene.as_ref().map(|scene| ShapeIndex::new(scene, scene.sources()));
         let folders = imports.folders();
@@ -205,7 +206,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         focus: Option<u32>,
     ) -> Result<Scene, Diagnostics> {
         let compile = |live_literals| {
-            let compiler = Compiler::new().resolver(imports);
+            let compiler = Compiler::new().resolver(imports).values(&request.values);
             let compiler = if live_literals { compiler.live_literals(focus) } else { compiler };
             compiler.compile(&document.name, &document.source)
         };
@@ -231,6 +232,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
     /// The diagnostics of the scene without live literals, as the command line reports them.
     fn diagnostics(
         &self,
+        request: &BuildRequest,
         document: &Document,
         imports: &Imports,
         compiled: &Result<Scene, Diagnostics>,
@@ -238,7 +240,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         match compiled {
             Ok(scene) if scene.diagnostics().is_empty() => SceneDiagnostics::default(),
             Ok(_) => {
-                let compiler = Compiler::new().resolver(imports);
+                let compiler = Compiler::new().resolver(imports).values(&request.values);
                 SceneDiagnostics::new(&compiler.check(&document.name, &document.source))
             }
             Err(errors) => SceneDiagnostics::new(errors),

@@ -4,11 +4,13 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use sdfc::CompileValues;
+
 use crate::compile::diagnostics::SceneDiagnostics;
 use crate::scene::model::Model;
 
 /// Which scene is built, and how.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct BuildRequest {
     /// The scene's file.
     pub path: PathBuf,
@@ -16,6 +18,8 @@ pub struct BuildRequest {
     pub method: Option<sdfc::Method>,
     /// True if the scene's numbers become live literals, which change without a recompile.
     pub live_literals: bool,
+    /// Changed params, for those that are constants of the compiled scene.
+    pub values: CompileValues,
     /// True for an orthographic camera; `None` takes that of the scene's camera.
     pub parallel: Option<bool>,
     /// True if the CPU draws even though there may be a GPU.
@@ -31,6 +35,7 @@ impl BuildRequest {
             path: path.into(),
             method: None,
             live_literals: true,
+            values: CompileValues::new(),
             parallel: None,
             on_cpu: false,
             device_generation: 0,

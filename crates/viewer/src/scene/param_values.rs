@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sdfc::FrameValues;
 use sdfc_diagnostics::Span;
-use sdfc_graph::{Param, ParamKind};
+use sdfc_graph::Param;
 use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::scene::document::with_replacements;
@@ -27,14 +27,14 @@ impl ParamValues {
         (values.time, values.frame) = (time, frame);
         for (param, lanes) in model.declared().iter().zip(&mut values.params) {
             let changed = self.params.get(&param.name);
-            if let Some(changed) = changed.and_then(|changed| valid_value(param, *changed)) {
-                *lanes = changed;
+            if let Some(changed) = changed.filter(|changed| param.accepts(**changed)) {
+                *lanes = *changed;
             }
         }
         for (literal, param) in model.literals() {
             let changed = self.literals.get(&literal.span).map(|value| [*value, 0.0, 0.0, 0.0]);
             if let (Some(changed), Some(lanes)) = (
-                changed.and_then(|changed| valid_value(param, changed)),
+                changed.filter(|changed| param.accepts(*changed)),
                 values.params.get_mut(literal.param),
             ) {
                 *lanes = changed;
@@ -88,23 +88,6 @@ impl ParamValues {
         });
         arguments.collect::<Vec<_>>().join(" ")
     }
-}
-
-/// A changed value if it is still valid for the param, which an edit may have redefined.
-fn valid_value(param: &Param, changed: [f64; 4]) -> Option<[f64; 4]> {
-    if !changed.iter().all(|lane| lane.is_finite()) {
-        return None;
-    }
-    let [number, ..] = changed;
-    let in_range = param.range.is_none_or(|[lo, hi]| (lo..=hi).contains(&number));
-    let valid = match param.kind {
-        ParamKind::Number | ParamKind::Angle => in_range,
-        ParamKind::Int => in_range && number.fract() == 0.0,
-        ParamKind::Bool => number == 0.0 || number == 1.0,
-        ParamKind::Color => true,
-        ParamKind::Choice => number >= 0.0 && (number as usize) < param.choices.len(),
-    };
-    valid.then_some(changed)
 }
 
 /// A number as it replaces a literal, in the literal's unit.

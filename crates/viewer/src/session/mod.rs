@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use sdfc::FrameValues;
+use sdfc::{CompileValues, FrameValues};
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
@@ -177,7 +177,13 @@ impl Session {
 
     /// Opens another scene in place of this one.
     pub fn open_other(&mut self, path: PathBuf) {
-        self.build = BuildRequest { path, method: None, parallel: None, ..self.build.clone() };
+        self.build = BuildRequest {
+            path,
+            method: None,
+            parallel: None,
+            values: CompileValues::new(),
+            ..self.build.clone()
+        };
         (self.camera, self.model, self.picture, self.last_request) = (None, None, None, None);
         (self.param_values, self.clock) = (ParamValues::default(), Clock::default());
         (self.diagnostics, self.problem, self.render_error) =
@@ -226,6 +232,7 @@ impl Session {
             self.update_build(|build| build.parallel = Some(parallel));
             camera.set_parallel(model.parallel);
         }
+        self.compile_for_params(&model);
         let request = RenderRequest {
             frame: self.values(&model),
             pose: camera.pose(),
@@ -244,6 +251,15 @@ impl Session {
         }
         self.last_request = Some(request.clone());
         self.render_worker.send(request);
+    }
+
+    /// Requests a build if a changed param is a constant of the model. Until it is done, the model
+    /// is drawn as it is.
+    fn compile_for_params(&mut self, model: &Model) {
+        if model.scene.needs_compile(&self.param_values.params) {
+            let values = self.param_values.params.clone();
+            self.update_build(|build| build.values = values);
+        }
     }
 
     /// The last request as a comparison job.
