@@ -2,7 +2,7 @@
 
 use sdfc_graph::{
     Bounds, Dim, ExpandError, Expander, Graph, NodeId, Program, Rays, Scene, ShapeId,
-    best_gradient, fold_transforms, uniforms,
+    SurfaceVector, Unary, best_gradient, fold_transforms, reachable, substitute, uniforms,
 };
 
 use crate::analytic::operands::Operands;
@@ -114,6 +114,7 @@ fn flatten(
     program.material = material.try_into().ok();
     let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
     program.gradient = Some(gradient);
+    (program.material, program.seen_material) = materials(graph, program.material, gradient);
     program.is_loose = field.divided.iter().any(|&shape| is_loose(graph, &qualities, shape));
     program.cullable_loops = cullable_loops(graph, &fields, lipschitz);
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
@@ -139,6 +140,28 @@ fn flatten(
         inexact_operators: inexact_operators(graph, &qualities, root),
         inexact_outside: inexact_outside(graph, &qualities, root),
     })
+}
+
+/// The material of a point, and that of a surface that is seen if it depends on how.
+fn materials(
+    graph: &mut Graph,
+    fields: Option<[NodeId; 6]>,
+    gradient: NodeId,
+) -> (Option<[NodeId; 6]>, Option<[NodeId; 6]>) {
+    let Some(fields) = fields else { return (None, None) };
+    let vectors = SurfaceVector::ALL.map(|vector| graph.surface_vector(vector));
+    let used = reachable(graph, &fields);
+    if !vectors.iter().any(|vector| used.contains(vector)) {
+        return (Some(fields), None);
+    }
+    let outward = graph.unary(Unary::Normalize, gradient);
+    let seen = [1, 2].map(|level| graph.point(level, Dim::Three));
+    let replaced = |graph: &mut Graph, by: [NodeId; 2]| {
+        let [normal, view] = vectors;
+        let pairs = [(normal, by[0]), (view, by[1])];
+        fields.map(|field| substitute(graph, field, &pairs))
+    };
+    (Some(replaced(graph, [outward; 2])), Some(replaced(graph, seen)))
 }
 
 /// True if the field of a shape is divided by a constant that can be large.

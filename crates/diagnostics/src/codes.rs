@@ -205,6 +205,11 @@ codes! {
          OpenType file in the folder of the scene. The font must have every character, and the \
          outlines of one text may have at most 4,096 curves together."
         "write letters that the font has, or name a font file that has them";
+    NOT_IN_MATERIAL "E0414" "`normal` or `view` outside a material"
+        "The normal of a surface and the direction to the eye are known where a ray meets the \
+         surface. So colours and the other properties of materials can read them, but no formula \
+         of a shape, no argument that moves a shape, and no setting."
+        "read them in a colour, a roughness or another property of a material";
 
     PROMISE_BROKEN "E0502" "Violated clause"
         "Every command tests the clauses of the scene's own shapes and functions at a fixed number \

@@ -6,8 +6,8 @@
 use crate::graph::Graph;
 use crate::loops::{Loop, Table};
 use crate::node::{
-    Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId, Ternary,
-    Type, Unary,
+    Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId,
+    SurfaceVector, Ternary, Type, Unary,
 };
 
 impl Graph {
@@ -29,6 +29,11 @@ impl Graph {
     /// The point of the formula at a level.
     pub fn point(&mut self, level: u16, dim: Dim) -> NodeId {
         self.intern(Node::Point(level, dim))
+    }
+
+    /// A direction at the surface.
+    pub fn surface_vector(&mut self, vector: SurfaceVector) -> NodeId {
+        self.point(vector.level(), Dim::Three)
     }
 
     /// A per-frame input.

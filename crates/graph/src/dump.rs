@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::Graph;
 use crate::ids::IdSet;
-use crate::node::{Const, LoopVar, Node, NodeId, Stage, Type};
+use crate::node::{Const, LoopVar, Node, NodeId, Stage, SurfaceVector, Type};
 use crate::walk::reachable;
 
 /// The nodes that the roots are computed from as text, one per line: `%3 = add %1 %2 : vec3`.
@@ -108,7 +108,10 @@ fn operation(graph: &Graph, id: NodeId, reference: impl Fn(NodeId) -> String) ->
     let node = graph.node(id);
     let head = match node {
         Node::Const(value) => constant(&value),
-        Node::Point(level, _) => format!("point {level}"),
+        Node::Point(level, _) => match SurfaceVector::of_level(level) {
+            Some(vector) => vector.name().to_owned(),
+            None => format!("point {level}"),
+        },
         Node::Frame(input, _) => format!("input {input:?}").to_lowercase(),
         Node::Unary(op, _) => format!("{op:?}").to_lowercase(),
         Node::Binary(op, ..) => format!("{op:?}").to_lowercase(),

@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 use self::environment::{Env, Environments};
 use self::names::Names;
 use crate::graph::Graph;
-use crate::node::{MaterialField, Node, NodeId, ShapeId, Stage};
+use crate::node::{MaterialField, Node, NodeId, ShapeId, Stage, SurfaceVector};
 
 /// Maximum number of nodes in one arena, and of (node, points) pairs in one [`Expander`].
 pub const NODE_LIMIT: usize = 1_000_000;
@@ -305,6 +305,9 @@ impl Expander {
             return Ok(Step::Done(result));
         }
         if let Node::Point(level, _) = graph.node(node) {
+            if SurfaceVector::of_level(level).is_some() {
+                return Ok(Step::Done(node));
+            }
             let point = self.environments.point(env, level);
             return point.map(Step::Done).ok_or(ExpandError::MissingPoint { level });
         }

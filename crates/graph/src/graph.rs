@@ -7,7 +7,8 @@ use rustc_hash::{FxHashMap, FxHasher};
 
 use crate::loops::{Loop, Table};
 use crate::node::{
-    Binary, Const, LoopId, Node, NodeId, ShapeId, Stage, TableId, Ternary, Type, Unary,
+    Binary, Const, LoopId, Node, NodeId, ShapeId, Stage, SurfaceVector, TableId, Ternary, Type,
+    Unary,
 };
 use crate::range::{Range, range_of};
 use crate::shape::{Arg, Shape};
@@ -228,6 +229,10 @@ impl Graph {
         match *node {
             Node::Variable(depth, ..) => (stage, loops) = (Stage::Point, 1 << depth),
             Node::Loop(id, ..) => (stage, loops) = (Stage::Point, loops & !self.loop_at(id).bit()),
+            // A direction at the surface depends on the point of no formula.
+            Node::Point(level, _) if SurfaceVector::of_level(level).is_some() => {
+                stage = Stage::Point;
+            }
             Node::Point(level, _) => (stage, levels) = (Stage::Point, level + 1),
             Node::Frame(..) => stage = Stage::Frame,
             Node::Sample(shape, _) | Node::MaterialAt(shape, ..) => {

@@ -90,7 +90,7 @@ pub use loop_body::LoopBody;
 pub use loops::{Loop, MAX_LOOP_DEPTH, SkipCondition, Table};
 pub use node::{
     Binary, Const, Dim, FrameInput, LoopId, LoopVar, MaterialField, Node, NodeId, ShapeId, Stage,
-    TableId, Ternary, Type, Unary,
+    SurfaceVector, TableId, Ternary, Type, Unary,
 };
 pub use polynomial::{Polynomial, similarity_scale_squared};
 pub use program::{CullableLoop, Program, Rays};

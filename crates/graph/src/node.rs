@@ -34,6 +34,45 @@ impl Dim {
     }
 }
 
+/// A direction at a point of a surface, which materials can read. Both are unit vectors in scene
+/// coordinates.
+///
+/// In the formulas of materials it is a point of a level that no shape has. It is the same for all
+/// shapes, so expansion keeps it; the passes after it give it a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SurfaceVector {
+    /// The outward normal.
+    Normal,
+    /// The direction to the eye, or back along the reflected ray that meets the surface.
+    View,
+}
+
+impl SurfaceVector {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Normal, Self::View];
+
+    /// The level of its point.
+    pub const fn level(self) -> u16 {
+        match self {
+            Self::Normal => u16::MAX - 1,
+            Self::View => u16::MAX,
+        }
+    }
+
+    /// The direction whose point has a level.
+    pub fn of_level(level: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|vector| vector.level() == level)
+    }
+
+    /// Its name in scenes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::View => "view",
+        }
+    }
+}
+
 /// Type of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Type {
@@ -310,7 +349,7 @@ pub enum Node {
     /// A constant.
     Const(Const),
     /// The point of a formula at a level. A shape that is built inside another shape's formula has
-    /// the next level.
+    /// the next level. The levels of [`SurfaceVector`] stand for directions.
     Point(u16, Dim),
     /// A per-frame input and its type.
     Frame(FrameInput, Type),

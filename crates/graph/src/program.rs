@@ -54,7 +54,7 @@ pub struct CullableLoop {
 /// Flat math of one scene.
 ///
 /// No `Sample` and no `MaterialAt` is reachable from any of the roots. The only point is
-/// `Point(0, Dim::Three)`, except in `rays`, `range` and `slope_range`.
+/// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range` and `seen_material`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     /// The arena.
@@ -77,8 +77,13 @@ pub struct Program {
     /// Lower and upper bound of the slope of `distance` on such a segment along the direction
     /// `Point(2, Dim::Three)`, a 2-vector. `None` unless [`Program::with_segment_bounds`] added it.
     pub slope_range: Option<NodeId>,
-    /// Material fields in the order of `MaterialField::ALL`; `None` without materials.
+    /// Material fields in the order of `MaterialField::ALL`; `None` without materials. A direction
+    /// at the surface is that of the gradient, as if the surface were seen from straight above.
     pub material: Option<[NodeId; 6]>,
+    /// The same fields as functions of a surface that is seen: its point is `Point(0, Dim::Three)`,
+    /// its normal `Point(1, Dim::Three)` and the direction to the eye `Point(2, Dim::Three)`, both
+    /// of unit length. `None` if no field reads the last two.
+    pub seen_material: Option<[NodeId; 6]>,
     /// Loops whose iterations can be culled.
     pub cullable_loops: Vec<CullableLoop>,
     /// Corners of a box around the surfaces that loops are part of, known per frame. `None` where
@@ -122,7 +127,7 @@ impl Program {
         let Rays { first_hit, analytic, marched, clip, copies } = self.rays;
         let fields = [self.distance, self.gradient, self.range, self.slope_range];
         let rays = [first_hit, analytic, marched, clip, copies];
-        let material = self.material.into_iter().flatten();
+        let material = self.material.into_iter().chain(self.seen_material).flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);
         let exposure = self.settings.exposure.and_then(|exposure| exposure.factor);
         let single = fields.into_iter().chain(rays).chain([exposure]).flatten();

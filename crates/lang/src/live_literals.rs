@@ -172,6 +172,7 @@ impl<'a> Lifting<'a> {
             | ExprKind::Param(_)
             | ExprKind::Global(_)
             | ExprKind::Time
+            | ExprKind::SurfaceVector(_)
             | ExprKind::Frame
             | ExprKind::FnValue(_)
             | ExprKind::Error => {}

@@ -10,6 +10,8 @@ use crate::stubs;
 pub struct Features {
     /// The scene has materials.
     pub materials: bool,
+    /// Materials depend on the normal or on the direction to the eye.
+    pub seen_materials: bool,
     /// A part of the scene is intersected analytically.
     pub analytic: bool,
     /// A part of the scene is marched.
@@ -71,10 +73,11 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 28] {
+    pub fn overrides(self) -> [(&'static str, bool); 29] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
+            seen_materials,
             analytic,
             marched,
             clipped,
@@ -100,6 +103,7 @@ impl Features {
             loose,
         } = self;
         [
+            ("SEEN_MATERIALS", seen_materials),
             ("ANALYTIC", analytic),
             ("MARCHED", marched),
             ("CLIPPED", clipped),

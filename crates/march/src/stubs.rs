@@ -30,6 +30,9 @@ pub const SLOPE_RANGE: &str = "field_slope_range";
 /// `fn material(p: vec3f) -> Material`. Called if
 /// [`Features::materials`](crate::Features::materials) is set.
 pub const MATERIAL: &str = "material";
+/// `fn seen_material(p: vec3f, normal: vec3f, toward_eye: vec3f) -> Material`. Called in place of
+/// [`MATERIAL`] if [`Features::seen_materials`](crate::Features::seen_materials) is set.
+pub const SEEN_MATERIAL: &str = "seen_material";
 /// `fn exposure() -> f32`, the factor of all light. Called if
 /// [`Features::exposure`](crate::Features::exposure) is set.
 pub const EXPOSURE: &str = "exposure";

@@ -95,7 +95,7 @@ pub fn count_faults(
     gpu: &Gpu,
     size: [u32; 2],
 ) -> Result<FaultRow, MeasureError> {
-    let program = Program { material: None, ..scene.program().clone() };
+    let program = Program { material: None, seen_material: None, ..scene.program().clone() };
     let frame = FrameValues::defaults(scene.params());
     let view = View::new(&program, &frame, scene.bounds_at(&frame), size)?;
     let reference = reference(&program, &frame, &view)?;

@@ -128,6 +128,7 @@ impl Scene {
 pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let Features {
         materials,
+        seen_materials,
         analytic,
         marched: _,
         clipped,
@@ -154,6 +155,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     } = features;
     let names = [
         ("material", materials),
+        ("normal and view in materials", seen_materials),
         ("analytic intersection", analytic),
         ("ray clipping", clipped),
         ("analytic copies", copies),

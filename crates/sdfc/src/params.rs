@@ -118,7 +118,7 @@ impl std::fmt::Display for Value<'_> {
 }
 
 impl Scene {
-    /// Returns the value of a param that a text states, written as for [`Self::set_param`]. The param
+    /// Returns the value that a text states for a param, written as for [`Self::set_param`]. The param
     /// may be [fixed](Self::is_fixed).
     ///
     /// # Errors

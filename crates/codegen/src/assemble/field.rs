@@ -94,7 +94,8 @@ fn functions(
     if let Some(fields) = material {
         let structure = material_type(&mut module);
         let (stub, types) = (stubs::MATERIAL, &mut module.types);
-        let function = struct_function(program, &inputs, types, stub, &fields, structure)?;
+        let function =
+            struct_function(program, &inputs, types, stub, (&fields, structure), &["p"])?;
         parts.functions.push((Role::Material, bind_or_add(&mut module, stub, function)?));
     }
     for (role, name) in [(Role::Trace, stubs::TRACE), (Role::Intersect, stubs::INTERSECT)] {

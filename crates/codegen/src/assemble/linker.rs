@@ -18,6 +18,22 @@ use sdfc_march::Features;
 /// all of them.
 const MAX_STORED_LANES: usize = 32;
 
+/// The stub of the scene's material.
+struct MaterialStub {
+    stub: &'static str,
+    fields: [NodeId; 6],
+    arguments: &'static [&'static str],
+}
+
+/// The stub that shading calls; `None` without materials.
+fn material(program: &Program) -> Option<MaterialStub> {
+    let arguments = &["p", "normal", "toward_eye"];
+    let seen = program.seen_material.map(|fields| (stubs::SEEN_MATERIAL, fields, &arguments[..]));
+    let (stub, fields, arguments) =
+        seen.or_else(|| Some((stubs::MATERIAL, program.material?, &arguments[..1])))?;
+    Some(MaterialStub { stub, fields, arguments })
+}
+
 /// A picture's shader while the scene's functions are linked into it.
 pub(crate) struct PictureLinker<'p> {
     program: &'p Program,
@@ -61,7 +77,7 @@ impl<'p> PictureLinker<'p> {
         let exposure = program.settings.exposure.and_then(|exposure| exposure.factor);
         bindings.extend(exposure.map(|root| StubBinding::of_frame(stubs::EXPOSURE, root)));
         let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
-        roots.extend(program.material.into_iter().flatten());
+        roots.extend(material(program).into_iter().flat_map(|it| it.fields));
         let used = used_slots(program, roots);
         let source = source_with(FieldSource::Scene, form, method, features);
         let module = template(&source, features, &used, unused)?;
@@ -109,7 +125,7 @@ impl<'p> PictureLinker<'p> {
     pub(crate) fn bind(&mut self) -> Result<(), Error> {
         self.parts.uniform = self.inputs.buffer;
         let mut roots: Vec<_> = self.bindings.iter().map(|binding| binding.root).collect();
-        roots.extend(self.program.material.into_iter().flatten());
+        roots.extend(material(self.program).into_iter().flat_map(|it| it.fields));
         self.inputs.tables.declare(&mut self.module, self.program, &roots)?;
         let (module, inputs) = (&mut self.module, &self.inputs);
         for binding in &self.bindings {
@@ -118,13 +134,15 @@ impl<'p> PictureLinker<'p> {
             let function = find_function(module, binding.stub);
             self.parts.functions.extend(binding.role.zip(function));
         }
-        let Some(fields) = self.program.material else { return Ok(()) };
-        let stub = stubs::MATERIAL;
+        let Some(MaterialStub { stub, fields, arguments }) = material(self.program) else {
+            return Ok(());
+        };
         let handle = find_function(module, stub);
         let structure = handle.and_then(|f| module.functions[f].result.as_ref());
         let structure = structure.ok_or(Error::MissingRoot("material"))?.ty;
         let types = &mut module.types;
-        let function = struct_function(self.program, inputs, types, stub, &fields, structure)?;
+        let returned = (&fields[..], structure);
+        let function = struct_function(self.program, inputs, types, stub, returned, arguments)?;
         bind(module, stub, function)?;
         self.parts.functions.extend(handle.map(|f| (Role::Material, f)));
         Ok(())

@@ -63,7 +63,7 @@ pub fn render_module_with_camera(
 pub fn normals_module(program: &Program, method: &MethodDefinition) -> Result<Shader, Error> {
     let Settings { camera, march, .. } = program.settings.clone();
     let settings = Settings { camera, march, ..Settings::default() };
-    let unlit = Program { material: None, settings, ..program.clone() };
+    let unlit = Program { material: None, seen_material: None, settings, ..program.clone() };
     link_picture(&unlit, Form::Normals, method, None)
 }
 

@@ -159,7 +159,7 @@ fn camera_of_scene(
     nodes: &[NodeId],
 ) -> Result<Function, Error> {
     let structure = camera_type(module)?;
-    struct_function(program, inputs, &mut module.types, stubs::CAMERA, nodes, structure)
+    struct_function(program, inputs, &mut module.types, stubs::CAMERA, (nodes, structure), &["p"])
 }
 
 /// The camera of the view.

@@ -41,6 +41,7 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
     let settings = &program.settings;
     let mut features = Features {
         materials: program.material.is_some(),
+        seen_materials: program.seen_material.is_some(),
         reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
         occlusion: settings.occlusion.is_some(),
         sky: settings.sky.is_some(),

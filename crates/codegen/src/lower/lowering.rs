@@ -56,16 +56,17 @@ pub(crate) fn function_of_iteration(
     Ok(lowering.finish(name, value, result))
 }
 
-/// Makes a function of the point that returns several nodes' values in a structure.
+/// Makes a function of points that returns several nodes' values in a structure.
 pub(crate) fn struct_function(
     program: &Program,
     inputs: &Inputs,
     types: &mut UniqueArena<naga::Type>,
     name: &str,
-    roots: &[NodeId],
-    structure: Handle<naga::Type>,
+    (roots, structure): (&[NodeId], Handle<naga::Type>),
+    arguments: &'static [&'static str],
 ) -> Result<Function, Error> {
-    let mut lowering = Lowering::new(program, inputs, types, roots);
+    let lowering = Lowering::new(program, inputs, types, roots);
+    let mut lowering = Lowering { arguments, ..lowering };
     lowering.visit_all(roots)?;
     let components: Vec<_> =
         roots.iter().map(|&root| lowering.value(root)).collect::<Result<_, _>>()?;

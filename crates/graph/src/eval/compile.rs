@@ -27,6 +27,14 @@ impl Tape {
         Self::record(graph, Recorder::of_levels(2), &reachable(graph, roots), roots)
     }
 
+    /// The tape that computes functions of a surface: the outermost point is that of the surface,
+    /// the point of level 1 its normal, that of level 2 the direction to the eye.
+    ///
+    /// Fails if a root depends on anything but operations, per-frame inputs and these points.
+    pub fn for_surfaces(graph: &Graph, roots: &[NodeId]) -> Result<Self, TapeError> {
+        Self::record(graph, Recorder::of_levels(3), &reachable(graph, roots), roots)
+    }
+
     /// The tape of an operator as a function of its samples, independent of the point.
     ///
     /// The samples are read as params; `first` is the index of the first of them. Points are NaN,

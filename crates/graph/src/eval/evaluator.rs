@@ -73,6 +73,13 @@ impl<N: Number> Evaluator<'_, N> {
         self.read()
     }
 
+    /// Like [`Self::eval`], for a tape made by [`Tape::for_surfaces`]. The normal and the direction
+    /// to the eye are unit vectors.
+    pub fn eval_surface(&mut self, point: [N; 3], normal: [N; 3], view: [N; 3]) -> &[[N; 4]] {
+        self.run(&[point, normal, view], &mut NoTrace);
+        self.read()
+    }
+
     fn read(&mut self) -> &[[N; 4]] {
         for (output, lanes) in self.outputs.iter_mut().zip(&self.tape.outputs) {
             for (entry, &register) in output.iter_mut().zip(lanes.as_slice()) {

@@ -69,6 +69,7 @@ impl<'a> Checker<'a> {
             | Builtin::Angle(_)
             | Builtin::Time
             | Builtin::Frame
+            | Builtin::SurfaceVector(_)
             | Builtin::Hard => {
                 let message = format!("`{}` is a value, not a function", callee.name);
                 self.report(Diagnostic::error(Code::WRONG_CALL, callee.at, message));

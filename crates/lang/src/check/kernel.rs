@@ -1,5 +1,7 @@
 //! The names that the compiler itself knows (the kernel), with their arguments and documentation.
 
+use sdfc_graph::SurfaceVector;
+
 use super::types::is_numeric;
 use crate::hir::{Kernel, Type};
 
@@ -14,6 +16,8 @@ pub(super) enum Builtin {
     Time,
     /// `frame`, a whole number
     Frame,
+    /// `normal`, `view`
+    SurfaceVector(SurfaceVector),
     /// `hard`, the shadow without penumbra
     Hard,
     /// Componentwise mathematics.
@@ -178,6 +182,8 @@ pub(crate) const ROWS: &[Row] = rows! {
     "materials and light" {
         "material" Builtin::Material, "material(color: #999, roughness: 0.5, metallic: 0, emission: #000, occlusion: 1)", "A material. `color` is the base colour, `roughness` goes from 0 (mirror) to 1 (matt), `metallic` from 0 to 1, `emission` is light that the surface gives off, `occlusion` goes from 0 (no ambient light) to 1 (all of it).", "material(color: #d4af37, roughness: 0.2, metallic: 1)";
         "with" Builtin::With, "m.with(color: c, ...)", "A copy of a material with some fields changed.", "material().with(roughness: 0.1)";
+        "normal" Builtin::SurfaceVector(SurfaceVector::Normal), "normal", "In a material: the unit vector that points out of the surface, in the coordinates of the scene.", "fn(q: vec3) = mix(#7a6a58, #ffffff, saturate(4 * normal.y - 2))";
+        "view" Builtin::SurfaceVector(SurfaceVector::View), "view", "In a material: the unit vector from the surface to the eye, in the coordinates of the scene. In a reflection it points back along the reflected ray. Meshes and fields have no eye: there it is `normal`.", "fn(q: vec3) = mix(#203040, #ffffff, pow(1 - saturate(dot(normal, view)), 3))";
         "rgb" Builtin::Color(K::Rgb), "rgb(r, g, b, a: 1)", "A colour from sRGB red, green and blue, each from 0 to 1.", "rgb(1, 0.5, 0)";
         "hsv" Builtin::Color(K::Hsv), "hsv(h, s, v, a: 1)", "A colour from hue in turns, saturation and value.", "hsv(0.3, 0.8, 1)";
         "oklch" Builtin::Color(K::Oklch), "oklch(l, c, h, a: 1)", "A colour from perceptual lightness, chroma and hue (Oklch, Ottosson 2020); h is an angle.", "oklch(0.7, 0.15, 150deg)";
@@ -199,7 +205,7 @@ pub fn takes_first(name: &str, ty: &Type) -> bool {
     let Some(builtin) = builtin(name) else { return false };
     match builtin {
         Builtin::Number(_) | Builtin::Angle(_) => false,
-        Builtin::Time | Builtin::Frame | Builtin::Hard => false,
+        Builtin::Time | Builtin::Frame | Builtin::SurfaceVector(_) | Builtin::Hard => false,
         Builtin::Soft | Builtin::Material => false,
         Builtin::Math(_) | Builtin::Hash(_) => is_numeric(ty),
         Builtin::Vector(_) => is_numeric(ty) && !matches!(ty, Type::Color),

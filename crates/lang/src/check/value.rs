@@ -348,6 +348,7 @@ fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
         Builtin::Angle(value) => Some((ExprKind::Number(value), Type::Angle)),
         Builtin::Time => Some((ExprKind::Time, Type::Number)),
         Builtin::Frame => Some((ExprKind::Frame, Type::Int)),
+        Builtin::SurfaceVector(vector) => Some((ExprKind::SurfaceVector(vector), Type::Vec(3))),
         Builtin::Hard => Some((ExprKind::Kernel(Kernel::Hard, Vec::new()), Type::Shadow)),
         Builtin::Math(_)
         | Builtin::Vector(_)

@@ -126,6 +126,8 @@ pub(super) struct Elaborator<'p> {
     pub(super) inputs: ParamInputs<'p>,
     /// Per-frame params that would have to be constants.
     pub(super) structural: BTreeSet<usize>,
+    /// True if `normal` or `view` was evaluated.
+    pub(super) has_surface_vectors: bool,
     /// The conditions of the branches that are being elaborated and that are not constant.
     pub(super) conditions: Vec<NodeId>,
     /// The number of loops around the current body.
@@ -168,6 +170,7 @@ impl<'p> Elaborator<'p> {
             literals: LiteralUses::new(inputs.first_literal),
             inputs,
             structural: BTreeSet::new(),
+            has_surface_vectors: false,
             conditions: Vec::new(),
             loop_depth: 0,
             loop_iterations: 1,

@@ -51,6 +51,10 @@ impl<'p> Elaborator<'p> {
             ExprKind::Param(id) => self.param_value(id.0 as usize),
             ExprKind::Global(id) => self.global(*id),
             ExprKind::Time => Ok(self.frame_value(FrameInput::Time)),
+            ExprKind::SurfaceVector(vector) => {
+                self.has_surface_vectors = true;
+                Ok(Value::Node(self.graph.surface_vector(*vector)))
+            }
             ExprKind::Frame => Ok(self.frame_value(FrameInput::Frame)),
             ExprKind::List(elements) => Ok(Value::List(self.elements(env, elements)?.into())),
             ExprKind::Range(lo, hi) => {

@@ -36,6 +36,7 @@ mod sequence;
 mod settings;
 mod shape;
 mod special;
+mod surface_vectors;
 mod text;
 mod value;
 

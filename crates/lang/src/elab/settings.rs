@@ -108,6 +108,7 @@ impl<'p> Elaborator<'p> {
             self.fail(ErrorCode::TOO_MANY_NODES, expr.span, format!("this value: {error}"))
         })?;
         let node = self.settled(node);
+        self.refuse_surface_vectors(&[node], expr.span)?;
         let constant = self.graph.as_const(node);
         if constant.is_none_or(|value| value.lanes().iter().all(|lane| lane.is_finite())) {
             return Ok(node);

@@ -114,6 +114,10 @@ impl<'p> Elaborator<'p> {
             let error = Diagnostic::error(ErrorCode::NOT_FINITE, span, message).help(help);
             return Err(self.report(error));
         }
+        let of_contract = shape.contract.lipschitz.into_iter();
+        let of_contract: Vec<NodeId> =
+            of_contract.chain(shape.contract.bounds.into_iter().flatten()).collect();
+        self.refuse_surface_vectors(&[&[shape.formula], &of_contract[..]].concat(), span)?;
         shape.children = formula.children;
         let deepest = shape.children.iter().map(|&child| self.graph.shape(child).depth).max();
         shape.depth = 1 + deepest.unwrap_or(0);

@@ -2,6 +2,8 @@
 
 use sdfc_diagnostics::Span;
 
+use sdfc_graph::SurfaceVector;
+
 use super::ids::{FnId, GlobalId, LocalId, ParamId, ShapeDefId};
 use super::kernel::{Kernel, MaterialField};
 use super::types::Type;
@@ -30,6 +32,8 @@ pub enum ExprKind {
     Bool(bool),
     /// A variable of the current body.
     Local(LocalId),
+    /// `normal` or `view`: a direction at the surface.
+    SurfaceVector(SurfaceVector),
     /// A param.
     Param(ParamId),
     /// A file-level `let`.

@@ -1,6 +1,8 @@
 // The optional parts of the shader that a scene needs. The values are known when the shader is
 // linked: of a branch on one of these only one side is kept, with the functions that it reaches.
 
+// Materials depend on the normal or on the direction to the eye.
+override SEEN_MATERIALS: bool;
 // A part of the scene is intersected analytically; a part is marched; the marched part lies in a
 // box.
 override ANALYTIC: bool;

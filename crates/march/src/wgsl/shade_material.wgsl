@@ -41,11 +41,27 @@ fn material(p: vec3f) -> Material {
     return Material();
 }
 
+// Supplied by the scene: the material of a surface that is seen from a direction.
+fn seen_material(p: vec3f, normal: vec3f, toward_eye: vec3f) -> Material {
+    return Material();
+}
+
 fn surface_at(ray: Ray, t: f32) -> Surface {
     let point = ray_point(ray, t);
     let toward_eye = -ray.direction;
     let normal = normal_at(point, toward_eye);
-    var paint = material(point);
+    if SEEN_MATERIALS {
+        return seen_surface(point, normal, toward_eye);
+    } else {
+        var paint = material(point);
+        paint.color = mix(DEFAULT_COLOR, paint.color, paint.coverage);
+        paint.roughness = clamp(paint.roughness, MIN_ROUGHNESS, 1.0);
+        return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), MIN_COSINE), paint);
+    }
+}
+
+fn seen_surface(point: vec3f, normal: vec3f, toward_eye: vec3f) -> Surface {
+    var paint = seen_material(point, normal, toward_eye);
     paint.color = mix(DEFAULT_COLOR, paint.color, paint.coverage);
     paint.roughness = clamp(paint.roughness, MIN_ROUGHNESS, 1.0);
     return Surface(point, normal, toward_eye, max(dot(normal, toward_eye), MIN_COSINE), paint);

@@ -51,6 +51,7 @@ pub struct CpuScene {
     /// Bounds of the field on a segment, for the method that asks for them.
     range: Option<Tape>,
     gradient: Option<Tape>,
+    /// The material of a surface that is seen, see `Program::seen_material`.
     material: Option<Tape>,
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
@@ -69,13 +70,15 @@ impl CpuScene {
         let distance = program.distance.ok_or(RenderError::NothingDrawn)?;
         let refused = |error: TapeError| RenderError::Evaluator(error.to_string());
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
+        let material = program.seen_material.or(program.material);
+        let material = material.map(|fields| Tape::for_surfaces(&program.graph, &fields));
         let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
             field: tape(&[distance])?,
             pre_intersection: PreIntersectionTapes::new(program).map_err(refused)?,
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
-            material: program.material.map(|fields| tape(&fields)).transpose()?,
+            material: material.transpose().map_err(refused)?,
             is_loose: program.is_loose,
         })
     }

@@ -85,6 +85,29 @@ pub(super) fn values_at<T: Real>(
     values
 }
 
+/// Evaluates functions of surfaces, of which each is a point, a normal and a direction to the eye.
+pub(super) fn surface_values<T: Real>(
+    evaluator: &mut Batch<'_, T>,
+    surfaces: &[[[T; 3]; 3]],
+) -> Vec<Vec<[f64; 4]>> {
+    let mut values = Vec::with_capacity(surfaces.len());
+    for group in surfaces.chunks(LANES) {
+        let vectors: [[Packet<T, LANES>; 3]; 3] = std::array::from_fn(|vector| {
+            let mut filled = [[T::constant(0.0); 3]; LANES];
+            for (lane, surface) in filled.iter_mut().zip(group) {
+                *lane = surface[vector];
+            }
+            packed(&filled)
+        });
+        let [point, normal, view] = vectors;
+        let roots = evaluator.eval_surface(point, normal, view);
+        values.extend((0..group.len()).map(|lane| {
+            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
+        }));
+    }
+    values
+}
+
 pub(super) fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {
     std::array::from_fn(|axis| Packet(points.map(|point| point[axis])))
 }

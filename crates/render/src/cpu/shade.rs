@@ -60,11 +60,12 @@ impl Paint {
 }
 
 impl Surface {
-    /// A surface with the normal along the gradient; towards the eye if the field has no slope.
-    pub(super) fn new(gradient: DVec3, toward_eye: DVec3, paint: Option<Paint>) -> Self {
+    /// A surface with the normal along the gradient, or towards the eye if the field has no slope.
+    /// It has no material yet.
+    pub(super) fn new(gradient: DVec3, toward_eye: DVec3) -> Self {
         let square = gradient.length_squared();
         let normal = if square > 0.0 { gradient / square.sqrt() } else { toward_eye };
-        Self { normal, toward_eye, paint }
+        Self { normal, toward_eye, paint: None }
     }
 
     /// The light that the surface emits, and the ambient light that it reflects.
@@ -194,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_surface_without_a_material_follows_lamberts_law() {
-        let surface = Surface::new(DVec3::Y * 3.0, DVec3::Z, None);
+        let surface = Surface::new(DVec3::Y * 3.0, DVec3::Z);
         assert_eq!(surface.normal, DVec3::Y);
         let slanted = DVec3::new(0.0, 0.5, 0.75f64.sqrt());
         assert!((surface.lit(&incoming(slanted)) - 0.8).length() < 1e-6);
@@ -204,8 +205,8 @@ mod tests {
 
     #[test]
     fn a_field_without_slope_faces_the_eye() {
-        assert_eq!(Surface::new(DVec3::ZERO, DVec3::Z, None).normal, DVec3::Z);
-        assert_eq!(Surface::new(DVec3::NAN, DVec3::Z, None).normal, DVec3::Z);
+        assert_eq!(Surface::new(DVec3::ZERO, DVec3::Z).normal, DVec3::Z);
+        assert_eq!(Surface::new(DVec3::NAN, DVec3::Z).normal, DVec3::Z);
     }
 
     #[test]
@@ -214,7 +215,7 @@ mod tests {
         let color = [1.0, 0.5, 0.0, 0.0];
         let fields = [color, one(1.0), one(1.0), one(0.0), [0.0, 0.0, 0.25, 0.0], one(0.5)];
         let paint = Paint::of_fields(&fields).unwrap();
-        let surface = Surface::new(DVec3::Z, DVec3::Z, Some(paint));
+        let surface = Surface { paint: Some(paint), ..Surface::new(DVec3::Z, DVec3::Z) };
         // Facets face everywhere and hide nothing, so 0.04 / 4 is mirrored; 0.96 squared of the
         // colour comes back through the interface; the light is 2.
         let expected = (color_vector(color) * 0.96 * 0.96 + 0.01) * 2.0;

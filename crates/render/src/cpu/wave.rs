@@ -5,7 +5,7 @@ use sdfc_graph::eval::Evaluator;
 use sdfc_march::PixelBlock;
 
 use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
-use super::ray::{Batch, Ray, Real, values_at};
+use super::ray::{Batch, Ray, Real, surface_values, values_at};
 use super::shade::{Paint, Surface};
 use super::surroundings::{IncomingLight, background_color, light_visibility, through_fog};
 use super::trace::copies::trace_among_copies;
@@ -207,17 +207,25 @@ impl<T: Real> Wave<'_, T> {
             met.map(|(view_ray, trace)| (*view_ray, trace.t)).collect();
         let points: Vec<[T; 3]> = hits.iter().map(|(view_ray, t)| view_ray.ray.at(*t)).collect();
         let gradients = values_at(gradient, &points);
-        let materials = self.material.as_mut().map(|material| values_at(material, &points));
         let hit = |(index, (view_ray, t)): (usize, (ViewRay<T>, T))| {
             let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
-            let paint = materials.as_ref().and_then(|fields| Paint::of_fields(&fields[index]));
-            let toward_eye = -vector(view_ray.ray.direction);
             let gradient = DVec3::new(x, y, z);
-            let surface = Surface::new(gradient, toward_eye, paint);
+            let surface = Surface::new(gradient, -vector(view_ray.ray.direction));
             let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
             SurfaceHit { view_ray, t, surface, slope }
         };
-        hits.into_iter().enumerate().map(hit).collect()
+        let mut hits: Vec<SurfaceHit<T>> = hits.into_iter().enumerate().map(hit).collect();
+        if let Some(material) = &mut self.material {
+            let lanes = |vector: DVec3| vector.to_array().map(T::constant);
+            let vectors = |(hit, &point): (&SurfaceHit<T>, &[T; 3])| {
+                [point, lanes(hit.surface.normal), lanes(hit.surface.toward_eye)]
+            };
+            let surfaces: Vec<_> = hits.iter().zip(&points).map(vectors).collect();
+            for (hit, fields) in hits.iter_mut().zip(surface_values(material, &surfaces)) {
+                hit.surface.paint = Paint::of_fields(&fields);
+            }
+        }
+        hits
     }
 
     /// Adds the light of one light source, and the evaluations of its shadow rays.
