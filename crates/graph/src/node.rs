@@ -269,7 +269,7 @@ pub enum MaterialField {
     Metallic,
     /// Emitted light, linear.
     Emission,
-    /// From 0 (no ambient light reaches the surface) to 1 (all of it does).
+    /// From 1 (all light reaches the surface) over 0 (no ambient light does) to -1 (no light).
     Occlusion,
 }
 

@@ -84,7 +84,7 @@ const ROWS: &[(&str, &str)] = &[
     ("spot_light", "spot"),
     ("ambient", "ambientlight"),
     ("background", "backdrop bg bgcolor"),
-    ("camera", "view eye viewpoint"),
+    ("camera", "eye viewpoint"),
     ("color", "colour tint albedo diffuse"),
     ("material", "mat pbr"),
     ("emission", "glow emissive"),

@@ -12,6 +12,8 @@ pub struct Features {
     pub materials: bool,
     /// Materials depend on the normal or on the direction to the eye.
     pub seen_materials: bool,
+    /// Some materials keep direct light away.
+    pub unlit: bool,
     /// A part of the scene is intersected analytically.
     pub analytic: bool,
     /// A part of the scene is marched.
@@ -73,11 +75,12 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 29] {
+    pub fn overrides(self) -> [(&'static str, bool); 30] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
             seen_materials,
+            unlit,
             analytic,
             marched,
             clipped,
@@ -104,6 +107,7 @@ impl Features {
         } = self;
         [
             ("SEEN_MATERIALS", seen_materials),
+            ("UNLIT", unlit),
             ("ANALYTIC", analytic),
             ("MARCHED", marched),
             ("CLIPPED", clipped),

@@ -129,6 +129,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let Features {
         materials,
         seen_materials,
+        unlit,
         analytic,
         marched: _,
         clipped,
@@ -156,6 +157,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let names = [
         ("material", materials),
         ("normal and view in materials", seen_materials),
+        ("unlit materials", unlit),
         ("analytic intersection", analytic),
         ("ray clipping", clipped),
         ("analytic copies", copies),

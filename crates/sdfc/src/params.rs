@@ -118,8 +118,8 @@ impl std::fmt::Display for Value<'_> {
 }
 
 impl Scene {
-    /// Returns the value that a text states for a param, written as for [`Self::set_param`]. The param
-    /// may be [fixed](Self::is_fixed).
+    /// Returns the value that a text states for a param, written as for [`Self::set_param`]. It may
+    /// be a param that is [fixed](Self::is_fixed).
     ///
     /// # Errors
     ///

@@ -2,7 +2,9 @@
 
 use naga::Module;
 use rustc_hash::FxHashSet;
-use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, Tone, reachable_where};
+use sdfc_graph::{
+    LightSource, MaterialField, NodeId, Program, Rays, Shadow, Tone, reachable_where,
+};
 use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
@@ -42,6 +44,7 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
     let mut features = Features {
         materials: program.material.is_some(),
         seen_materials: program.seen_material.is_some(),
+        unlit: is_unlit(program),
         reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
         occlusion: settings.occlusion.is_some(),
         sky: settings.sky.is_some(),
@@ -69,6 +72,12 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
         }
     }
     features
+}
+
+/// Returns true if the occlusion of a material may be below 0, where it keeps direct light away.
+fn is_unlit(program: &Program) -> bool {
+    let occlusion = |fields: [NodeId; 6]| fields[MaterialField::Occlusion.index()];
+    program.material.is_some_and(|fields| program.graph.range(occlusion(fields)).lo < 0.0)
 }
 
 /// Returns true if camera rays run only the iterations of loops that can affect them. Methods that

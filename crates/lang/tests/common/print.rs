@@ -85,6 +85,7 @@ fn expr(program: &Program, e: &Expr) -> String {
         ExprKind::Param(id) => program.params[id.0 as usize].name.clone(),
         ExprKind::Global(id) => format!("@{}", id.0),
         ExprKind::Time => "time".into(),
+        ExprKind::SurfaceVector(vector) => vector.name().into(),
         ExprKind::Frame => "frame".into(),
         ExprKind::List(list) => {
             let list: Vec<String> = list.iter().map(|e| element(program, e)).collect();

@@ -155,6 +155,7 @@ impl Verifier<'_> {
     fn form(&self, e: &Expr, frame: &mut Frame) {
         let ty = plain(&e.ty);
         match &e.kind {
+            ExprKind::SurfaceVector(_) => assert_eq!(ty, Type::Vec(3)),
             ExprKind::Number(_) | ExprKind::Time | ExprKind::Frame => assert_eq!(ty, Type::Number),
             ExprKind::Color(_) => assert_eq!(ty, Type::Color),
             ExprKind::Text(_) => assert_eq!(ty, Type::Text),

@@ -3,6 +3,8 @@
 
 // Materials depend on the normal or on the direction to the eye.
 override SEEN_MATERIALS: bool;
+// Some materials keep direct light away.
+override UNLIT: bool;
 // A part of the scene is intersected analytically; a part is marched; the marched part lies in a
 // box.
 override ANALYTIC: bool;

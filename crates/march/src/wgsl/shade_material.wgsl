@@ -114,9 +114,19 @@ fn mirrored_fraction(surface: Surface, toward_eye: vec3f) -> vec3f {
     return (1.0 - paint.roughness) * mirrored;
 }
 
+// The fraction of ambient light that reaches the surface. The occlusion of an unlit surface is
+// below 0.
+fn ambient_fraction(paint: Material) -> f32 {
+    return max(paint.occlusion, 0.0);
+}
+
 // What mirroring the sky adds to mirroring the ambient light.
 fn mirrored_sky(surface: Surface) -> vec3f {
     let sky = background_color(reflect(-surface.toward_eye, surface.normal));
+    if UNLIT {
+        let fraction = ambient_fraction(surface.material);
+        return fraction * mirrored_fraction(surface, surface.toward_eye) * (sky - view.ambient);
+    }
     return surface.material.occlusion * mirrored_fraction(surface, surface.toward_eye) * (sky - view.ambient);
 }
 
@@ -125,6 +135,10 @@ fn ambient_light(surface: Surface, ambient: vec3f) -> vec3f {
     let paint = surface.material;
     let mirrored = ambient_specular(specular_color(paint), paint.roughness, surface.facing);
     let lost = ambient_specular(vec3f(DIELECTRIC), paint.roughness, surface.facing);
+    if UNLIT {
+        let reflected = mirrored + (1.0 - lost) * diffuse_color(paint);
+        return ambient * ambient_fraction(paint) * reflected + paint.emission;
+    }
     return ambient * paint.occlusion * (mirrored + (1.0 - lost) * diffuse_color(paint)) + paint.emission;
 }
 
@@ -142,5 +156,9 @@ fn reflected_light(surface: Surface, light: IncomingLight) -> vec3f {
     let dielectric = vec3f(DIELECTRIC);
     let transmitted_in = 1.0 - fresnel(dielectric, incidence);
     let transmitted_out = 1.0 - fresnel(dielectric, surface.facing);
+    if UNLIT {
+        let reflected = mirrored + transmitted_in * transmitted_out * diffuse_color(paint);
+        return saturate(1.0 + paint.occlusion) * light.color * incidence * reflected;
+    }
     return light.color * incidence * (mirrored + transmitted_in * transmitted_out * diffuse_color(paint));
 }

@@ -73,7 +73,7 @@ impl Surface {
         match self.paint {
             Some(paint) => {
                 let returned = paint.albedo_everywhere(self.facing());
-                ambient * returned * paint.occlusion + paint.emission
+                ambient * returned * paint.occlusion.max(0.0) + paint.emission
             }
             None => ambient * DEFAULT_COLOR,
         }
@@ -89,7 +89,7 @@ impl Surface {
 
     /// What mirroring the sky adds to mirroring the ambient light, which is `sky` and `ambient`.
     pub(super) fn mirrored_sky(&self, sky: DVec3, ambient: DVec3) -> DVec3 {
-        let occlusion = self.paint.map_or(0.0, |paint| paint.occlusion);
+        let occlusion = self.paint.map_or(0.0, |paint| paint.occlusion.max(0.0));
         self.mirrored_fraction() * (sky - ambient) * occlusion
     }
 
@@ -106,7 +106,11 @@ impl Surface {
             return DVec3::ZERO;
         }
         let reflectance = match self.paint {
-            Some(paint) => paint.reflectance(self, incoming.direction),
+            // An occlusion below 0 keeps direct light away too.
+            Some(paint) => {
+                let open = (1.0 + paint.occlusion).clamp(0.0, 1.0);
+                paint.reflectance(self, incoming.direction) * open
+            }
             None => DEFAULT_COLOR,
         };
         incoming.color * incidence * reflectance
