@@ -41,6 +41,9 @@ shows! {
     shapes_nested_too_deeply_are_an_error:
         "fn chain(n: int) -> solid = if n == 0 { sphere(1) } else { chain(n - 1).round(0.1) }\nfn long(n: int, a: solid) -> solid = if n == 0 { a } else { long(n - 1, a.round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1).round(0.1)) }\nlong(60, chain(10))\n";
     too_many_iterations_are_an_error: "sphere(iterate(5000, 1, fn(s) = s))\n";
+    a_string_that_is_too_long_is_an_error:
+        "fn long(n: int) -> string = if n == 0 { \"sdf\" } else { str(long(n - 1), long(n - 1)) }\ntext(long(14)).extrude(1)\n";
+    a_string_of_a_number_that_changes_is_an_error: "text(str(time)).extrude(1)\n";
     an_infinite_radius_is_an_error: "let r = inf\nsphere(r)\n";
     the_minimum_of_an_empty_list_is_an_error: "solid it() = min([for x in [1] if x > 2: x])\nit()\n";
     sky_and_background_exclude_each_other: "sphere(1)\nsky()\nbackground(#123)\n";

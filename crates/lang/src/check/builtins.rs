@@ -81,6 +81,7 @@ impl<'a> Checker<'a> {
             Builtin::Lift => self.lift(callee, given),
             Builtin::Hash(kernel) => self.hash(kernel, callee, given),
             Builtin::Len => self.len(callee, given),
+            Builtin::Str => self.str(callee, given),
             Builtin::Iterate => self.iterate(callee, given),
             Builtin::Bounds => self.bounds(callee, given),
             Builtin::AtPoint(kernel) => self.at_point(kernel, callee, given),
@@ -260,6 +261,18 @@ impl<'a> Checker<'a> {
             Type::List(_) | Type::Vec(_) => kernel(Kernel::Len, values, Type::Int, callee.span),
             Type::Range(of) if is_scalar(of) => kernel(Kernel::Len, values, Type::Int, callee.span),
             _ => self.wrong_argument(callee, &values[0], "a list, a range of ints or a vector"),
+        }
+    }
+
+    /// Checks `str(a, ...)` of strings and numbers.
+    fn str(&mut self, callee: Callee, given: Vec<Given<'a>>) -> Expr {
+        let Some(values) = self.positional(callee, given, 1, usize::MAX) else {
+            return poison(callee.span);
+        };
+        let is_joined = |ty: &Type| matches!(ty, Type::Text | Type::Number | Type::Int);
+        match values.iter().find(|value| !is_joined(&value.ty)) {
+            Some(other) => self.wrong_argument(callee, other, "strings and numbers"),
+            None => kernel(Kernel::Str, values, Type::Text, callee.span),
         }
     }
 

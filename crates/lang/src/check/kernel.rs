@@ -2,7 +2,7 @@
 
 use sdfc_graph::SurfaceVector;
 
-use super::types::is_numeric;
+use super::types::{is_numeric, is_scalar};
 use crate::hir::{Kernel, Type};
 
 /// The meaning of a name of the kernel.
@@ -30,6 +30,8 @@ pub(super) enum Builtin {
     Lift,
     /// `hash`, `hash3`
     Hash(Kernel),
+    /// `str`
+    Str,
     /// `len`
     Len,
     /// `iterate`
@@ -150,6 +152,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "saturate" math(K::Saturate, 1, Number), "saturate(x)", "x clamped to the range from 0 to 1.", "saturate(1.5)";
         "min" many(K::Min), "min(a, b, ...)", "The smallest of any number of values or lists. For one vector: its smallest component.", "min(3, 1, 2)";
         "max" many(K::Max), "max(a, b, ...)", "The largest of any number of values or lists. For one vector: its largest component.", "max([3, 1, 2])";
+        "sum" many(K::Sum), "sum(a, b, ...)", "The sum of any number of values or lists. For one vector: the sum of its components. The sum of an empty list is 0.", "sum([for i in 1..5: i * i])";
         "pow" math(K::Pow, 2, Number), "pow(x, n)", "x to the power of n; x is at least 0.", "pow(2, 0.5)";
         "atan2" math(K::Atan2, 2, Angle), "atan2(y, x)", "The angle of the vector [x, y], from -180deg to 180deg.", "atan2(1, -1)";
         "step" math(K::Step, 2, Number), "step(edge, x)", "0 if x is below the edge, 1 otherwise.", "step(0.5, 0.7)";
@@ -191,6 +194,7 @@ pub(crate) const ROWS: &[Row] = rows! {
         "soft" Builtin::Soft, "soft(sharpness)", "A soft shadow, for a light's `shadow`: the penumbra is 1 / sharpness of the distance to the occluder wide.", "soft(8)";
     }
     "text" {
+        "str" Builtin::Str, "str(a, ...)", "Strings and numbers, joined to one string. Numbers have at most six digits after the decimal point. All must be known when the scene compiles.", "str(\"No. \", 7)";
         "glyph_curves" Builtin::GlyphCurves, "glyph_curves(text, font: \"sans\", align: \"left\", spacing: 0, leading: 1.2)", "The outline of a text as a list of circular arcs, for the library's `text`. Units are ems; the first baseline is at y = 0; the inside is on the left of each arc. The arcs stay within 2e-5 ems of the font's quadratic curves. Each arc is [start, tangent point, end, [s, e]]; the tangents at both ends meet in the tangent point. s and e say on which side a point lies whose nearest point is that end: 1 outside, -1 inside, 0 unknown (use the side of the arc).", "len(glyph_curves(\"a\"))";
     }
 };
@@ -216,6 +220,7 @@ pub fn takes_first(name: &str, ty: &Type) -> bool {
         Builtin::With => *ty == Type::Material,
         Builtin::Color(_) => matches!(ty, Type::Number | Type::Int),
         Builtin::GlyphCurves => *ty == Type::Text,
+        Builtin::Str => *ty == Type::Text || is_scalar(ty),
     }
 }
 

@@ -356,6 +356,7 @@ fn constant(builtin: Builtin) -> Option<(ExprKind, Type)> {
         | Builtin::Lift
         | Builtin::Hash(_)
         | Builtin::Len
+        | Builtin::Str
         | Builtin::Iterate
         | Builtin::Bounds
         | Builtin::AtPoint(_)

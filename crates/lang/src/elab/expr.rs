@@ -7,31 +7,13 @@ use sdfc_graph::{Expander, FrameInput, Node, NodeId, ShapeId, Stage, Type};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::kernel::Application;
-use super::value::{Closure, Code, Value, highest};
-use crate::hir::{self, Expr, ExprKind, GlobalId, MaterialField};
+use super::value::{Closure, Code, Value, highest, node_type};
+use crate::hir::{Expr, ExprKind, GlobalId, MaterialField};
 
 /// Bytes of stack below which a new segment is allocated, and its size in bytes. Scenes may chain
 /// thousands of operators.
 const RED_ZONE: usize = 128 * 1024;
 const STACK_SEGMENT: usize = 2 * 1024 * 1024;
-
-/// The graph's type of a numeric type of the language.
-pub(super) fn node_type(ty: &hir::Type) -> Option<Type> {
-    match ty {
-        hir::Type::Number | hir::Type::Int | hir::Type::Angle => Some(Type::Scalar),
-        hir::Type::Bool => Some(Type::Bool),
-        hir::Type::Vec(width) => Type::of_width(usize::from(*width)),
-        hir::Type::Color => Some(Type::Vec4),
-        hir::Type::Text
-        | hir::Type::Range(_)
-        | hir::Type::List(_)
-        | hir::Type::Fn(..)
-        | hir::Type::Shape(_)
-        | hir::Type::Material
-        | hir::Type::Shadow
-        | hir::Type::Error => None,
-    }
-}
 
 impl<'p> Elaborator<'p> {
     /// The value of an expression.

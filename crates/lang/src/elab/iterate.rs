@@ -11,10 +11,9 @@ use sdfc_diagnostics::{Code as ErrorCode, Diagnostic, Span};
 use sdfc_graph::{Const, Loop, LoopVar, MAX_LOOP_DEPTH, Node, NodeId, Stage, Table, reachable};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
-use super::expr::node_type;
 use super::limits::{MAX_ITERATIONS, MAX_NESTED_ITERATIONS};
 use super::report::show_number;
-use super::value::{Closure, Value};
+use super::value::{Closure, Value, node_type};
 use crate::hir::{Expr, Type};
 
 /// The largest number of iterations that are unrolled; a driver would unroll them anyway.

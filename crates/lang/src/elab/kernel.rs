@@ -6,8 +6,8 @@ use sdfc_graph::{Binary, NodeId, Shadow, Stage, Ternary, Unary};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison, Within};
 use super::report::show_lanes;
-use super::value::Value;
-use crate::hir::{Expr, Kernel};
+use super::value::{Value, node_type};
+use crate::hir::{Expr, Kernel, Type};
 
 /// An operation with its arguments and its span.
 #[derive(Clone, Copy)]
@@ -91,7 +91,9 @@ impl<'p> Elaborator<'p> {
             Kernel::Lift => self.lift(env, at),
             Kernel::Hash => self.hash(env, at),
             Kernel::Hash3 => self.hash3(env, at),
+            Kernel::Sum => self.extreme(env, at, Binary::Add),
             Kernel::Len => self.len(env, at),
+            Kernel::Str => self.string(env, at),
             Kernel::Iterate => self.iterate(env, at.args, at.span),
             Kernel::Bounds => self.bounds(env, at),
             Kernel::Gradient => self.gradient(env, at),
@@ -228,7 +230,7 @@ impl<'p> Elaborator<'p> {
         }
     }
 
-    /// `min` and `max` of any number of values, or of a list.
+    /// `min`, `max` and `sum` of any number of values, or of a list.
     fn extreme(
         &mut self,
         env: &mut Env<'p>,
@@ -247,6 +249,9 @@ impl<'p> Elaborator<'p> {
         }
         let mut rest = nodes.into_iter();
         let Some(mut result) = rest.next() else {
+            if let (Binary::Add, Some(ty)) = (op, at.args.first().and_then(element_type)) {
+                return Ok(Value::Node(self.graph.constant(ty, &[0.0; 4])));
+            }
             let message = format!("`{}` needs at least one value; this list is empty", name(at.op));
             return Err(self.fail(ErrorCode::DEGENERATE, at.span, message));
         };
@@ -255,6 +260,14 @@ impl<'p> Elaborator<'p> {
             result = self.graph.binary(op, result, node);
         }
         Ok(Value::Node(result))
+    }
+}
+
+/// The type of the numbers or vectors in a list.
+fn element_type(list: &Expr) -> Option<sdfc_graph::Type> {
+    match &list.ty {
+        Type::List(of) => node_type(of),
+        _ => None,
     }
 }
 

@@ -1,5 +1,7 @@
 //! The limits of elaboration.
 
+/// The largest number of bytes of a string that `str` joins.
+pub const MAX_TEXT_BYTES: usize = 16_384;
 /// The largest number of graph nodes of a scene.
 pub const MAX_NODES: usize = 1_000_000;
 /// The largest number of expressions that are evaluated, counting repetitions.

@@ -7,9 +7,9 @@
 //!
 //! # Limits
 //!
-//! [`MAX_NODES`], [`MAX_STEPS`], [`MAX_RECURSION`], [`MAX_DEPTH`], [`MAX_ITERATIONS`] and
-//! [`MAX_NESTED_ITERATIONS`]. Exceeding one of the first four ends elaboration, since further
-//! messages would only repeat the first one.
+//! [`MAX_NODES`], [`MAX_STEPS`], [`MAX_RECURSION`], [`MAX_DEPTH`], [`MAX_ITERATIONS`],
+//! [`MAX_NESTED_ITERATIONS`] and [`MAX_TEXT_BYTES`]. Exceeding one of the first four ends
+//! elaboration, since further messages would only repeat the first one.
 
 // A value of any type other than the expected one is reported in the same way.
 #![allow(clippy::wildcard_enum_match_arm)]
@@ -52,6 +52,7 @@ pub(crate) use param_inputs::ParamInputs;
 
 pub use limits::{
     MAX_DEPTH, MAX_ITERATIONS, MAX_NESTED_ITERATIONS, MAX_NODES, MAX_RECURSION, MAX_STEPS,
+    MAX_TEXT_BYTES,
 };
 pub use output::{Claimed, Declared, DeclaredPromise, Elaborated, LiveLiteral, Site};
 pub use param_inputs::CompileValues;

@@ -6,9 +6,8 @@ use sdfc_diagnostics::{Code, Diagnostic};
 use sdfc_graph::{FrameInput, NodeId, Param, ParamKind, Range, Type};
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
-use super::expr::node_type;
 use super::report::show_number;
-use super::value::Value;
+use super::value::{Value, node_type};
 use crate::hir;
 
 impl<'p> Elaborator<'p> {

@@ -1,10 +1,12 @@
-//! Text: the kernel function `glyph_curves`.
+//! Text: the kernel functions `glyph_curves` and `str`.
 
 use sdfc_diagnostics::{Code, Diagnostic, Span};
 use sdfc_graph::Type;
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
 use super::kernel::Application;
+use super::limits::MAX_TEXT_BYTES;
+use super::report::show_number;
 use super::value::Value;
 use crate::font::Setting;
 use crate::hir::Expr;
@@ -39,6 +41,34 @@ impl<'p> Elaborator<'p> {
             Value::List(pairs.into())
         };
         Ok(Value::List(pieces.into_iter().map(piece).collect()))
+    }
+
+    /// `str(a, ...)`. All arguments must be known at compile time.
+    pub(super) fn string(&mut self, env: &mut Env<'p>, at: Application<'p>) -> Outcome<Value<'p>> {
+        self.tick(at.span)?;
+        let mut joined = String::new();
+        for arg in at.args {
+            match self.eval(env, arg)? {
+                Value::Text(text) => joined.push_str(&text),
+                Value::Node(node) => {
+                    let number = self.graph.as_number(node);
+                    let number = number
+                        .ok_or_else(|| self.not_constant(arg.span, "a number in a string", node))?;
+                    joined.push_str(&show_number(number));
+                }
+                Value::Choice(node, _) => {
+                    return Err(self.not_constant(arg.span, "a string", node));
+                }
+                other => return Err(self.unexpected(arg.span, "a string or a number", &other)),
+            }
+        }
+        if joined.len() > MAX_TEXT_BYTES {
+            let message =
+                format!("this string has {} bytes; the limit is {MAX_TEXT_BYTES}", joined.len());
+            let error = Diagnostic::error(Code::TEXT, at.span, message);
+            return Err(self.report(error.help("join fewer or shorter strings")));
+        }
+        Ok(Value::Text(joined.into()))
     }
 
     fn text(&mut self, env: &mut Env<'p>, e: &'p Expr, what: &str) -> Outcome<std::rc::Rc<str>> {

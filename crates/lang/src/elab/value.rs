@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId, Stage};
+use sdfc_graph::{Arg, Graph, NodeId, Shadow, ShapeId, Stage, Type};
 
-use crate::hir::{FnId, Lambda};
+use crate::hir::{self, FnId, Lambda};
 
 /// The value of an expression.
 #[derive(Clone, Debug)]
@@ -122,4 +122,22 @@ impl Value<'_> {
 /// The highest of some levels; 0 if there are none.
 pub(super) fn highest(levels: impl Iterator<Item = u16>) -> u16 {
     levels.max().unwrap_or(0)
+}
+
+/// The graph's type of a numeric type of the language.
+pub(super) fn node_type(ty: &hir::Type) -> Option<Type> {
+    match ty {
+        hir::Type::Number | hir::Type::Int | hir::Type::Angle => Some(Type::Scalar),
+        hir::Type::Bool => Some(Type::Bool),
+        hir::Type::Vec(width) => Type::of_width(usize::from(*width)),
+        hir::Type::Color => Some(Type::Vec4),
+        hir::Type::Text
+        | hir::Type::Range(_)
+        | hir::Type::List(_)
+        | hir::Type::Fn(..)
+        | hir::Type::Shape(_)
+        | hir::Type::Material
+        | hir::Type::Shadow
+        | hir::Type::Error => None,
+    }
 }

@@ -87,7 +87,11 @@ pub enum Kernel {
     /// Like `Hash`, but gives a vec3.
     Hash3,
     /// Length of a list, range of ints or vector; an int.
+    /// The sum of values or lists.
+    Sum,
     Len,
+    /// Strings and numbers, joined to one string.
+    Str,
     /// Arguments: `over` (int, range or list), `start`, `step` (function of the state, or of the
     /// state and the item), `while` (function of the state; optional).
     Iterate,
