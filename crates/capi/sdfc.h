@@ -134,6 +134,9 @@ void sdfc_string_free(char *string);
  Sets the param with a name. The value is written as in a scene: `0.5`, `90deg`, `true`,
  `#d94f30`; a choice by its name.
 
+ A param that decides what the scene consists of, such as a number of copies, cannot change in a
+ compiled scene: that is an error.
+
  # Safety
 
  `scene` is null or a valid scene. Both strings end in a null byte.

@@ -149,6 +149,9 @@ pub unsafe extern "C" fn sdfc_string_free(string: *mut c_char) {
 /// Sets the param with a name. The value is written as in a scene: `0.5`, `90deg`, `true`,
 /// `#d94f30`; a choice by its name.
 ///
+/// A param that decides what the scene consists of, such as a number of copies, cannot change in a
+/// compiled scene: that is an error.
+///
 /// # Safety
 ///
 /// `scene` is null or a valid scene. Both strings end in a null byte.

@@ -5,6 +5,8 @@
 use sdfc::{Backend, Compiler, Error, PictureOptions, Scene, ShaderOptions, no_progress};
 
 type Vector = [f64; 3];
+/// A number that follows from the normal and the direction to the eye.
+type Expected = fn([Vector; 2]) -> f64;
 
 /// A ball of radius 1 at a centre. Its only light is what it emits: `0.5 + 0.5 * value`.
 fn scene(value: &str, more: &str) -> Scene {
@@ -36,7 +38,7 @@ fn at_hit([origin, direction]: [Vector; 2]) -> Option<[Vector; 2]> {
 
 #[test]
 fn a_picture_shows_the_normal_and_the_direction_to_the_eye() {
-    let expected: [(&str, fn([Vector; 2]) -> f64); 5] = [
+    let expected: [(&str, Expected); 5] = [
         ("normal.x", |[normal, _]| normal[0]),
         ("normal.y", |[normal, _]| normal[1]),
         ("normal.z", |[normal, _]| normal[2]),

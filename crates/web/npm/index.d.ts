@@ -12,6 +12,8 @@ export interface Options {
   binding?: number;
   /** Literals of the scene become params. */
   live_literals?: boolean;
+  /** Values of params by name, written as in a scene: `0.5`, `90deg`, `#d94f30`. */
+  set?: Record<string, string>;
   /** The sources that the scene may import, by path. */
   files?: Record<string, string>;
 }

@@ -25,7 +25,7 @@ mod options;
 #[cfg(target_family = "wasm")]
 mod wasm;
 
-use sdfc::{Code, Compiler, DiagnosticRow, Diagnostics, ShaderReflection};
+use sdfc::{Code, CompileWithError, Compiler, DiagnosticRow, Diagnostics, ShaderReflection};
 use serde::Serialize;
 
 use options::{Files, Options};
@@ -73,8 +73,9 @@ struct CallError {
 /// Compiles a scene.
 ///
 /// `options` is a JSON object. All its keys are optional: `name`, `target`, `emit`, `stage`,
-/// `march`, `prefix`, `group`, `binding` and `live_literals`, as the options of `sdfc compile`, and
-/// `files`, an object with the sources that the scene may import, by path.
+/// `march`, `prefix`, `group`, `binding` and `live_literals`, as the options of `sdfc compile`;
+/// `set`, an object with the values of params as strings, by name; and `files`, an object with the
+/// sources that the scene may import, by path.
 ///
 /// Returns a JSON object with `text` or `words`, `reflection`, and `diagnostics`, for any input.
 pub fn compile(source: &str, options: &str) -> String {
@@ -94,9 +95,13 @@ fn answer(source: &str, options: Options) -> Answer {
         compiler = compiler.live_literals(None);
     }
     let rows = |found: &Diagnostics| found.rows().into_iter().map(Row::Scene).collect();
-    let scene = match compiler.compile(&options.name, source) {
+    let set: Vec<_> = options.set.iter().map(|(name, value)| (&**name, &**value)).collect();
+    let scene = match compiler.compile_with(&options.name, source, &set) {
         Ok(scene) => scene,
-        Err(errors) => return Answer { diagnostics: rows(&errors), ..Answer::default() },
+        Err(CompileWithError::Scene(errors)) => {
+            return Answer { diagnostics: rows(&errors), ..Answer::default() };
+        }
+        Err(error) => return failed(error.to_string()),
     };
     let diagnostics = rows(scene.diagnostics());
     let written = match scene.write_shader(&shader) {
@@ -143,6 +148,19 @@ mod tests {
         assert_eq!(found["diagnostics"], json!([]));
         let found = compile("sphere(1)", &json!({ "target": "spirv" }));
         assert_eq!((&found["text"], &found["words"][0]), (&Value::Null, &0x0723_0203.into()));
+    }
+
+    #[test]
+    fn params_are_set_before_the_scene_is_compiled() {
+        let scene = "param n: int = 2 in 1..9\nparam r = 1 in 0..2\n\
+                     union(for i in 0..n: sphere(r).translate(x: 4 * i))";
+        let found = compile(scene, &json!({ "set": { "n": "3", "r": "0.5" } }));
+        let reflection = &found["reflection"];
+        assert_eq!(reflection["fixed_params"][0]["value"], json!([3.0]));
+        assert_eq!(reflection["params"][0]["default"], json!([0.5]));
+        let refused = compile(scene, &json!({ "set": { "n": "10" } }));
+        let message = refused["diagnostics"][0]["message"].as_str().unwrap();
+        assert_eq!(message, "the param `n` takes 1..9; 10 is outside");
     }
 
     #[test]

@@ -21,15 +21,17 @@ pub(crate) struct Options {
     group: Option<u32>,
     binding: Option<u32>,
     pub live_literals: bool,
+    /// Values of params by name, written as in a scene.
+    pub set: BTreeMap<String, String>,
     /// The sources that the scene may import, by path.
     pub files: BTreeMap<String, String>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        let (emit, stage, march, prefix, group, binding, files) = Default::default();
+        let (emit, stage, march, prefix, group, binding, set, files) = Default::default();
         let (name, target, live_literals) = ("scene.sdf".to_owned(), Target::Wgsl, false);
-        Self { name, target, emit, stage, march, prefix, group, binding, live_literals, files }
+        Self { name, target, emit, stage, march, prefix, group, binding, live_literals, set, files }
     }
 }
 
