@@ -24,7 +24,7 @@ macro_rules! examples {
 pub const EXAMPLES: &[Example] = examples![
     "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lantern" "lettering" "mandelbulb" "materials"
     "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "polyhedra" "profiles" "recursion" "round"
-    "snowman" "solids" "table" "terrain" "time" "transforms" "twist"
+    "snowman" "solids" "surface_directions" "table" "terrain" "time" "transforms" "twist"
 ];
 
 impl Example {
