@@ -11,7 +11,7 @@ pub enum MaterialField {
     Metallic,
     /// Light that the surface gives off, linear.
     Emission,
-    /// From 0 (no ambient light) to 1 (all of it).
+    /// From 1 (all light) over 0 (no ambient light) to -1 (no light).
     Occlusion,
 }
 
