@@ -79,7 +79,7 @@ fn prefers_loops(
     let Some(distance) = trial.node(distance) else { return (false, limit) };
     let mut trial = trial.graph;
     let folded = fold_transforms(&mut trial, &[distance]).roots;
-    let roots = reroll(&mut trial, &folded).0;
+    let roots = reroll(&mut trial, &folded).roots;
     let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
     (operations > limit, limit)
 }
