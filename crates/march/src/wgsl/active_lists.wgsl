@@ -72,9 +72,9 @@ fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
             use_cells(0.0);
             if SOFT_SHADOWS {
                 if records_clearance {
-                    // The clearance of the ray depends on where it is sampled, so nothing may be
-                    // left out.
-                    use_all();
+                    // The clearance of the ray depends on where it is sampled, so all distances
+                    // must be exact.
+                    use_cells(NOTHING_INACTIVE);
                 }
             }
         }
