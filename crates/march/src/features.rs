@@ -56,6 +56,8 @@ pub struct Features {
     pub records_gaps: bool,
     /// The field is divided by a large Lipschitz constant.
     pub loose: bool,
+    /// The scene's functions contain loops.
+    pub loops: bool,
 }
 
 impl Features {
@@ -71,7 +73,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 28] {
+    pub fn overrides(self) -> [(&'static str, bool); 29] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
@@ -98,6 +100,7 @@ impl Features {
             proved,
             records_gaps,
             loose,
+            loops,
         } = self;
         [
             ("ANALYTIC", analytic),
@@ -128,6 +131,7 @@ impl Features {
             ("PROVED", proved),
             ("RECORDS_GAPS", records_gaps),
             ("LOOSE", loose),
+            ("HAS_LOOPS", loops),
         ]
     }
 

@@ -151,6 +151,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         proved: _,
         records_gaps: _,
         loose: _,
+        loops: _,
     } = features;
     let names = [
         ("material", materials),

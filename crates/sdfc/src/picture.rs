@@ -337,6 +337,14 @@ impl Painter<'_> {
         } else {
             "the rays ran out of steps"
         };
+        if pixels.loops_ended > 0 {
+            return Some(format!(
+                "{} of {all} pixels may be wrong: the driver ended their loops early, as \
+                 llvmpipe of Mesa 22.3 does after 65,535 iterations; draw with a newer driver or on \
+                 the CPU, or use fewer parts",
+                pixels.loops_ended
+            ));
+        }
         let (unproven, method) = (pixels.unproven, self.method);
         (unproven > 0).then(|| {
             format!(

@@ -2,7 +2,9 @@
 
 use naga::Module;
 use rustc_hash::FxHashSet;
-use sdfc_graph::{LightSource, NodeId, Program, Rays, Shadow, Tone, reachable_where};
+use sdfc_graph::{
+    LightSource, Node, NodeId, Program, Rays, Shadow, Tone, reachable, reachable_where,
+};
 use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
@@ -32,6 +34,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
         copies: pre_intersects && copies.is_some(),
         proved: program.range.is_some(),
         loose: program.is_loose,
+        loops: has_loops(program),
         ..Features::default()
     }
 }
@@ -68,6 +71,12 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
         }
     }
     features
+}
+
+/// Returns true if the functions of a program contain loops.
+fn has_loops(program: &Program) -> bool {
+    let nodes = reachable(&program.graph, &program.roots());
+    nodes.into_iter().any(|id| matches!(program.graph.node(id), Node::Loop(..)))
 }
 
 /// Returns true if camera rays run only the iterations of loops that can affect them. Methods that
