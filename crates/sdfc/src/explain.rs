@@ -49,6 +49,7 @@ impl Scene {
             certified: self.is_certified(),
             bounds: self.finite_bounds(),
             inputs: self.inputs(),
+            costs: self.call_costs(),
             quality: self.quality_rows(),
         })
     }

@@ -48,6 +48,7 @@
 
 #[cfg(feature = "wgpu")]
 pub mod bind;
+mod call_costs;
 mod compiler;
 mod derived_bounds;
 mod diagnostics;
@@ -74,7 +75,7 @@ mod uniforms;
 pub use compiler::{Compiler, format};
 pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
-pub use explanation::{Bounds, Explanation, Input, QualityRow};
+pub use explanation::{Bounds, CallCost, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
 pub use marched::Marched;
 #[cfg(feature = "mesh")]

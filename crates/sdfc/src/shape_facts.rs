@@ -62,15 +62,19 @@ impl Scene {
         let drawn: Vec<ShapeId> = reports.iter().map(|it| it.shape).collect();
         let graph = &self.graph().graph;
         let operations = cost_of_shapes(graph, &drawn)?.operations;
-        let whole = self.operations.get_or_init(|| {
-            let cost = cost_of_shapes(graph, self.graph().root.as_slice())?;
-            Some(cost.operations)
-        });
         Some(ShapeFacts {
             shapes: drawn.len(),
             quality: self.quality_of(&reports)?,
             operations,
-            share: operations as f64 / (*whole)?.max(1) as f64,
+            share: operations as f64 / self.operations_unrolled()?.max(1) as f64,
+        })
+    }
+
+    /// The operations of one evaluation of the scene, without loops that stand for similar parts.
+    pub(crate) fn operations_unrolled(&self) -> Option<usize> {
+        *self.operations.get_or_init(|| {
+            let scene = self.graph();
+            Some(cost_of_shapes(&scene.graph, scene.root.as_slice())?.operations)
         })
     }
 
