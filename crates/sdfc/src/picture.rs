@@ -326,6 +326,18 @@ impl Painter<'_> {
         Ok(Picture { image: frame.image, stats, note: self.note.clone(), unproven })
     }
 
+    /// Changes the size and the camera of the following pictures, without compiling again.
+    ///
+    /// Returns false and changes nothing if rays of this camera are parallel and those of the
+    /// camera that the painter was made with are not, or the other way round: the shader differs.
+    pub fn aim(&mut self, size: [u32; 2], pose: Pose) -> bool {
+        let fits = self.pose.is_some_and(|before| before.parallel == pose.parallel);
+        if fits {
+            (self.size, self.pose) = (size, Some(pose));
+        }
+        fits
+    }
+
     /// Returns what part of a picture with these pixels is unproven, and counts it.
     fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
         let all = pixels.all();
