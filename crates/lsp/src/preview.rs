@@ -119,17 +119,21 @@ fn options(params: &Value) -> Result<PreviewOptions, String> {
     let size = side(0).zip(side(1)).ok_or_else(|| {
         format!("`size` is width and height in pixels, from 1 to {MAX_SIDE}: [640, 360]")
     })?;
-    let camera = Some(&params["camera"]).filter(|it| !it.is_null()).map(camera).transpose()?;
-    let values = match &params["values"] {
-        Value::Null => Vec::new(),
-        Value::Object(values) => values.iter().map(value).collect::<Result<_, _>>()?,
-        _ => return Err("`values` has the values of params by name: {\"r\": 0.5}".to_owned()),
-    };
-    let time = match &params["time"] {
-        Value::Null => 0.0,
-        time => time.as_f64().ok_or("`time` is a number of seconds")?,
-    };
+    let camera = optional(&params["camera"], camera)?;
+    let values = optional(&params["values"], |it| {
+        let values = it.as_object().ok_or("`values` is an object: {\"r\": 0.5}")?;
+        values.iter().map(value).collect()
+    })?;
+    let time = optional(&params["time"], |it| Ok(it.as_f64().ok_or("`time` is in seconds")?))?;
+    let (values, time) = (values.unwrap_or_default(), time.unwrap_or_default());
     Ok(PreviewOptions { size: [size.0, size.1], camera, values, time })
+}
+
+fn optional<T>(
+    value: &Value,
+    read: impl FnOnce(&Value) -> Result<T, String>,
+) -> Result<Option<T>, String> {
+    if value.is_null() { Ok(None) } else { read(value).map(Some) }
 }
 
 fn camera(params: &Value) -> Result<PreviewCamera, String> {

@@ -1,0 +1,83 @@
+// The program `sdfc` and its language server.
+
+import { execFile } from "node:child_process";
+import * as vscode from "vscode";
+import { type CancellationToken, LanguageClient, TransportKind } from "vscode-languageclient/node";
+
+const INSTALL = "https://github.com/sdfc/sdfc#install";
+
+/** The program, as the settings name it. */
+export function program(): string {
+  return vscode.workspace.getConfiguration("sdf").get("path", "sdfc").trim() || "sdfc";
+}
+
+/** Why the program cannot be started; undefined if it can. */
+export function fault(path: string): Promise<string | undefined> {
+  return new Promise((resolve) => {
+    execFile(path, ["--version"], { timeout: 10_000 }, (error, output) => {
+      if (!error) resolve(output.startsWith("sdfc") ? undefined : "another program has this name");
+      else if (error.code === "ENOENT") resolve("there is no such program");
+      else resolve(error.message.split("\n")[0]);
+    });
+  });
+}
+
+export class Server implements vscode.Disposable {
+  private client: LanguageClient | undefined;
+  private readonly started = new vscode.EventEmitter<void>();
+  readonly onDidStart = this.started.event;
+
+  /** Starts the server. If that is not possible, a message says why and what to do. */
+  async start(): Promise<void> {
+    const path = program();
+    const why = await fault(path);
+    if (why) return void this.complain(path, why);
+    const run = { command: path, args: ["lsp"], transport: TransportKind.stdio };
+    const client = new LanguageClient("sdf", "sdfc", { run, debug: run }, {
+      documentSelector: [{ language: "sdf" }],
+      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.sdf") },
+    });
+    this.client = client;
+    try {
+      await client.start();
+      this.started.fire();
+    } catch (error) {
+      this.client = undefined;
+      this.complain(path, error instanceof Error ? error.message : String(error));
+    }
+  }
+
+  async restart(): Promise<void> {
+    const client = this.client;
+    this.client = undefined;
+    await client?.dispose();
+    await this.start();
+  }
+
+  request(method: string, params: object, token: CancellationToken): Promise<unknown> {
+    if (!this.client) throw new Error(`the language server is not running: ${program()} lsp`);
+    return this.client.sendRequest(method, params, token);
+  }
+
+  /** A URI as the server knows it. */
+  uri(uri: vscode.Uri): string {
+    return this.client?.code2ProtocolConverter.asUri(uri) ?? uri.toString();
+  }
+
+  async dispose(): Promise<void> {
+    this.started.dispose();
+    await this.client?.dispose();
+  }
+
+  private async complain(path: string, why: string): Promise<void> {
+    const message =
+      `sdfc: the program "${path}" cannot be started: ${why}. ` +
+      `Install sdfc, or set "sdf.path" to the program. Colours and snippets work without it.`;
+    const chosen = await vscode.window.showErrorMessage(message, "Open Settings", "How to Install");
+    if (chosen === "Open Settings") {
+      await vscode.commands.executeCommand("workbench.action.openSettings", "sdf.path");
+    } else if (chosen === "How to Install") {
+      await vscode.env.openExternal(vscode.Uri.parse(INSTALL));
+    }
+  }
+}
