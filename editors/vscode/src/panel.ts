@@ -147,13 +147,16 @@ function number(param: Param, value: number, set: (value: number) => void): HTML
   const slider = document.createElement("input");
   slider.type = "range";
   [slider.min, slider.max] = [String(min), String(max)];
-  slider.step = param.kind === "int" ? "1" : String((max - min) / 500);
+  // Short decimal numbers: of 0.2..1.5, those with three digits behind the point.
+  const digits = param.kind === "int" ? 0 : Math.max(0, Math.ceil(Math.log10(200 / (max - min))));
+  slider.step = "any";
   slider.value = String(value);
   slider.addEventListener("input", () => {
-    // The rounding of a step must not leave the range.
-    const next = Math.min(Math.max(slider.valueAsNumber, min), max);
-    field.value = String(Number(next.toPrecision(6)));
-    set(Number(field.value));
+    const rounded = Number(slider.valueAsNumber.toFixed(Math.min(digits, 12)));
+    // Rounding must not leave the range.
+    const next = Math.min(Math.max(rounded, min), max);
+    field.value = String(next);
+    set(next);
   });
   field.addEventListener("change", () => {
     if (!field.checkValidity()) return;

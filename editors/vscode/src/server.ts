@@ -2,7 +2,7 @@
 
 import { execFile } from "node:child_process";
 import * as vscode from "vscode";
-import { type CancellationToken, LanguageClient, TransportKind } from "vscode-languageclient/node";
+import { type CancellationToken, LanguageClient } from "vscode-languageclient/node";
 
 const INSTALL = "https://github.com/sdfc/sdfc#install";
 
@@ -32,7 +32,8 @@ export class Server implements vscode.Disposable {
     const path = program();
     const why = await fault(path);
     if (why) return void this.complain(path, why);
-    const run = { command: path, args: ["lsp"], transport: TransportKind.stdio };
+    // Naming stdio as the transport would add an argument `--stdio`.
+    const run = { command: path, args: ["lsp"] };
     const client = new LanguageClient("sdf", "sdfc", { run, debug: run }, {
       documentSelector: [{ language: "sdf" }],
       synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*.sdf") },
@@ -48,9 +49,7 @@ export class Server implements vscode.Disposable {
   }
 
   async restart(): Promise<void> {
-    const client = this.client;
-    this.client = undefined;
-    await client?.dispose();
+    await this.stop();
     await this.start();
   }
 
@@ -66,7 +65,13 @@ export class Server implements vscode.Disposable {
 
   async dispose(): Promise<void> {
     this.started.dispose();
-    await this.client?.dispose();
+    await this.stop();
+  }
+
+  private async stop(): Promise<void> {
+    const client = this.client;
+    this.client = undefined;
+    if (client?.needsStop()) await client.stop();
   }
 
   private async complain(path: string, why: string): Promise<void> {
