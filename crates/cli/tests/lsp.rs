@@ -323,6 +323,20 @@ fn an_editor_gets_params_and_previews_of_unsaved_text() {
         let why = answer["error"]["message"].as_str().unwrap_or_default();
         assert!(why.contains(message), "{wrong}: {answer}");
     }
+    // An end of a range that has no short number of degrees.
+    let angles = format!("file://{}/angles.sdf", folder.path().display());
+    editor.open(&angles, "param turn = 1.5rad in 1rad..2rad\nbox(1).rotate(y: turn)\n");
+    let document = json!({ "uri": angles });
+    let params = editor.ask("sdfc/params", json!({ "textDocument": document }));
+    for end in ["min", "max"] {
+        let values = json!({ "turn": params["params"][0][end] });
+        let asked = json!({ "textDocument": document, "size": [16, 16], "values": values });
+        assert!(editor.ask("sdfc/preview", asked)["png"].is_string(), "{end}: {params}");
+    }
+    let asked = json!({ "textDocument": document, "size": [16, 16], "values": { "turn": 200 } });
+    let answer = editor.answer("sdfc/preview", asked);
+    let why = answer["error"]["message"].as_str().unwrap();
+    assert!(why.ends_with("114.591559026deg; 200deg is outside"), "{why}");
     let change = json!([{ "text": "part(1\n" }]);
     let changed = json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": change });
     editor.notify("textDocument/didChange", changed);

@@ -17,6 +17,9 @@ use crate::preview::{Ask, asked};
 use crate::questions::{Draw, Question, Questions, Reply};
 use crate::uri::{path, uri};
 
+/// The most requests for previews and params that may wait: each has a copy of all open texts.
+const MAX_QUESTIONS: usize = 64;
+
 /// Answers an editor until it asks to end.
 ///
 /// # Errors
@@ -178,6 +181,9 @@ impl<'c> Server<'c, 'c> {
         let text = text.ok_or_else(|| format!("{} cannot be read", file.display()))?;
         let reply = Reply::new(request.id.clone());
         self.replies.retain(|reply| !reply.is_answered());
+        if self.replies.len() >= MAX_QUESTIONS {
+            return Err(format!("{MAX_QUESTIONS} requests for previews and params wait already"));
+        }
         self.replies.push(reply.clone());
         let question = Question {
             ask,

@@ -1,25 +1,14 @@
 // The program `sdfc` and its language server.
 
-import { execFile } from "node:child_process";
 import * as vscode from "vscode";
 import { type CancellationToken, LanguageClient } from "vscode-languageclient/node";
+import { fault } from "./fault";
 
-const INSTALL = "https://github.com/sdfc/sdfc#install";
+const INSTALL = "https://github.com/sdfc/sdfc#start";
 
 /** The program, as the settings name it. */
 export function program(): string {
   return vscode.workspace.getConfiguration("sdf").get("path", "sdfc").trim() || "sdfc";
-}
-
-/** Why the program cannot be started; undefined if it can. */
-export function fault(path: string): Promise<string | undefined> {
-  return new Promise((resolve) => {
-    execFile(path, ["--version"], { timeout: 10_000 }, (error, output) => {
-      if (!error) resolve(output.startsWith("sdfc") ? undefined : "another program has this name");
-      else if (error.code === "ENOENT") resolve("there is no such program");
-      else resolve(error.message.split("\n")[0]);
-    });
-  });
 }
 
 export class Server implements vscode.Disposable {

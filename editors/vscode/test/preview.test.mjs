@@ -5,18 +5,20 @@ import { mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { after, test } from "node:test";
 import { build } from "esbuild";
-import { Client } from "./client.mjs";
+import { Client, sdfc } from "./client.mjs";
 
 const folder = await mkdtemp(`${tmpdir()}/sdf-preview-`);
 await build({
-  entryPoints: ["session", "orbit"].map((it) => new URL(`../src/${it}.ts`, import.meta.url).pathname),
+  entryPoints: ["session", "orbit", "fault"].map((it) => new URL(`../src/${it}.ts`, import.meta.url).pathname),
   outdir: folder,
   outExtension: { ".js": ".mjs" },
+  platform: "node",
   format: "esm",
   logLevel: "error",
 });
 const { Session } = await import(`${folder}/session.mjs`);
 const { orbit, pan, zoom } = await import(`${folder}/orbit.mjs`);
+const { fault } = await import(`${folder}/fault.mjs`);
 const client = await Client.start(folder);
 after(async () => {
   assert.equal(await client.end(), 0);
@@ -143,4 +145,10 @@ test("pan moves the target by what the pointer moved, zoom changes distance or h
   assert.equal(distance(zoom(camera, 0.5)), 2);
   const parallel = { ...camera, fov: undefined, height: 2 };
   assert.deepEqual([zoom(parallel, 0.5).height, distance(zoom(parallel, 0.5))], [1, 4]);
+});
+
+test("a program that is missing or another one is told apart from sdfc", async () => {
+  assert.equal(await fault(sdfc), undefined);
+  assert.equal(await fault("no-such-program"), "there is no such program");
+  assert.equal(await fault("node"), "another program has this name");
 });

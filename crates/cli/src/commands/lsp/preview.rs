@@ -107,20 +107,27 @@ fn paint<'s>(
 fn values(scene: &Scene, options: &PreviewOptions) -> Result<FrameValues, String> {
     let mut values = scene.defaults();
     for (name, value) in &options.values {
-        let param = scene.params().iter().find(|param| param.name == *name);
-        let angle = param.is_some_and(|param| param.kind == ParamKind::Angle);
-        let set = match value {
-            ParamValue::Number(number) if angle => {
-                scene.set(&mut values, name, number.to_radians())
-            }
-            ParamValue::Number(number) => scene.set(&mut values, name, *number),
-            ParamValue::Bool(truth) => scene.set(&mut values, name, *truth),
-            ParamValue::Text(text) => scene.set_param(&mut values, name, text),
+        let mut params = scene.params().iter();
+        let angle = params.find(|it| it.name == *name && it.kind == ParamKind::Angle);
+        let set = match (value, angle) {
+            (ParamValue::Number(number), Some(param)) => match end(param, *number) {
+                Some(end) => scene.set(&mut values, name, end),
+                None => scene.set_param(&mut values, name, &format!("{number}deg")),
+            },
+            (ParamValue::Number(number), None) => scene.set(&mut values, name, *number),
+            (ParamValue::Bool(truth), _) => scene.set(&mut values, name, *truth),
+            (ParamValue::Text(text), _) => scene.set_param(&mut values, name, text),
         };
         set.map_err(|e| e.to_string())?;
     }
     values.time = options.time;
     Ok(values)
+}
+
+/// The end of an angle's range that a number of degrees means: `sdfc/params` rounds ends, and a
+/// rounded one may lie outside.
+fn end(param: &Param, number: f64) -> Option<f64> {
+    param.range?.into_iter().find(|end| degrees(*end) == number)
 }
 
 fn param(param: &Param) -> ParamInfo {
