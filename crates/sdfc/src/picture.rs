@@ -328,8 +328,8 @@ impl Painter<'_> {
 
     /// Changes the size and the camera of the following pictures, without compiling again.
     ///
-    /// Returns false and changes nothing if rays of this camera are parallel and those of the
-    /// camera that the painter was made with are not, or the other way round: the shader differs.
+    /// Returns false and changes nothing if the painter was made without a camera of its own, or if
+    /// rays of one camera are parallel and those of the other are not: the shader differs.
     pub fn aim(&mut self, size: [u32; 2], pose: Pose) -> bool {
         let fits = self.pose.is_some_and(|before| before.parallel == pose.parallel);
         if fits {

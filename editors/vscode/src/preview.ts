@@ -18,15 +18,18 @@ export class Previews implements vscode.Disposable {
     private readonly context: vscode.ExtensionContext,
     private readonly server: Server,
   ) {
+    // A change of an import changes the scene as well, also by another program.
+    const changed = () => {
+      for (const { session } of this.open.values()) session.changed();
+    };
+    const files = vscode.workspace.createFileSystemWatcher("**/*.sdf");
     this.disposables.push(
+      files,
+      files.onDidChange(changed),
       vscode.workspace.onDidChangeTextDocument((event) => {
-        // A change of an import changes the scene as well.
-        if (event.document.languageId !== "sdf") return;
-        for (const { session } of this.open.values()) session.changed();
+        if (event.document.languageId === "sdf") changed();
       }),
-      server.onDidStart(() => {
-        for (const { session } of this.open.values()) session.changed();
-      }),
+      server.onDidStart(changed),
     );
   }
 
