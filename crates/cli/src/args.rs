@@ -79,11 +79,19 @@ pub enum Command {
     /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
     /// Serve an editor: the Language Server Protocol over stdin and stdout
-    Lsp,
+    Lsp(Lsp),
     /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
     /// Find the cheapest ray method and setting within an error limit
     Tune(Tune),
+}
+
+/// Arguments of `lsp`.
+#[derive(clap::Args, Debug)]
+pub struct Lsp {
+    /// Has no effect: some editors add it to say what is the default
+    #[arg(long, hide = true)]
+    pub stdio: bool,
 }
 
 /// Arguments of `check`.

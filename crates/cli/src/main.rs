@@ -44,7 +44,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),
         Command::Doc(args) => commands::doc::run(args, console),
-        Command::Lsp => commands::lsp::run(),
+        Command::Lsp(_) => commands::lsp::run(),
         Command::Chart(args) => commands::charts::run(args, console),
         Command::Tune(args) => commands::tune::run(args, console),
     }

@@ -26,7 +26,7 @@ struct Editor {
 impl Editor {
     fn start(folder: &Path, encodings: Value) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
-            .arg("lsp")
+            .args(["lsp", "--stdio"])
             .env("XDG_CACHE_HOME", folder.join(".cache"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -31,7 +31,8 @@ impl ShapeFacts {
             if self.shapes == 1 { String::new() } else { format!("{} shapes, ", self.shapes) };
         let percent = 100.0 * self.share;
         let share = if percent < 0.5 { "less than 1".to_owned() } else { format!("{percent:.0}") };
-        format!("{shapes}{} operations, {share} % of the scene", self.operations)
+        let plural = if self.operations == 1 { "" } else { "s" };
+        format!("{shapes}{} operation{plural}, {share} % of the scene", self.operations)
     }
 }
 
