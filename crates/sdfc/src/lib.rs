@@ -37,7 +37,8 @@
 //! shaders, without wgpu.
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
-//! - `mesh`: closed triangle meshes with a proven error: `Scene::mesh`.
+//! - `mesh`: closed triangle meshes and contours with a proven error: `Scene::mesh`,
+//!   `Scene::contour`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
@@ -105,8 +106,8 @@ pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    EncodeError, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
-    Progress as MeshProgress,
+    Contour, ContourCertificate, ContourFormat, ContourPath, EncodeError, Mesh, MeshCertificate,
+    MeshError, MeshFormat, Phase as MeshPhase, Plane, Progress as MeshProgress,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

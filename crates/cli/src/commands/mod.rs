@@ -5,6 +5,7 @@ mod chart;
 pub mod charts;
 pub mod check;
 pub mod compile;
+pub mod contour;
 pub mod doc;
 pub mod explain;
 mod faults;
@@ -15,15 +16,20 @@ pub mod render;
 pub mod tune;
 pub mod view;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use sdfc::{Compiler, Diagnostics, Error, FrameValues, Scene};
+use sdfc::{
+    Compiler, Diagnostics, Error, FrameValues, MeshError, MeshOptions, MeshProgress, MeshSize,
+    Scene,
+};
 use sdfc_measure::MeasureError;
 use sdfc_render::{Gpu, RenderError};
 
-use crate::args::Assignment;
+use crate::args::{self, Assignment};
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 
 /// Reads and compiles a scene, and prints its diagnostics.
 ///
@@ -49,6 +55,52 @@ fn values(scene: &Scene, set: &[Assignment], time: f64) -> Result<FrameValues, F
     }
     values.time = time;
     Ok(values)
+}
+
+/// Returns the options of a mesh or a contour.
+///
+/// # Errors
+///
+/// A param does not take its value.
+fn mesh_options(
+    scene: &Scene,
+    error: [Option<f64>; 2],
+    values: &args::Values,
+    max_cells: Option<u64>,
+) -> Result<MeshOptions, Failure> {
+    let frame = self::values(scene, &values.set, values.time)?;
+    let options = MeshOptions::new().frame(frame);
+    let options = match error {
+        [Some(length), _] => options.error(MeshSize::Length(length)),
+        [None, Some(part)] => options.error(MeshSize::Relative(part)),
+        [None, None] => options,
+    };
+    Ok(max_cells.map_or(options.clone(), |limit| options.max_cells(limit)))
+}
+
+/// Runs work on a mesh or a contour, with a progress bar, until it is done or Ctrl-C is pressed.
+///
+/// # Errors
+///
+/// The work failed or was stopped.
+fn mesh_work<T>(
+    name: &str,
+    console: &Console,
+    work: impl FnOnce(&mut dyn FnMut(MeshProgress) -> ControlFlow<()>) -> Result<T, Error>,
+) -> Result<T, Failure> {
+    let interrupt = Interrupt::watch();
+    let progress = console.progress(name);
+    let done = work(&mut |part| {
+        progress.set(part.done, part.total);
+        interrupt.flow()
+    });
+    drop(progress);
+    done.map_err(|error| {
+        if matches!(error, Error::Mesh(MeshError::Cancelled)) {
+            return Failure::Interrupted("stopped; nothing was written".to_owned());
+        }
+        lowering(&error, console)
+    })
 }
 
 /// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so

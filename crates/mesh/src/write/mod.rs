@@ -1,5 +1,6 @@
-//! Mesh files, as bytes: STL, OBJ, PLY, glTF (GLB) and 3MF.
+//! Mesh files, as bytes: STL, OBJ, PLY, glTF (GLB) and 3MF. Contour files: SVG and DXF.
 
+mod contour;
 mod glb;
 mod package;
 mod plain;
@@ -7,6 +8,8 @@ mod plain;
 use std::path::Path;
 
 use crate::surface::Mesh;
+
+pub use self::contour::ContourFormat;
 
 /// A file format for meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
