@@ -72,6 +72,8 @@ pub enum Command {
     Mesh(Mesh),
     /// Write the outlines of a section of a scene, with a proven error
     Contour(Contour),
+    /// Measure volume, center of mass, inertia and extent, as proven intervals
+    Measure(Measure),
     /// Show a scene in a window that updates when its file changes
     View(View),
     /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
@@ -338,6 +340,26 @@ pub struct Contour {
     #[command(flatten)]
     pub values: Values,
     /// Most cells that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
+}
+
+/// Arguments of `measure`.
+#[derive(clap::Args, Debug)]
+pub struct Measure {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Measure the volume to this fraction of itself; the center of mass and the extent to this
+    /// fraction of the longest side of the scene's bounds
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = above_0)]
+    pub error_relative: f64,
+    /// Print JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
+    /// Most boxes that are examined
     #[arg(long, value_name = "N")]
     pub max_cells: Option<u64>,
 }

@@ -341,7 +341,7 @@ fn meets(corners: [Vec3; 3], bounds: [Vec3; 2], margin: f64) -> bool {
 }
 
 /// Returns the eighths of a box; of a flat one the quarters.
-fn parts([lo, hi]: [Vec3; 2], is_flat: bool) -> impl Iterator<Item = [Vec3; 2]> {
+pub(crate) fn parts([lo, hi]: [Vec3; 2], is_flat: bool) -> impl Iterator<Item = [Vec3; 2]> {
     let mut middle = between(lo, hi, 0.5);
     let count = if is_flat { 4 } else { 8 };
     if is_flat {

@@ -39,6 +39,8 @@ pub enum Phase {
     Placing,
     /// The error is proven.
     Proving,
+    /// Volumes are added up.
+    Measuring,
 }
 
 /// How far the work is.

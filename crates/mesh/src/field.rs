@@ -262,9 +262,14 @@ impl Prober<'_> {
         None
     }
 
+    /// Returns the bounds of the field over a box.
+    pub(crate) fn affine_over(&mut self, prism: &Prism) -> Affine {
+        self.affine.scalar(placed(self.plane, prism.coordinates()))
+    }
+
     /// True if it is proven that no value in a box is farther from that at the surface than a limit.
     pub(crate) fn is_within(&mut self, prism: &Prism, limit: f64) -> bool {
-        let range = self.affine.scalar(placed(self.plane, prism.coordinates())).range();
+        let range = self.affine_over(prism).range();
         range.lo() >= self.level - limit && range.hi() <= self.level + limit
     }
 

@@ -5,7 +5,8 @@
 //! [`mesh()`] makes a [`Mesh`] of a program's surface. The mesh is closed, consistently oriented
 //! and free of self-intersections. Its [`MeshCertificate`] says what is proven about the distance
 //! between mesh and surface, and where nothing is proven. [`contour()`] makes a [`Contour`]: closed
-//! paths around the section by a plane, by the same steps in a quadtree.
+//! paths around the section by a plane, by the same steps in a quadtree. [`measure()`] gives
+//! [`Measurements`]: volume and more, as intervals that hold the truth.
 //!
 //! # How
 //!
@@ -53,11 +54,15 @@ mod certify;
 mod contour;
 mod error;
 mod examine;
+mod extent;
 mod field;
 mod grid;
+mod half_space;
 mod loops;
 mod make;
+mod measurement;
 mod mesh;
+mod moments;
 mod nearness;
 mod outline;
 mod patch;
@@ -73,6 +78,7 @@ mod write;
 
 pub use contour::{Contour, ContourCertificate, ContourPath, contour};
 pub use error::{MeshError, MeshOptions, Phase, Progress};
+pub use measurement::{MeasureOptions, Measurements, Proven, measure};
 pub use mesh::mesh;
 pub use plane::Plane;
 pub use surface::{Mesh, MeshCertificate};

@@ -38,7 +38,7 @@
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
 //! - `mesh`: closed triangle meshes and contours with a proven error: `Scene::mesh`,
-//!   `Scene::contour`.
+//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
@@ -58,6 +58,8 @@ mod explain;
 mod explanation;
 mod field;
 mod marched;
+#[cfg(feature = "mesh")]
+mod measure;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod params;
@@ -79,6 +81,8 @@ pub use error::Error;
 pub use explanation::{Bounds, CallCost, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
 pub use marched::Marched;
+#[cfg(feature = "mesh")]
+pub use measure::MeasureOptions;
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshOptions, MeshSize};
 pub use params::{ParamError, Value};
@@ -106,8 +110,9 @@ pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    Contour, ContourCertificate, ContourFormat, ContourPath, EncodeError, Mesh, MeshCertificate,
-    MeshError, MeshFormat, Phase as MeshPhase, Plane, Progress as MeshProgress,
+    Contour, ContourCertificate, ContourFormat, ContourPath, EncodeError, Measurements, Mesh,
+    MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Plane, Progress as MeshProgress,
+    Proven,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

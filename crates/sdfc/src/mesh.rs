@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use sdfc_graph::eval::FrameValues;
-use sdfc_mesh::{Contour, Mesh, MeshError, Plane, Progress};
+use sdfc_mesh::{Contour, Mesh, Plane, Progress};
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -126,10 +126,7 @@ impl Scene {
         options: &MeshOptions,
     ) -> Result<(FrameValues, sdfc_mesh::MeshOptions), Error> {
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
-        let bounds = self.bounds_at(&frame).ok_or(MeshError::NothingDrawn)?;
-        if (0..3).any(|axis| bounds[0][axis] > bounds[1][axis]) {
-            return Err(MeshError::Empty.into());
-        }
+        let bounds = self.filled_bounds(&frame)?;
         let error = match options.error {
             MeshSize::Length(length) => length,
             MeshSize::Relative(part) => {

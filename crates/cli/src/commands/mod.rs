@@ -11,6 +11,7 @@ pub mod explain;
 mod faults;
 pub mod format;
 pub mod lsp;
+pub mod measure;
 pub mod mesh;
 pub mod render;
 pub mod tune;
