@@ -74,6 +74,8 @@ pub enum Command {
     Contour(Contour),
     /// Measure volume, center of mass, inertia and extent, as proven intervals
     Measure(Measure),
+    /// Write a grid of distances, with a proven error of interpolation
+    Bake(Bake),
     /// Show a scene in a window that updates when its file changes
     View(View),
     /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
@@ -362,6 +364,26 @@ pub struct Measure {
     /// Most boxes that are examined
     #[arg(long, value_name = "N")]
     pub max_cells: Option<u64>,
+}
+
+/// Arguments of `bake`.
+#[derive(clap::Args, Debug)]
+pub struct Bake {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Output file; its extension .npy or .nrrd gives the format [default: the scene's name with
+    /// .npy, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Samples along the longest side of the scene's bounds
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    pub resolution: usize,
+    /// Output file for positions and errors, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
 }
 
 /// Values of params and time.

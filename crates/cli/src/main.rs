@@ -42,6 +42,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Mesh(args) => commands::mesh::run(args, console),
         Command::Contour(args) => commands::contour::run(args, console),
         Command::Measure(args) => commands::measure::run(args, console),
+        Command::Bake(args) => commands::bake::run(args, console),
         Command::View(args) => commands::view::run(args),
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),

@@ -95,6 +95,19 @@ pub enum MeshError {
     /// The mesh would have holes, because the field has no value at some points.
     #[error("the field has no value at some points of the surface, so no closed mesh was found")]
     Open,
+    /// A grid has too few or too many samples.
+    #[error(
+        "a grid with {resolution} samples along its longest side is refused: it needs at least \
+         {least} there, and at most {most} in total"
+    )]
+    Resolution {
+        /// The number of samples along the longest side.
+        resolution: usize,
+        /// The least number along the longest side.
+        least: usize,
+        /// The greatest number in total.
+        most: usize,
+    },
     /// The plane of a section meets no inside.
     #[error(
         "the plane at {at} meets no inside of the scene, whose bounds reach from {from} to {to} \
@@ -122,6 +135,7 @@ impl MeshError {
             Self::Error(_)
             | Self::TooFine { .. }
             | Self::TooManyCells { .. }
+            | Self::Resolution { .. }
             | Self::NoSection { .. } => true,
             Self::NothingDrawn
             | Self::Empty

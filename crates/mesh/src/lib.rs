@@ -6,7 +6,8 @@
 //! and free of self-intersections. Its [`MeshCertificate`] says what is proven about the distance
 //! between mesh and surface, and where nothing is proven. [`contour()`] makes a [`Contour`]: closed
 //! paths around the section by a plane, by the same steps in a quadtree. [`measure()`] gives
-//! [`Measurements`]: volume and more, as intervals that hold the truth.
+//! [`Measurements`]: volume and more, as intervals that hold the truth. [`bake()`] gives a
+//! [`DistanceGrid`] of samples.
 //!
 //! # How
 //!
@@ -49,6 +50,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "an index is an axis, of several vectors")]
 
+mod bake;
 mod build;
 mod certify;
 mod contour;
@@ -76,10 +78,11 @@ mod tree;
 mod vector;
 mod write;
 
+pub use bake::{BakeOptions, DistanceGrid, bake};
 pub use contour::{Contour, ContourCertificate, ContourPath, contour};
 pub use error::{MeshError, MeshOptions, Phase, Progress};
 pub use measurement::{MeasureOptions, Measurements, Proven, measure};
 pub use mesh::mesh;
 pub use plane::Plane;
 pub use surface::{Mesh, MeshCertificate};
-pub use write::{ContourFormat, EncodeError, MeshFormat};
+pub use write::{ContourFormat, EncodeError, GridFormat, MeshFormat};

@@ -38,7 +38,7 @@
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
 //! - `mesh`: closed triangle meshes and contours with a proven error: `Scene::mesh`,
-//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`.
+//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`; grids of samples: `Scene::bake`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
@@ -47,6 +47,8 @@
 //! This crate does not print, open files or exit. A scene that imports files needs a [`Resolver`]
 //! that returns their contents. `sdfc-files` has one that reads a folder.
 
+#[cfg(feature = "mesh")]
+mod bake;
 #[cfg(feature = "wgpu")]
 pub mod bind;
 mod call_costs;
@@ -75,6 +77,8 @@ mod source_id;
 mod tapes;
 mod uniforms;
 
+#[cfg(feature = "mesh")]
+pub use bake::BakeOptions;
 pub use compiler::{Compiler, format};
 pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
@@ -110,9 +114,9 @@ pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    Contour, ContourCertificate, ContourFormat, ContourPath, EncodeError, Measurements, Mesh,
-    MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Plane, Progress as MeshProgress,
-    Proven,
+    Contour, ContourCertificate, ContourFormat, ContourPath, DistanceGrid, EncodeError, GridFormat,
+    Measurements, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Plane,
+    Progress as MeshProgress, Proven,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+pub mod bake;
 pub mod bench;
 mod chart;
 pub mod charts;
