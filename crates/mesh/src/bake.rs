@@ -79,9 +79,9 @@ const SINGLE: f64 = 6.0e-8;
 ///
 /// Interpolation of a linear function is exact. Affine arithmetic bounds how far the field is from
 /// one in each cell; twice that bounds the error. A Lipschitz constant bounds it too, by the
-/// distances from the corners, and the smaller bound counts. Both include the rounding of the values
-/// to 32 bits. The work runs on all threads of the current rayon pool. It stops if `progress`
-/// breaks.
+/// distances from the corners, and the smaller bound counts. Both include the rounding of the
+/// values to 32 bits. The work runs on all threads of the current rayon pool. It stops if
+/// `progress` breaks.
 ///
 /// # Errors
 ///
@@ -147,11 +147,13 @@ fn layout(options: &BakeOptions) -> Result<DistanceGrid, MeshError> {
     let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
     // One cell more on each side.
     let spacing = longest / (resolution - 3) as f64;
-    let shape = [0, 1, 2].map(|axis| ((hi[axis] - lo[axis]) / spacing - 1e-9).ceil() as usize + 3);
-    let samples = shape.iter().try_fold(1usize, |product, side| product.checked_mul(*side));
-    if spacing <= 0.0 || samples.is_none_or(|samples| samples > BakeOptions::MAX_SAMPLES) {
+    let sides = [0, 1, 2].map(|axis| ((hi[axis] - lo[axis]) / spacing - 1e-9).ceil() + 3.0);
+    // In floats, because the product of whole numbers may not fit. NaN for a box without sides.
+    let samples: f64 = sides.iter().product();
+    if samples.is_nan() || samples > BakeOptions::MAX_SAMPLES as f64 {
         return refused(resolution);
     }
+    let shape = sides.map(|side| side as usize);
     let origin = [0, 1, 2]
         .map(|axis| 0.5 * (lo[axis] + hi[axis]) - 0.5 * spacing * (shape[axis] - 1) as f64);
     Ok(DistanceGrid { shape, origin, spacing, ..DistanceGrid::default() })

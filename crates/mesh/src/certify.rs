@@ -100,8 +100,8 @@ pub(crate) struct Proof {
 }
 
 impl<'f> Prover<'_, 'f> {
-    /// Divides the whole grid until everything in it is proven or tiny. Boxes that are far from all changes
-    /// keep their earlier proof.
+    /// Divides the whole grid until everything in it is proven or tiny. Boxes that are far from all
+    /// changes keep their earlier proof.
     pub(crate) fn prove(
         &self,
         max_boxes: u64,

@@ -267,7 +267,8 @@ impl Prober<'_> {
         self.affine.scalar(placed(self.plane, prism.coordinates()))
     }
 
-    /// True if it is proven that no value in a box is farther from that at the surface than a limit.
+    /// True if it is proven that no value in a box is farther from that at the surface than a
+    /// limit.
     pub(crate) fn is_within(&mut self, prism: &Prism, limit: f64) -> bool {
         let range = self.affine_over(prism).range();
         range.lo() >= self.level - limit && range.hi() <= self.level + limit

@@ -84,8 +84,8 @@ impl MeasureOptions {
 ///
 /// A box is divided until it is proven to be inside or outside, or its share of the volume is known
 /// well enough: the field differs from a linear function by a proven error, so the inside of a box
-/// lies between two half-spaces. The work runs on all threads of the current rayon pool. It stops if
-/// `progress` breaks.
+/// lies between two half-spaces. The work runs on all threads of the current rayon pool. It stops
+/// if `progress` breaks.
 ///
 /// # Errors
 ///

@@ -289,8 +289,8 @@ fn examine<'f>(bounds: [Vec3; 2], field: &LocalField<'f>, longest: f64) -> Outco
 
 /// Returns what follows from two parallel planes between which the surface is proven to lie.
 ///
-/// Where a formula has kinks that cancel each other, such as `max(x, 0) + min(x, 0)`, its bounds are
-/// rough over a box that is cut by the kink, and good on both sides of it.
+/// Where a formula has kinks that cancel each other, such as `max(x, 0) + min(x, 0)`, its bounds
+/// are rough over a box that is cut by the kink, and good on both sides of it.
 fn between_planes(
     prober: &mut Prober<'_>,
     bounds: [Vec3; 2],

@@ -7,8 +7,8 @@ const MOVED: f64 = 0.3;
 /// Coordinates are rounded to a power of ten that is at most this fraction of the error.
 const DIGITS: f64 = 1e-3;
 
-/// Returns paths with fewer points and shorter numbers. They neither cross nor jump over each other:
-/// where they would, paths stay as they are.
+/// Returns paths with fewer points and shorter numbers. They neither cross nor jump over each
+/// other: where they would, paths stay as they are.
 pub(crate) fn simplified(paths: Vec<Vec<Point>>, error: f64) -> Vec<Vec<Point>> {
     let mut found: Vec<Vec<Point>> = paths.iter().map(|path| shorter(path, error)).collect();
     let mut is_kept = vec![false; paths.len()];

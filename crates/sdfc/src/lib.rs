@@ -38,7 +38,8 @@
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
 //! - `mesh`: closed triangle meshes and contours with a proven error: `Scene::mesh`,
-//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`; grids of samples: `Scene::bake`.
+//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`; grids of samples:
+//!   `Scene::bake`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!

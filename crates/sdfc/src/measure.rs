@@ -73,8 +73,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Mesh`]: the scene draws nothing, is empty or has no limit, the fraction is not above
-    /// 0, or `progress` stopped the work.
+    /// [`Error::Mesh`]: the scene draws nothing, is empty or has no limit, the fraction is not
+    /// above 0, or `progress` stopped the work.
     pub fn measure(
         &self,
         options: &MeasureOptions,

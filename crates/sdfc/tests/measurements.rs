@@ -1,4 +1,5 @@
-//! Measured intervals hold the truth: closed forms, and a Monte Carlo that shares no code with them.
+//! Measured intervals hold the truth: closed forms, and a Monte Carlo that shares no code with
+//! them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -43,7 +43,8 @@ impl GridFormat {
     }
 }
 
-/// The header of version 1.0: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>.
+/// The header of version 1.0:
+/// <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>.
 fn npy_header(grid: &DistanceGrid) -> Vec<u8> {
     let [x, y, z] = grid.shape;
     let mut text = format!("{{'descr': '<f4', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}");
