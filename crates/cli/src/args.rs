@@ -355,6 +355,9 @@ pub struct Measure {
     /// fraction of the longest side of the scene's bounds
     #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = above_0)]
     pub error_relative: f64,
+    /// Measure the smallest distance between two solids instead, by their names in the scene
+    #[arg(long, value_name = "NAME", num_args = 2)]
+    pub between: Vec<String>,
     /// Print JSON to stdout
     #[arg(long)]
     pub json: bool,

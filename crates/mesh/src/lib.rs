@@ -53,6 +53,7 @@
 mod bake;
 mod build;
 mod certify;
+mod clearance;
 mod contour;
 mod error;
 mod examine;
@@ -79,6 +80,7 @@ mod vector;
 mod write;
 
 pub use bake::{BakeOptions, DistanceGrid, bake};
+pub use clearance::{Clearance, clearance};
 pub use contour::{Contour, ContourCertificate, ContourPath, contour};
 pub use error::{MeshError, MeshOptions, Phase, Progress};
 pub use measurement::{MeasureOptions, Measurements, Proven, measure};

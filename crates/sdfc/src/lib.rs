@@ -53,6 +53,8 @@ mod bake;
 #[cfg(feature = "wgpu")]
 pub mod bind;
 mod call_costs;
+#[cfg(feature = "mesh")]
+mod clearance;
 mod compiler;
 mod derived_bounds;
 mod diagnostics;
@@ -115,9 +117,9 @@ pub use sdfc_lang::{NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    Contour, ContourCertificate, ContourFormat, ContourPath, DistanceGrid, EncodeError, GridFormat,
-    Measurements, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase, Plane,
-    Progress as MeshProgress, Proven,
+    Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, DistanceGrid, EncodeError,
+    GridFormat, Measurements, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
+    Plane, Progress as MeshProgress, Proven,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use sdfc::{MeasureOptions, Measurements, Proven};
+use sdfc::{Clearance, MeasureOptions, Measurements, Proven};
+use serde::Serialize;
 
 use crate::args;
 use crate::console::Console;
@@ -20,16 +21,49 @@ pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
     let frame = super::values(&scene, &args.values.set, args.values.time)?;
     let options = MeasureOptions::new().relative(args.error_relative).frame(frame);
     let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
-    let found =
-        super::mesh_work("measuring", console, |progress| scene.measure(&options, progress))?;
-    if found.is_limited {
+    let (text, is_limited) = match &args.between[..] {
+        [first, second] => {
+            let found = super::mesh_work("measuring", console, |progress| {
+                scene.clearance([first, second], &options, progress)
+            })?;
+            (text(args, &found, clearance_table)?, found.is_limited)
+        }
+        _ => {
+            let found = super::mesh_work("measuring", console, |progress| {
+                scene.measure(&options, progress)
+            })?;
+            (text(args, &found, table)?, found.is_limited)
+        }
+    };
+    if is_limited {
         console.warning(&format!(
             "the limit of {} boxes was reached: the intervals are true, but wider than asked for",
             options.max_cells
         ));
     }
-    let text = if args.json { super::json(&found)? } else { table(&found).into_bytes() };
     output::to_stdout(&text)
+}
+
+fn text<T: Serialize>(
+    args: &args::Measure,
+    found: &T,
+    table: impl Fn(&T) -> String,
+) -> Result<Vec<u8>, Failure> {
+    if args.json { super::json(found) } else { Ok(table(found).into_bytes()) }
+}
+
+fn clearance_table(found: &Clearance) -> String {
+    let collides = match found.collides {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "not decided",
+    };
+    let mut text = format!("clearance         {}\n", interval(found.distance));
+    text += &format!("collision         {collides}\n");
+    for point in found.nearest.into_iter().flatten() {
+        text += &format!("nearest point     {point:?}\n");
+    }
+    text
 }
 
 fn table(found: &Measurements) -> String {
