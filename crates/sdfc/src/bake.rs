@@ -56,7 +56,7 @@ impl Scene {
     /// let options = BakeOptions::new().resolution(16);
     /// let grid = scene.bake(&options, &mut |_| ControlFlow::Continue(()))?;
     /// assert_eq!((grid.shape, grid.values.len()), ([16; 3], 16 * 16 * 16));
-    /// assert!(grid.surface_error < 0.1 * grid.spacing);
+    /// assert!(grid.surface_error < grid.interpolation_error);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
