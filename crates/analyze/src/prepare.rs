@@ -16,7 +16,8 @@ use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
-use crate::reroll::rewrite::{reroll, similar_groups};
+use crate::reroll::materials::reroll_materials;
+use crate::reroll::rewrite::{Rerolled, reroll, similar_groups};
 use crate::reroll::strategy::{LoopStrategy, has_secondary_rays};
 use crate::shapes::minimum;
 
@@ -107,8 +108,13 @@ fn flatten(
     let folded = fold_transforms(graph, &flat);
     program.names = folded.names(graph, &expander.names());
     let (fields, material) = folded.roots.split_at(count);
-    let (fields, loops) =
-        if uses_loops { reroll(graph, fields) } else { (fields.to_vec(), Vec::new()) };
+    let unrolled = || Rerolled { roots: fields.to_vec(), ..Rerolled::default() };
+    let rerolled = if uses_loops { reroll(graph, fields) } else { unrolled() };
+    let material = match uses_loops {
+        true => reroll_materials(graph, material, &rerolled.replaced),
+        false => material.to_vec(),
+    };
+    let Rerolled { roots: fields, loops, .. } = rerolled;
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
     program.material = material.try_into().ok();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
-use sdfc::Method;
+use sdfc::{Method, Plane};
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
@@ -70,6 +70,12 @@ pub enum Command {
     Render(Render),
     /// Write a closed mesh of a scene, with a proven error
     Mesh(Mesh),
+    /// Write the outlines of a section of a scene, with a proven error
+    Contour(Contour),
+    /// Measure volume, center of mass, inertia and extent, as proven intervals
+    Measure(Measure),
+    /// Write a grid of distances, with a proven error of interpolation
+    Bake(Bake),
     /// Show a scene in a window that updates when its file changes
     View(View),
     /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
@@ -79,11 +85,19 @@ pub enum Command {
     /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
     /// Serve an editor: the Language Server Protocol over stdin and stdout
-    Lsp,
+    Lsp(Lsp),
     /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
     /// Find the cheapest ray method and setting within an error limit
     Tune(Tune),
+}
+
+/// Arguments of `lsp`.
+#[derive(clap::Args, Debug)]
+pub struct Lsp {
+    /// Has no effect: some editors add it to say what is the default
+    #[arg(long, hide = true)]
+    pub stdio: bool,
 }
 
 /// Arguments of `check`.
@@ -298,6 +312,90 @@ pub struct Mesh {
     /// Output file for the certificate, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
+    /// Most cells that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
+}
+
+/// Arguments of `contour`.
+#[derive(clap::Args, Debug)]
+pub struct Contour {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Output file; its extension .svg or .dxf gives the format [default: the scene's name with
+    /// .svg, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Plane of the section: an axis or a normal, and the coordinate along it, such as z=0.5 or
+    /// 1,1,0=2
+    #[arg(long, value_name = "AXIS=LENGTH", default_value = "z=0", value_parser = plane)]
+    pub plane: Plane,
+    /// Greatest distance between outlines and section, in scene units
+    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
+    pub error: Option<f64>,
+    /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
+    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
+    pub error_relative: Option<f64>,
+    /// Output file for the certificate and the paths, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
+    /// Most cells that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
+}
+
+/// Arguments of `measure`.
+#[derive(clap::Args, Debug)]
+pub struct Measure {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Measure the volume to this fraction of itself; the center of mass and the extent to this
+    /// fraction of the longest side of the scene's bounds
+    #[arg(long, value_name = "FRACTION", default_value_t = 0.001, value_parser = above_0)]
+    pub error_relative: f64,
+    /// Measure the smallest distance between two solids instead, by their names in the scene
+    #[arg(long, value_name = "NAME", num_args = 2)]
+    pub between: Vec<String>,
+    /// Print JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
+    /// Most boxes that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
+}
+
+/// Arguments of `bake`.
+#[derive(clap::Args, Debug)]
+pub struct Bake {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Output file; its extension .npy or .nrrd gives the format [default: the scene's name with
+    /// .npy, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Samples along the longest side of the scene's bounds
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    pub resolution: usize,
+    /// Output file for positions and errors, as JSON; `-` is stdout
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+    /// Values of params and time.
+    #[command(flatten)]
+    pub values: Values,
+}
+
+/// Values of params and time.
+#[derive(clap::Args, Debug)]
+pub struct Values {
     /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
     /// of a choice
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
@@ -306,9 +404,6 @@ pub struct Mesh {
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
           value_parser = finite)]
     pub time: f64,
-    /// Most cells that are examined
-    #[arg(long, value_name = "N")]
-    pub max_cells: Option<u64>,
 }
 
 /// A param and its value as text.
@@ -507,6 +602,22 @@ fn assignment(text: &str) -> Result<Assignment, String> {
     Ok(Assignment { name: name.trim().to_owned(), value: value.trim().to_owned() })
 }
 
+/// Parses a plane: `z=0.5`, or `1,1,0=2` with a normal.
+fn plane(text: &str) -> Result<Plane, String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let parsed = text.split_once('=').and_then(|(normal, offset)| {
+        let normal = match normal.trim() {
+            "x" => vec![1.0, 0.0, 0.0],
+            "y" => vec![0.0, 1.0, 0.0],
+            "z" => vec![0.0, 0.0, 1.0],
+            other => other.split(',').map(number).collect::<Option<Vec<f64>>>()?,
+        };
+        Plane::new(normal.try_into().ok()?, number(offset)?)
+    });
+    let expected = "expected an axis or a normal and a length, such as z=0.5 or 1,1,0=2";
+    parsed.ok_or_else(|| expected.to_owned())
+}
+
 /// Parses a finite number.
 fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
@@ -550,6 +661,15 @@ mod tests {
     #[test]
     fn arguments_are_consistent() {
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn planes_are_parsed_or_refused() {
+        assert_eq!(plane("z=0.5"), Ok(Plane::new([0.0, 0.0, 1.0], 0.5).unwrap()));
+        assert_eq!(plane("1, 1,0 = -2"), Ok(Plane::new([1.0, 1.0, 0.0], -2.0).unwrap()));
+        for wrong in ["", "z", "z=", "w=1", "1,2=3", "0,0,0=1", "1,2,3,4=5", "z=inf", "z=1=2"] {
+            assert!(plane(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -3,17 +3,22 @@
 
 mod common;
 
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
+
+/// How long an editor waits for a message. A server that does not answer fails the test.
+const DEADLINE: Duration = Duration::from_secs(120);
 
 /// An editor that talks to the server.
 struct Editor {
     child: Child,
     to: ChildStdin,
-    from: BufReader<ChildStdout>,
+    from: Receiver<Value>,
     requests: u64,
     diagnostics: Vec<Value>,
 }
@@ -21,14 +26,14 @@ struct Editor {
 impl Editor {
     fn start(folder: &Path, encodings: Value) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_sdfc"))
-            .arg("lsp")
+            .args(["lsp", "--stdio"])
             .env("XDG_CACHE_HOME", folder.join(".cache"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
         let to = child.stdin.take().unwrap();
-        let from = BufReader::new(child.stdout.take().unwrap());
+        let from = messages(BufReader::new(child.stdout.take().unwrap()));
         let mut editor = Self { child, to, from, requests: 0, diagnostics: Vec::new() };
         let completion = json!({ "completionItem": { "snippetSupport": true } });
         let capabilities = json!({
@@ -58,33 +63,46 @@ impl Editor {
     }
 
     fn receive(&mut self) -> Value {
-        let mut length = 0;
-        loop {
-            let mut line = String::new();
-            self.from.read_line(&mut line).unwrap();
-            if line.trim().is_empty() {
-                break;
-            }
-            if let Some(number) = line.strip_prefix("Content-Length: ") {
-                length = number.trim().parse().unwrap();
-            }
-        }
-        let mut bytes = vec![0; length];
-        self.from.read_exact(&mut bytes).unwrap();
-        serde_json::from_slice(&bytes).unwrap()
+        let message = self.from.recv_timeout(DEADLINE);
+        message.unwrap_or_else(|why| {
+            // Dropping the process would leave it running.
+            let _ended = self.child.kill();
+            panic!("no message from the server: {why}")
+        })
     }
 
     /// Sends a request and returns the whole answer.
     fn answer(&mut self, method: &str, params: Value) -> Value {
+        let id = self.request(method, params);
+        self.answer_to(id)
+    }
+
+    /// Sends a request and returns its number, without waiting for the answer.
+    fn request(&mut self, method: &str, params: Value) -> u64 {
         self.requests += 1;
         let id = self.requests;
         self.send(&json!({ "jsonrpc": "2.0", "id": id, "method": method, "params": params }));
+        id
+    }
+
+    /// Waits for the answer to a request. Those to others are dropped.
+    fn answer_to(&mut self, id: u64) -> Value {
         loop {
             let message = self.receive();
             if message["id"] == json!(id) {
                 return message;
             }
             self.diagnostics.push(message["params"].clone());
+        }
+    }
+
+    /// Waits for the next answer to any request.
+    fn next_answer(&mut self) -> Value {
+        loop {
+            let message = self.receive();
+            if !message["id"].is_null() {
+                return message;
+            }
         }
     }
 
@@ -120,8 +138,49 @@ impl Editor {
     fn end(mut self) {
         self.ask("shutdown", Value::Null);
         self.notify("exit", Value::Null);
+        let end = Instant::now() + DEADLINE;
+        while self.child.try_wait().unwrap().is_none() {
+            if Instant::now() > end {
+                self.child.kill().unwrap();
+                panic!("the server does not end");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
         assert!(self.child.wait().unwrap().success());
     }
+}
+
+/// Reads messages on a thread, so that waiting for one can end.
+fn messages(mut from: BufReader<ChildStdout>) -> Receiver<Value> {
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || {
+        while let Some(message) = message(&mut from) {
+            if sender.send(message).is_err() {
+                return;
+            }
+        }
+    });
+    receiver
+}
+
+/// The next message; `None` at the end of the stream.
+fn message(from: &mut impl BufRead) -> Option<Value> {
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        if from.read_line(&mut line).ok()? == 0 {
+            return None;
+        }
+        if line.trim().is_empty() {
+            break;
+        }
+        if let Some(number) = line.strip_prefix("Content-Length: ") {
+            length = number.trim().parse().unwrap();
+        }
+    }
+    let mut bytes = vec![0; length];
+    from.read_exact(&mut bytes).ok()?;
+    serde_json::from_slice(&bytes).ok()
 }
 
 #[test]
@@ -196,5 +255,129 @@ fn columns_are_bytes_for_an_editor_that_prefers_them() {
     let found = editor.diagnostics(&uri);
     let unknown = found.as_array().unwrap().iter().find(|it| it["code"] == "E0201").unwrap();
     assert_eq!(unknown["range"]["start"], json!({ "line": 1, "character": 15 }));
+    editor.end();
+}
+
+#[test]
+fn an_editor_gets_params_and_previews_of_unsaved_text() {
+    let folder = common::folder(&[("part.sdf", "solid part(r: length = 1) = length(p) - r\n")]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let uri = format!("file://{}/main.sdf", folder.path().display());
+    editor.open(
+        &uri,
+        "import part from \"part.sdf\"\nparam r = 0.5 in 0.1..2\nparam tilt = 10deg in 0deg..45deg\n\
+         param lid = true\nparam wood = #d94f30\nparam style = \"a\" in [\"a\", \"b\"]\n\
+         part(r).color(wood).rotate(y: tilt)\nbackground(#000)\n",
+    );
+    let document = json!({ "uri": uri });
+    let params = editor.ask("sdfc/params", json!({ "textDocument": document }));
+    let rows = params["params"].as_array().unwrap();
+    assert_eq!(rows.len(), 5, "{params}");
+    let row = |name: &str, kind: &str, default: Value, min: Value, max: Value, choices: Value| {
+        json!({
+            "name": name, "kind": kind, "default": default, "min": min, "max": max,
+            "choices": choices,
+        })
+    };
+    let (null, none) = (Value::Null, json!([]));
+    assert_eq!(rows[0], row("r", "number", json!(0.5), json!(0.1), json!(2.0), none.clone()));
+    assert_eq!(rows[1], row("tilt", "angle", json!(10.0), json!(0.0), json!(45.0), none.clone()));
+    assert_eq!(rows[2]["default"], json!(true));
+    let wood = row("wood", "color", json!("#d94f30"), null.clone(), null.clone(), none);
+    assert_eq!(rows[3], wood);
+    assert_eq!(rows[4]["choices"], json!(["a", "b"]));
+
+    let camera = json!({ "eye": [0, 0, 4], "target": [0, 0, 0], "fov": 40 });
+    let ask = |values: Value| json!({ "textDocument": document, "size": [64, 48], "camera": camera, "values": values });
+    let small = editor.ask("sdfc/preview", ask(json!({})));
+    let large = editor.ask("sdfc/preview", ask(json!({ "r": 1.0, "wood": "#fff" })));
+    let [small, large] = [small, large].map(|picture| lit_pixels(&picture));
+    assert!(small > 100 && large > 3 * small, "{small} pixels, then {large}");
+
+    // Without a camera, the answer has the one that sees the whole scene.
+    let picture = json!({ "textDocument": document, "size": [32, 32] });
+    let fitted = editor.ask("sdfc/preview", picture.clone())["camera"].clone();
+    assert!(fitted["fov"].is_f64() && fitted["eye"][2].as_f64().unwrap() > 1.0, "{fitted}");
+
+    // The unsaved text of the import counts, too.
+    let part = format!("file://{}/part.sdf", folder.path().display());
+    editor.open(&part, "solid part(r: length = 1) = length(p) - 2 * r\n");
+    let grown = editor.ask("sdfc/preview", ask(json!({})));
+    assert_eq!(lit_pixels(&grown), large);
+
+    for (wrong, message) in [
+        (json!({ "size": [0, 48] }), "from 1 to 2048"),
+        (json!({ "size": [64, 4096] }), "from 1 to 2048"),
+        (json!({ "values": { "r": 3 } }), "the param `r` takes 0.1..2; 3 is outside"),
+        (json!({ "values": { "q": 3 } }), "no param `q`"),
+        (json!({ "values": { "r": null } }), "a number, true, false or a string"),
+        (json!({ "camera": { "eye": [0, 0, 4], "target": [0, 0, 0] } }), "either `fov`"),
+        (json!({ "camera": { "eye": [0, 0, 4], "target": [0, 0, 4], "fov": 40 } }), "same point"),
+        (json!({ "camera": { "eye": [0, 0, 4], "target": [0, 0, 0], "fov": 0 } }), "between 0"),
+    ] {
+        let mut asked = ask(json!({}));
+        for (name, value) in wrong.as_object().unwrap() {
+            asked[name] = value.clone();
+        }
+        let answer = editor.answer("sdfc/preview", asked);
+        let why = answer["error"]["message"].as_str().unwrap_or_default();
+        assert!(why.contains(message), "{wrong}: {answer}");
+    }
+    // An end of a range that has no short number of degrees.
+    let angles = format!("file://{}/angles.sdf", folder.path().display());
+    editor.open(&angles, "param turn = 1.5rad in 1rad..2rad\nbox(1).rotate(y: turn)\n");
+    let document = json!({ "uri": angles });
+    let params = editor.ask("sdfc/params", json!({ "textDocument": document }));
+    for end in ["min", "max"] {
+        let values = json!({ "turn": params["params"][0][end] });
+        let asked = json!({ "textDocument": document, "size": [16, 16], "values": values });
+        assert!(editor.ask("sdfc/preview", asked)["png"].is_string(), "{end}: {params}");
+    }
+    let asked = json!({ "textDocument": document, "size": [16, 16], "values": { "turn": 200 } });
+    let answer = editor.answer("sdfc/preview", asked);
+    let why = answer["error"]["message"].as_str().unwrap();
+    assert!(why.ends_with("114.591559026deg; 200deg is outside"), "{why}");
+    let change = json!([{ "text": "part(1\n" }]);
+    let changed = json!({ "textDocument": { "uri": uri, "version": 2 }, "contentChanges": change });
+    editor.notify("textDocument/didChange", changed);
+    let answer = editor.answer("sdfc/preview", picture);
+    let why = answer["error"]["message"].as_str().unwrap();
+    assert!(why.starts_with("the scene has errors: "), "{why}");
+    editor.end();
+}
+
+/// The number of pixels of a preview that are not black.
+fn lit_pixels(preview: &Value) -> usize {
+    let png = data_encoding::BASE64.decode(preview["png"].as_str().unwrap().as_bytes()).unwrap();
+    let picture = image::load_from_memory(&png).unwrap().into_rgb8();
+    picture.pixels().filter(|pixel| pixel.0.iter().any(|part| *part > 8)).count()
+}
+
+/// A scene whose preview takes so long that other answers come first.
+const SLOW: &str =
+    "union(for i in 0..12: for j in 0..12: gyroid(0.3).translate([i, j, 0]) & box(9))\n";
+
+#[test]
+fn typing_goes_on_while_a_preview_is_drawn_and_it_can_be_cancelled() {
+    let folder = common::folder(&[]);
+    let mut editor = Editor::start(folder.path(), json!(["utf-16"]));
+    let uri = format!("file://{}/main.sdf", folder.path().display());
+    editor.open(&uri, SLOW);
+    let picture = json!({ "textDocument": { "uri": uri }, "size": [2048, 2048] });
+    let preview = editor.request("sdfc/preview", picture.clone());
+    let second = editor.request("sdfc/preview", picture);
+    let hover = editor.request("textDocument/hover", Editor::at(&uri, 0, 2));
+    let first = editor.next_answer();
+    assert_eq!(first["id"], json!(hover), "{}", first["error"]);
+    editor.notify("$/cancelRequest", json!({ "id": preview }));
+    editor.notify("$/cancelRequest", json!({ "id": second }));
+    for id in [preview, second] {
+        let answer = editor.next_answer();
+        assert_eq!((&answer["id"], &answer["error"]["code"]), (&json!(id), &json!(-32800)));
+    }
+    // The thread that draws is free again.
+    editor.open(&uri, "sphere(1)\n");
+    let picture = json!({ "textDocument": { "uri": uri }, "size": [16, 16] });
+    assert!(editor.ask("sdfc/preview", picture)["png"].is_string());
     editor.end();
 }

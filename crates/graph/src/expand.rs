@@ -17,7 +17,7 @@ use crate::graph::Graph;
 use crate::node::{MaterialField, Node, NodeId, ShapeId, Stage, SurfaceVector};
 
 /// Maximum number of nodes in one arena, and of (node, points) pairs in one [`Expander`].
-pub const NODE_LIMIT: usize = 1_000_000;
+pub const NODE_LIMIT: usize = 4_000_000;
 
 /// The reason why shapes could not be expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

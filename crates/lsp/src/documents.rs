@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use crate::lines::{Encoding, Lines};
 
-/// Access to files that are not open in the editor.
-pub trait Disk {
+/// Access to files that are not open in the editor, from any thread.
+pub trait Disk: Sync {
     /// Reads a source file.
     ///
     /// # Errors
@@ -71,6 +71,15 @@ impl Resolver for Beside<'_> {
     }
 }
 
+/// The resolver for the imports of a scene.
+pub fn resolver<'a>(
+    scene: &Path,
+    open: &'a BTreeMap<PathBuf, String>,
+    disk: &'a dyn Disk,
+) -> impl Resolver + use<'a> {
+    Beside { folder: folder_of(scene), open, disk }
+}
+
 fn folder_of(path: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).to_owned()
 }
@@ -85,6 +94,11 @@ impl<'d> Documents<'d> {
     /// The paths of all open files.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.open.keys().cloned().collect()
+    }
+
+    /// The texts of all open files.
+    pub fn open(&self) -> &BTreeMap<PathBuf, String> {
+        &self.open
     }
 
     /// True if a file is open.
@@ -185,7 +199,7 @@ impl<'d> Documents<'d> {
 
     /// Runs a function with the resolver for the imports of a scene.
     pub fn with_resolver<T>(&self, path: &Path, run: impl FnOnce(&dyn Resolver) -> T) -> T {
-        run(&Beside { folder: folder_of(path), open: &self.open, disk: self.disk })
+        run(&resolver(path, &self.open, self.disk))
     }
 
     /// The other scenes that may import a file: open ones, and those in its folder and below.

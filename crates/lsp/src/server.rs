@@ -2,8 +2,9 @@
 
 use std::collections::{BTreeSet, VecDeque};
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Sender, channel};
 
-use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use sdfc_ide::diagnostics;
 use serde_json::{Value, json};
 
@@ -12,7 +13,12 @@ use crate::client::Client;
 use crate::convert::{ACTION_KINDS, TOKEN_MODIFIERS, TOKEN_TYPES, diagnostic};
 use crate::documents::{Compile, Disk, Documents};
 use crate::lines::{Encoding, Lines};
+use crate::preview::{Ask, asked};
+use crate::questions::{Draw, Question, Questions, Reply};
 use crate::uri::{path, uri};
+
+/// The most requests for previews and params that may wait: each has a copy of all open texts.
+const MAX_QUESTIONS: usize = 64;
 
 /// Answers an editor until it asks to end.
 ///
@@ -23,6 +29,7 @@ pub fn serve(
     connection: &Connection,
     disk: &dyn Disk,
     compiler: &dyn Compile,
+    draw: &dyn Draw,
 ) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
     let client = Client::new(&params);
@@ -31,14 +38,25 @@ pub fn serve(
         "serverInfo": { "name": "sdfc", "version": env!("CARGO_PKG_VERSION") },
     });
     connection.initialize_finish(id, result).map_err(|e| e.to_string())?;
-    let mut server = Server {
-        connection,
-        client,
-        documents: Documents::new(folders(&params), disk, compiler),
-        changed: BTreeSet::new(),
-        waiting: VecDeque::new(),
-    };
-    server.run()
+    let (questions, waiting) = channel();
+    std::thread::scope(|scope| {
+        scope.spawn(|| draw.answer_all(&Questions::new(waiting)));
+        let mut server = Server {
+            connection,
+            client,
+            documents: Documents::new(folders(&params), disk, compiler),
+            disk,
+            changed: BTreeSet::new(),
+            waiting: VecDeque::new(),
+            questions,
+            replies: Vec::new(),
+            revision: 0,
+        };
+        let served = server.run();
+        // Whoever draws stops, and then finds no more questions.
+        server.cancel(|_| true)?;
+        served
+    })
 }
 
 /// The folders that the editor has open.
@@ -78,6 +96,7 @@ fn capabilities(client: Client) -> Value {
             "legend": { "tokenTypes": TOKEN_TYPES, "tokenModifiers": TOKEN_MODIFIERS },
             "full": true,
         },
+        "experimental": { "sdfc/params": true, "sdfc/preview": true },
     })
 }
 
@@ -85,13 +104,20 @@ struct Server<'c, 'd> {
     connection: &'c Connection,
     client: Client,
     documents: Documents<'d>,
+    disk: &'d dyn Disk,
     /// The files whose diagnostics have to be sent again.
     changed: BTreeSet<PathBuf>,
     /// Messages that have arrived, in order.
     waiting: VecDeque<Message>,
+    /// The questions for another thread.
+    questions: Sender<Question<'c>>,
+    /// The questions that may have no answer yet.
+    replies: Vec<Reply>,
+    /// The number of notifications that may have changed a text.
+    revision: u64,
 }
 
-impl Server<'_, '_> {
+impl<'c> Server<'c, 'c> {
     /// Handles messages until the end. Diagnostics are sent when no message waits, so that fast
     /// typing does not queue them up.
     fn run(&mut self) -> Result<(), String> {
@@ -113,7 +139,7 @@ impl Server<'_, '_> {
                     self.request(request)?;
                 }
                 Message::Notification(it) if it.method == "exit" => return Ok(()),
-                Message::Notification(notification) => self.notification(&notification),
+                Message::Notification(notification) => self.notification(&notification)?,
                 Message::Response(_) => {}
             }
         }
@@ -128,6 +154,11 @@ impl Server<'_, '_> {
         let response = if self.waiting.iter().any(cancels) {
             let code = ErrorCode::RequestCanceled as i32;
             Response::new_err(request.id, code, "cancelled".to_owned())
+        } else if let Some(ask) = asked(&request.method, &request.params) {
+            match ask.and_then(|ask| self.question(&request, ask)) {
+                Ok(()) => return Ok(()),
+                Err(why) => Response::new_err(request.id, ErrorCode::RequestFailed as i32, why),
+            }
         } else {
             match answer(&mut self.documents, self.client, &request.method, &request.params) {
                 None => {
@@ -143,7 +174,46 @@ impl Server<'_, '_> {
         self.send(Message::Response(response))
     }
 
-    fn notification(&mut self, it: &Notification) {
+    /// Passes a question to the thread that draws.
+    fn question(&mut self, request: &Request, ask: Ask) -> Result<(), String> {
+        let file = path(request.params["textDocument"]["uri"].as_str().unwrap_or_default());
+        let text = self.documents.text(&file);
+        let text = text.ok_or_else(|| format!("{} cannot be read", file.display()))?;
+        let reply = Reply::new(request.id.clone());
+        self.replies.retain(|reply| !reply.is_answered());
+        if self.replies.len() >= MAX_QUESTIONS {
+            return Err(format!("{MAX_QUESTIONS} requests for previews and params wait already"));
+        }
+        self.replies.push(reply.clone());
+        let question = Question {
+            ask,
+            name: file.display().to_string(),
+            text,
+            revision: self.revision,
+            open: self.documents.open().clone(),
+            disk: self.disk,
+            connection: self.connection,
+            reply,
+        };
+        self.questions.send(question).map_err(|_gone| "the thread that draws has ended".to_owned())
+    }
+
+    /// Answers the questions that `which` is true of, if they have no answer yet.
+    fn cancel(&self, which: impl Fn(&Reply) -> bool) -> Result<(), String> {
+        for reply in self.replies.iter().filter(|reply| which(reply)) {
+            if let Some(response) = reply.cancelled() {
+                self.send(Message::Response(response))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn notification(&mut self, it: &Notification) -> Result<(), String> {
+        if it.method == "$/cancelRequest" {
+            let id = serde_json::from_value::<RequestId>(it.params["id"].clone());
+            return id.map_or(Ok(()), |id| self.cancel(|reply| reply.is_to(&id)));
+        }
+        self.revision += 1;
         let document = &it.params["textDocument"];
         let file = path(document["uri"].as_str().unwrap_or_default());
         match it.method.as_str() {
@@ -168,6 +238,7 @@ impl Server<'_, '_> {
             }
             _ => {}
         }
+        Ok(())
     }
 
     /// Marks all open files: each may import the one that changed.

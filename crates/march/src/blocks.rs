@@ -109,6 +109,14 @@ pub struct ViewBlock {
     pub lights: [LightBlock; MAX_LIGHTS],
 }
 
+/// In [`PixelBlock::unproven`]: a ray of the pixel passed a stretch longer than the tolerance without
+/// a proof that it is free. Only methods that prove what they pass tell.
+pub const UNPROVEN: u16 = 1;
+
+/// In [`PixelBlock::unproven`]: the driver ended loops of the pixel early, so that anything may be
+/// missing.
+pub const LOOPS_ENDED: u16 = 2;
+
 /// One pixel of the storage buffer at binding 2 of group 0: 32 bytes. In the shader `status` and
 /// `unproven` are the lower and the upper half of one word.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -120,8 +128,7 @@ pub struct PixelBlock {
     pub depth: f32,
     /// 0 miss, 1 hit, 2 capped (ran out of steps).
     pub status: u16,
-    /// 1 if a ray of the pixel passed a stretch longer than the tolerance without a proof that it
-    /// is free; only methods that prove what they pass tell.
+    /// [`UNPROVEN`] and [`LOOPS_ENDED`], or 0.
     pub unproven: u16,
     /// Evaluations of the field for this pixel, those of shadow rays and reflections included.
     pub evaluations: u32,

@@ -60,6 +60,8 @@ pub struct Features {
     pub records_gaps: bool,
     /// The field is divided by a large Lipschitz constant.
     pub loose: bool,
+    /// The scene's functions contain loops.
+    pub loops: bool,
 }
 
 impl Features {
@@ -75,7 +77,7 @@ impl Features {
     }
 
     /// The overrides of `features.wgsl` and their values.
-    pub fn overrides(self) -> [(&'static str, bool); 30] {
+    pub fn overrides(self) -> [(&'static str, bool); 31] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
             materials,
@@ -104,6 +106,7 @@ impl Features {
             proved,
             records_gaps,
             loose,
+            loops,
         } = self;
         [
             ("SEEN_MATERIALS", seen_materials),
@@ -136,6 +139,7 @@ impl Features {
             ("PROVED", proved),
             ("RECORDS_GAPS", records_gaps),
             ("LOOSE", loose),
+            ("HAS_LOOPS", loops),
         ]
     }
 

@@ -33,8 +33,8 @@ mod source;
 pub mod stubs;
 
 pub use blocks::{
-    DEFAULT_COLOR, LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, POINT, PixelBlock, SHADOW_HARD,
-    SHADOW_OFF, SHADOW_SOFT, SPOT, SUN, ViewBlock,
+    DEFAULT_COLOR, LOOPS_ENDED, LightBlock, MAX_LIGHTS, MAX_REFLECTIONS, POINT, PixelBlock,
+    SHADOW_HARD, SHADOW_OFF, SHADOW_SOFT, SPOT, SUN, UNPROVEN, ViewBlock,
 };
 pub use features::Features;
 pub use methods::{Audience, METHODS, Method, MethodDefinition, MethodParameter, UnknownMethod};

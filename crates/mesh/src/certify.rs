@@ -5,6 +5,7 @@ use rustc_hash::FxHashSet;
 
 use crate::error::{MeshError, Phase};
 use crate::field::{Frame, LocalField, Prism, Prober};
+use crate::grid::Grid;
 use crate::nearness::{Clipped, clip, crosses_once, distance};
 use crate::refine::{OnProgress, report};
 use crate::surface::{Mesh, MeshCertificate};
@@ -22,6 +23,8 @@ const COARSE: f64 = 0.25;
 const FLOOD: usize = 20_000;
 /// A box is decided by single points if its center is this near to its corners, in errors.
 const SMALL: f64 = 0.7;
+/// The field is 0 in a box of a flat grid if all values are at most this fraction of the error.
+const ZERO: f64 = 2e-6;
 /// Part of the error that proofs use. The rest covers their rounding.
 const USED: f64 = 1.0 - 1e-6;
 
@@ -62,6 +65,7 @@ enum Outcome<'f> {
 pub(crate) struct Prover<'a, 'f> {
     pub(crate) field: &'a LocalField<'f>,
     pub(crate) mesh: &'a Mesh,
+    pub(crate) grid: &'a Grid,
     pub(crate) error: f64,
     /// Boxes around all that differs from an earlier proof: changed triangles, undecided boxes.
     pub(crate) changes: Option<Vec<[Vec3; 2]>>,
@@ -96,17 +100,17 @@ pub(crate) struct Proof {
 }
 
 impl<'f> Prover<'_, 'f> {
-    /// Divides a box until everything in it is proven or tiny. Boxes that are far from all changes
-    /// keep their earlier proof.
+    /// Divides the whole grid until everything in it is proven or tiny. Boxes that are far from all
+    /// changes keep their earlier proof.
     pub(crate) fn prove(
         &self,
-        bounds: [Vec3; 2],
         max_boxes: u64,
         progress: OnProgress<'_>,
     ) -> Result<Proof, MeshError> {
         let triangles = (0..self.mesh.triangles.len() as u32).collect();
         let count = |changes: &Vec<[Vec3; 2]>| (0..changes.len() as u32).collect();
         let changes = self.changes.as_ref().map(count);
+        let bounds = self.grid.proof_bounds(self.error);
         let part = Part { bounds, triangles, changes };
         let mut waiting = vec![Task { part, field: self.field.clone() }];
         let mut certificate = MeshCertificate { error: self.error, ..MeshCertificate::default() };
@@ -116,7 +120,7 @@ impl<'f> Prover<'_, 'f> {
             let chunk = waiting.split_off(waiting.len().saturating_sub(CHUNK));
             done += chunk.len();
             let finest = if undecided.len() < FLOOD { FINEST } else { COARSE };
-            let outcomes: Vec<[Outcome<'f>; 8]> =
+            let outcomes: Vec<Vec<Outcome<'f>>> =
                 chunk.into_par_iter().map(|task| self.divide(task, finest)).collect();
             for outcome in outcomes.into_iter().flatten() {
                 match outcome {
@@ -145,14 +149,14 @@ impl<'f> Prover<'_, 'f> {
         self.mesh.triangles[triangle as usize].map(|id| self.mesh.vertices[id as usize])
     }
 
-    /// Specialises the field to what proofs about a box evaluate, and examines its eighths.
-    fn divide(&self, Task { part, field }: Task<'f>, finest: f64) -> [Outcome<'f>; 8] {
+    /// Specialises the field to what proofs about a box evaluate, and examines its parts.
+    fn divide(&self, Task { part, field }: Task<'f>, finest: f64) -> Vec<Outcome<'f>> {
         let Part { bounds, triangles, changes } = part;
         let side = bounds[1][0] - bounds[0][0];
         let field = field.around(bounds, self.error + 0.5 * side);
         let mut prober = field.prober();
         let is_crowded = triangles.len() > 8 * MANY;
-        eighths(bounds).map(|bounds| {
+        let examine = |bounds: [Vec3; 2]| {
             let is_near = |t: &u32| match is_crowded {
                 true => overlaps(self.corners(*t), bounds, self.error),
                 false => meets(self.corners(*t), bounds, self.error),
@@ -166,7 +170,8 @@ impl<'f> Prover<'_, 'f> {
             let changes = changes.map(|list| list.iter().copied().filter(is_changed).collect());
             let triangles = triangles.iter().copied().filter(is_near).collect();
             self.examine(&mut prober, &field, Part { bounds, triangles, changes }, finest)
-        })
+        };
+        parts(bounds, self.grid.is_flat).map(examine).collect()
     }
 
     fn examine(
@@ -192,7 +197,10 @@ impl<'f> Prover<'_, 'f> {
         if self.is_small(prober, bounds, triangles, is_absent) {
             return Outcome::Small;
         }
-        if bounds[1][0] - bounds[0][0] <= finest * self.error {
+        // Where a plane lies in a face of the scene, no box is small enough.
+        let is_zero =
+            self.grid.is_flat && prober.is_within(&Prism::aligned(bounds), ZERO * self.error);
+        if is_zero || bounds[1][0] - bounds[0][0] <= finest * self.error {
             return Outcome::Undecided(bounds);
         }
         Outcome::Divided(Task { part, field: field.clone() })
@@ -332,9 +340,14 @@ fn meets(corners: [Vec3; 3], bounds: [Vec3; 2], margin: f64) -> bool {
     clipped.heights.is_some()
 }
 
-fn eighths([lo, hi]: [Vec3; 2]) -> [[Vec3; 2]; 8] {
-    let middle = between(lo, hi, 0.5);
-    std::array::from_fn(|i| {
+/// Returns the eighths of a box; of a flat one the quarters.
+pub(crate) fn parts([lo, hi]: [Vec3; 2], is_flat: bool) -> impl Iterator<Item = [Vec3; 2]> {
+    let mut middle = between(lo, hi, 0.5);
+    let count = if is_flat { 4 } else { 8 };
+    if is_flat {
+        middle[2] = hi[2];
+    }
+    (0..count).map(move |i: usize| {
         let is_upper = |axis: usize| i >> axis & 1 == 1;
         let from = std::array::from_fn(|a| if is_upper(a) { middle[a] } else { lo[a] });
         let to = std::array::from_fn(|a| if is_upper(a) { hi[a] } else { middle[a] });

@@ -1,166 +1,189 @@
-//! Places the vertices on edges, on faces and in cells, and makes the triangles.
+//! Closed paths around the section of a scene by a plane.
 
-use rayon::prelude::*;
-use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::ControlFlow;
 
-use crate::error::{MeshError, Phase};
-use crate::field::Prober;
-use crate::grid::{Cell, Corner, Edge, Face, Grid};
-use crate::loops::{LoopStep, loops};
-use crate::patch::{Filling, LoopVertex, Placer};
-use crate::refine::{OnProgress, Signs, report};
-use crate::surface::Mesh;
-use crate::tree::{Tangled, Tree};
-use crate::vector::{SurfacePoint, Vec3};
+use sdfc_graph::Program;
+use sdfc_graph::eval::FrameValues;
+use serde::Serialize;
 
-/// The octree, the signs at its corners, and the field that they come from.
-pub(crate) struct Contour<'a, 'f> {
-    pub(crate) prober: &'a Prober<'f>,
-    pub(crate) grid: &'a Grid,
-    pub(crate) tree: &'a Tree,
-    pub(crate) signs: &'a Signs,
-    pub(crate) error: f64,
+use crate::certify::Proof;
+use crate::error::{MeshError, MeshOptions, Progress};
+use crate::field::{Field, LocalField};
+use crate::grid::Grid;
+use crate::make::Maker;
+use crate::mesh::{check, fitting};
+use crate::outline::Outline;
+use crate::plane::Plane;
+use crate::polygon::{area, parents};
+use crate::surface::MeshCertificate;
+
+/// The boundary of a scene's section by a plane, in the plane's coordinates.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Contour {
+    /// Closed paths that neither cross nor touch, with the inside of the scene on their left: outer
+    /// paths are counter-clockwise, and holes are clockwise.
+    pub paths: Vec<ContourPath>,
+    /// What is proven.
+    pub certificate: ContourCertificate,
 }
 
-/// A cell with the loops on its boundary.
-struct Crossed {
-    cell: Cell,
-    loops: Vec<Vec<LoopStep>>,
+/// A closed path.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ContourPath {
+    /// The corners, in scene units. The last one is connected to the first one.
+    pub points: Vec<[f64; 2]>,
+    /// True if the inside of the scene is outside of the path.
+    pub is_hole: bool,
+    /// The index of the path directly around this one. Paths around a hole are no holes, and the
+    /// reverse.
+    pub parent: Option<usize>,
 }
 
-/// Vertices by the edge or face that they lie on.
-struct Vertices {
-    points: Vec<SurfacePoint>,
-    on_edges: FxHashMap<Edge, u32>,
-    in_faces: FxHashMap<Face, u32>,
+/// What is proven about a contour.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ContourCertificate {
+    /// The distance that was asked for, in scene units.
+    pub error: f64,
+    /// True if every point of the contour is proven to be within `error` of the boundary of the
+    /// section, and every point of that boundary within `error` of the contour. If false, this
+    /// holds outside the undecided boxes.
+    pub is_proven: bool,
+    /// Number of rectangles without a proof.
+    pub undecided: u64,
+    /// Area of the rectangles without a proof.
+    pub undecided_area: f64,
+    /// Lowest and highest corner of rectangles without a proof; at most
+    /// [`MeshCertificate::MAX_BOXES`].
+    pub undecided_boxes: Vec<[[f64; 2]; 2]>,
+    /// Number of rectangles in which the boundary is proven to be absent.
+    pub empty_boxes: u64,
+    /// Number of rectangles in which the field is proven to change its sign across the contour.
+    pub sheet_boxes: u64,
+    /// Number of rectangles, smaller than the error, that contain both signs and part of the
+    /// contour.
+    pub small_boxes: u64,
 }
 
-impl Contour<'_, '_> {
-    /// Returns the mesh, without a certificate.
-    pub(crate) fn mesh(&self, progress: OnProgress<'_>) -> Result<Mesh, MeshError> {
-        let crossed = self.crossed();
-        report(progress, Phase::Placing, 0, 3)?;
-        let mut vertices = self.on_edges(&crossed);
-        report(progress, Phase::Placing, 1, 3)?;
-        self.in_faces(&crossed, &mut vertices);
-        report(progress, Phase::Placing, 2, 3)?;
-        let mesh = self.fill(&crossed, vertices);
-        report(progress, Phase::Placing, 3, 3)?;
-        Ok(mesh)
-    }
+/// The field counts as outside where it is above minus this fraction of the error. So a plane in a
+/// face of the scene has no inside there, and rounding does not decide about it.
+const LEVEL: f64 = 1e-6;
 
-    fn crossed(&self) -> Vec<Crossed> {
-        let sign = |at: Corner| self.signs.get(&at).copied().unwrap_or(false);
-        let mut cells = self.tree.leaves.clone();
-        cells.par_sort_unstable();
-        cells
-            .into_par_iter()
-            .filter_map(|cell| match loops(self.tree, cell, sign) {
-                Ok(loops) if !loops.is_empty() => Some(Crossed { cell, loops }),
-                Ok(_) | Err(Tangled) => None,
-            })
-            .collect()
+/// Makes closed paths around a program's section by a plane, with a certificate.
+///
+/// The work runs on all threads of the current rayon pool. It stops if `progress` breaks.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use sdfc_graph::eval::FrameValues;
+/// use sdfc_graph::{Dim, Graph, Program};
+/// use sdfc_mesh::{MeshOptions, Plane, contour};
+///
+/// let mut graph = Graph::new();
+/// let p = graph.point(0, Dim::Three);
+/// let (length, radius) = (graph.length(p), graph.number(0.5));
+/// let ball = graph.sub(length, radius);
+/// let program = Program { graph, distance: Some(ball), ..Program::default() };
+///
+/// let plane = Plane::new([0.0, 0.0, 1.0], 0.3).expect("a normal");
+/// let options = MeshOptions::new([[-0.5; 3], [0.5; 3]], 0.01);
+/// let mut progress = |_| ControlFlow::Continue(());
+/// let circle = contour(&program, &FrameValues::default(), plane, &options, &mut progress)?;
+/// assert!(circle.certificate.is_proven);
+/// let [path] = &circle.paths[..] else { panic!("one path") };
+/// assert!(path.points.iter().all(|[x, y]| (x.hypot(*y) - 0.4).abs() < 0.01));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+///
+/// [`MeshError`]; [`MeshError::NoSection`] if the plane meets no inside.
+pub fn contour(
+    program: &Program,
+    frame: &FrameValues,
+    plane: Plane,
+    options: &MeshOptions,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Contour, MeshError> {
+    let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
+    let MeshOptions { bounds, error, max_cells } = *options;
+    check(bounds, error)?;
+    let shadow = plane.shadow(bounds);
+    let grid = fitting(error, |error| Grid::around_flat(shadow, error))?;
+    let truth = LocalField::new(field.distance(), frame).in_plane(plane);
+    let lowered = truth.clone().at_level(-LEVEL * error);
+    let maker = Maker { field: &lowered, truth: &truth, grid: &grid, error, max_cells };
+    let (outline, proof) = maker.make::<Outline>(progress)?;
+    let certificate = ContourCertificate::of(proof);
+    if outline.paths.is_empty() {
+        let [from, to] = plane.range(bounds);
+        let touches = certificate.undecided > 0;
+        return Err(MeshError::NoSection { from, to, at: plane.offset(), touches });
     }
+    let parents = parents(&outline.paths);
+    let path = |(points, parent): (Vec<[f64; 2]>, _)| ContourPath {
+        is_hole: area(&points) < 0.0,
+        points,
+        parent,
+    };
+    Ok(Contour { paths: outline.paths.into_iter().zip(parents).map(path).collect(), certificate })
+}
 
-    fn on_edges(&self, crossed: &[Crossed]) -> Vertices {
-        let steps = crossed.iter().flat_map(|it| it.loops.iter().flatten());
-        let mut edges: Vec<Edge> = steps.map(|step| step.edge).collect();
-        edges.par_sort_unstable();
-        edges.dedup();
-        let place = |placer: &mut Placer<'_, '_>, edge: &Edge| {
-            placer.crossing(edge.ends().map(|end| self.grid.position(end)), edge.size)
-        };
-        let points = self.placed(&edges, place);
-        let on_edges = edges.into_iter().zip(0..).collect();
-        Vertices { points, on_edges, in_faces: FxHashMap::default() }
-    }
-
-    /// Adds the vertices within faces. The faces of cells with several loops have none, so that
-    /// the loops do not meet.
-    fn in_faces(&self, crossed: &[Crossed], vertices: &mut Vertices) {
-        let faces = |it: &Crossed| it.loops.iter().flatten().map(|step| step.face).collect();
-        let shared = crossed.iter().filter(|it| it.loops.len() > 1);
-        let plain: FxHashSet<Face> = shared.flat_map(|it| -> Vec<Face> { faces(it) }).collect();
-        let mut chords: Vec<(Face, [u32; 2])> = Vec::new();
-        for steps in crossed.iter().flat_map(|it| &it.loops) {
-            for (index, step) in steps.iter().enumerate() {
-                let next = steps[(index + 1) % steps.len()].edge;
-                let ends = [step.edge, next].map(|edge| vertices.on_edges.get(&edge));
-                if let [Some(a), Some(b)] = ends
-                    && !plain.contains(&step.face)
-                {
-                    chords.push((step.face, [*a.min(b), *a.max(b)]));
-                }
-            }
+impl ContourCertificate {
+    fn of(proof: Proof) -> Self {
+        let boxes: Vec<[[f64; 2]; 2]> =
+            proof.undecided.iter().map(|corners| corners.map(|[x, y, _]| [x, y])).collect();
+        let MeshCertificate { error, is_proven, undecided, .. } = proof.certificate;
+        let MeshCertificate { empty_boxes, sheet_boxes, small_boxes, .. } = proof.certificate;
+        Self {
+            error,
+            is_proven,
+            undecided,
+            undecided_area: boxes.iter().map(|[lo, hi]| (hi[0] - lo[0]) * (hi[1] - lo[1])).sum(),
+            undecided_boxes: boxes.into_iter().take(MeshCertificate::MAX_BOXES).collect(),
+            empty_boxes,
+            sheet_boxes,
+            small_boxes,
         }
-        chords.par_sort_unstable();
-        chords.dedup();
-        let place = |placer: &mut Placer<'_, '_>, (face, ends): &(Face, [u32; 2])| {
-            placer.in_face(*face, ends.map(|id| vertices.points[id as usize]))
-        };
-        let found = self.placed(&chords, place);
-        for ((face, _), point) in chords.into_iter().zip(found) {
-            if let Some(point) = point {
-                vertices.in_faces.insert(face, vertices.points.len() as u32);
-                vertices.points.push(point);
-            }
-        }
-    }
-
-    fn placed<T: Sync, R: Send>(
-        &self,
-        items: &[T],
-        place: impl Fn(&mut Placer<'_, '_>, &T) -> R + Sync,
-    ) -> Vec<R> {
-        let place = |prober: &mut Prober<'_>, item: &T| {
-            place(&mut Placer { prober, grid: self.grid, error: self.error }, item)
-        };
-        items.par_iter().map_init(|| self.prober.clone(), place).collect()
-    }
-
-    fn fill(&self, crossed: &[Crossed], vertices: Vertices) -> Mesh {
-        let fill = |placer: &mut Placer<'_, '_>, it: &Crossed| {
-            let loops: Vec<Vec<LoopVertex>> =
-                it.loops.iter().map(|steps| vertices.of_loop(it.cell, steps)).collect();
-            let fillings = placer.fillings(it.cell, &loops);
-            (loops, fillings)
-        };
-        let filled = self.placed(crossed, fill);
-        let mut positions: Vec<Vec3> = vertices.points.iter().map(|it| it.position).collect();
-        let mut triangles = Vec::new();
-        for (loops, fillings) in filled {
-            for (vertices, filling) in loops.iter().zip(fillings) {
-                let count = vertices.len();
-                let id = |index: usize| vertices[index % count].id;
-                let (first, steps) = match filling {
-                    Filling::Fan(start) => (id(start), start + 1..start + count - 1),
-                    Filling::Cone(apex) => {
-                        positions.push(apex);
-                        (positions.len() as u32 - 1, 0..count)
-                    }
-                };
-                triangles.extend(steps.map(|step| [first, id(step), id(step + 1)]));
-            }
-        }
-        let known = vertices.points.len();
-        let rest = self.placed(&positions[known..], |placer, point| placer.normal(*point));
-        let normals = vertices.points.iter().map(|it| it.normal).chain(rest).collect();
-        let is_single_precision = self.grid.is_single;
-        Mesh { vertices: positions, normals, triangles, is_single_precision, ..Mesh::default() }
     }
 }
 
-impl Vertices {
-    fn of_loop(&self, cell: Cell, steps: &[LoopStep]) -> Vec<LoopVertex> {
-        let mut found = Vec::with_capacity(2 * steps.len());
-        for LoopStep { edge, face } in steps {
-            let on_edge = self.on_edges.get(edge).map(|id| (*id, edge.sides_in(cell)));
-            let side = cell.sides(face.at) & 3 << (2 * face.axis);
-            let in_face = self.in_faces.get(face).map(|id| (*id, side));
-            for (id, sides) in [on_edge, in_face].into_iter().flatten() {
-                found.push(LoopVertex { id, point: self.points[id as usize], sides });
-            }
+/// One line that says what is proven.
+impl std::fmt::Display for ContourCertificate {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { error, is_proven, undecided, undecided_area, .. } = self;
+        if *is_proven {
+            return write!(f, "contour and section are proven to be within {error} of each other");
         }
-        found
+        write!(
+            f,
+            "contour and section are within {error} of each other, except in {undecided} \
+             undecided boxes with an area of {undecided_area:.3e}"
+        )
+    }
+}
+
+impl Contour {
+    /// Returns the area of the section: that of outer paths less that of holes.
+    pub fn area(&self) -> f64 {
+        self.paths.iter().map(|path| area(&path.points)).sum()
+    }
+
+    /// Returns the length of all paths.
+    pub fn length(&self) -> f64 {
+        let length = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]).hypot(b[1] - a[1]);
+        self.paths.iter().flat_map(|path| crate::polygon::sides(&path.points)).map(length).sum()
+    }
+
+    /// Returns the lowest and the highest corner of a rectangle around all paths; `None` without
+    /// paths.
+    pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+        let mut points = self.paths.iter().flat_map(|path| &path.points);
+        let first = *points.next()?;
+        Some(points.fold([first; 2], |[lo, hi], [x, y]| {
+            [[lo[0].min(*x), lo[1].min(*y)], [hi[0].max(*x), hi[1].max(*y)]]
+        }))
     }
 }

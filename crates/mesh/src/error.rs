@@ -2,13 +2,13 @@
 
 use sdfc_graph::eval::TapeError;
 
-/// Options of [`mesh`](crate::mesh()).
+/// Options of [`mesh`](crate::mesh()) and [`contour`](crate::contour()).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshOptions {
     /// Lowest and highest corner of a box around the surface, in scene units.
     pub bounds: [[f64; 3]; 2],
-    /// The greatest distance between mesh and surface, in scene units.
+    /// The greatest distance between mesh and surface, or contour and section, in scene units.
     pub error: f64,
     /// The most cells that are examined.
     pub max_cells: u64,
@@ -39,6 +39,8 @@ pub enum Phase {
     Placing,
     /// The error is proven.
     Proving,
+    /// Volumes are added up.
+    Measuring,
 }
 
 /// How far the work is.
@@ -93,6 +95,34 @@ pub enum MeshError {
     /// The mesh would have holes, because the field has no value at some points.
     #[error("the field has no value at some points of the surface, so no closed mesh was found")]
     Open,
+    /// A grid has too few or too many samples.
+    #[error(
+        "a grid with {resolution} samples along its longest side is refused: it needs at least \
+         {least} there, and at most {most} in total"
+    )]
+    Resolution {
+        /// The number of samples along the longest side.
+        resolution: usize,
+        /// The least number along the longest side.
+        least: usize,
+        /// The greatest number in total.
+        most: usize,
+    },
+    /// The plane of a section meets no inside.
+    #[error(
+        "the plane at {at} meets no inside of the scene, whose bounds reach from {from} to {to} \
+         along the plane's normal{}", if *touches { "; it touches a face: move it a little" } else { "" }
+    )]
+    NoSection {
+        /// Where the plane is along its normal.
+        at: f64,
+        /// The lowest coordinate of the scene's bounds along the normal.
+        from: f64,
+        /// The highest one.
+        to: f64,
+        /// True if it is not proven that the plane meets no surface.
+        touches: bool,
+    },
     /// The work was stopped by its progress function.
     #[error("the work was stopped")]
     Cancelled,
@@ -102,7 +132,11 @@ impl MeshError {
     /// True if an option is the cause.
     pub fn is_call(&self) -> bool {
         match self {
-            Self::Error(_) | Self::TooFine { .. } | Self::TooManyCells { .. } => true,
+            Self::Error(_)
+            | Self::TooFine { .. }
+            | Self::TooManyCells { .. }
+            | Self::Resolution { .. }
+            | Self::NoSection { .. } => true,
             Self::NothingDrawn
             | Self::Empty
             | Self::NotFlat(_)

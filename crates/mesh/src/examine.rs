@@ -1,11 +1,11 @@
 //! The decision about a cell: its verdict.
 
-use crate::field::{Frame, Prism, Prober, is_inside};
-use crate::grid::{Cell, Corner, Edge, Grid};
+use crate::field::{Frame, Prism, Prober};
+use crate::grid::{Cell, Corner, Edge, Face, Grid};
 use crate::loops::{LoopStep, loops};
 use crate::patch::{Filling, LoopVertex, Placer};
 use crate::tree::Tree;
-use crate::vector::{SurfacePoint, Vec3, add, scale, unit};
+use crate::vector::{SurfacePoint, Vec3, add, between, scale, unit};
 
 /// The verdict about a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub(crate) enum Verdict {
     Empty,
     /// The surface in the cell is represented well enough.
     Leaf,
-    /// The cell is divided into eight.
+    /// The cell is divided.
     Split,
 }
 
@@ -43,16 +43,21 @@ pub(crate) fn examine(placer: &mut Placer<'_, '_>, cell: Cell, sizes: Sizes) -> 
     if cell.size == 1 {
         return Verdict::Leaf;
     }
-    let corners = cell.corners();
-    let signs = corners.map(|at| is_inside(placer.prober.value(placer.grid.position(at))));
-    let sign = |at: Corner| corners.iter().position(|c| *c == at).is_some_and(|i| signs[i]);
-    if signs.iter().all(|sign| *sign == signs[0]) {
+    let signs: Vec<(Corner, bool)> =
+        placer.grid.corners(cell).map(|at| (at, placer.is_inside(at))).collect();
+    let sign = |at: Corner| signs.iter().any(|(corner, sign)| *corner == at && *sign);
+    if signs.iter().all(|(_, sign)| *sign == signs[0].1) {
         let is_small = cell.size <= sizes.uncrossed;
         let is_leaf = is_small || is_sheet(placer.prober, bounds, 0.5 * placer.error);
         return if is_leaf { Verdict::Leaf } else { Verdict::Split };
     }
-    let Ok(loops) = loops(&Tree::default(), cell, sign) else { return Verdict::Split };
-    if !is_near(placer, cell, &loops) {
+    let is_near = match placer.grid.is_flat {
+        true => is_chord_near(placer, cell, sign),
+        false => {
+            loops(&Tree::default(), cell, sign).is_ok_and(|found| is_near(placer, cell, &found))
+        }
+    };
+    if !is_near {
         return Verdict::Split;
     }
     let is_leaf = cell.size <= sizes.unproven && hides_nothing(placer, cell, sign)
@@ -63,7 +68,7 @@ pub(crate) fn examine(placer: &mut Placer<'_, '_>, cell: Cell, sizes: Sizes) -> 
 /// True if it is proven that the surface in a box is within a distance of a plane, with the inside
 /// on one side of it.
 fn is_sheet(prober: &mut Prober<'_>, bounds: [Vec3; 2], distance: f64) -> bool {
-    let center = crate::vector::between(bounds[0], bounds[1], 0.5);
+    let center = between(bounds[0], bounds[1], 0.5);
     let (value, gradient) = prober.sample(center);
     let slope = crate::vector::length(gradient);
     let Some(normal) = unit(gradient) else { return false };
@@ -75,20 +80,46 @@ fn is_sheet(prober: &mut Prober<'_>, bounds: [Vec3; 2], distance: f64) -> bool {
 /// True if the middles of edges and faces have the sign of their corners, where these agree.
 fn hides_nothing(placer: &mut Placer<'_, '_>, cell: Cell, sign: impl Fn(Corner) -> bool) -> bool {
     let half = cell.size / 2;
+    let is_flat = placer.grid.is_flat;
     let mut agrees = |corners: &[Corner], middle: Corner| {
         let first = sign(corners[0]);
-        corners.iter().any(|corner| sign(*corner) != first)
-            || is_inside(placer.prober.value(placer.grid.position(middle))) == first
+        corners.iter().any(|corner| sign(*corner) != first) || placer.is_inside(middle) == first
     };
+    let mut face_agrees = |face: Face| {
+        let ends = face.sides().map(|(edge, _)| edge);
+        let corners = [ends[0].ends(), ends[2].ends()].concat();
+        let mut middle = face.at;
+        face.plane().into_iter().for_each(|axis| middle[axis] += half);
+        agrees(&corners, middle)
+            && ends.into_iter().all(|edge| agrees(&edge.ends(), edge.halves()[1].at))
+    };
+    if is_flat {
+        return face_agrees(cell.base());
+    }
     (0..3).all(|axis| {
-        [false, true].into_iter().all(|is_upper| {
-            let face = cell.side(axis, is_upper);
-            let ends = face.sides().map(|(edge, _)| edge);
-            let corners = [ends[0].ends(), ends[2].ends()].concat();
-            let mut middle = face.at;
-            face.plane().into_iter().for_each(|axis| middle[axis] += half);
-            agrees(&corners, middle)
-                && ends.into_iter().all(|edge| agrees(&edge.ends(), edge.halves()[1].at))
+        [false, true].into_iter().all(|is_upper| face_agrees(cell.side(axis, is_upper)))
+    })
+}
+
+/// True if the segments that the cell of a flat grid would have are near the surface, as far as
+/// samples tell.
+fn is_chord_near(placer: &mut Placer<'_, '_>, cell: Cell, sign: impl Fn(Corner) -> bool) -> bool {
+    let Ok(chords) = Tree::new(true).chords(cell.base(), sign) else { return false };
+    if chords.len() != 1 {
+        return false;
+    }
+    chords.iter().all(|ends| {
+        let [from, to] = ends.map(|edge| {
+            placer.crossing(edge.ends().map(|end| placer.grid.position(end)), edge.size)
+        });
+        let within = placer.in_face(cell.base(), [from, to]);
+        let points: Vec<Vec3> =
+            [Some(from), within, Some(to)].into_iter().flatten().map(|it| it.position).collect();
+        points.windows(2).all(|pair| {
+            [0.25, 0.5, 0.75].into_iter().all(|t| {
+                let point = between(pair[0], pair[1], t);
+                placer.prober.distance(point) <= ESTIMATE * placer.error
+            })
         })
     })
 }

@@ -8,6 +8,7 @@ use sdfc_graph::eval::{
     Affine, BranchPath, Dual, Evaluator, FrameValues, Interval, Number, Tape, TapeError,
 };
 
+use crate::plane::Plane;
 use crate::vector::{Vec3, add, between, dot, length, scale, sub, tangents};
 
 /// A box that may be rotated: its center and its half axes.
@@ -132,12 +133,26 @@ pub(crate) struct LocalField<'f> {
     short: Option<Arc<Tape>>,
     /// The side of the last box that it was specialised to.
     side: f64,
+    /// The plane that points and boxes lie in. Without one they lie in space.
+    plane: Option<Plane>,
+    /// The value at the surface.
+    level: f64,
 }
 
 impl<'f> LocalField<'f> {
     /// Returns the field everywhere.
     pub(crate) fn new(whole: &'f Tape, frame: &'f FrameValues) -> Self {
-        Self { whole, frame, short: None, side: f64::INFINITY }
+        Self { whole, frame, short: None, side: f64::INFINITY, plane: None, level: 0.0 }
+    }
+
+    /// Returns the field in a plane, as a function of the plane's two coordinates.
+    pub(crate) fn in_plane(self, plane: Plane) -> Self {
+        Self { plane: Some(plane), ..self }
+    }
+
+    /// Returns the field whose surface is at a value other than 0.
+    pub(crate) fn at_level(self, level: f64) -> Self {
+        Self { level, ..self }
     }
 
     /// Returns the same field, which is not specialised further.
@@ -160,7 +175,7 @@ impl<'f> LocalField<'f> {
             return self;
         }
         let grown = [lo.map(|x| x - margin), hi.map(|x| x + margin)];
-        let coordinates = Prism::aligned(grown).coordinates();
+        let coordinates = placed(self.plane, Prism::aligned(grown).coordinates());
         let is_short = |tape: &Tape| tape.operations() as f64 <= SHORTER * operations as f64;
         let found = self.tape().specialized(self.frame, coordinates).filter(is_short);
         Self { short: found.map(Arc::new).or(self.short), side, ..self }
@@ -175,8 +190,15 @@ impl<'f> LocalField<'f> {
             interval: tape.prepare(self.frame),
             affine: tape.prepare(self.frame),
             path: BranchPath::default(),
+            plane: self.plane,
+            level: self.level,
         }
     }
+}
+
+/// Returns the position in space of a point of a plane; the point itself without a plane.
+fn placed<N: Number>(plane: Option<Plane>, point: [N; 3]) -> [N; 3] {
+    plane.map_or(point, |plane| plane.position(point))
 }
 
 /// A field with the registers of its evaluators. Each thread uses its own clone.
@@ -187,6 +209,8 @@ pub(crate) struct Prober<'f> {
     interval: Evaluator<'f, Interval>,
     affine: Evaluator<'f, Affine>,
     path: BranchPath,
+    plane: Option<Plane>,
+    level: f64,
 }
 
 /// Returns true if a point with this value is inside. A point without a value counts as outside.
@@ -196,13 +220,13 @@ pub(crate) fn is_inside(value: f64) -> bool {
 
 impl Prober<'_> {
     pub(crate) fn value(&mut self, point: Vec3) -> f64 {
-        self.value.scalar(point)
+        self.value.scalar(placed(self.plane, point)) - self.level
     }
 
     /// Returns the value and the gradient.
     pub(crate) fn sample(&mut self, point: Vec3) -> (f64, Vec3) {
-        let Dual { value, partials } = self.slope.scalar(Dual::point(point));
-        (value, partials)
+        let Dual { value, partials } = self.slope.scalar(placed(self.plane, Dual::point(point)));
+        (value - self.level, partials)
     }
 
     /// Estimates the distance to the surface: the value divided by the gradient's length.
@@ -214,17 +238,18 @@ impl Prober<'_> {
 
     /// Returns the side of a point, if it is proven in spite of rounding: true for inside.
     pub(crate) fn proven_side(&mut self, point: Vec3) -> Option<bool> {
-        proven(self.interval.scalar(point.map(Interval::constant)))
+        let point = placed(self.plane, point.map(Interval::constant));
+        proven(self.interval.scalar(point), self.level)
     }
 
     /// Returns the side of a whole box, if it is proven that all of it is on one side. Where the
     /// formula jumps, as at the borders of repeated cells, it is proven for each result.
     pub(crate) fn side_over(&mut self, prism: &Prism) -> Option<bool> {
-        let box_ = prism.coordinates();
+        let box_ = placed(self.plane, prism.coordinates());
         self.path.clear();
         let mut side = None;
         for _ in 0..MOST_PATHS {
-            match proven(self.affine.scalar_along(box_, &mut self.path).range()) {
+            match proven(self.affine.scalar_along(box_, &mut self.path).range(), self.level) {
                 Some(found) if side.is_some_and(|side| side != found) => return None,
                 Some(found) => side = Some(found),
                 None if self.path.fork(MOST_JUMPS) => continue,
@@ -235,6 +260,18 @@ impl Prober<'_> {
             }
         }
         None
+    }
+
+    /// Returns the bounds of the field over a box.
+    pub(crate) fn affine_over(&mut self, prism: &Prism) -> Affine {
+        self.affine.scalar(placed(self.plane, prism.coordinates()))
+    }
+
+    /// True if it is proven that no value in a box is farther from that at the surface than a
+    /// limit.
+    pub(crate) fn is_within(&mut self, prism: &Prism, limit: f64) -> bool {
+        let range = self.affine_over(prism).range();
+        range.lo() >= self.level - limit && range.hi() <= self.level + limit
     }
 
     /// True if it is proven that the surface in a frame lies between two heights, with the inside
@@ -285,10 +322,10 @@ const MOST_PATHS: u32 = 16;
 /// Jumps in a formula over a box that are decided.
 const MOST_JUMPS: usize = 3;
 
-fn proven(range: Interval) -> Option<bool> {
-    if range.lo() > 0.0 {
+fn proven(range: Interval, level: f64) -> Option<bool> {
+    if range.lo() > level {
         Some(false)
-    } else if range.hi() < 0.0 {
+    } else if range.hi() < level {
         Some(true)
     } else {
         None

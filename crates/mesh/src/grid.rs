@@ -38,18 +38,15 @@ fn moved(mut at: Corner, axis: usize, by: u32) -> Corner {
 }
 
 impl Cell {
-    pub(crate) fn children(self) -> [Self; 8] {
-        let size = self.size / 2;
-        std::array::from_fn(|i| {
-            let at = std::array::from_fn(|axis| self.at[axis] + size * (i as u32 >> axis & 1));
-            Self { at, size }
-        })
-    }
-
-    pub(crate) fn corners(self) -> [Corner; 8] {
+    fn corners(self) -> [Corner; 8] {
         std::array::from_fn(|i| {
             std::array::from_fn(|axis| self.at[axis] + self.size * (i as u32 >> axis & 1))
         })
+    }
+
+    /// Returns the side in the plane z = 0, which is the whole cell of a flat grid.
+    pub(crate) fn base(self) -> Face {
+        self.side(2, false)
     }
 
     /// Returns the lower or the upper side along an axis.
@@ -141,7 +138,7 @@ impl Edge {
     }
 }
 
-/// Where the grid lies in the scene.
+/// Where the grid lies in the scene or in a plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Grid {
     /// The position of the corner 0, a multiple of a sixteenth of `unit`.
@@ -152,8 +149,12 @@ pub(crate) struct Grid {
     pub(crate) size: u32,
     /// True if all positions on the grid are 32-bit floats.
     pub(crate) is_single: bool,
+    /// True if the grid lies in the plane z = 0: its cells are squares.
+    pub(crate) is_flat: bool,
 }
 
+/// Half the thickness of a flat grid, as a fraction of the error.
+const THICKNESS: f64 = 1e-3;
 /// The whole grid has at most this many cells along an axis.
 pub(crate) const MAX_SIDE: u32 = 1 << 24;
 /// A grid coordinate is at most this many sixteenths of a unit from the origin.
@@ -182,11 +183,48 @@ impl Grid {
         let steps = greatest / step;
         let fits = steps <= DOUBLE_STEPS && unit.is_normal();
         let is_single = steps <= SINGLE_STEPS && unit > 1e-30;
-        fits.then_some(Self { origin, unit, size, is_single })
+        fits.then_some(Self { origin, unit, size, is_single, is_flat: false })
+    }
+
+    /// Returns the same for a rectangle in the plane z = 0.
+    pub(crate) fn around_flat([lo, hi]: [[f64; 2]; 2], error: f64) -> Option<Self> {
+        let [lo, hi] = [lo, hi].map(|[x, y]| [x, y, 0.0]);
+        let grid = Self::around([lo, hi], error)?;
+        Some(Self { origin: [grid.origin[0], grid.origin[1], 0.0], is_flat: true, ..grid })
     }
 
     pub(crate) fn root(&self) -> Cell {
         Cell { at: [0; 3], size: self.size }
+    }
+
+    /// Returns the box in which the error is proven: the whole grid. A flat grid is a little thick,
+    /// so that boxes and walls meet in spite of rounding.
+    pub(crate) fn proof_bounds(&self, error: f64) -> [Vec3; 2] {
+        let [mut lo, mut hi] = self.bounds(self.root());
+        if self.is_flat {
+            lo[2] = -THICKNESS * error;
+            hi[2] = THICKNESS * error;
+        }
+        [lo, hi]
+    }
+
+    /// Returns the cells that a cell is divided into: eight, or four of a flat grid.
+    pub(crate) fn children(&self, cell: Cell) -> impl Iterator<Item = Cell> + use<> {
+        let size = cell.size / 2;
+        Cell { size, ..cell }
+            .corners()
+            .into_iter()
+            .take(self.count())
+            .map(move |at| Cell { at, size })
+    }
+
+    /// Returns the corners of a cell: eight, or four of a flat grid.
+    pub(crate) fn corners(&self, cell: Cell) -> impl Iterator<Item = Corner> + use<> {
+        cell.corners().into_iter().take(self.count())
+    }
+
+    fn count(&self) -> usize {
+        if self.is_flat { 4 } else { 8 }
     }
 
     pub(crate) fn position(&self, at: Corner) -> Vec3 {
@@ -199,7 +237,11 @@ impl Grid {
 
     pub(crate) fn bounds(&self, cell: Cell) -> [Vec3; 2] {
         let lo = self.position(cell.at);
-        [lo, lo.map(|x| x + self.length(cell.size))]
+        let mut hi = lo.map(|x| x + self.length(cell.size));
+        if self.is_flat {
+            hi[2] = lo[2];
+        }
+        [lo, hi]
     }
 
     /// Returns the distance that vertices keep from the ends of edges and the sides of faces and

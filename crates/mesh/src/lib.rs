@@ -1,10 +1,13 @@
-//! Closed triangle meshes of signed distance functions, with a proven error.
+//! Closed triangle meshes and contours of signed distance functions, with a proven error.
 //!
 //! # What
 //!
 //! [`mesh()`] makes a [`Mesh`] of a program's surface. The mesh is closed, consistently oriented
 //! and free of self-intersections. Its [`MeshCertificate`] says what is proven about the distance
-//! between mesh and surface, and where nothing is proven.
+//! between mesh and surface, and where nothing is proven. [`contour()`] makes a [`Contour`]: closed
+//! paths around the section by a plane, by the same steps in a quadtree. [`measure()`] gives
+//! [`Measurements`]: volume and more, as intervals that hold the truth. [`bake()`] gives a
+//! [`DistanceGrid`] of samples.
 //!
 //! # How
 //!
@@ -47,24 +50,41 @@
 
 #![allow(clippy::needless_range_loop, reason = "an index is an axis, of several vectors")]
 
+mod bake;
+mod build;
 mod certify;
+mod clearance;
 mod contour;
 mod error;
 mod examine;
+mod extent;
 mod field;
 mod grid;
+mod half_space;
 mod loops;
 mod make;
+mod measurement;
+mod mesh;
+mod moments;
 mod nearness;
+mod outline;
 mod patch;
+mod plane;
+mod polygon;
 mod qef;
 mod refine;
+mod simplify;
 mod surface;
 mod tree;
 mod vector;
 mod write;
 
+pub use bake::{BakeOptions, DistanceGrid, bake};
+pub use clearance::{Clearance, clearance};
+pub use contour::{Contour, ContourCertificate, ContourPath, contour};
 pub use error::{MeshError, MeshOptions, Phase, Progress};
-pub use make::mesh;
+pub use measurement::{MeasureOptions, Measurements, Proven, measure};
+pub use mesh::mesh;
+pub use plane::Plane;
 pub use surface::{Mesh, MeshCertificate};
-pub use write::{EncodeError, MeshFormat};
+pub use write::{ContourFormat, EncodeError, GridFormat, MeshFormat};

@@ -47,3 +47,13 @@ pub(crate) fn loops(
     }
     if loops.len() > 1 && cell.size > 1 { Err(Tangled) } else { Ok(loops) }
 }
+
+/// True if the surface crosses the boundary of a leaf in a way that only a leaf of the smallest
+/// size may have.
+pub(crate) fn is_tangled(tree: &Tree, cell: Cell, is_inside: impl Fn(Corner) -> bool) -> bool {
+    let is_plain = match tree.is_flat {
+        true => tree.chords(cell.base(), is_inside).is_ok_and(|found| found.len() < 2),
+        false => loops(tree, cell, is_inside).is_ok(),
+    };
+    cell.size > 1 && !is_plain
+}

@@ -1,7 +1,7 @@
 //! The triangles of one cell: a fan or a cone over each loop on the cell's boundary.
 
 use crate::field::{Prober, is_inside};
-use crate::grid::{Cell, Face, Grid};
+use crate::grid::{Cell, Corner, Face, Grid};
 use crate::qef::nearest_to_planes;
 use crate::vector::{SurfacePoint, Vec3, add, between, dot, length, scale, sub, unit};
 
@@ -50,6 +50,11 @@ pub(crate) struct Placer<'a, 'f> {
 }
 
 impl Placer<'_, '_> {
+    /// True if a corner of the grid is inside.
+    pub(crate) fn is_inside(&mut self, at: Corner) -> bool {
+        is_inside(self.prober.value(self.grid.position(at)))
+    }
+
     /// Returns the point where the surface crosses an edge between two corners.
     pub(crate) fn crossing(&mut self, ends: [Vec3; 2], size: u32) -> SurfacePoint {
         let values = ends.map(|end| self.prober.value(end));

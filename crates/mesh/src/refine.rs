@@ -9,7 +9,7 @@ use crate::error::{MeshError, Phase, Progress};
 use crate::examine::{Sizes, Verdict, examine};
 use crate::field::{LocalField, Prober, is_inside};
 use crate::grid::{Cell, Corner, Grid};
-use crate::loops::loops;
+use crate::loops::is_tangled;
 use crate::patch::Placer;
 use crate::tree::Tree;
 
@@ -69,7 +69,7 @@ impl<'f> Refiner<'_, 'f> {
             let found: Vec<_> = chunk.into_par_iter().map(|task| self.divide(task)).collect();
             for (task, verdicts) in found {
                 tree.split(task.cell);
-                for (cell, verdict) in task.cell.children().into_iter().zip(verdicts) {
+                for (cell, verdict) in self.grid.children(task.cell).zip(verdicts) {
                     match verdict {
                         Verdict::Empty => {}
                         Verdict::Leaf => tree.leaves.push(cell),
@@ -86,11 +86,12 @@ impl<'f> Refiner<'_, 'f> {
     }
 
     /// Specialises the field to a cell, and examines its children.
-    fn divide(&self, Task { cell, field }: Task<'f>) -> (Task<'f>, [Verdict; 8]) {
+    fn divide(&self, Task { cell, field }: Task<'f>) -> (Task<'f>, Vec<Verdict>) {
         let field = field.around(self.grid.bounds(cell), self.grid.length(cell.size));
         let mut prober = field.prober();
         let mut placer = Placer { prober: &mut prober, grid: self.grid, error: self.error };
-        let verdicts = cell.children().map(|child| examine(&mut placer, child, self.sizes));
+        let children = self.grid.children(cell);
+        let verdicts = children.map(|child| examine(&mut placer, child, self.sizes)).collect();
         drop(prober);
         (Task { cell, field }, verdicts)
     }
@@ -106,8 +107,8 @@ impl<'f> Refiner<'_, 'f> {
         loop {
             self.add_signs(tree, signs);
             let sign = |at: Corner| signs.get(&at).copied().unwrap_or(false);
-            let is_tangled = |cell: &Cell| cell.size > 1 && loops(tree, *cell, sign).is_err();
-            let tangled: Vec<bool> = tree.leaves.par_iter().map(is_tangled).collect();
+            let fails = |cell: &Cell| is_tangled(tree, *cell, sign);
+            let tangled: Vec<bool> = tree.leaves.par_iter().map(fails).collect();
             if !tangled.contains(&true) {
                 return Ok(());
             }

@@ -10,6 +10,8 @@ pub(crate) struct Tree {
     split: FxHashSet<Cell>,
     /// The leaves that may contain surface, in no order.
     pub(crate) leaves: Vec<Cell>,
+    /// True if it is the quadtree of a flat grid: a cell is represented by its base.
+    pub(crate) is_flat: bool,
 }
 
 /// A crossing of an edge, in the direction in which the sides of a face run.
@@ -24,6 +26,11 @@ struct Passage {
 pub(crate) struct Tangled;
 
 impl Tree {
+    /// Returns an octree, or the quadtree of a flat grid, without cells.
+    pub(crate) fn new(is_flat: bool) -> Self {
+        Self { is_flat, ..Self::default() }
+    }
+
     pub(crate) fn split(&mut self, cell: Cell) {
         self.split.insert(cell);
     }
@@ -52,9 +59,12 @@ impl Tree {
         }
     }
 
-    /// Calls `act` with the smallest faces of a leaf. The flag tells if a face is on the upper
-    /// side.
+    /// Calls `act` with the smallest faces of a leaf, with the base only in a quadtree. The flag
+    /// tells if a face is on the upper side.
     pub(crate) fn faces_of(&self, cell: Cell, mut act: impl FnMut(Face, bool)) {
+        if self.is_flat {
+            return act(cell.base(), false);
+        }
         for axis in 0..3 {
             for is_upper in [false, true] {
                 self.faces(cell.side(axis, is_upper), &mut |face| act(face, is_upper));

@@ -217,7 +217,7 @@ mod tests {
             "first_picture_ms": null,
             "evals_per_pixel": {"mean": 7.5, "p99": 9, "max": 9},
             "leaf_evals_per_pixel": {"mean": null, "why": {"mean": "not counted"}},
-            "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0, "unproven": 0},
+            "pixels": {"hit": 1, "miss": 1, "capped": 0, "nan": 0, "unproven": 0, "loops_ended": 0},
             "why": {
                 "adapter": "drawn on the CPU", "driver": "drawn on the CPU",
                 "first_picture_ms": "not measured",

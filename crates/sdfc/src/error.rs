@@ -23,6 +23,19 @@ pub enum Error {
     /// The settings give no valid view.
     #[error(transparent)]
     View(#[from] ViewError),
+    /// The scene names no such solid.
+    #[cfg(feature = "mesh")]
+    #[error(
+        "no `let` at the top level of the scene gives the name `{name}` to a solid; {}",
+        if known.is_empty() { "there are no such names".to_owned() }
+        else { format!("the names are: {}", known.join(", ")) }
+    )]
+    UnknownSolid {
+        /// The name that was asked for.
+        name: String,
+        /// The names of solids.
+        known: Vec<String>,
+    },
     /// The mesh could not be made.
     #[cfg(feature = "mesh")]
     #[error(transparent)]
@@ -43,7 +56,7 @@ impl Error {
             | Self::Evaluate(_)
             | Self::View(_) => false,
             #[cfg(feature = "mesh")]
-            Self::Mesh(_) => false,
+            Self::Mesh(_) | Self::UnknownSolid { .. } => false,
         }
     }
 
@@ -57,6 +70,8 @@ impl Error {
             Self::NothingDrawn | Self::Expand(_) | Self::Evaluate(_) | Self::View(_) => false,
             #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_call(),
+            #[cfg(feature = "mesh")]
+            Self::UnknownSolid { .. } => true,
         }
     }
 }

@@ -49,6 +49,7 @@ impl Scene {
             certified: self.is_certified(),
             bounds: self.finite_bounds(),
             inputs: self.inputs(),
+            costs: self.call_costs(),
             quality: self.quality_rows(),
         })
     }
@@ -153,6 +154,7 @@ pub(crate) fn feature_names(features: Features) -> Vec<String> {
         proved: _,
         records_gaps: _,
         loose: _,
+        loops: _,
     } = features;
     let names = [
         ("material", materials),

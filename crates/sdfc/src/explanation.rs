@@ -57,6 +57,9 @@ pub struct Explanation {
     pub bounds: Bounds,
     /// Params, and `time` and `frame` if they are used.
     pub inputs: Vec<Input>,
+    /// The calls that make the most expensive shapes: at most 5, each with at least 5 % of the
+    /// operations. Empty if the scene has less than 200 operations, or more than 500 calls.
+    pub costs: Vec<CallCost>,
     /// The shapes that calls in the scene made, in source order.
     pub quality: Vec<QualityRow>,
 }
@@ -77,6 +80,23 @@ impl Bounds {
             corners.map(|corner| corner.map(|value| value.is_finite().then_some(value)));
         Self { min, max }
     }
+}
+
+/// What the shapes of one call cost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct CallCost {
+    /// Name: that of its `let`, or of its definition.
+    pub name: String,
+    /// Line of the call, from 1.
+    pub line: u32,
+    /// Column of the call, from 1.
+    pub column: u32,
+    /// Arithmetic operations of one evaluation of its shapes by themselves.
+    pub operations: usize,
+    /// `operations` divided by those of the whole scene, without loops that stand for similar
+    /// parts. Calls can share operations, so shares can add up to more than 1.
+    pub share: f64,
 }
 
 /// A param, `time` or `frame`.
@@ -166,6 +186,15 @@ impl std::fmt::Display for Explanation {
                 _ => "per frame",
             };
             writeln!(f, "param               {}: {rate}{unused}", input.name)?;
+        }
+        for (number, call) in self.costs.iter().enumerate() {
+            let label = if number == 0 { "most operations" } else { "" };
+            let percent = 100.0 * call.share;
+            writeln!(
+                f,
+                "{label:<19} {} ({percent:.0} %) in `{}` at line {}",
+                call.operations, call.name, call.line
+            )?;
         }
         if !self.quality.is_empty() {
             writeln!(

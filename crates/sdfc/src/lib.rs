@@ -37,7 +37,9 @@
 //! shaders, without wgpu.
 //!
 //! - `fonts`: letters in scenes. Without it a scene that uses `text` is an error.
-//! - `mesh`: closed triangle meshes with a proven error: `Scene::mesh`.
+//! - `mesh`: closed triangle meshes and contours with a proven error: `Scene::mesh`,
+//!   `Scene::contour`; volume and more as proven intervals: `Scene::measure`; grids of samples:
+//!   `Scene::bake`.
 //! - `render`: pictures, drawn with wgpu or on the CPU, and encoded as PNG, EXR or GIF.
 //! - `wgpu`: the buffers and the bind group that a written shader needs: `bind`.
 //!
@@ -46,8 +48,13 @@
 //! This crate does not print, open files or exit. A scene that imports files needs a [`Resolver`]
 //! that returns their contents. `sdfc-files` has one that reads a folder.
 
+#[cfg(feature = "mesh")]
+mod bake;
 #[cfg(feature = "wgpu")]
 pub mod bind;
+mod call_costs;
+#[cfg(feature = "mesh")]
+mod clearance;
 mod compiler;
 mod derived_bounds;
 mod diagnostics;
@@ -56,6 +63,8 @@ mod explain;
 mod explanation;
 mod field;
 mod marched;
+#[cfg(feature = "mesh")]
+mod measure;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod params;
@@ -71,12 +80,16 @@ mod source_id;
 mod tapes;
 mod uniforms;
 
+#[cfg(feature = "mesh")]
+pub use bake::BakeOptions;
 pub use compiler::{CompileWithError, Compiler, format};
 pub use diagnostics::{DiagnosticRow, Diagnostics, EditRow, FixRow};
 pub use error::Error;
-pub use explanation::{Bounds, Explanation, Input, QualityRow};
+pub use explanation::{Bounds, CallCost, Explanation, Input, QualityRow};
 pub use field::{Field, Material};
 pub use marched::Marched;
+#[cfg(feature = "mesh")]
+pub use measure::MeasureOptions;
 #[cfg(feature = "mesh")]
 pub use mesh::{MeshOptions, MeshSize};
 pub use params::{ParamError, Value};
@@ -104,8 +117,9 @@ pub use sdfc_lang::{CompileValues, NoFiles, Resolver};
 pub use sdfc_march::{Method, UnknownMethod};
 #[cfg(feature = "mesh")]
 pub use sdfc_mesh::{
-    EncodeError, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
-    Progress as MeshProgress,
+    Clearance, Contour, ContourCertificate, ContourFormat, ContourPath, DistanceGrid, EncodeError,
+    GridFormat, Measurements, Mesh, MeshCertificate, MeshError, MeshFormat, Phase as MeshPhase,
+    Plane, Progress as MeshProgress, Proven,
 };
 #[cfg(feature = "render")]
 pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};

@@ -1,14 +1,14 @@
-//! Makes a mesh of a scene.
+//! Makes meshes and contours of a scene.
 
 use std::ops::ControlFlow;
 
 use sdfc_graph::eval::FrameValues;
-use sdfc_mesh::{Mesh, MeshError, Progress};
+use sdfc_mesh::{Contour, Mesh, Plane, Progress};
 
 use crate::error::Error;
 use crate::scene::Scene;
 
-/// How exact a mesh is.
+/// How exact a mesh or a contour is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeshSize {
     /// A distance in scene units.
@@ -17,11 +17,11 @@ pub enum MeshSize {
     Relative(f64),
 }
 
-/// Options of [`Scene::mesh`].
+/// Options of [`Scene::mesh`] and [`Scene::contour`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MeshOptions {
-    /// The greatest distance between mesh and surface.
+    /// The greatest distance between mesh and surface, or contour and section.
     pub error: MeshSize,
     /// Values of params, time and frame; `None` takes the defaults at time 0.
     pub frame: Option<FrameValues>,
@@ -86,11 +86,47 @@ impl Scene {
         options: &MeshOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Mesh, Error> {
+        let (frame, options) = self.mesh_options(options)?;
+        Ok(sdfc_mesh::mesh(&self.program, &frame, &options, progress)?)
+    }
+
+    /// The closed paths around the section of the scene by a plane, with a certificate.
+    ///
+    /// The work runs on all cores. It stops if `progress` breaks.
+    ///
+    /// ```
+    /// use sdfc::{Compiler, MeshOptions, Plane};
+    /// use std::ops::ControlFlow;
+    ///
+    /// let scene = Compiler::new().compile("tube.sdf", "sphere(1) - sphere(0.5)")?;
+    /// let plane = Plane::new([0.0, 0.0, 1.0], 0.1).expect("a normal");
+    /// let mut progress = |_| ControlFlow::Continue(());
+    /// let contour = scene.contour(plane, &MeshOptions::new(), &mut progress)?;
+    /// assert!(contour.certificate.is_proven);
+    /// assert_eq!(contour.paths.iter().filter(|path| path.is_hole).count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Mesh`]: the same as for a mesh, or the plane meets no inside.
+    pub fn contour(
+        &self,
+        plane: Plane,
+        options: &MeshOptions,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Contour, Error> {
+        let (frame, options) = self.mesh_options(options)?;
+        Ok(sdfc_mesh::contour(&self.program, &frame, plane, &options, progress)?)
+    }
+
+    /// Returns the frame of options, and options with the scene's bounds.
+    fn mesh_options(
+        &self,
+        options: &MeshOptions,
+    ) -> Result<(FrameValues, sdfc_mesh::MeshOptions), Error> {
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
-        let bounds = self.bounds_at(&frame).ok_or(MeshError::NothingDrawn)?;
-        if (0..3).any(|axis| bounds[0][axis] > bounds[1][axis]) {
-            return Err(MeshError::Empty.into());
-        }
+        let bounds = self.filled_bounds(&frame)?;
         let error = match options.error {
             MeshSize::Length(length) => length,
             MeshSize::Relative(part) => {
@@ -99,6 +135,6 @@ impl Scene {
             }
         };
         let options = sdfc_mesh::MeshOptions::new(bounds, error).max_cells(options.max_cells);
-        Ok(sdfc_mesh::mesh(&self.program, &frame, &options, progress)?)
+        Ok((frame, options))
     }
 }

@@ -326,6 +326,18 @@ impl Painter<'_> {
         Ok(Picture { image: frame.image, stats, note: self.note.clone(), unproven })
     }
 
+    /// Changes the size and the camera of the following pictures, without compiling again.
+    ///
+    /// Returns false and changes nothing if the painter was made without a camera of its own, or if
+    /// rays of one camera are parallel and those of the other are not: the shader differs.
+    pub fn aim(&mut self, size: [u32; 2], pose: Pose) -> bool {
+        let fits = self.pose.is_some_and(|before| before.parallel == pose.parallel);
+        if fits {
+            (self.size, self.pose) = (size, Some(pose));
+        }
+        fits
+    }
+
     /// Returns what part of a picture with these pixels is unproven, and counts it.
     fn unproven(&self, pixels: &mut PixelCounts) -> Option<String> {
         let all = pixels.all();
@@ -337,6 +349,14 @@ impl Painter<'_> {
         } else {
             "the rays ran out of steps"
         };
+        if pixels.loops_ended > 0 {
+            return Some(format!(
+                "{} of {all} pixels may be wrong: the driver ended their loops early, as \
+                 llvmpipe of Mesa 22.3 does after 65,535 iterations; draw with a newer driver or on \
+                 the CPU, or use fewer parts",
+                pixels.loops_ended
+            ));
+        }
         let (unproven, method) = (pixels.unproven, self.method);
         (unproven > 0).then(|| {
             format!(

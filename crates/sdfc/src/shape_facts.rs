@@ -31,7 +31,8 @@ impl ShapeFacts {
             if self.shapes == 1 { String::new() } else { format!("{} shapes, ", self.shapes) };
         let percent = 100.0 * self.share;
         let share = if percent < 0.5 { "less than 1".to_owned() } else { format!("{percent:.0}") };
-        format!("{shapes}{} operations, {share} % of the scene", self.operations)
+        let plural = if self.operations == 1 { "" } else { "s" };
+        format!("{shapes}{} operation{plural}, {share} % of the scene", self.operations)
     }
 }
 
@@ -62,15 +63,19 @@ impl Scene {
         let drawn: Vec<ShapeId> = reports.iter().map(|it| it.shape).collect();
         let graph = &self.graph().graph;
         let operations = cost_of_shapes(graph, &drawn)?.operations;
-        let whole = self.operations.get_or_init(|| {
-            let cost = cost_of_shapes(graph, self.graph().root.as_slice())?;
-            Some(cost.operations)
-        });
         Some(ShapeFacts {
             shapes: drawn.len(),
             quality: self.quality_of(&reports)?,
             operations,
-            share: operations as f64 / (*whole)?.max(1) as f64,
+            share: operations as f64 / self.operations_unrolled()?.max(1) as f64,
+        })
+    }
+
+    /// The operations of one evaluation of the scene, without loops that stand for similar parts.
+    pub(crate) fn operations_unrolled(&self) -> Option<usize> {
+        *self.operations.get_or_init(|| {
+            let scene = self.graph();
+            Some(cost_of_shapes(&scene.graph, scene.root.as_slice())?.operations)
         })
     }
 

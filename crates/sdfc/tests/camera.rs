@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-use sdfc::{Compiler, FrameValues, Pose, Scene};
+use sdfc::{Backend, Compiler, FrameValues, Painter, PictureOptions, Pose, Scene, no_progress};
 
 fn compiled(compiler: Compiler<'_>, text: &str) -> Scene {
     compiler.compile("a.sdf", text).unwrap_or_else(|errors| panic!("{errors}"))
@@ -32,4 +32,26 @@ fn a_fitted_camera_does_not_depend_on_what_may_change() {
         assert!((plain.eye - live.eye).length() < 1e-6 * plain.eye.length(), "{text}");
         assert!((plain.target - live.target).length() < 1e-6, "{text}");
     }
+}
+
+#[test]
+fn a_painter_that_is_aimed_draws_as_a_new_one() {
+    let scene = compiled(Compiler::new(), "box([1, 0.5, 2])\nplane(y: -0.5)");
+    let first = pose(&scene);
+    let other = Pose { eye: first.eye * 2.0, ..first };
+    let options = PictureOptions::new().backend(Backend::Cpu).size([16, 9]).pose(first);
+    let mut painter = scene.painter(&options).unwrap();
+    let draw = |painter: &Painter<'_>| {
+        painter.paint(&scene.defaults(), 1, &mut no_progress).unwrap().image
+    };
+    let before = draw(&painter);
+    assert!(painter.aim([24, 16], other));
+    let new = scene.painter(&options.clone().size([24, 16]).pose(other)).unwrap();
+    assert_eq!(draw(&painter), draw(&new));
+    // The shader for parallel rays is another one.
+    assert!(!painter.aim([16, 9], Pose { parallel: true, ..first }));
+    assert!(painter.aim([16, 9], first));
+    assert_eq!(draw(&painter), before);
+    let without = scene.painter(&PictureOptions::new().backend(Backend::Cpu)).unwrap();
+    assert!(!{ without }.aim([16, 9], first));
 }

@@ -9,6 +9,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::{Compiler, FrameValues, LoopStrategy, Method, PictureOptions, Scene, no_progress};
 use sdfc_codegen::{FieldSource, Shader, benchmark_module, instrumented_module, render_module};
 use sdfc_graph::{Program, Type};
+use sdfc_march::LOOPS_ENDED;
 use sdfc_render::{
     Frame, Gpu, HIT, Image, Pipeline, RenderOptions, TileSize, View, edges, testing, uniform_values,
 };
@@ -22,11 +23,17 @@ const DEPTH: f32 = 0.1;
 const OUTSIDE: &str = "camera(eye: [4, 3.5, 6], target: 0, fov: 40deg)\n";
 const SUNNY: &str = "sun(direction: [1, 2, 1], shadow: hard)\nambient(strength: 0.2)\n";
 
+const SOFT: &str = "sun(direction: [1, 2, 1], shadow: soft(6))\nambient(strength: 0.2)\n";
+
 fn main() {
     let without_gpu = testing::without_gpu();
     let scenes = [
         ("hard", hard() + OUTSIDE),
         ("hard, with shadows", format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard())),
+        (
+            "hard, with materials and soft shadows",
+            format!("union({})\n{OUTSIDE}{SOFT}reflections(1)\n", painted()),
+        ),
         (
             "hard, from within",
             hard() + "camera(eye: [0.1, 0.2, 0.3], target: [1, 0.4, 2], fov: 80deg)\n",
@@ -70,11 +77,7 @@ fn main() {
             format!("plane(y: -2.2)\n{}{OUTSIDE}{SUNNY}", chain("smooth(0.15)"))
                 + "reflections(2)\nambient_occlusion(radius: 1)\n",
         ),
-        (
-            "soft shadows on a floor",
-            format!("plane(y: -2.5)\n{}{OUTSIDE}", hard())
-                + "sun(direction: [1, 2, 1], shadow: soft(6))\nambient(strength: 0.2)\n",
-        ),
+        ("soft shadows on a floor", format!("plane(y: -2.5)\n{}{OUTSIDE}", hard()) + SOFT),
         (
             "lights on a floor",
             format!("plane(y: -2.5)\n{}{OUTSIDE}", chain("smooth(0.15)"))
@@ -107,6 +110,8 @@ fn main() {
         broken_lists_change_the_picture,
     );
     trials.push(broken.with_ignored_flag(without_gpu));
+    let ended = Trial::test("loops that the driver ends early are told", ended_loops_are_told);
+    trials.push(ended.with_ignored_flag(without_gpu));
     let counted = Trial::test("visited iterations are counted", visited_iterations_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
     let leaves = Trial::test("leaves are counted if all are visited", leaves_are_counted);
@@ -140,6 +145,17 @@ fn hard() -> String {
         };
     }
     text
+}
+
+/// Returns parts with materials of two kinds as arguments of a call.
+fn painted() -> String {
+    let part = |i: usize| match i % 4 {
+        0 => format!("sphere(0.2).color(fn(q) = normal.y * oklch(0.7, 0.1, {i}deg))"),
+        1 => format!("sphere(0.25).color(checker(oklch(0.7, 0.1, {i}deg), #000000, size: 0.1))"),
+        2 => format!("box(0.3).color(oklch(0.6, 0.1, {i}deg)).roughness(0.{i:03})"),
+        _ => "difference(box(0.3), sphere(0.19).color(#ff0000))".to_owned(),
+    };
+    (0..PARTS).map(|i| format!("{}{},\n", part(i), place(i))).collect()
 }
 
 /// Returns balls as arguments of a call.
@@ -255,6 +271,29 @@ fn broken_lists_change_the_picture() -> Result<(), Failed> {
         if differ(&broken, &picture(&scene, &whole(program))?)?.0 == 0 {
             return Err(format!("{constant} = {number} does not show").into());
         }
+    }
+    Ok(())
+}
+
+/// A ball whose formula has a loop of 4000 iterations without an effect. A pixel shows the ball, or
+/// it says that the driver ended its loops.
+fn ended_loops_are_told() -> Result<(), Failed> {
+    let slow = "length(p) - 1 + 1e-9 * iterate(4000, p.x, fn(s, i) = 0.5 * sin(s + i))";
+    let eye = "camera(eye: [0, 0.1, 4], fov: 40deg)\nsun()\n";
+    let draw = |text: &str| {
+        let options = PictureOptions::new().size([24, 16]).method(Method::Sphere);
+        scene(text).render(&options, &mut no_progress)
+    };
+    let expected = draw(&format!("sphere(1)\n{eye}"))?.image;
+    let drawn = draw(&format!("solid slow() lipschitz 1 = {slow}\nslow()\n{eye}"))?;
+    let pairs = || expected.pixels().iter().zip(drawn.image.pixels());
+    if pairs().any(|(a, b)| b.unproven & LOOPS_ENDED == 0 && a.status != b.status) {
+        return Err("a wrong pixel does not say so".into());
+    }
+    let wrong = pairs().filter(|(_, b)| b.unproven & LOOPS_ENDED != 0).count() as u64;
+    let told = drawn.unproven.is_some_and(|text| text.contains("ended their loops early"));
+    if drawn.stats.pixels.loops_ended != wrong || told != (wrong > 0) {
+        return Err(format!("{wrong} pixels are wrong: {:?}", drawn.stats.pixels).into());
     }
     Ok(())
 }

@@ -2,10 +2,12 @@
 
 #![allow(clippy::expect_used, reason = "a test stops where it fails")]
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use sdfc::{Compiler, LoopStrategy, Scene};
-use sdfc_graph::eval::{FrameValues, sample_field};
+use sdfc_graph::eval::{FrameValues, Tape, sample_field};
+use sdfc_graph::reachable;
 
 /// Number of parts.
 const PARTS: usize = 60;
@@ -15,8 +17,12 @@ fn number(seed: usize) -> f64 {
     (seed as f64 * 0.618_033_988_75).fract() * 2.0 - 1.0
 }
 
+fn position(i: usize) -> [f64; 3] {
+    [1, 2, 3].map(|axis| 2.0 * number(axis * 31 + 7 * i))
+}
+
 fn place(i: usize) -> String {
-    let [x, y, z] = [1, 2, 3].map(|axis| 2.0 * number(axis * 31 + 7 * i));
+    let [x, y, z] = position(i);
     format!(".translate([{x:.4}, {y:.4}, {z:.4}])")
 }
 
@@ -113,4 +119,58 @@ fn infinite_blends_and_few_similar_parts_stay_unrolled() {
     let rolled = compare(&chained("smooth_exp(0.1)"));
     assert!(rolled.report().loops.is_empty());
     assert!(compare("sphere(1) | box(1.5)").report().loops.is_empty());
+}
+
+/// Returns parts of several kinds with materials of several kinds. Some boxes have the place and
+/// outside the distance of hollow boxes before them.
+fn painted() -> String {
+    let mut text = "let parts = [\n".to_owned();
+    for i in 0..3 * PARTS {
+        let (size, at) = (0.3 + 0.1 * number(i), place(i));
+        let color = format!("oklch(0.7, 0.1, {i}deg)");
+        let _ = match i % 5 {
+            0 => writeln!(text, "  box(0.3){}.color({color}),", place(i.max(1) - 1)),
+            1 => writeln!(text, "  sphere({size:.3}){at}.color({color}).roughness(0.{i:03}),"),
+            2 => writeln!(text, "  sphere({size:.3}){at}.color(checker({color}, #000000)),"),
+            3 => writeln!(text, "  torus({size:.3}, 0.1){at},"),
+            _ => writeln!(text, "  difference(box(0.3), sphere(0.1)){at}.color({color}),"),
+        };
+    }
+    text + "]\n"
+}
+
+/// Compares the materials of both ways of writing, also where parts are equally near.
+fn compare_materials(text: &str) {
+    let scenes = [LoopStrategy::Unrolled, LoopStrategy::Looped].map(|loops| compiled(text, loops));
+    assert!(!scenes[1].report().loops.is_empty());
+    let frame = FrameValues::defaults(scenes[0].params());
+    let roots = |scene: &Scene| scene.program().material.expect("the scene has materials");
+    let nodes = |scene: &Scene| reachable(&scene.program().graph, &roots(scene)).len();
+    let nodes = scenes.each_ref().map(nodes);
+    assert!(nodes[1] * 4 < nodes[0], "{nodes:?}");
+    let tapes = scenes.each_ref().map(|scene| {
+        Tape::new(&scene.program().graph, &roots(scene)).expect("the program is flat")
+    });
+    let [mut unrolled, mut looped] = tapes.each_ref().map(|tape| tape.prepare::<f64>(&frame));
+    let mut shown = HashSet::new();
+    let beside = |i| position(i).map(|coordinate| coordinate + 0.3 * number(i));
+    for point in points().into_iter().chain((0..3 * PARTS).map(beside)) {
+        let (expected, found) = (unrolled.eval(point), looped.eval(point));
+        for (expected, found) in expected.iter().flatten().zip(found.iter().flatten()) {
+            assert!((expected - found).abs() < 1e-12, "{point:?}: {expected} and {found}");
+        }
+        shown.insert(expected[0].map(f64::to_bits));
+    }
+    assert!(shown.len() > PARTS / 3, "only {} colours are compared", shown.len());
+}
+
+#[test]
+fn the_nearest_part_of_a_looped_union_shows_its_material() {
+    compare_materials(&(painted() + "union(parts)"));
+}
+
+#[test]
+fn a_looped_union_below_other_operations_shows_its_materials() {
+    let carved = "difference(union(parts), sphere(0.3).color(#ff0000)) | plane(y: -1)";
+    compare_materials(&(painted() + carved));
 }

@@ -4,6 +4,8 @@ pub(crate) mod active_range;
 pub(crate) mod chain;
 pub(crate) mod cullable;
 pub(crate) mod marched_bounds;
+pub(crate) mod materials;
 pub(crate) mod rewrite;
+mod selection;
 pub(crate) mod strategy;
 pub(crate) mod template;

@@ -29,8 +29,19 @@ pub struct RerolledLoop {
     pub blended: bool,
 }
 
-/// Rewrites the roots with similar operands as loops. Returns the new roots and the loops.
-pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<RerolledLoop>) {
+/// What the pass makes of some roots.
+#[derive(Debug, Default)]
+pub(crate) struct Rerolled {
+    /// The new roots.
+    pub(crate) roots: Vec<NodeId>,
+    /// The loops in them.
+    pub(crate) loops: Vec<RerolledLoop>,
+    /// What has become of the chains that have loops now.
+    pub(crate) replaced: IdMap<NodeId>,
+}
+
+/// Rewrites the roots with similar operands as loops.
+pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> Rerolled {
     let mut rerolling = Rerolling {
         graph,
         keys: ShapeKeys::default(),
@@ -38,19 +49,24 @@ pub(crate) fn reroll(graph: &mut Graph, roots: &[NodeId]) -> (Vec<NodeId>, Vec<R
         plans: Vec::new(),
     };
     let visited = rerolling.discover(roots);
-    let mut new: IdMap<NodeId> = IdMap::default();
+    let (mut new, mut replaced): (IdMap<NodeId>, IdMap<NodeId>) = Default::default();
     for id in visited.to_vec() {
         let built = match rerolling.plan_of.get(id) {
-            Some(plan) => rerolling.build(plan, &new),
-            None => rerolling.rebuilt(id, &new),
+            Some(plan) => {
+                let built = rerolling.build(plan, &new);
+                replaced.insert(id, built);
+                built
+            }
+            None => rebuilt(rerolling.graph, id, &new),
         };
         new.insert(id, built);
     }
     // Roots may share loops, which count once.
     let mut seen = IdSet::default();
     let parts = rerolling.plans.iter().flat_map(|plan| &plan.parts);
-    let found = parts.filter_map(|part| part.rerolled_loop(&mut seen)).collect();
-    (roots.iter().map(|&root| new.get(root).unwrap_or(root)).collect(), found)
+    let loops = parts.filter_map(|part| part.rerolled_loop(&mut seen)).collect();
+    let roots = roots.iter().map(|&root| new.get(root).unwrap_or(root)).collect();
+    Rerolled { roots, loops, replaced }
 }
 
 /// Groups of positions of values that are equal up to constants. Groups that are too small for a
@@ -63,7 +79,11 @@ pub(crate) fn similar_groups(graph: &mut Graph, values: &[NodeId]) -> Vec<Vec<us
 }
 
 /// Groups of positions of values that are equal up to constants.
-fn grouped(graph: &mut Graph, keys: &mut ShapeKeys, values: &[NodeId]) -> Vec<Vec<usize>> {
+pub(super) fn grouped(
+    graph: &mut Graph,
+    keys: &mut ShapeKeys,
+    values: &[NodeId],
+) -> Vec<Vec<usize>> {
     keys.compute(graph, values);
     let mut group_of: FxHashMap<u32, usize> = FxHashMap::default();
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -170,12 +190,13 @@ impl Rerolling<'_> {
 
     fn plan_min(&mut self, operands: &[NodeId]) -> Vec<Part> {
         let (mut values, mut loops) = (Vec::new(), Vec::new());
+        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
         for group in grouped(self.graph, &mut self.keys, operands) {
             let members: Vec<NodeId> = group.iter().map(|&position| operands[position]).collect();
             let formulas = if members.len() < MIN_OPERANDS {
                 None
             } else {
-                template(self.graph, &self.keys, &[&members], None)
+                template(self.graph, &self.keys, &[&members], None, index)
             };
             match formulas {
                 Some(formulas) => loops.push(self.min_loop(formulas[0], members.len())),
@@ -222,7 +243,9 @@ impl Rerolling<'_> {
         let column = |of: fn(&chain::Step) -> NodeId| run.iter().map(of).collect::<Vec<_>>();
         let (values, operands) = (column(|step| step.value), column(|step| step.operand));
         let before = column(|step| step.before);
-        let formulas = template(self.graph, &self.keys, &[&values, &operands], Some(&before))?;
+        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
+        let lists: [&[NodeId]; 2] = [&values, &operands];
+        let formulas = template(self.graph, &self.keys, &lists, Some(&before), index)?;
         let [next, operand] = formulas[..] else { return None };
         let margin = self.widest(run.iter().map(|step| step.width));
         let skip = margin.map(|margin| SkipCondition { operand, margin });
@@ -285,10 +308,10 @@ impl Rerolling<'_> {
         self.plans[plan].parts = parts;
         value.unwrap_or_else(|| self.graph.number(FAR))
     }
+}
 
-    /// Rebuilds a node if one of its arguments was replaced.
-    fn rebuilt(&mut self, id: NodeId, new: &IdMap<NodeId>) -> NodeId {
-        let changed = self.graph.arguments(id).any(|id| new.get(id).is_some_and(|new| new != id));
-        if changed { self.graph.rebuild(id, |old| new.get(old).unwrap_or(old)) } else { id }
-    }
+/// Rebuilds a node if one of its arguments was replaced.
+pub(super) fn rebuilt(graph: &mut Graph, id: NodeId, new: &IdMap<NodeId>) -> NodeId {
+    let changed = graph.arguments(id).any(|id| new.get(id).is_some_and(|new| new != id));
+    if changed { graph.rebuild(id, |old| new.get(old).unwrap_or(old)) } else { id }
 }

@@ -21,11 +21,11 @@ pub enum LoopStrategy {
 }
 
 /// Numbers of operations above which loops that skip iterations compile and run faster than
-/// unrolled code: in scenes with primary rays only, in scenes whose secondary rays use the lists of
-/// culling cells, and in scenes with soft shadows, for which loops run all iterations.
-const UNROLLED_LIMITS: [usize; 3] = [425, 1200, 4500];
+/// unrolled code: in scenes with primary rays only, and in scenes whose secondary rays use the lists
+/// of culling cells.
+const UNROLLED_LIMITS: [usize; 2] = [425, 1200];
 /// Operations to add to the limit for each loop, which costs time to compile and to enter.
-const LOOP_COSTS: [usize; 3] = [125, 250, 0];
+const LOOP_COSTS: [usize; 2] = [125, 250];
 /// The limit for loops that run all of their iterations.
 const LIMIT_WITHOUT_LISTS: usize = 4500;
 
@@ -34,11 +34,7 @@ fn unrolled_limit(settings: &Settings, loops: usize) -> usize {
     if loops == 0 {
         return LIMIT_WITHOUT_LISTS;
     }
-    let kind = if settings.lights.iter().any(|light| matches!(light.shadow, Shadow::Soft(_))) {
-        2
-    } else {
-        usize::from(has_secondary_rays(settings))
-    };
+    let kind = usize::from(has_secondary_rays(settings));
     UNROLLED_LIMITS[kind] + loops * LOOP_COSTS[kind]
 }
 
@@ -79,7 +75,7 @@ fn prefers_loops(
     let Some(distance) = trial.node(distance) else { return (false, limit) };
     let mut trial = trial.graph;
     let folded = fold_transforms(&mut trial, &[distance]).roots;
-    let roots = reroll(&mut trial, &folded).0;
+    let roots = reroll(&mut trial, &folded).roots;
     let limit = unrolled_limit(settings, cullable_loops(&mut trial, &roots, lipschitz).len());
     (operations > limit, limit)
 }

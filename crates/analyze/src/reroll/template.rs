@@ -169,14 +169,15 @@ struct Merging<'a> {
     columns: Vec<Vec<Const>>,
 }
 
-/// Builds one formula for each list of nodes, whose value in iteration i of a loop of depth 0 is
-/// the list's node i. The first lane of the state stands for the nodes of `before`. Returns `None`
-/// if the nodes differ in more than constants.
+/// Builds one formula for each list of nodes, whose value is the list's node i where `index` is i.
+/// The first part of the state of a loop of depth 0 stands for the nodes of `before`. Returns
+/// `None` if the nodes differ in more than constants.
 pub(super) fn template(
     graph: &mut Graph,
     keys: &ShapeKeys,
     lists: &[&[NodeId]],
     before: Option<&[NodeId]>,
+    index: NodeId,
 ) -> Option<Vec<NodeId>> {
     let (expressions, known, columns) = Default::default();
     let mut merging = Merging { graph, keys, expressions, known, columns };
@@ -186,7 +187,7 @@ pub(super) fn template(
     let roots: Option<Vec<usize>> =
         lists.iter().map(|list| merging.expression(list.to_vec())).collect();
     let roots = roots?;
-    let values = merging.build();
+    let values = merging.build(index);
     Some(roots.into_iter().map(|root| values[root]).collect())
 }
 
@@ -246,8 +247,8 @@ impl Merging<'_> {
     }
 
     /// Builds the nodes of all subexpressions.
-    fn build(&mut self) -> Vec<NodeId> {
-        let reads = self.reads();
+    fn build(&mut self, index: NodeId) -> Vec<NodeId> {
+        let reads = self.reads(index);
         let mut values: Vec<NodeId> = Vec::with_capacity(self.expressions.len());
         for expression in &self.expressions {
             values.push(match expression {
@@ -265,7 +266,7 @@ impl Merging<'_> {
 
     /// The nodes that read the columns: lanes of elements of lists with four numbers each. Wide
     /// columns are placed first.
-    fn reads(&mut self) -> Vec<NodeId> {
+    fn reads(&mut self, index: NodeId) -> Vec<NodeId> {
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_by_key(|&number| std::cmp::Reverse(self.columns[number][0].ty().width()));
         let mut rows: Vec<Vec<usize>> = Vec::new();
@@ -279,7 +280,6 @@ impl Merging<'_> {
                 None => rows.push(vec![number]),
             }
         }
-        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
         let mut reads = vec![index; self.columns.len()];
         for row in rows {
             let instances = self.columns[row[0]].len();

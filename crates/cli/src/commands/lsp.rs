@@ -1,11 +1,15 @@
 //! `sdfc lsp`: serves editors over stdin and stdout.
 
+mod preview;
+
 use std::path::{Path, PathBuf};
 
 use sdfc_lsp::{Compile, Compiled, Connection, Disk, Resolver, ShapeFacts, serve};
 
 use crate::cache::user_folder;
 use crate::failure::Failure;
+
+use preview::Drawer;
 
 /// Folders below a scene's folder are searched down to this depth.
 const MAX_DEPTH: usize = 4;
@@ -22,7 +26,7 @@ const MAX_SCENES: usize = 256;
 pub fn run() -> Result<(), Failure> {
     let (connection, threads) = Connection::stdio();
     let files = Files { library: write_library() };
-    let served = serve(&connection, &files, &Compiler);
+    let served = serve(&connection, &files, &Compiler, &Drawer);
     drop(connection);
     let joined = threads.join().map_err(|e| Failure::Machine(format!("stdin or stdout: {e}")));
     served.map_err(|why| Failure::Machine(format!("the editor's connection: {why}")))?;

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
-use sdfc::{Error, Mesh, MeshCertificate, MeshError, MeshFormat, MeshOptions, MeshSize, Scene};
+use sdfc::{Mesh, MeshCertificate, MeshFormat};
 use serde::Serialize;
 
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 
 /// What `--json` writes.
@@ -35,14 +34,14 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     let format = MeshFormat::of(&path).map_err(Failure::Call)?;
     let paths = [Some(path.as_path()), args.json.as_deref()];
     output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
-    let scene = super::scene_with(&args.file, super::compiler(), &args.set, console)?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
     let output = Output::new(&path);
     let report = args.json.as_deref().map(Output::new);
     output.check()?;
     report.as_ref().map_or(Ok(()), Output::check)?;
-    let options = MeshOptions::new().error(size(args)).frame(super::values(&scene, args.time));
-    let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
-    let mesh = make(&scene, &options, console)?;
+    let error = [args.error, args.error_relative];
+    let options = super::mesh_options(&scene, error, args.values.time, args.max_cells);
+    let mesh = super::mesh_work("meshing", console, |progress| scene.mesh(&options, progress))?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;
     output.write(&bytes)?;
     if let Some(report) = report {
@@ -50,30 +49,6 @@ pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
     }
     print(&path, &mesh, console);
     Ok(())
-}
-
-fn size(args: &args::Mesh) -> MeshSize {
-    match (args.error, args.error_relative) {
-        (Some(length), _) => MeshSize::Length(length),
-        (None, Some(part)) => MeshSize::Relative(part),
-        (None, None) => MeshOptions::new().error,
-    }
-}
-
-fn make(scene: &Scene, options: &MeshOptions, console: &Console) -> Result<Mesh, Failure> {
-    let interrupt = Interrupt::watch();
-    let progress = console.progress("meshing");
-    let mesh = scene.mesh(options, &mut |part| {
-        progress.set(part.done, part.total);
-        interrupt.flow()
-    });
-    drop(progress);
-    mesh.map_err(|error| {
-        if matches!(error, Error::Mesh(MeshError::Cancelled)) {
-            return Failure::Interrupted("stopped; no mesh was written".to_owned());
-        }
-        super::lowering(&error, console)
-    })
 }
 
 fn describe(mesh: &Mesh) -> Report<'_> {

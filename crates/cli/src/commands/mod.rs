@@ -1,29 +1,37 @@
 //! The commands, one file each.
 
+pub mod bake;
 pub mod bench;
 mod chart;
 pub mod charts;
 pub mod check;
 pub mod compile;
+pub mod contour;
 pub mod doc;
 pub mod explain;
 mod faults;
 pub mod format;
 pub mod lsp;
+pub mod measure;
 pub mod mesh;
 pub mod render;
 pub mod tune;
 pub mod view;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use sdfc::{CompileWithError, Compiler, Diagnostics, Error, FrameValues, Scene};
+use sdfc::{
+    CompileWithError, Compiler, Diagnostics, Error, FrameValues, MeshError, MeshOptions,
+    MeshProgress, MeshSize, Scene,
+};
 use sdfc_measure::MeasureError;
 use sdfc_render::{Gpu, RenderError};
 
 use crate::args::Assignment;
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::interrupt::Interrupt;
 
 /// Reads and compiles a scene, and prints its diagnostics.
 ///
@@ -64,6 +72,47 @@ fn scene_with(
 /// Returns the frame of a time, with the params' defaults.
 fn values(scene: &Scene, time: f64) -> FrameValues {
     FrameValues { time, ..scene.defaults() }
+}
+
+/// Returns the options of a mesh or a contour.
+fn mesh_options(
+    scene: &Scene,
+    error: [Option<f64>; 2],
+    time: f64,
+    max_cells: Option<u64>,
+) -> MeshOptions {
+    let options = MeshOptions::new().frame(values(scene, time));
+    let options = match error {
+        [Some(length), _] => options.error(MeshSize::Length(length)),
+        [None, Some(part)] => options.error(MeshSize::Relative(part)),
+        [None, None] => options,
+    };
+    max_cells.map_or(options.clone(), |limit| options.max_cells(limit))
+}
+
+/// Runs work on a mesh or a contour, with a progress bar, until it is done or Ctrl-C is pressed.
+///
+/// # Errors
+///
+/// The work failed or was stopped.
+fn mesh_work<T>(
+    name: &str,
+    console: &Console,
+    work: impl FnOnce(&mut dyn FnMut(MeshProgress) -> ControlFlow<()>) -> Result<T, Error>,
+) -> Result<T, Failure> {
+    let interrupt = Interrupt::watch();
+    let progress = console.progress(name);
+    let done = work(&mut |part| {
+        progress.set(part.done, part.total);
+        interrupt.flow()
+    });
+    drop(progress);
+    done.map_err(|error| {
+        if matches!(error, Error::Mesh(MeshError::Cancelled)) {
+            return Failure::Interrupted("stopped; nothing was written".to_owned());
+        }
+        lowering(&error, console)
+    })
 }
 
 /// Returns the compiler that all commands use. It tests the clauses of the scene's own shapes, so

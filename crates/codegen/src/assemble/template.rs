@@ -3,7 +3,8 @@
 use naga::Module;
 use rustc_hash::FxHashSet;
 use sdfc_graph::{
-    LightSource, MaterialField, NodeId, Program, Rays, Shadow, Tone, reachable_where,
+    LightSource, MaterialField, Node, NodeId, Program, Rays, Shadow, Tone, reachable,
+    reachable_where,
 };
 use sdfc_march::{Features, MethodDefinition, stubs};
 
@@ -34,6 +35,7 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
         copies: pre_intersects && copies.is_some(),
         proved: program.range.is_some(),
         loose: program.is_loose,
+        loops: has_loops(program),
         ..Features::default()
     }
 }
@@ -78,6 +80,12 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
 fn is_unlit(program: &Program) -> bool {
     let occlusion = |fields: [NodeId; 6]| fields[MaterialField::Occlusion.index()];
     program.material.is_some_and(|fields| program.graph.range(occlusion(fields)).lo < 0.0)
+}
+
+/// Returns true if the functions of a program contain loops.
+fn has_loops(program: &Program) -> bool {
+    let nodes = reachable(&program.graph, &program.roots());
+    nodes.into_iter().any(|id| matches!(program.graph.node(id), Node::Loop(..)))
 }
 
 /// Returns true if camera rays run only the iterations of loops that can affect them. Methods that

@@ -112,8 +112,8 @@ impl Lowering<'_> {
     /// Where the active iterations are listed, if they are. Lists depend on the point, so a
     /// function of a whole ray runs all iterations.
     fn listed(&mut self, skip: Option<SkipCondition>) -> Option<Listed> {
-        let takes_one_point = self.arguments.len() == 1;
-        let lists = self.inputs.active_lists.as_ref().filter(|_| takes_one_point)?;
+        let is_at_a_point = self.arguments.first() == Some(&"p");
+        let lists = self.inputs.active_lists.as_ref().filter(|_| is_at_a_point)?;
         let (spans, number, listed) = (lists.spans, lists.index_of(skip)?, lists.counter);
         let is_first = !self.uses_lists;
         self.uses_lists = true;

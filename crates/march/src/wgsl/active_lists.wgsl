@@ -37,6 +37,10 @@ var<private> inactive_distance: f32 = NOTHING_INACTIVE;
 var<private> selects_by_cell: bool;
 var<private> exact_up_to: f32;
 
+// The ray whose clearance is recorded, and the clearance from which on all light arrives.
+var<private> recorded_ray: Ray;
+var<private> full_light: f32;
+
 var<private> cells: Cells;
 
 // The number of iterations that the scene's functions have run, if that is counted.
@@ -72,9 +76,10 @@ fn trace_culled(ray: Ray, is_from_eye: bool) -> Trace {
             use_cells(0.0);
             if SOFT_SHADOWS {
                 if records_clearance {
-                    // The clearance of the ray depends on where it is sampled, so nothing may be
-                    // left out.
-                    use_all();
+                    // The clearance of the ray depends on where it is sampled, so distances must be
+                    // exact.
+                    use_cells(NOTHING_INACTIVE);
+                    recorded_ray = ray;
                 }
             }
         }
@@ -120,6 +125,20 @@ fn use_everywhere() {
     selects_by_cell = false;
 }
 
+// The distance up to which a sample outside the box of cells must be exact. A ray that leads away
+// from the box never meets it again, and a clearance that is twice that of full light has no effect.
+fn exact_distance_outside(p: vec3f) -> f32 {
+    if SOFT_SHADOWS {
+        if records_clearance {
+            let outward = p - clamp(p, cells.box_low, cells.box_high);
+            if dot(outward, recorded_ray.direction) >= 0.0 {
+                return 2.0 * full_light * length(p - recorded_ray.origin);
+            }
+        }
+    }
+    return exact_up_to;
+}
+
 // Selects the lists for a sample point. The scene's functions call this before they run their
 // loops.
 fn select_lists(p: vec3f) {
@@ -131,6 +150,7 @@ fn select_lists(p: vec3f) {
             var free = length(max(max(cells.box_low - p, p - cells.box_high), vec3f()));
             var record_here = ALL_ITERATIONS;
             var required = 0.0;
+            var exact = exact_up_to;
             let position = (p - cells.low) * cells.per_unit;
             if all(position >= vec3f()) && all(position < vec3f(f32(cells_to_axis(cells)))) {
                 let cell = vec3u(position);
@@ -138,9 +158,11 @@ fn select_lists(p: vec3f) {
                 let middle = length((position - vec3f(cell) - 0.5) / cells.per_unit);
                 free = bitcast<f32>(active_lists[record_here + 2u * cells.loops]) - middle;
                 required = cells.least_step;
+            } else {
+                exact = exact_distance_outside(p);
             }
             inactive_distance = free;
-            if free < max(required, exact_up_to) {
+            if free < max(required, exact) {
                 record = record_here;
                 inactive_distance = NOTHING_INACTIVE;
             }

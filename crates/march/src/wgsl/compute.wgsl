@@ -4,6 +4,23 @@
 
 // Beside the status of a pixel: a ray passed a stretch without a proof that it is free.
 const UNPROVEN: u32 = 0x10000;
+// Beside the status of a pixel: the driver ended its loops early.
+const LOOPS_ENDED: u32 = 0x20000;
+
+// True if the driver has ended the loops of this invocation early, as llvmpipe of Mesa 22.3 does
+// without an error after 65,535 iterations in total. From then on, loops end after one iteration.
+// This one runs two; a constant number would be unrolled.
+fn has_ended_loops() -> bool {
+    let expected = 1u + min(view.tile_size.x, 1u);
+    var iterations = 0u;
+    loop {
+        if iterations >= expected {
+            break;
+        }
+        iterations++;
+    }
+    return iterations < expected;
+}
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -18,6 +35,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if RECORDS_GAPS {
         if is_unproven {
             pixels[id.y * view.tile_size.x + id.x].status |= UNPROVEN;
+        }
+    }
+    if HAS_LOOPS {
+        if has_ended_loops() {
+            pixels[id.y * view.tile_size.x + id.x].status |= LOOPS_ENDED;
         }
     }
     if INSTRUMENTED {

@@ -54,3 +54,5 @@ override PROVED: bool;
 override RECORDS_GAPS: bool;
 // The field is divided by a large Lipschitz constant: a small value may be far from the surface.
 override LOOSE: bool;
+// The scene's functions contain loops.
+override HAS_LOOPS: bool;

@@ -3,7 +3,7 @@
 struct Pixel {
     color: vec4f,
     depth: f32,
-    // MISS, HIT or CAPPED, and perhaps UNPROVEN.
+    // MISS, HIT or CAPPED, and perhaps UNPROVEN and LOOPS_ENDED.
     status: u32,
     evaluations: u32,
     primary_evaluations: u32,

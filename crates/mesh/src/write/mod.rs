@@ -1,12 +1,18 @@
-//! Mesh files, as bytes: STL, OBJ, PLY, glTF (GLB) and 3MF.
+//! Mesh files, as bytes: STL, OBJ, PLY, glTF (GLB) and 3MF. Contour files: SVG
+//! and DXF. Grid files: NumPy and NRRD.
 
+mod contour;
 mod glb;
+mod grid;
 mod package;
 mod plain;
 
 use std::path::Path;
 
 use crate::surface::Mesh;
+
+pub use self::contour::ContourFormat;
+pub use self::grid::GridFormat;
 
 /// A file format for meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ mod file;
 mod samples;
 
 use sdfc_graph::linear_to_srgb8;
-use sdfc_march::PixelBlock;
+use sdfc_march::{LOOPS_ENDED, PixelBlock};
 
 use crate::error::RenderError;
 use crate::limits::{MAX_PIXELS, MAX_SIDE};
@@ -47,6 +47,8 @@ pub struct PixelCounts {
     /// The ray ran out of steps, or it, a reflection or a shadow ray passed a stretch without a
     /// proof that it is free, however the ray ended.
     pub unproven: u64,
+    /// The driver ended loops of the pixel early, however the ray ended.
+    pub loops_ended: u64,
 }
 
 impl PixelCounts {
@@ -126,6 +128,7 @@ impl Image {
             };
             *count += 1;
             counts.unproven += u64::from(is_unproven(pixel));
+            counts.loops_ended += u64::from(pixel.unproven & LOOPS_ENDED != 0);
         }
         counts
     }
@@ -156,8 +159,8 @@ pub fn is_finite(pixel: &PixelBlock) -> bool {
     pixel.depth.is_finite() && pixel.color.iter().all(|channel| channel.is_finite())
 }
 
-/// Returns true if a ray of the pixel ran out of steps, or passed a stretch without a proof that it
-/// is free.
+/// Returns true if a ray of the pixel ran out of steps or passed a stretch without a proof that it
+/// is free, or if the driver ended a loop early.
 pub fn is_unproven(pixel: &PixelBlock) -> bool {
     pixel.unproven != 0 || pixel.status == CAPPED
 }
@@ -184,7 +187,8 @@ mod tests {
         image.pixels_mut()[3].depth = f32::NAN;
         image.pixels_mut()[4].color[1] = f32::INFINITY;
         image.pixels_mut()[0].unproven = 1;
-        let expected = PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2, unproven: 2 };
+        let expected =
+            PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2, unproven: 2, loops_ended: 0 };
         assert_eq!(image.counts(), expected);
     }
 

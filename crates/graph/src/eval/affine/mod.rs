@@ -29,6 +29,12 @@ impl Affine {
         Self::new(center, slopes, 0.0, Interval::ENTIRE)
     }
 
+    /// Returns `center`, `slopes` and `error`: the value at the coordinates `t`, each from -1 to 1,
+    /// is `center + slopes * t`, with an error of at most `error`.
+    pub fn terms(self) -> (f64, [f64; 3], f64) {
+        (self.center, self.slopes, self.error)
+    }
+
     /// Returns the range of the values.
     pub fn range(self) -> Interval {
         self.range

@@ -1,0 +1,76 @@
+//! `sdfc contour`: writes the outlines of a section of a scene, with a proven error.
+
+use std::path::Path;
+
+use sdfc::{Contour, ContourFormat};
+use serde::Serialize;
+
+use crate::args;
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::output::{self, Output};
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Report<'a> {
+    /// Positions in space: of the origin of the section's coordinates, and their directions.
+    origin: [f64; 3],
+    axes: [[f64; 3]; 2],
+    area: f64,
+    length: f64,
+    bounds: Option<[[f64; 2]; 2]>,
+    #[serde(flatten)]
+    contour: &'a Contour,
+}
+
+/// Makes the contour, and prints what is proven.
+///
+/// # Errors
+///
+/// The scene cannot be read, has errors, draws nothing or has no limit; a param does not take its
+/// value; the plane misses the scene; the error is too small; two of the outputs and the scene are
+/// the same file; an output cannot be written; Ctrl-C.
+pub fn run(args: &args::Contour, console: &Console) -> Result<(), Failure> {
+    let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "svg"));
+    let format = ContourFormat::of(&path).map_err(Failure::Call)?;
+    let paths = [Some(path.as_path()), args.json.as_deref()];
+    output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
+    let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
+    let output = Output::new(&path);
+    let report = args.json.as_deref().map(Output::new);
+    output.check()?;
+    report.as_ref().map_or(Ok(()), Output::check)?;
+    let error = [args.error, args.error_relative];
+    let options = super::mesh_options(&scene, error, args.values.time, args.max_cells);
+    let contour = super::mesh_work("tracing", console, |progress| {
+        scene.contour(args.plane, &options, progress)
+    })?;
+    output.write(&format.encode(&contour))?;
+    if let Some(report) = report {
+        report.write(&super::json(&describe(&contour, args))?)?;
+    }
+    print(&path, &contour, console);
+    Ok(())
+}
+
+fn describe<'a>(contour: &'a Contour, args: &args::Contour) -> Report<'a> {
+    Report {
+        origin: args.plane.at([0.0; 2]),
+        axes: args.plane.axes(),
+        area: contour.area(),
+        length: contour.length(),
+        bounds: contour.bounds(),
+        contour,
+    }
+}
+
+fn print(path: &Path, contour: &Contour, console: &Console) {
+    let Contour { paths, certificate, .. } = contour;
+    let corners: usize = paths.iter().map(|path| path.points.len()).sum();
+    let (name, count) = (path.display(), paths.len());
+    let plural = if count == 1 { "" } else { "s" };
+    console.note(&format!("{name}: {count} path{plural} with {corners} corners; {certificate}"));
+    if let Some([lo, hi]) = certificate.undecided_boxes.first() {
+        console.note(&format!("the first undecided box is from {lo:?} to {hi:?}"));
+    }
+}

@@ -1,0 +1,120 @@
+//! `sdfc measure`: prints measurements of a scene, as proven intervals.
+
+use std::fmt::Write;
+
+use sdfc::{Clearance, MeasureOptions, Measurements, Proven};
+use serde::Serialize;
+
+use crate::args;
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::output;
+
+/// Measures a scene, and prints the result.
+///
+/// # Errors
+///
+/// The scene cannot be read, has errors, draws nothing or has no limit; a param does not take its
+/// value; Ctrl-C.
+pub fn run(args: &args::Measure, console: &Console) -> Result<(), Failure> {
+    let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
+    let frame = super::values(&scene, args.values.time);
+    let options = MeasureOptions::new().relative(args.error_relative).frame(frame);
+    let options = args.max_cells.map_or(options.clone(), |limit| options.max_cells(limit));
+    let (text, is_limited) = match &args.between[..] {
+        [first, second] => {
+            let found = super::mesh_work("measuring", console, |progress| {
+                scene.clearance([first, second], &options, progress)
+            })?;
+            (text(args, &found, clearance_table)?, found.is_limited)
+        }
+        _ => {
+            let found = super::mesh_work("measuring", console, |progress| {
+                scene.measure(&options, progress)
+            })?;
+            (text(args, &found, table)?, found.is_limited)
+        }
+    };
+    if is_limited {
+        console.warning(&format!(
+            "the limit of {} boxes was reached: the intervals are true, but wider than asked for",
+            options.max_cells
+        ));
+    }
+    output::to_stdout(&text)
+}
+
+fn text<T: Serialize>(
+    args: &args::Measure,
+    found: &T,
+    table: impl Fn(&T) -> String,
+) -> Result<Vec<u8>, Failure> {
+    if args.json { super::json(found) } else { Ok(table(found).into_bytes()) }
+}
+
+fn clearance_table(found: &Clearance) -> String {
+    let collides = match found.collides {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => "not decided",
+    };
+    let mut text = format!("clearance         {}\n", interval(found.distance));
+    text += &format!("collision         {collides}\n");
+    for point in found.nearest.into_iter().flatten() {
+        text += &format!("nearest point     {point:?}\n");
+    }
+    text
+}
+
+fn table(found: &Measurements) -> String {
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<18}{value}");
+    };
+    row("volume", interval(found.volume));
+    for (name, values) in [
+        ("center of mass", found.center_of_mass),
+        ("lowest", found.lowest),
+        ("highest", found.highest),
+    ] {
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(values.into_iter().flatten()) {
+            row(&format!("{name} {axis}"), interval(value));
+        }
+    }
+    let axes = ["xx", "yy", "zz", "xy", "xz", "yz"];
+    for (axes, value) in axes.into_iter().zip(found.inertia.into_iter().flatten()) {
+        row(&format!("inertia {axes}"), interval(value));
+    }
+    row("area", format!("about {:.4} (an estimate, not proven)", found.area_estimate));
+    if found.lowest.is_none() {
+        row("inside", "not proven to exist".to_owned());
+    }
+    text
+}
+
+/// Returns an interval in decimal numbers, rounded outwards to two digits of its width.
+fn interval([lo, hi]: Proven) -> String {
+    let decimals = (1.0 - (hi - lo).log10().floor()).clamp(0.0, 15.0);
+    let scale = 10f64.powi(decimals as i32);
+    let (below, above) = ((lo * scale).floor() / scale, (hi * scale).ceil() / scale);
+    // The division may round inwards.
+    let [below, above] = [below.min(lo), above.max(hi)];
+    match below.is_finite() && above.is_finite() {
+        true => format!("{below} .. {above}"),
+        false => format!("{lo} .. {hi}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_rounded_outwards() {
+        assert_eq!(interval([4.188_512_3, 4.189_123_4]), "4.18851 .. 4.18913");
+        assert_eq!(interval([-0.000_123_4, 0.000_567_8]), "-0.00013 .. 0.00057");
+        assert_eq!(interval([1234.56, 1300.0]), "1234 .. 1300");
+        assert_eq!(interval([0.0, f64::INFINITY]), "0 .. inf");
+    }
+}

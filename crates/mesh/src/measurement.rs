@@ -1,0 +1,158 @@
+//! Measurements of a solid.
+
+use std::ops::ControlFlow;
+
+use sdfc_graph::Program;
+use sdfc_graph::eval::{FrameValues, Interval, Number};
+use serde::Serialize;
+
+use crate::error::{MeshError, Progress};
+use crate::extent::reach;
+use crate::field::{Field, LocalField};
+use crate::mesh::check;
+use crate::moments::{Integrals, Integrator, PAIRS};
+
+/// A number that is proven to lie between two others, both included.
+pub type Proven = [f64; 2];
+
+/// Measurements of a solid, in scene units. Each [`Proven`] interval holds the true value of the
+/// solid within its bounds, in spite of all rounding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Measurements {
+    /// The volume.
+    pub volume: Proven,
+    /// The center of mass, for a density that is the same everywhere. Empty if it is not proven
+    /// that there is an inside.
+    pub center_of_mass: Option<[Proven; 3]>,
+    /// The inertia about the center of mass, for the density 1: xx, yy, zz, xy, xz, yz. Products
+    /// of different axes have the sign of the tensor: the integral of `-x * y`.
+    pub inertia: Option<[Proven; 6]>,
+    /// The lowest coordinate of the solid along each axis. Empty if it is not proven that there is
+    /// an inside.
+    pub lowest: Option<[Proven; 3]>,
+    /// The highest coordinate of the solid along each axis.
+    pub highest: Option<[Proven; 3]>,
+    /// The area of the surface. This is an estimate, and nothing is proven about it: planes take
+    /// the place of the surface in each box that it crosses.
+    pub area_estimate: f64,
+    /// Number of boxes that were examined.
+    pub cells: u64,
+    /// True if the limit of boxes was reached before the volume was known well enough. The
+    /// intervals are true nevertheless.
+    pub is_limited: bool,
+}
+
+/// Options of [`measure`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeasureOptions {
+    /// Lowest and highest corner of a box around the solid, in scene units.
+    pub bounds: [[f64; 3]; 2],
+    /// The volume is measured to this fraction of itself; the center of mass and the extent to this
+    /// fraction of the longest side of the bounds.
+    pub relative: f64,
+    /// The most boxes that are examined.
+    pub max_cells: u64,
+}
+
+impl MeasureOptions {
+    /// The default of `relative`: a thousandth.
+    pub const RELATIVE: f64 = 1e-3;
+    /// The default of `max_cells`: about a gigabyte of memory.
+    pub const MAX_CELLS: u64 = 4_000_000;
+
+    /// Returns options for a box, in scene units.
+    pub fn new(bounds: [[f64; 3]; 2]) -> Self {
+        Self { bounds, relative: Self::RELATIVE, max_cells: Self::MAX_CELLS }
+    }
+
+    /// Sets how exact the measurements are.
+    #[must_use]
+    pub fn relative(self, relative: f64) -> Self {
+        Self { relative, ..self }
+    }
+
+    /// Sets the most boxes that are examined.
+    #[must_use]
+    pub fn max_cells(self, max_cells: u64) -> Self {
+        Self { max_cells, ..self }
+    }
+}
+
+/// Measures a program's solid.
+///
+/// A box is divided until it is proven to be inside or outside, or its share of the volume is known
+/// well enough: the field differs from a linear function by a proven error, so the inside of a box
+/// lies between two half-spaces. The work runs on all threads of the current rayon pool. It stops
+/// if `progress` breaks.
+///
+/// # Errors
+///
+/// [`MeshError`].
+pub fn measure(
+    program: &Program,
+    frame: &FrameValues,
+    options: &MeasureOptions,
+    progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Measurements, MeshError> {
+    let field = Field::new(program)?.ok_or(MeshError::NothingDrawn)?;
+    let MeasureOptions { bounds, relative, max_cells } = *options;
+    check(bounds, relative)?;
+    let local = LocalField::new(field.distance(), frame);
+    let integrator = Integrator { field: &local, bounds, relative, max_cells };
+    let integrals = integrator.integrate(progress)?;
+    let [lo, hi] = bounds;
+    let longest = (0..3).fold(0.0, |side: f64, axis| side.max(hi[axis] - lo[axis]));
+    let mut prober = local.prober();
+    let mut ends = |is_up: bool| {
+        let inner = integrals.inner?;
+        let tolerance = relative * longest;
+        Some([0, 1, 2].map(|axis| {
+            let [reached, limit] = reach(&mut prober, bounds, inner, axis, is_up, tolerance);
+            [reached.min(limit), reached.max(limit)]
+        }))
+    };
+    let (lowest, highest) = (ends(false), ends(true));
+    Ok(Measurements {
+        volume: ends_of(integrals.moments.volume),
+        center_of_mass: center(&integrals).map(|center| center.map(ends_of)),
+        inertia: inertia(&integrals),
+        lowest,
+        highest,
+        area_estimate: integrals.area,
+        cells: integrals.cells,
+        is_limited: integrals.is_limited,
+    })
+}
+
+fn ends_of(interval: Interval) -> Proven {
+    [interval.lo(), interval.hi()]
+}
+
+/// Returns the center of mass, if there is a volume.
+fn center(integrals: &Integrals) -> Option<[Interval; 3]> {
+    let Integrals { moments, about, .. } = integrals;
+    let has_volume = moments.volume.lo() > 0.0;
+    has_volume.then(|| {
+        [0, 1, 2].map(|i| Interval::constant(about[i]).add(moments.first[i].div(moments.volume)))
+    })
+}
+
+/// Returns the inertia about the center of mass, if there is a volume.
+fn inertia(integrals: &Integrals) -> Option<[Proven; 6]> {
+    let moments = &integrals.moments;
+    if moments.volume.lo() <= 0.0 {
+        return None;
+    }
+    // The center of mass relative to the point that the moments are relative to.
+    let offset = moments.first.map(|first| first.div(moments.volume));
+    let about_center: [Interval; 6] = std::array::from_fn(|index| {
+        let [i, j] = PAIRS[index];
+        let product = if i == j { offset[i].square() } else { offset[i].mul(offset[j]) };
+        moments.second[index].sub(product.mul(moments.volume))
+    });
+    let [xx, yy, zz, xy, xz, yz] = about_center;
+    let tensor = [yy.add(zz), xx.add(zz), xx.add(yy), xy.neg(), xz.neg(), yz.neg()];
+    Some(tensor.map(ends_of))
+}

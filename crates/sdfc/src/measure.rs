@@ -1,0 +1,97 @@
+//! Measures a scene.
+
+use std::ops::ControlFlow;
+
+use sdfc_graph::eval::FrameValues;
+use sdfc_mesh::{Measurements, MeshError, Progress};
+
+use crate::error::Error;
+use crate::scene::Scene;
+
+/// Options of [`Scene::measure`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MeasureOptions {
+    /// The volume is measured to this fraction of itself; the center of mass and the extent to this
+    /// fraction of the longest side of the scene's bounds.
+    pub relative: f64,
+    /// Values of params, time and frame; `None` takes the defaults at time 0.
+    pub frame: Option<FrameValues>,
+    /// The most boxes that are examined.
+    pub max_cells: u64,
+}
+
+impl Default for MeasureOptions {
+    fn default() -> Self {
+        let relative = sdfc_mesh::MeasureOptions::RELATIVE;
+        Self { relative, frame: None, max_cells: sdfc_mesh::MeasureOptions::MAX_CELLS }
+    }
+}
+
+impl MeasureOptions {
+    /// The default options: an error of a thousandth.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets how exact the measurements are.
+    #[must_use]
+    pub fn relative(self, relative: f64) -> Self {
+        Self { relative, ..self }
+    }
+
+    /// Sets the values of params, time and frame.
+    #[must_use]
+    pub fn frame(self, frame: FrameValues) -> Self {
+        Self { frame: Some(frame), ..self }
+    }
+
+    /// Sets the most boxes that are examined.
+    #[must_use]
+    pub fn max_cells(self, max_cells: u64) -> Self {
+        Self { max_cells, ..self }
+    }
+}
+
+impl Scene {
+    /// Volume, center of mass, inertia and extent of the scene, as intervals that are proven to
+    /// hold the truth, and an estimate of its area.
+    ///
+    /// The work runs on all cores. It stops if `progress` breaks.
+    ///
+    /// ```
+    /// use sdfc::{Compiler, MeasureOptions};
+    /// use std::ops::ControlFlow;
+    ///
+    /// let scene = Compiler::new().compile("ball.sdf", "sphere(1)")?;
+    /// let options = MeasureOptions::new().relative(0.01);
+    /// let found = scene.measure(&options, &mut |_| ControlFlow::Continue(()))?;
+    /// let volume = 4.0 / 3.0 * std::f64::consts::PI;
+    /// assert!(found.volume[0] <= volume && volume <= found.volume[1]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Mesh`]: the scene draws nothing, is empty or has no limit, the fraction is not
+    /// above 0, or `progress` stopped the work.
+    pub fn measure(
+        &self,
+        options: &MeasureOptions,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Measurements, Error> {
+        let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
+        let bounds = self.filled_bounds(&frame)?;
+        let options = sdfc_mesh::MeasureOptions::new(bounds)
+            .relative(options.relative)
+            .max_cells(options.max_cells);
+        Ok(sdfc_mesh::measure(&self.program, &frame, &options, progress)?)
+    }
+
+    /// Returns the bounds of a scene that can have an inside.
+    pub(crate) fn filled_bounds(&self, frame: &FrameValues) -> Result<[[f64; 3]; 2], MeshError> {
+        let bounds = self.bounds_at(frame).ok_or(MeshError::NothingDrawn)?;
+        let is_empty = (0..3).any(|axis| bounds[0][axis] > bounds[1][axis]);
+        if is_empty { Err(MeshError::Empty) } else { Ok(bounds) }
+    }
+}

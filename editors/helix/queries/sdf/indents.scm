@@ -1,0 +1,10 @@
+[
+  (block)
+  (arguments)
+  (parameters)
+  (list)
+  (parenthesized_expression)
+  (declaration)
+] @indent
+
+[")" "]" "}"] @outdent

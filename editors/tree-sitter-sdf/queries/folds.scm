@@ -1,0 +1,12 @@
+[
+  (declaration)
+  (block)
+  (arguments)
+  (parameters)
+  (list)
+  (parenthesized_expression)
+] @fold
+
+(doc_comment)+ @fold
+(comment)+ @fold
+(import)+ @fold

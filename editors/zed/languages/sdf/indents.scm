@@ -1,0 +1,6 @@
+(block "}" @end) @indent
+(arguments ")" @end) @indent
+(parameters ")" @end) @indent
+(list "]" @end) @indent
+(parenthesized_expression ")" @end) @indent
+(declaration) @indent
