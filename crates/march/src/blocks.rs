@@ -109,8 +109,8 @@ pub struct ViewBlock {
     pub lights: [LightBlock; MAX_LIGHTS],
 }
 
-/// In [`PixelBlock::unproven`]: a ray of the pixel passed a stretch longer than the tolerance without
-/// a proof that it is free. Only methods that prove what they pass tell.
+/// In [`PixelBlock::unproven`]: a ray of the pixel passed a stretch longer than the tolerance
+/// without a proof that it is free. Only methods that prove what they pass set it.
 pub const UNPROVEN: u16 = 1;
 
 /// In [`PixelBlock::unproven`]: the driver ended loops of the pixel early, so that anything may be

@@ -12,11 +12,11 @@ use crate::scene::Scene;
 
 /// Largest number of calls that are looked at. Each is expanded by itself.
 const MAX_CALLS: usize = 500;
-/// Smallest number of operations of a scene whose calls are told.
+/// Smallest number of operations of a scene whose calls are reported.
 const LARGE: usize = 200;
-/// Number of calls that are told.
-const TOLD: usize = 5;
-/// Smallest share of the scene's operations that is told.
+/// Number of calls that are reported.
+const REPORTED: usize = 5;
+/// Smallest share of the scene's operations that is reported.
 const SMALLEST: f64 = 0.05;
 /// A call is left out if one call in its parentheses has this share of its operations.
 const PASSED_ON: f64 = 0.9;
@@ -41,7 +41,7 @@ impl Scene {
             })
         };
         let own = costs.iter().filter(|cost| !is_passed_on(cost));
-        let mut told: Vec<CallCost> = own
+        let mut reported: Vec<CallCost> = own
             .map(|&(site, operations)| {
                 let start = self.sources().line_column(site.span.file, site.span.start);
                 CallCost {
@@ -54,9 +54,9 @@ impl Scene {
             })
             .filter(|call| call.share >= SMALLEST)
             .collect();
-        told.sort_by_key(|call| (std::cmp::Reverse(call.operations), call.line, call.column));
-        told.truncate(TOLD);
-        told
+        reported.sort_by_key(|call| (std::cmp::Reverse(call.operations), call.line, call.column));
+        reported.truncate(REPORTED);
+        reported
     }
 
     /// The operations of the shapes of each call, by themselves; `None` if there are too many.

@@ -110,7 +110,8 @@ fn main() {
         broken_lists_change_the_picture,
     );
     trials.push(broken.with_ignored_flag(without_gpu));
-    let ended = Trial::test("loops that the driver ends early are told", ended_loops_are_told);
+    let ended =
+        Trial::test("loops that the driver ends early are reported", ended_loops_are_reported);
     trials.push(ended.with_ignored_flag(without_gpu));
     let counted = Trial::test("visited iterations are counted", visited_iterations_are_counted);
     trials.push(counted.with_ignored_flag(without_gpu));
@@ -277,7 +278,7 @@ fn broken_lists_change_the_picture() -> Result<(), Failed> {
 
 /// A ball whose formula has a loop of 4000 iterations without an effect. A pixel shows the ball, or
 /// it says that the driver ended its loops.
-fn ended_loops_are_told() -> Result<(), Failed> {
+fn ended_loops_are_reported() -> Result<(), Failed> {
     let slow = "length(p) - 1 + 1e-9 * iterate(4000, p.x, fn(s, i) = 0.5 * sin(s + i))";
     let eye = "camera(eye: [0, 0.1, 4], fov: 40deg)\nsun()\n";
     let draw = |text: &str| {
@@ -291,8 +292,8 @@ fn ended_loops_are_told() -> Result<(), Failed> {
         return Err("a wrong pixel does not say so".into());
     }
     let wrong = pairs().filter(|(_, b)| b.unproven & LOOPS_ENDED != 0).count() as u64;
-    let told = drawn.unproven.is_some_and(|text| text.contains("ended their loops early"));
-    if drawn.stats.pixels.loops_ended != wrong || told != (wrong > 0) {
+    let reported = drawn.unproven.is_some_and(|text| text.contains("ended their loops early"));
+    if drawn.stats.pixels.loops_ended != wrong || reported != (wrong > 0) {
         return Err(format!("{wrong} pixels are wrong: {:?}", drawn.stats.pixels).into());
     }
     Ok(())

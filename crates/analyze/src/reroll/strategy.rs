@@ -21,8 +21,8 @@ pub enum LoopStrategy {
 }
 
 /// Numbers of operations above which loops that skip iterations compile and run faster than
-/// unrolled code: in scenes with primary rays only, and in scenes whose secondary rays use the lists
-/// of culling cells.
+/// unrolled code: in scenes with primary rays only, and in scenes whose secondary rays use the
+/// lists of culling cells.
 const UNROLLED_LIMITS: [usize; 2] = [425, 1200];
 /// Operations to add to the limit for each loop, which costs time to compile and to enter.
 const LOOP_COSTS: [usize; 2] = [125, 250];
