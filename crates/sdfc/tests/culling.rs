@@ -32,7 +32,7 @@ fn main() {
         ("hard, with shadows", format!("plane(y: -2.5)\n{}{OUTSIDE}{SUNNY}", hard())),
         (
             "hard, with materials and soft shadows",
-            format!("union({})\n{OUTSIDE}{SOFT}reflections(1)\n", painted()),
+            format!("union({})\n{OUTSIDE}{SOFT}reflections(1)\n", colored()),
         ),
         (
             "hard, from within",
@@ -149,7 +149,7 @@ fn hard() -> String {
 }
 
 /// Returns parts with materials of two kinds as arguments of a call.
-fn painted() -> String {
+fn colored() -> String {
     let part = |i: usize| match i % 4 {
         0 => format!("sphere(0.2).color(fn(q) = normal.y * oklch(0.7, 0.1, {i}deg))"),
         1 => format!("sphere(0.25).color(checker(oklch(0.7, 0.1, {i}deg), #000000, size: 0.1))"),

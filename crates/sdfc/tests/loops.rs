@@ -123,7 +123,7 @@ fn infinite_blends_and_few_similar_parts_stay_unrolled() {
 
 /// Returns parts of several kinds with materials of several kinds. Some boxes have the place and
 /// outside the distance of hollow boxes before them.
-fn painted() -> String {
+fn colored() -> String {
     let mut text = "let parts = [\n".to_owned();
     for i in 0..3 * PARTS {
         let (size, at) = (0.3 + 0.1 * number(i), place(i));
@@ -166,11 +166,11 @@ fn compare_materials(text: &str) {
 
 #[test]
 fn the_nearest_part_of_a_looped_union_shows_its_material() {
-    compare_materials(&(painted() + "union(parts)"));
+    compare_materials(&(colored() + "union(parts)"));
 }
 
 #[test]
 fn a_looped_union_below_other_operations_shows_its_materials() {
     let carved = "difference(union(parts), sphere(0.3).color(#ff0000)) | plane(y: -1)";
-    compare_materials(&(painted() + carved));
+    compare_materials(&(colored() + carved));
 }
