@@ -60,36 +60,39 @@ impl Recorder {
             };
             liveness.needed[position] = needed;
             if needed {
-                for value in self.reads(position) {
+                self.read_by(position, |value| {
                     liveness.needed[value as usize] = true;
                     if self.varying[position] {
                         let last = LastRead::By(self.read_until(value, position));
                         let before = &mut liveness.last_read[value as usize];
                         *before = last.max(*before);
                     }
-                }
+                });
             }
         }
         liveness
     }
 
-    /// The values that are read at an index, or must keep their registers until then.
-    fn reads(&self, position: usize) -> Vec<u32> {
+    /// Calls a function with the values that are read at an index, or must keep their registers
+    /// until then.
+    fn read_by(&self, position: usize, mut read: impl FnMut(u32)) {
         match self.definitions[position] {
-            Definition::Apply(op, arguments) => arguments[..op.arity()].to_vec(),
-            Definition::Lookup(_, at) => vec![at],
-            Definition::Enter(id) => self.loops[id].init.clone(),
-            Definition::Test(id) => self.loops[id].condition.into_iter().collect(),
+            Definition::Apply(op, arguments) => {
+                arguments[..op.arity()].iter().copied().for_each(read);
+            }
+            Definition::Lookup(_, at) => read(at),
+            Definition::Enter(id) => self.loops[id].init.iter().copied().for_each(read),
+            Definition::Test(id) => self.loops[id].condition.into_iter().for_each(read),
             Definition::Leave(id) => {
                 let RecordedLoop { count, index, variables, copies, results, step, .. } =
                     &self.loops[id];
                 let lists = [variables, copies, results, step].into_iter().flatten();
-                lists.chain(count).chain([index]).copied().collect()
+                lists.chain(count).chain([index]).copied().for_each(read);
             }
             Definition::Constant(_)
             | Definition::Input(..)
             | Definition::Point(_)
-            | Definition::Register => Vec::new(),
+            | Definition::Register => {}
         }
     }
 
@@ -136,6 +139,8 @@ impl Recorder {
     /// register of an argument that dies there, since arguments are read before the result is
     /// written.
     fn body(&self, liveness: &Liveness, kept: usize, locations: &mut [u32]) -> (Vec<Code>, usize) {
+        // The registers that the current definition frees.
+        let mut released = Vec::new();
         // The innermost open loop is the last entry.
         let mut bodies: Vec<Vec<Code>> = vec![Vec::new()];
         let points = usize::from(self.levels.max(1)) * POINT_LANES;
@@ -144,12 +149,13 @@ impl Recorder {
             if !self.varying[value] || !liveness.needed[value] {
                 continue;
             }
-            let released = self.released(value, liveness, locations);
+            released.clear();
+            self.release(value, liveness, locations, &mut released);
             match definition {
                 Definition::Point(lane) => locations[value] = (kept + lane) as u32,
                 Definition::Apply(op, arguments) => {
                     let arguments = arguments.map(|a| locations[a as usize]);
-                    registers.free.extend(released);
+                    registers.free.append(&mut released);
                     let result = registers.take();
                     locations[value] = result;
                     let instruction = Instruction { op, result, arguments };
@@ -161,7 +167,7 @@ impl Recorder {
                 }
                 Definition::Lookup(list, at) => {
                     let at = locations[at as usize];
-                    registers.free.extend(released);
+                    registers.free.append(&mut released);
                     locations[value] = registers.take();
                     let lookup = Code::Lookup { list, at, result: locations[value] };
                     push(&mut bodies, lookup);
@@ -172,13 +178,13 @@ impl Recorder {
                     let condition = self.loops[id].condition.unwrap_or_default();
                     let test = Code::Test(locations[condition as usize]);
                     push(&mut bodies, test);
-                    registers.free.extend(released);
+                    registers.free.append(&mut released);
                 }
                 Definition::Leave(id) => {
                     let body = bodies.pop().unwrap_or_default();
                     let code = Code::Loop(self.loops[id].code(body, locations));
                     push(&mut bodies, code);
-                    registers.free.extend(released);
+                    registers.free.append(&mut released);
                 }
                 Definition::Constant(_) | Definition::Input(..) => {}
             }
@@ -186,8 +192,14 @@ impl Recorder {
         (bodies.pop().unwrap_or_default(), registers.count)
     }
 
-    /// Registers of values that are needed here for the last time, each once.
-    fn released(&self, position: usize, liveness: &Liveness, locations: &[u32]) -> Vec<u32> {
+    /// Adds the registers of values that are needed here for the last time, each once.
+    fn release(
+        &self,
+        position: usize,
+        liveness: &Liveness,
+        locations: &[u32],
+        released: &mut Vec<u32>,
+    ) {
         let dies = |value: usize| {
             let is_register = matches!(
                 self.definitions[value],
@@ -199,16 +211,20 @@ impl Recorder {
         };
         if let Definition::Leave(_) = self.definitions[position] {
             // Values that the body reads from outside die here too.
-            return (0..position)
-                .filter(|&value| dies(value))
-                .map(|value| locations[value])
-                .collect();
+            let dying = (0..position).filter(|&value| dies(value));
+            released.extend(dying.map(|value| locations[value]));
+            return;
         }
-        let mut read = self.reads(position);
-        read.sort_unstable();
-        read.dedup();
-        let dying = read.into_iter().filter(|&value| dies(value as usize));
-        dying.map(|value| locations[value as usize]).collect()
+        self.read_by(position, |value| {
+            // In the order of values, so that registers do not depend on the order of arguments.
+            if dies(value as usize) && !released.contains(&value) {
+                released.push(value);
+            }
+        });
+        released.sort_unstable();
+        for value in released {
+            *value = locations[*value as usize];
+        }
     }
 }
 

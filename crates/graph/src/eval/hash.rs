@@ -13,7 +13,10 @@ const LARGEST: f64 = 2_147_483_520.0;
 /// The upper 24 bits are the result. A point in several dimensions is hashed one coordinate after
 /// the other, each result being the next state. NaN counts as 0 here and as any number on a device.
 pub fn hash(state: f64, x: f64) -> f64 {
-    let whole = x.floor().clamp(-LARGEST - 128.0, LARGEST) as i64;
+    let clamped = x.clamp(-LARGEST - 128.0, LARGEST);
+    // The same as `clamped.floor()`, which is a function call where the target has no instruction.
+    let truncated = clamped as i64;
+    let whole = truncated - i64::from(clamped < truncated as f64);
     let word = (state as u32).wrapping_add(whole as u32);
     let state = word.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);

@@ -150,6 +150,11 @@ impl Recorder {
         Self { levels, ..Self::default() }
     }
 
+    /// The coordinates of the outermost point.
+    pub(super) fn point(&mut self) -> [u32; POINT_LANES] {
+        std::array::from_fn(|lane| self.define(Definition::Point(lane), true))
+    }
+
     fn define(&mut self, definition: Definition, varying: bool) -> u32 {
         self.definitions.push(definition);
         self.varying.push(varying);

@@ -5,7 +5,7 @@
 //! minimum of numbers in a known order, is not recorded. Loops become straight code of the
 //! iterations that can run. What the result no longer needs is dropped.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use super::affine::Affine;
 use super::frame::FrameValues;
@@ -14,7 +14,6 @@ use super::op::{Op, operations};
 use super::record::Recorder;
 use super::scalarise::{Lanes, ScalarBackend};
 use super::tape::Tape;
-use crate::node::{Dim, Node};
 
 /// A specialised tape records at most this many operations.
 const MOST_OPERATIONS: usize = 1 << 17;
@@ -46,28 +45,66 @@ impl Tape {
     /// # Ok::<(), sdfc_graph::eval::TapeError>(())
     /// ```
     pub fn specialized(&self, frame: &FrameValues, region: [Affine; 3]) -> Option<Self> {
+        self.over(frame, region).tape
+    }
+
+    /// The field in a region, for one frame: bounds of its value, and the tape of
+    /// [`Self::specialized`].
+    ///
+    /// ```
+    /// use sdfc_graph::eval::{Affine, FrameValues, Tape};
+    /// use sdfc_graph::{Dim, Graph};
+    ///
+    /// let mut graph = Graph::new();
+    /// let p = graph.point(0, Dim::Three);
+    /// let (x, y) = (graph.component(p, 0), graph.component(p, 1));
+    /// let root = graph.max(x, y);
+    /// let tape = Tape::new(&graph, &[root])?;
+    ///
+    /// let x = Affine::coordinate(4.0, [1.0, 0.0, 0.0]);
+    /// let y = Affine::coordinate(1.0, [0.0, 1.0, 0.0]);
+    /// let over = tape.over(&FrameValues::default(), [x, y, y]);
+    /// assert!(over.value.range().lo() > 2.99 && over.value.range().hi() < 5.01);
+    /// assert_eq!((over.operations, over.tape.map(|tape| tape.operations())), (1, Some(0)));
+    /// # Ok::<(), sdfc_graph::eval::TapeError>(())
+    /// ```
+    pub fn over(&self, frame: &FrameValues, region: [Affine; 3]) -> FieldOver {
         let trace = Trace::default();
-        let axes = trace.0.borrow_mut().input(&Node::Point(0, Dim::Three))?;
+        let axes = trace.0.borrow_mut().point();
         let point = std::array::from_fn(|axis| Traced {
             form: region[axis],
             constant: None,
-            source: Some((&trace, axes.get(axis))),
+            source: Some((&trace, axes[axis])),
         });
         let kept = |value: f64| Traced {
             source: Some((&trace, trace.0.borrow_mut().constant(value))),
             ..Traced::constant(value)
         };
         let result = self.evaluator(frame, kept).scalar(point);
-        let output = result.id(&trace)?;
-        let recorder = trace.0.take();
-        (recorder.definitions.len() <= MOST_OPERATIONS)
-            .then(|| recorder.finish(vec![Lanes::scalar(output)]))
+        let output = result.id(&trace);
+        let (recorder, operations) = (trace.0.take(), trace.1.get());
+        let is_whole = recorder.definitions.len() <= MOST_OPERATIONS;
+        let output = output.filter(|_| is_whole);
+        let tape = output.map(|output| recorder.finish(vec![Lanes::scalar(output)]));
+        FieldOver { value: result.form, tape, operations }
     }
 }
 
-/// The operations recorded so far.
+/// A field in a region.
+#[derive(Clone, Debug)]
+pub struct FieldOver {
+    /// The value, as a function of the region's coordinates.
+    pub value: Affine,
+    /// The specialised tape; `None` if it would be too long.
+    pub tape: Option<Tape>,
+    /// Number of operations that the whole tape ran in the region. Its loops run no iterations
+    /// that can follow at no point of the region.
+    pub operations: usize,
+}
+
+/// The operations recorded so far, and the number of all operations.
 #[derive(Default)]
-struct Trace(RefCell<Recorder>);
+struct Trace(RefCell<Recorder>, Cell<usize>);
 
 /// A number over the region, and where it comes from.
 #[derive(Clone, Copy)]
@@ -102,6 +139,9 @@ impl<'t> Traced<'t> {
     /// Returns an operation's result: one of its arguments if it is that everywhere.
     fn apply(op: Op, x: [Self; 3]) -> Self {
         let form: Affine = op.apply(|i| x[i].form);
+        if let Some((trace, _)) = x[..op.arity()].iter().find_map(|x| x.source) {
+            trace.1.set(trace.1.get() + 1);
+        }
         match Self::picked(op, x) {
             Some(i) => Self { form, ..x[i] },
             None => Self::recorded(op, x, form),
