@@ -15,6 +15,16 @@ impl Tile {
         self.size[0] as usize * self.size[1] as usize
     }
 
+    /// Rectangles of at most `side` columns and rows that cover the tile.
+    pub(crate) fn blocks(&self, side: u32) -> Vec<Self> {
+        let starts = |axis: usize| (0..self.size[axis]).step_by(side.max(1) as usize);
+        let block = |x: u32, y: u32| Self {
+            origin: [self.origin[0] + x, self.origin[1] + y],
+            size: [side.min(self.size[0] - x), side.min(self.size[1] - y)],
+        };
+        starts(1).flat_map(|y| starts(0).map(move |x| block(x, y))).collect()
+    }
+
     /// Column and row in the picture of the tile's pixel at an index, row by row.
     pub(crate) fn position(&self, index: usize) -> [u32; 2] {
         let columns = self.size[0].max(1) as usize;
@@ -73,6 +83,11 @@ impl Tiler {
     pub(crate) fn new(picture: [u32; 2], tile_size: TileSize, most: u32) -> Self {
         let most = most.max(STEP * STEP);
         Self { picture, tile_size, wanted: FIRST_PIXELS.min(most), most, next: [0, 0], band: 0 }
+    }
+
+    /// The same tiles, the first of which has this many pixels if they adapt.
+    pub(crate) fn starting_with(self, pixels: u32) -> Self {
+        Self { wanted: pixels.min(self.most), ..self }
     }
 
     /// The next tile.

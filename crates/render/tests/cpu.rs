@@ -5,7 +5,8 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use sdfc_graph::{Program, Shadow, eval::FrameValues};
+use sdfc_graph::eval::{FrameValues, sample_field};
+use sdfc_graph::{Program, Shadow};
 use sdfc_march::Method;
 use sdfc_render::{
     CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
@@ -74,6 +75,74 @@ fn tiles_of_any_size_give_the_same_picture() {
         assert!(tiled.tiles > 1);
         assert_eq!(tiled.image, whole.image, "{tile:?}");
     }
+}
+
+/// Hits of one picture that the other lacks, and the greatest difference of depth in pixels where
+/// both have one.
+fn difference(one: &Image, other: &Image) -> (usize, f32) {
+    let pairs = || one.pixels().iter().zip(other.pixels());
+    let differing = pairs().filter(|(a, b)| (a.status == HIT) != (b.status == HIT)).count();
+    let both = pairs().filter(|(a, b)| a.status == HIT && b.status == HIT);
+    let depth = both.map(|(a, b)| (a.depth - b.depth).abs() / one.pixel_width(a.depth));
+    (differing, depth.fold(0.0, f32::max))
+}
+
+#[test]
+fn rays_that_share_work_see_what_single_rays_see() {
+    let size = [96, 72];
+    let proven = |program: Program| program.with_segment_bounds(true, false);
+    for (program, method) in [
+        (common::crowd(1.0), Method::Sphere),
+        (common::crowd(1.0), Method::Auto),
+        (proven(common::crowd(1.0)), Method::Interval),
+        (proven(common::crowd(3.0)), Method::Interval),
+    ] {
+        let shared = draw(&program, size, method, TileSize::default()).image;
+        let single = depths::<f64>(&program, size, method);
+        assert!(single.counts().hit > 600, "{:?}", single.counts());
+        let (differing, depth) = difference(&shared, &single);
+        assert!(differing <= 2 && depth < 0.05, "{method}: {differing} pixels, {depth}");
+        assert_eq!(shared.counts().unproven, 0, "{method}");
+        let mean = |image: &Image| {
+            image.pixels().iter().map(|pixel| u64::from(pixel.primary_evaluations)).sum::<u64>()
+        };
+        assert!(method != Method::Interval || 2 * mean(&shared) < mean(&single), "{method}");
+    }
+}
+
+#[test]
+fn a_steep_field_is_never_stepped_through() {
+    // Its value is three times the distance, so only proofs find its surface.
+    let program = common::crowd(3.0).with_segment_bounds(true, false);
+    let shared = draw(&program, [160, 120], Method::Interval, TileSize::default()).image;
+    let exact = depths::<f64>(&common::crowd(1.0), [160, 120], Method::Auto);
+    let (differing, depth) = difference(&shared, &exact);
+    assert!(differing <= 4 && depth < 0.1, "{differing} pixels, {depth}");
+    assert_eq!(shared.counts().unproven, 0);
+}
+
+#[test]
+fn normals_of_a_shortened_field_are_those_of_the_whole_one() {
+    let program = common::crowd(1.0);
+    let image = draw(&program, [160, 120], Method::Auto, TileSize::default()).image;
+    let view = common::view(&program, [160, 120]);
+    let frame = FrameValues::default();
+    let (mut lit, mut shadowed) = (0, 0);
+    for (index, pixel) in image.pixels().iter().enumerate().filter(|(_, p)| p.status == HIT) {
+        let [origin, direction] = view.ray(index as u32 % 160, index as u32 / 160);
+        let point = origin + direction * f64::from(pixel.depth);
+        let sample = sample_field(&program, &frame, &[point.to_array()]).unwrap();
+        // Lambert's law under a light overhead, or shadow.
+        let expected = 0.8 * sample[0].gradient[1].max(0.0);
+        let shade = f64::from(pixel.color[0]);
+        if shade == 0.0 {
+            shadowed += 1;
+        } else {
+            assert!((shade - expected).abs() < 0.02, "{point}: {shade}, {expected}");
+            lit += 1;
+        }
+    }
+    assert!(lit > 500 && shadowed > 500, "{lit} lit, {shadowed} not");
 }
 
 #[test]

@@ -5,6 +5,8 @@
 //! group of pixels, then normals and materials of all hits, then all rays to a light; and the same
 //! again for all reflections.
 
+mod cells;
+mod gradients;
 pub(crate) mod method;
 mod pre_intersection;
 mod ray;
@@ -13,6 +15,7 @@ mod surroundings;
 mod trace;
 mod wave;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 #[cfg(feature = "threads")]
@@ -29,6 +32,8 @@ use crate::frame::{Frame, OnProgress, Progress, RenderOptions, no_progress};
 use crate::image::{Image, check_size};
 use crate::tiles::{Tile, Tiler};
 use crate::view::View;
+use cells::Cells;
+use gradients::Gradient;
 use method::CpuMethod;
 use pre_intersection::PreIntersectionTapes;
 use ray::LANES;
@@ -37,15 +42,15 @@ use wave::Wave;
 
 pub use ray::Real;
 
-/// The number of pixels that a thread takes at a time.
-const GROUP: usize = 512;
+/// Columns and rows of pixels that a thread takes at a time.
+const BLOCK: u32 = 32;
 /// The maximum number of pixels of a tile; threads wait for each other at its end.
 const MAX_TILE_PIXELS: u32 = 1 << 20;
 
 /// A program, compiled for the CPU.
 #[derive(Clone, Debug)]
 pub struct CpuScene {
-    field: Tape,
+    field: Arc<Tape>,
     /// The analytic pre-intersection, for methods that ask for it.
     pre_intersection: Option<PreIntersectionTapes>,
     /// Bounds of the field on a segment, for the method that asks for them.
@@ -74,7 +79,7 @@ impl CpuScene {
         let material = material.map(|fields| Tape::for_surfaces(&program.graph, &fields));
         let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
-            field: tape(&[distance])?,
+            field: Arc::new(tape(&[distance])?),
             pre_intersection: PreIntersectionTapes::new(program).map_err(refused)?,
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
@@ -117,11 +122,19 @@ impl CpuScene {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
         let method = known_method(method)?;
-        self.draw(view, options, progress, &self.wave::<T>(view, frame, method, true))
+        let is_sampled = method.proves() && self.range.is_none();
+        let cells = |tape| match is_sampled {
+            // Without bounds rays are sampled where the shader samples them.
+            true => Cells::one(tape, frame),
+            false => Cells::around(tape, frame, view, method.proves()),
+        };
+        let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
+        let wave = self.wave::<T>(view, frame, method, &fields);
+        self.draw(view, options, progress, &self.shaded(wave, frame))
     }
 
     /// Traces the camera rays alone, marched in `T`: depth, status and evaluations, without
-    /// colours.
+    /// colours. Each ray takes all its steps through the whole field, as in the shader.
     ///
     /// # Errors
     ///
@@ -132,8 +145,15 @@ impl CpuScene {
         frame: &FrameValues,
         method: Method,
     ) -> Result<Image, RenderError> {
-        let wave = self.wave::<T>(view, frame, known_method(method)?, false);
+        let cells = |tape| Cells::one(tape, frame);
+        let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
+        let wave = self.wave::<T>(view, frame, known_method(method)?, &fields);
         Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
+    }
+
+    /// The part of the field that is marched where the rest is intersected analytically.
+    fn marched(&self) -> Option<&Arc<Tape>> {
+        self.pre_intersection.as_ref().and_then(PreIntersectionTapes::marched)
     }
 
     fn wave<'a, T: Real>(
@@ -141,9 +161,8 @@ impl CpuScene {
         view: &'a View,
         frame: &FrameValues,
         method: CpuMethod,
-        shaded: bool,
+        fields: &'a Fields<'a>,
     ) -> Wave<'a, T> {
-        let prepare = |tape: &'a Tape| tape.prepare::<Packet<T, { LANES }>>(frame);
         Wave {
             view,
             limits: Limits {
@@ -152,16 +171,31 @@ impl CpuScene {
                 steps: view.steps,
                 records_clearance: false,
                 is_loose: self.is_loose,
+                range_operations: self.range.as_ref().map_or(0, Tape::operations),
             },
-            field: prepare(&self.field),
+            field: &fields.whole,
+            marched: fields.marched.as_ref(),
             pre_intersection: self
                 .pre_intersection
                 .as_ref()
                 .filter(|_| method.pre_intersects())
                 .map(|a| a.prepare(frame)),
             range: self.range.as_ref().map(|tape| tape.prepare(frame)),
-            gradient: self.gradient.as_ref().filter(|_| shaded).map(prepare),
-            material: self.material.as_ref().filter(|_| shaded).map(prepare),
+            gradient: None,
+            material: None,
+        }
+    }
+
+    /// The wave with normals and materials.
+    fn shaded<'a, T: Real>(&'a self, wave: Wave<'a, T>, frame: &FrameValues) -> Wave<'a, T> {
+        let prepare = |tape: &'a Tape| tape.prepare::<Packet<T, { LANES }>>(frame);
+        Wave {
+            gradient: self
+                .gradient
+                .as_ref()
+                .map(|tape| Gradient { whole: prepare(tape), operations: tape.operations() }),
+            material: self.material.as_ref().map(prepare),
+            ..wave
         }
     }
 
@@ -174,12 +208,15 @@ impl CpuScene {
     ) -> Result<Frame, RenderError> {
         check_size(view.size)?;
         let mut image = Image::new(view.size, view.footprint())?;
-        let mut tiler = Tiler::new(view.size, options.tile_size, MAX_TILE_PIXELS);
+        let mut tiler =
+            Tiler::new(view.size, options.tile_size, MAX_TILE_PIXELS).starting_with(BLOCK * BLOCK);
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
         let total = image.pixels().len() as u64;
         while let Some(tile) = tiler.next() {
             let start = now();
-            image.put(tile, draw_tile(wave, tile).into_iter());
+            for (block, pixels) in draw_tile(wave, tile) {
+                image.put(block, pixels.into_iter());
+            }
             let elapsed = start.map_or(0.0, milliseconds_since);
             tiler.took(tile, elapsed);
             milliseconds += elapsed;
@@ -193,6 +230,12 @@ impl CpuScene {
     }
 }
 
+/// The fields that rays march through.
+struct Fields<'a> {
+    whole: Cells<'a>,
+    marched: Option<Cells<'a>>,
+}
+
 fn known_method(method: Method) -> Result<CpuMethod, RenderError> {
     CpuMethod::of(method).ok_or(RenderError::MethodNotOnCpu(method))
 }
@@ -202,20 +245,19 @@ fn now() -> Option<Instant> {
     (!cfg!(target_family = "wasm")).then(Instant::now)
 }
 
-/// Draws the pixels of a tile on all threads.
-fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<PixelBlock> {
-    let mut pixels = vec![PixelBlock::default(); tile.pixels()];
-    let draw = |wave: &mut Wave<'_, T>, (group, pixels): (usize, &mut [PixelBlock])| {
+/// Draws the blocks of a tile on all threads.
+fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<(Tile, Vec<PixelBlock>)> {
+    let blocks = tile.blocks(BLOCK);
+    let draw = |wave: &mut Wave<'_, T>, block: Tile| {
         let positions: Vec<[u32; 2]> =
-            (0..pixels.len()).map(|index| tile.position(group * GROUP + index)).collect();
-        pixels.copy_from_slice(&wave.pixels(&positions));
+            (0..block.pixels()).map(|index| block.position(index)).collect();
+        (block, wave.pixels(&positions))
     };
     #[cfg(feature = "threads")]
-    pixels.par_chunks_mut(GROUP).enumerate().for_each_init(|| wave.clone(), draw);
+    return blocks.into_par_iter().map_init(|| wave.clone(), draw).collect();
     #[cfg(not(feature = "threads"))]
     {
         let mut wave = wave.clone();
-        pixels.chunks_mut(GROUP).enumerate().for_each(|group| draw(&mut wave, group));
+        blocks.into_iter().map(|block| draw(&mut wave, block)).collect()
     }
-    pixels
 }

@@ -1,6 +1,8 @@
 //! The analytic pre-intersection of rays: where they hit the analytic part of the scene, and the
 //! interval in which the rest is marched.
 
+use std::sync::Arc;
+
 use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
 use sdfc_graph::{FAR, Program};
 
@@ -14,7 +16,7 @@ pub(super) struct PreIntersectionTapes {
     has_hits: bool,
     has_clip: bool,
     /// The field of the marched part; `None` if there is none.
-    marched: Option<Tape>,
+    marched: Option<Arc<Tape>>,
     /// The intersection of copies, as in the program's rays.
     copies: Option<Tape>,
 }
@@ -31,8 +33,14 @@ impl PreIntersectionTapes {
         let copies = rays.copies.map(|copies| Tape::for_rays(graph, &[copies])).transpose()?;
         let (has_hits, has_clip) = (rays.first_hit.is_some(), rays.clip.is_some());
         let hits_and_clips = Tape::for_rays(graph, &roots)?;
-        let marched = marched.map(|marched| Tape::new(graph, &[marched])).transpose()?;
+        let marched =
+            marched.map(|marched| Tape::new(graph, &[marched]).map(Arc::new)).transpose()?;
         Ok(Some(Self { hits_and_clips, has_hits, has_clip, marched, copies }))
+    }
+
+    /// The part of the field that is marched, if that is not all of it.
+    pub(super) fn marched(&self) -> Option<&Arc<Tape>> {
+        self.marched.as_ref().filter(|_| self.has_hits)
     }
 
     pub(super) fn prepare<T: Real>(&self, frame: &FrameValues) -> PreIntersectionBatch<'_, T> {
@@ -40,7 +48,7 @@ impl PreIntersectionTapes {
             hits_and_clips: self.hits_and_clips.prepare::<Packet<T, LANES>>(frame),
             has_hits: self.has_hits,
             has_clip: self.has_clip,
-            marched: self.marched.as_ref().map(|tape| tape.prepare(frame)),
+            has_marched: self.marched.is_some(),
             copies: self.copies.as_ref().map(|tape| tape.prepare(frame)),
         }
     }
@@ -52,7 +60,7 @@ pub(super) struct PreIntersectionBatch<'t, T> {
     hits_and_clips: Batch<'t, T>,
     has_hits: bool,
     has_clip: bool,
-    pub(super) marched: Option<Batch<'t, T>>,
+    has_marched: bool,
     pub(super) copies: Option<Batch<'t, T>>,
 }
 
@@ -132,7 +140,7 @@ impl<T: Real> PreIntersectionBatch<'_, T> {
             }
             return known;
         }
-        known.end = if self.marched.is_some() { ray.t_max.min(known.met) } else { nowhere };
+        known.end = if self.has_marched { ray.t_max.min(known.met) } else { nowhere };
         if let Some([enter, exit]) = way {
             known.start = enter.max(T::constant(0.0));
             known.end = known.end.min(exit);

@@ -6,7 +6,7 @@ use sdfc_graph::eval::{Evaluator, Number, Packet};
 
 /// The number of points evaluated together: enough that decoding an instruction costs little beside
 /// running it.
-pub(super) const LANES: usize = 8;
+pub(super) const LANES: usize = 16;
 
 /// An evaluator of [`LANES`] points at a time.
 pub(super) type Batch<'t, T> = Evaluator<'t, Packet<T, LANES>>;

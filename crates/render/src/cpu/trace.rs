@@ -2,13 +2,18 @@
 
 pub(super) mod copies;
 mod interval;
-
-use sdfc_graph::eval::{Evaluator, Packet};
+mod limits;
+mod march;
+mod proof;
 
 use super::method::CpuMethod;
 use super::pre_intersection::PreIntersection;
-use super::ray::{Batch, LANES, Ray, Real, packed};
+use super::ray::{Ray, Real};
 use crate::image::{CAPPED, HIT, MISS};
+use proof::Proof;
+
+pub(super) use limits::Limits;
+pub(super) use march::trace;
 
 /// A sample of `auto` within this fraction of the tolerance is a hit.
 const HIT_FRACTION: f64 = 0.00390625;
@@ -22,31 +27,6 @@ const MIN_SLOPE: f64 = 0.25;
 const MIN_STEP_FRACTION: f64 = 0.25;
 /// Bound of the last secant, which places the hit: the distance divided by this slope.
 const MIN_FINAL_SLOPE: f64 = 0.0078125;
-
-/// The limits of all rays of a picture.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits<T> {
-    pub(super) method: CpuMethod,
-    pub(super) epsilon: T,
-    pub(super) steps: u32,
-    /// True if rays record how narrowly they pass what they do not hit.
-    pub(super) records_clearance: bool,
-    /// True if a small value of the field may be far from the surface.
-    pub(super) is_loose: bool,
-}
-
-impl<T: Real> Limits<T> {
-    /// The distance from the surface below which a point is a hit.
-    pub(super) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
-        match self.method {
-            CpuMethod::Sphere => self.epsilon,
-            CpuMethod::Auto | CpuMethod::Interval => {
-                let part = T::constant(2.0) * ray.tolerance * ray.footprint(t);
-                part.max(ray.rounding(t))
-            }
-        }
-    }
-}
 
 /// The result of a traced ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +79,8 @@ struct Walk<T> {
     /// (`interval`).
     steepness: T,
     unproven: bool,
+    /// True if the ray has skipped a part that is proven free.
+    has_skipped: bool,
 }
 
 /// The decision after a sample of the field.
@@ -127,7 +109,21 @@ impl<T: Real> Walk<T> {
             segment: ray.t_max,
             steepness: T::constant(1.0),
             unproven: false,
+            has_skipped: false,
         }
+    }
+
+    /// True if nothing is known of the field before this sample: at the start, and after a part
+    /// that is proven free.
+    fn is_fresh(&self) -> bool {
+        self.outside.is_none() && self.inside.is_none()
+    }
+
+    /// Moves on to a position up to which the ray is proven free.
+    fn skip_to(&mut self, t: T) {
+        (self.t, self.outside, self.close) = (t, None, false);
+        (self.stride, self.slope) = (T::constant(0.0), T::constant(-1.0));
+        self.has_skipped = true;
     }
 
     fn result(&self, t: T, status: u16) -> Trace<T> {
@@ -150,7 +146,7 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: Option<&mut Evaluator<'_, T>>,
+        proof: &mut Proof<'_, '_, T>,
     ) -> Option<Trace<T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
@@ -160,7 +156,7 @@ impl<T: Real> Walk<T> {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
-            CpuMethod::Interval => self.interval(distance, limits, range),
+            CpuMethod::Interval => self.interval(distance, limits, proof),
         };
         match next {
             Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),
@@ -207,7 +203,7 @@ impl<T: Real> Walk<T> {
 
     fn auto(&mut self, distance: T, limits: &Limits<T>) -> Next<T> {
         let zero = T::constant(0.0);
-        if self.evaluations == 1 && distance < zero {
+        if self.is_fresh() && distance < zero {
             return Next::Hit(self.t);
         }
         let near = limits.tolerance(&self.ray, self.t);
@@ -294,38 +290,4 @@ impl<T: Real> Walk<T> {
 /// a slope of at least `least`.
 fn secant<T: Real>(distance: T, gain: T, least: f64) -> T {
     distance.div((T::constant(0.0) - gain).max(T::constant(least)))
-}
-
-/// Marches all rays; the result has their order. Lanes whose ray has ended take the next one.
-pub(super) fn trace<T: Real>(
-    field: &mut Batch<'_, T>,
-    mut range: Option<&mut Evaluator<'_, T>>,
-    rays: &[(Ray<T>, PreIntersection<T>)],
-    limits: &Limits<T>,
-) -> Vec<Trace<T>> {
-    let mut traces = vec![Trace::untraced(); rays.len()];
-    let walks = rays.iter().map(|&(ray, known)| Walk::new(ray, known)).enumerate();
-    let (onward, ended): (Vec<_>, Vec<_>) = walks.partition(|(_, walk)| walk.known.must_march());
-    for (index, walk) in ended {
-        traces[index] = walk.without_hit();
-    }
-    let mut waiting = onward.into_iter();
-    let mut lanes: [Option<(usize, Walk<T>)>; LANES] = std::array::from_fn(|_| waiting.next());
-    let mut points = [[T::constant(0.0); 3]; LANES];
-    while lanes.iter().any(Option::is_some) {
-        for (point, lane) in points.iter_mut().zip(&lanes) {
-            if let Some((_, walk)) = lane {
-                *point = walk.ray.at(walk.t);
-            }
-        }
-        let Packet(distances) = field.scalar(packed(&points));
-        for (lane, distance) in lanes.iter_mut().zip(distances) {
-            let Some((index, walk)) = lane else { continue };
-            if let Some(ended) = walk.take_sample(distance, limits, range.as_deref_mut()) {
-                traces[*index] = ended;
-                *lane = waiting.next();
-            }
-        }
-    }
-    traces
 }

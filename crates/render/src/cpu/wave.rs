@@ -4,6 +4,8 @@ use glam::DVec3;
 use sdfc_graph::eval::Evaluator;
 use sdfc_march::PixelBlock;
 
+use super::cells::Cells;
+use super::gradients::Gradient;
 use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
 use super::ray::{Batch, Ray, Real, surface_values, values_at};
 use super::shade::{Paint, Surface};
@@ -24,12 +26,14 @@ const SHADOW_TOLERANCE: f64 = 0.25;
 pub(super) struct Wave<'a, T> {
     pub(super) view: &'a View,
     pub(super) limits: Limits<T>,
-    pub(super) field: Batch<'a, T>,
+    pub(super) field: &'a Cells<'a>,
+    /// The part of the field that is marched where the rest is intersected analytically.
+    pub(super) marched: Option<&'a Cells<'a>>,
     pub(super) pre_intersection: Option<PreIntersectionBatch<'a, T>>,
     /// Bounds of the field on a segment.
     pub(super) range: Option<Evaluator<'a, T>>,
     /// `None` if only depths are drawn.
-    pub(super) gradient: Option<Batch<'a, T>>,
+    pub(super) gradient: Option<Gradient<'a, T>>,
     pub(super) material: Option<Batch<'a, T>>,
 }
 
@@ -120,10 +124,10 @@ impl<T: Real> Wave<'_, T> {
             Some(PreIntersectionBatch { copies: Some(copies), .. }) => {
                 return trace_among_copies(copies, &rays, &limits);
             }
-            Some(PreIntersectionBatch { marched, .. }) => marched.as_mut(),
+            Some(_) => self.marched,
             None => None,
         };
-        trace(marched.unwrap_or(&mut self.field), self.range.as_mut(), &rays, &limits)
+        trace(marched.unwrap_or(self.field), self.range.as_mut(), &rays, &limits)
     }
 
     /// Adds the background for view rays that hit nothing, and the lights for the others.
@@ -174,9 +178,9 @@ impl<T: Real> Wave<'_, T> {
             let above = |hit: &SurfaceHit<T>| hit.point() + hit.surface.normal * height;
             let points: Vec<[T; 3]> =
                 hits.iter().map(|hit| above(hit).to_array().map(T::constant)).collect();
-            let values = values_at(&mut self.field, &points);
+            let values = self.field.values(&points);
             for ((open, hit), value) in open.iter_mut().zip(hits).zip(values) {
-                let distance = value.first().map_or(f64::NAN, |lanes| lanes[0]) / hit.slope;
+                let distance = value / hit.slope;
                 let occluded = (1.0 - distance / height).clamp(0.0, 1.0);
                 *open -= strength * occluded * weight(sample) / total;
                 shades[hit.view_ray.pixel].evaluations += 1;
@@ -206,10 +210,9 @@ impl<T: Real> Wave<'_, T> {
         let hits: Vec<(ViewRay<T>, T)> =
             met.map(|(view_ray, trace)| (*view_ray, trace.t)).collect();
         let points: Vec<[T; 3]> = hits.iter().map(|(view_ray, t)| view_ray.ray.at(*t)).collect();
-        let gradients = values_at(gradient, &points);
+        let gradients = gradient.at(self.field, &points);
         let hit = |(index, (view_ray, t)): (usize, (ViewRay<T>, T))| {
-            let [x, y, z, _] = gradients[index].first().copied().unwrap_or_default();
-            let gradient = DVec3::new(x, y, z);
+            let gradient = gradients[index];
             let surface = Surface::new(gradient, -vector(view_ray.ray.direction));
             let slope = if gradient.length() > 0.0 { gradient.length() } else { 1.0 };
             SurfaceHit { view_ray, t, surface, slope }

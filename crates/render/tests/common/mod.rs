@@ -4,7 +4,7 @@
 
 use sdfc_graph::{
     Camera, Dim, Fog, FrameInput, Graph, Lens, Light, LightSource, NodeId, Occlusion, Param,
-    ParamKind, Program, Reflections, Shadow, Sky, Type, Unary, eval::FrameValues,
+    ParamKind, Program, Reflections, Shadow, Sky, Type, Unary, best_gradient, eval::FrameValues,
 };
 use sdfc_render::{Bounds, View};
 
@@ -158,6 +158,36 @@ pub fn steep_sphere() -> Program {
     let mut program = sphere();
     let factor = program.graph.number(1.2);
     program.distance = program.distance.map(|distance| program.graph.mul(distance, factor));
+    program
+}
+
+/// Two hundred spheres in a ball, seen from [0, 0, 5], with a shadow: a formula of over a thousand
+/// operations, of which a few matter at each point. `steepness` multiplies the field.
+pub fn crowd(steepness: f64) -> Program {
+    let mut program = Program::default();
+    let graph = &mut program.graph;
+    let p = point(graph);
+    let mut distance = graph.number(100.0);
+    for i in 0..200 {
+        // Points of a spiral, evenly spread over the ball.
+        let part = (f64::from(i) + 0.5) / 200.0;
+        let (height, turn) = (1.0 - 2.0 * part, 2.399963 * f64::from(i));
+        let (radius, aside) = (part.cbrt(), (1.0 - height * height).sqrt());
+        let center = [aside * turn.cos(), height, aside * turn.sin()].map(|x| radius * x);
+        let sphere = sphere_field(graph, center, 0.05 + 0.03 * part).distance;
+        distance = graph.min(distance, sphere);
+    }
+    let steepness = graph.number(steepness);
+    distance = graph.mul(distance, steepness);
+    let (gradient, _) = best_gradient(graph, distance, p);
+    (program.distance, program.gradient) = (Some(distance), Some(gradient));
+    look_from(&mut program, [0.0, 0.0, 5.0]);
+    let graph = &mut program.graph;
+    program.settings.lights.push(Light {
+        source: LightSource::Sun { direction: graph.constant(Type::Vec3, &[0.0, 1.0, 0.0]) },
+        color: graph.constant(Type::Vec3, &[1.0; 3]),
+        shadow: Shadow::Hard,
+    });
     program
 }
 

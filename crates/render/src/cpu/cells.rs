@@ -1,0 +1,100 @@
+//! Cells of space: what rays and points of one frame share.
+//!
+//! Each cell holds two facts about the field in its cube, both from one evaluation in affine
+//! arithmetic. A lower bound of the field tells which part of a ray is free. A shorter tape leaves
+//! out the operands that cannot matter there. So a large formula is examined once for each cell and
+//! not for each ray.
+
+mod cell;
+mod octree;
+
+use std::sync::Arc;
+
+use sdfc_graph::eval::{Evaluator, FrameValues, Number, Packet, Tape};
+
+use super::ray::{LANES, Real, packed};
+use crate::view::View;
+pub(super) use cell::Cell;
+use octree::Octree;
+
+/// Smaller fields have one cell where rays need no proofs.
+const MIN_OPERATIONS: usize = 200;
+
+/// The cells of one field in one frame.
+#[derive(Debug)]
+pub(super) struct Cells<'a> {
+    frame: &'a FrameValues,
+    /// All of space.
+    whole: Cell,
+    octree: Option<Octree>,
+}
+
+impl<'a> Cells<'a> {
+    /// All of space as one cell.
+    pub(super) fn one(tape: &Arc<Tape>, frame: &'a FrameValues) -> Self {
+        Self { frame, whole: Cell::everything(tape), octree: None }
+    }
+
+    /// An octree around the eye, if the field is large enough to pay for it. `proves` says that
+    /// rays need proofs that they are free.
+    pub(super) fn around(
+        tape: &Arc<Tape>,
+        frame: &'a FrameValues,
+        view: &View,
+        proves: bool,
+    ) -> Self {
+        if !proves && tape.operations() < MIN_OPERATIONS {
+            return Self::one(tape, frame);
+        }
+        let octree = Octree::new(view, proves);
+        Self { frame, whole: Cell::everything(tape), octree: Some(octree) }
+    }
+
+    /// The smallest cell around a point; all of space for a point outside of the octree.
+    pub(super) fn at(&self, point: [f64; 3]) -> &Cell {
+        let Some(octree) = self.octree.as_ref().filter(|octree| octree.contains(point)) else {
+            return &self.whole;
+        };
+        octree.at(&self.whole, self.frame, point)
+    }
+
+    /// The field in a cell, with registers.
+    pub(super) fn evaluator<'c, N: Number>(&self, cell: &'c Cell) -> Evaluator<'c, N> {
+        cell.tape.prepare(self.frame)
+    }
+
+    /// The values of the field at points, in their order.
+    pub(super) fn values<T: Real>(&self, points: &[[T; 3]]) -> Vec<f64> {
+        let mut values = vec![f64::NAN; points.len()];
+        self.by_cell(points, |cell, indices| {
+            let mut field = self.evaluator::<Packet<T, LANES>>(cell);
+            for group in indices.chunks(LANES) {
+                let mut filled = [[T::constant(0.0); 3]; LANES];
+                for (point, &index) in filled.iter_mut().zip(group) {
+                    *point = points[index];
+                }
+                let Packet(found) = field.scalar(packed(&filled));
+                for (&index, value) in group.iter().zip(found) {
+                    values[index] = value.into();
+                }
+            }
+        });
+        values
+    }
+
+    /// Calls a function for each tape, with a cell that has it and the indices of its points.
+    pub(super) fn by_cell<T: Real>(
+        &self,
+        points: &[[T; 3]],
+        mut each: impl FnMut(&Cell, &[usize]),
+    ) {
+        let cells: Vec<_> = points.iter().map(|point| self.at(point.map(Into::into))).collect();
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_unstable_by_key(|&index| (cells[index].id(), index));
+        for indices in order.chunk_by(|&a, &b| cells[a].id() == cells[b].id()) {
+            if let Some(&first) = indices.first() {
+                each(cells[first], indices);
+            }
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! A part of space, and what is known of the field there.
+
+use std::sync::Arc;
+
+use sdfc_graph::eval::{Affine, Tape};
+
+/// A cube, parallel to the axes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cube {
+    pub(super) center: [f64; 3],
+    pub(super) half: f64,
+}
+
+impl Cube {
+    pub(super) fn contains(&self, point: [f64; 3]) -> bool {
+        (0..3).all(|axis| (point[axis] - self.center[axis]).abs() <= self.half)
+    }
+
+    /// The index of the child that contains a point, and its cube.
+    pub(super) fn child(&self, point: [f64; 3]) -> (usize, Self) {
+        let half = 0.5 * self.half;
+        let (mut index, mut center) = (0, self.center);
+        for axis in 0..3 {
+            let is_upper = point[axis] >= self.center[axis];
+            index |= usize::from(is_upper) << axis;
+            center[axis] += if is_upper { half } else { -half };
+        }
+        (index, Self { center, half })
+    }
+
+    /// The distance to a point.
+    pub(super) fn distance(&self, point: [f64; 3]) -> f64 {
+        let beyond = |axis: usize| ((point[axis] - self.center[axis]).abs() - self.half).max(0.0);
+        (0..3).map(|axis| beyond(axis).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The coordinates of its points, grown by a margin.
+    pub(super) fn coordinates(&self, margin: f64) -> [Affine; 3] {
+        [0, 1, 2].map(|axis| {
+            let mut slopes = [0.0; 3];
+            slopes[axis] = self.half + margin;
+            Affine::coordinate(self.center[axis], slopes)
+        })
+    }
+}
+
+/// A part of space, and the facts about the field there.
+#[derive(Debug)]
+pub(crate) struct Cell {
+    /// Infinite for all of space.
+    pub(super) cube: Cube,
+    /// The field there.
+    pub(super) tape: Arc<Tape>,
+    /// True if the field is positive everywhere in the cube.
+    pub(super) is_free: bool,
+    /// At a point p the field is at least `level + slopes * (p - center)`.
+    pub(super) level: f64,
+    pub(super) slopes: [f64; 3],
+    /// True if bounds of the field on a part of a ray can be expected to prove something.
+    pub(super) is_provable: bool,
+    pub(super) is_divided: bool,
+}
+
+impl Cell {
+    pub(super) fn everything(tape: &Arc<Tape>) -> Self {
+        Self {
+            cube: Cube { center: [0.0; 3], half: f64::INFINITY },
+            tape: Arc::clone(tape),
+            is_free: false,
+            level: f64::NEG_INFINITY,
+            slopes: [0.0; 3],
+            is_provable: false,
+            is_divided: false,
+        }
+    }
+
+    /// A number that two cells share if they have one tape.
+    pub(crate) fn id(&self) -> usize {
+        Arc::as_ptr(&self.tape).addr()
+    }
+
+    /// The number of operations of the field there.
+    pub(crate) fn operations(&self) -> usize {
+        self.tape.operations()
+    }
+
+    /// True if bounds of the field on a part of a ray can be expected to prove something.
+    pub(crate) fn is_provable(&self) -> bool {
+        self.is_provable
+    }
+
+    /// The positions between which a ray is in the cell.
+    pub(crate) fn span(&self, [origin, direction]: [[f64; 3]; 2]) -> [f64; 2] {
+        let mut span = [f64::NEG_INFINITY, f64::INFINITY];
+        for axis in 0..3 {
+            if direction[axis] != 0.0 {
+                let middle = (self.cube.center[axis] - origin[axis]) / direction[axis];
+                let reach = self.cube.half / direction[axis].abs();
+                span = [span[0].max(middle - reach), span[1].min(middle + reach)];
+            }
+        }
+        span
+    }
+
+    /// The position up to which a ray is proven free from `t` on, at most `end`; `t` if nothing is
+    /// proven.
+    pub(crate) fn free_until(&self, ray: [[f64; 3]; 2], t: f64, end: f64) -> f64 {
+        if self.is_free {
+            return end;
+        }
+        let [origin, direction] = ray;
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let offset =
+            std::array::from_fn(|axis| origin[axis] + t * direction[axis] - self.cube.center[axis]);
+        let value = self.level + dot(self.slopes, offset);
+        let slope = dot(self.slopes, direction);
+        if value > 0.0 { if slope >= 0.0 { end } else { end.min(t - value / slope) } } else { t }
+    }
+}

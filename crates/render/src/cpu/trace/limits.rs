@@ -1,0 +1,37 @@
+//! The limits of all rays of a picture.
+
+use crate::cpu::method::CpuMethod;
+use crate::cpu::ray::{Ray, Real};
+
+/// The limits of all rays of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Limits<T> {
+    pub(crate) method: CpuMethod,
+    pub(crate) epsilon: T,
+    pub(crate) steps: u32,
+    /// True if rays record how narrowly they pass what they do not hit.
+    pub(crate) records_clearance: bool,
+    /// True if a small value of the field may be far from the surface.
+    pub(crate) is_loose: bool,
+    /// The number of operations of the field's range on a segment.
+    pub(crate) range_operations: usize,
+}
+
+impl<T: Real> Limits<T> {
+    /// True if rays skip what is proven free. Rays that need no proofs, and those that record their
+    /// clearance, take every step.
+    pub(crate) fn skips(&self) -> bool {
+        !self.records_clearance && self.method.proves()
+    }
+
+    /// The distance from the surface below which a point is a hit.
+    pub(crate) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
+        match self.method {
+            CpuMethod::Sphere => self.epsilon,
+            CpuMethod::Auto | CpuMethod::Interval => {
+                let part = T::constant(2.0) * ray.tolerance * ray.footprint(t);
+                part.max(ray.rounding(t))
+            }
+        }
+    }
+}
