@@ -40,12 +40,6 @@ impl Affine {
         self.range
     }
 
-    /// Returns the affine function of the box's coordinates, as its value in the middle and its
-    /// slopes, and the bound of the rest. The bound is infinite if only the range is known.
-    pub fn terms(self) -> (f64, [f64; 3], f64) {
-        (self.center, self.slopes, self.error)
-    }
-
     /// Makes a form, with an error that covers the rounding of its terms, and with the smaller of
     /// both ranges. A form that is no number is replaced by its range.
     fn new(center: f64, slopes: [f64; 3], error: f64, range: Interval) -> Self {
