@@ -7,7 +7,7 @@ use sdfc_march::PixelBlock;
 use super::cells::Cells;
 use super::gradients::Gradient;
 use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
-use super::ray::{Batch, Ray, Real, surface_values, values_at};
+use super::ray::{Batch, Ray, Real, surface_values};
 use super::shade::{Paint, Surface};
 use super::surroundings::{IncomingLight, background_color, light_visibility, through_fog};
 use super::trace::copies::trace_among_copies;
