@@ -72,7 +72,7 @@ fn exponentially_many_shapes_are_refused() {
     let shapes: String = (1u64..50)
         .map(|i| format!("let s{i} = s{0} | s{0}.translate(x: {1})\n", i - 1, 1u64 << i))
         .collect();
-    stopped(&format!("let s0 = sphere(1)\n{shapes}s49"), "E0406", "1000000 nodes");
+    stopped(&format!("let s0 = sphere(1)\n{shapes}s49"), "E0406", "4000000 nodes");
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! Cells of space: what rays and points of one frame share.
 //!
-//! Each cell holds two facts about the field in its cube, both from one evaluation in affine
-//! arithmetic. A lower bound of the field tells which part of a ray is free. A shorter tape leaves
-//! out the operands that cannot matter there. So a large formula is examined once for each cell and
-//! not for each ray.
+//! Each cell holds a shorter tape of the field, from one evaluation in affine arithmetic: it leaves
+//! out the operands that cannot matter in the cell's cube. So a large formula is examined once for
+//! each cell and not for each ray. Values at points do not change.
 
 mod cell;
 mod octree;
@@ -17,7 +16,7 @@ use crate::view::View;
 pub(super) use cell::Cell;
 use octree::Octree;
 
-/// Smaller fields have one cell where rays need no proofs.
+/// Smaller fields have one cell.
 const MIN_OPERATIONS: usize = 200;
 
 /// The cells of one field in one frame.
@@ -35,18 +34,12 @@ impl<'a> Cells<'a> {
         Self { frame, whole: Cell::everything(tape), octree: None }
     }
 
-    /// An octree around the eye, if the field is large enough to pay for it. `proves` says that
-    /// rays need proofs that they are free.
-    pub(super) fn around(
-        tape: &Arc<Tape>,
-        frame: &'a FrameValues,
-        view: &View,
-        proves: bool,
-    ) -> Self {
-        if !proves && tape.operations() < MIN_OPERATIONS {
+    /// An octree around the eye, if the field is large enough to pay for it.
+    pub(super) fn around(tape: &Arc<Tape>, frame: &'a FrameValues, view: &View) -> Self {
+        if tape.operations() < MIN_OPERATIONS {
             return Self::one(tape, frame);
         }
-        let octree = Octree::new(view, proves);
+        let octree = Octree::new(view);
         Self { frame, whole: Cell::everything(tape), octree: Some(octree) }
     }
 

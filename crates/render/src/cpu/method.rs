@@ -54,14 +54,6 @@ impl CpuMethod {
         }
     }
 
-    /// Returns true if its rays need proofs that they are free.
-    pub(crate) fn proves(self) -> bool {
-        match self {
-            Self::Sphere | Self::Auto => false,
-            Self::Interval => true,
-        }
-    }
-
     /// Returns true if it asks for the analytic pre-intersection.
     pub(crate) fn pre_intersects(self) -> bool {
         match self {

@@ -122,12 +122,7 @@ impl CpuScene {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
         let method = known_method(method)?;
-        let is_sampled = method.proves() && self.range.is_none();
-        let cells = |tape| match is_sampled {
-            // Without bounds rays are sampled where the shader samples them.
-            true => Cells::one(tape, frame),
-            false => Cells::around(tape, frame, view, method.proves()),
-        };
+        let cells = |tape| Cells::around(tape, frame, view);
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let wave = self.wave::<T>(view, frame, method, &fields);
         self.draw(view, options, progress, &self.shaded(wave, frame))
@@ -171,7 +166,6 @@ impl CpuScene {
                 steps: view.steps,
                 records_clearance: false,
                 is_loose: self.is_loose,
-                range_operations: self.range.as_ref().map_or(0, Tape::operations),
             },
             field: &fields.whole,
             marched: fields.marched.as_ref(),

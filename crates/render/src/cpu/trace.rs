@@ -4,13 +4,13 @@ pub(super) mod copies;
 mod interval;
 mod limits;
 mod march;
-mod proof;
+
+use sdfc_graph::eval::Evaluator;
 
 use super::method::CpuMethod;
 use super::pre_intersection::PreIntersection;
 use super::ray::{Ray, Real};
 use crate::image::{CAPPED, HIT, MISS};
-use proof::Proof;
 
 pub(super) use limits::Limits;
 pub(super) use march::trace;
@@ -79,8 +79,6 @@ struct Walk<T> {
     /// (`interval`).
     steepness: T,
     unproven: bool,
-    /// True if the ray has skipped a part that is proven free.
-    has_skipped: bool,
 }
 
 /// The decision after a sample of the field.
@@ -109,21 +107,7 @@ impl<T: Real> Walk<T> {
             segment: ray.t_max,
             steepness: T::constant(1.0),
             unproven: false,
-            has_skipped: false,
         }
-    }
-
-    /// True if nothing is known of the field before this sample: at the start, and after a part
-    /// that is proven free.
-    fn is_fresh(&self) -> bool {
-        self.outside.is_none() && self.inside.is_none()
-    }
-
-    /// Moves on to a position up to which the ray is proven free.
-    fn skip_to(&mut self, t: T) {
-        (self.t, self.outside, self.close) = (t, None, false);
-        (self.stride, self.slope) = (T::constant(0.0), T::constant(-1.0));
-        self.has_skipped = true;
     }
 
     fn result(&self, t: T, status: u16) -> Trace<T> {
@@ -146,7 +130,7 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        proof: &mut Proof<'_, '_, T>,
+        range: Option<&mut Evaluator<'_, T>>,
     ) -> Option<Trace<T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
@@ -156,7 +140,7 @@ impl<T: Real> Walk<T> {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
-            CpuMethod::Interval => self.interval(distance, limits, proof),
+            CpuMethod::Interval => self.interval(distance, limits, range),
         };
         match next {
             Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),
@@ -203,7 +187,7 @@ impl<T: Real> Walk<T> {
 
     fn auto(&mut self, distance: T, limits: &Limits<T>) -> Next<T> {
         let zero = T::constant(0.0);
-        if self.is_fresh() && distance < zero {
+        if self.evaluations == 1 && distance < zero {
             return Next::Hit(self.t);
         }
         let near = limits.tolerance(&self.ray, self.t);

@@ -166,6 +166,10 @@ impl Generator<'_> {
             let texts = TEXTS.iter().find(|row| row.0 == parameter.name);
             let texts = texts.map_or(&[][..], |row| row.1);
             let text = self.pick(texts).copied().unwrap_or("sans");
+            if parameter.name == "words" && self.chance(20) {
+                let number = self.int(Want::new(Rate::Const, 0));
+                return Tree::new(Ty::Text, &format!("str(\"{text}\", {{}})"), [number]);
+            }
             return Tree::text(Ty::Text, format!("\"{text}\""));
         }
         let constant = CONSTANT.contains(&parameter.name.as_str());

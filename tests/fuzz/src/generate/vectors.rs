@@ -144,13 +144,18 @@ impl Generator<'_> {
 
     fn lambda(&mut self, ty: &Ty, parameters: &[Ty], result: &Ty, want: Want) -> Tree {
         let names: Vec<String> = parameters.iter().map(|_| self.fresh("q")).collect();
-        let variables = names.iter().zip(parameters).map(|(name, ty)| Variable {
-            name: name.clone(),
+        let variable = |(name, ty): (&str, &Ty)| Variable {
+            name: name.to_owned(),
             ty: ty.clone(),
             rate: Rate::Point,
             range: None,
             texts: Vec::new(),
-        });
+        };
+        let own = names.iter().map(String::as_str).zip(parameters);
+        // Only materials can read these, and only they have patterns.
+        let surface = ["normal", "view"].map(|name| (name, &const { Ty::Vec(3) }));
+        let surface = surface.into_iter().filter(|_| *ty == Ty::pattern());
+        let variables = own.chain(surface).map(variable);
         let rate = if result.is_shape() { want.rate } else { Rate::Point };
         let inner = Want { rate, ..want.deeper() };
         let body = self.with_names(variables.collect(), |this| match (parameters, result) {

@@ -51,13 +51,6 @@ pub(crate) struct Cell {
     pub(super) cube: Cube,
     /// The field there.
     pub(super) tape: Arc<Tape>,
-    /// True if the field is positive everywhere in the cube.
-    pub(super) is_free: bool,
-    /// At a point p the field is at least `level + slopes * (p - center)`.
-    pub(super) level: f64,
-    pub(super) slopes: [f64; 3],
-    /// True if bounds of the field on a part of a ray can be expected to prove something.
-    pub(super) is_provable: bool,
     pub(super) is_divided: bool,
 }
 
@@ -66,10 +59,6 @@ impl Cell {
         Self {
             cube: Cube { center: [0.0; 3], half: f64::INFINITY },
             tape: Arc::clone(tape),
-            is_free: false,
-            level: f64::NEG_INFINITY,
-            slopes: [0.0; 3],
-            is_provable: false,
             is_divided: false,
         }
     }
@@ -84,11 +73,6 @@ impl Cell {
         self.tape.operations()
     }
 
-    /// True if bounds of the field on a part of a ray can be expected to prove something.
-    pub(crate) fn is_provable(&self) -> bool {
-        self.is_provable
-    }
-
     /// The positions between which a ray is in the cell.
     pub(crate) fn span(&self, [origin, direction]: [[f64; 3]; 2]) -> [f64; 2] {
         let mut span = [f64::NEG_INFINITY, f64::INFINITY];
@@ -100,20 +84,5 @@ impl Cell {
             }
         }
         span
-    }
-
-    /// The position up to which a ray is proven free from `t` on, at most `end`; `t` if nothing is
-    /// proven.
-    pub(crate) fn free_until(&self, ray: [[f64; 3]; 2], t: f64, end: f64) -> f64 {
-        if self.is_free {
-            return end;
-        }
-        let [origin, direction] = ray;
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        let offset =
-            std::array::from_fn(|axis| origin[axis] + t * direction[axis] - self.cube.center[axis]);
-        let value = self.level + dot(self.slopes, offset);
-        let slope = dot(self.slopes, direction);
-        if value > 0.0 { if slope >= 0.0 { end } else { end.min(t - value / slope) } } else { t }
     }
 }

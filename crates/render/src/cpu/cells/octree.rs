@@ -12,8 +12,6 @@ use crate::view::footprint::Footprint;
 /// A cell whose side is at most this many pixels wide is not divided; more where a division costs
 /// more or gains less.
 const FINEST_PIXELS: f64 = 16.0;
-/// As above, where the rays need proofs.
-const FINEST_PROVEN_PIXELS: f64 = 12.0;
 /// The least part of a tape that a division is expected to leave out.
 const LEAST_SHARE: f64 = 0.05;
 /// A shorter tape has at most this fraction of the operations.
@@ -23,9 +21,6 @@ const FEW_OPERATIONS: usize = 40;
 /// Cells that are larger in the picture than this fraction of it are divided at once: the tape is
 /// seldom shorter there.
 const COARSEST: f64 = 0.5;
-/// Bounds on parts of rays prove little where a field differs from an affine function by more than
-/// this many times the change of that function.
-const MOST_ERROR: f64 = 16.0;
 /// The maximum number of divisions from the root to a cell.
 const MAX_DEPTH: u32 = 20;
 /// Half the side of the root in lengths of rays: a ray that starts at the end of another one stays
@@ -54,15 +49,13 @@ pub(super) struct Octree {
     footprint: Footprint,
     /// The larger side of the picture.
     pixels: f64,
-    /// True if rays need proofs that they are free.
-    proves: bool,
     /// Number of operations of all shorter tapes.
     operations: AtomicUsize,
 }
 
 impl Octree {
-    /// An octree around the eye. `proves` says that rays need proofs that they are free.
-    pub(super) fn new(view: &View, proves: bool) -> Self {
+    /// An octree around the eye.
+    pub(super) fn new(view: &View) -> Self {
         let (center, half) = (view.eye.to_array(), ROOT_RAYS * view.t_max);
         let extent = half + center.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         Self {
@@ -72,7 +65,6 @@ impl Octree {
             eye: center,
             footprint: view.footprint(),
             pixels: f64::from(view.size[0].max(view.size[1])),
-            proves,
             operations: AtomicUsize::new(0),
         }
     }
@@ -113,23 +105,10 @@ impl Octree {
         let value = over.value;
         let (tape, price) = self.shortened(around, frame, cube, over);
         let is_free = value.range().lo() > 0.0;
-        let finest = match self.proves {
-            true => FINEST_PROVEN_PIXELS,
-            false => FINEST_PIXELS * price.sqrt(),
-        };
-        let is_worth = self.proves || tape.operations() >= FEW_OPERATIONS;
+        let finest = FINEST_PIXELS * price.sqrt();
+        let is_worth = tape.operations() >= FEW_OPERATIONS;
         let is_divided = !is_free && is_worth && is_open && side > finest * width;
-        let (center, slopes, error) = value.terms();
-        let linear: f64 = slopes.iter().map(|slope| slope.abs()).sum();
-        Cell {
-            cube,
-            tape,
-            is_free,
-            level: center - error,
-            slopes: slopes.map(|slope| slope / (cube.half + self.margin)),
-            is_provable: error <= MOST_ERROR * linear,
-            is_divided,
-        }
+        Cell { cube, tape, is_divided }
     }
 
     /// The tape of a cube, and the price of another division: what it takes, in operations of a

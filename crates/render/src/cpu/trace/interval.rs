@@ -1,6 +1,7 @@
 //! The method `interval` on the CPU, as in the shader.
 
-use super::proof::Proof;
+use sdfc_graph::eval::Evaluator;
+
 use super::{Limits, Next, Walk};
 use crate::cpu::ray::Real;
 
@@ -30,15 +31,12 @@ impl<T: Real> Walk<T> {
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        proof: &mut Proof<'_, '_, T>,
+        range: Option<&mut Evaluator<'_, T>>,
     ) -> Next<T> {
         let zero = T::constant(0.0);
         let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
-        if self.evaluations == 0 && !self.has_skipped && distance < hit {
+        if self.evaluations == 0 && distance < hit {
             self.evaluations = 1;
-            return Next::Hit(self.t);
-        }
-        if self.is_fresh() && distance < zero {
             return Next::Hit(self.t);
         }
         self.steepness = self.recent_slope(distance);
@@ -52,8 +50,8 @@ impl<T: Real> Walk<T> {
         if self.t >= self.ray.t_max {
             return Next::At(self.ray.t_max + self.ray.t_max);
         }
-        if proof.is_possible()
-            && let Some(end) = self.proven_end([last, above], limits, proof)
+        if let Some(range) = range
+            && let Some(end) = self.proven_end([last, above], limits, range)
         {
             return Next::At(end);
         }
@@ -69,7 +67,7 @@ impl<T: Real> Walk<T> {
         &mut self,
         [last, above]: [T; 2],
         limits: &Limits<T>,
-        proof: &mut Proof<'_, '_, T>,
+        range: &mut Evaluator<'_, T>,
     ) -> Option<T> {
         let zero = T::constant(0.0);
         let near = limits.tolerance(&self.ray, last);
@@ -80,12 +78,12 @@ impl<T: Real> Walk<T> {
         }
         let mut shortened = false;
         while self.evaluations < limits.steps {
-            let end = (last + self.segment).min(self.ray.t_max).min(proof.end);
+            let end = (last + self.segment).min(self.ray.t_max);
             self.evaluations += 1;
+            let least = range.eval_ray(self.ray.at(last), self.ray.at(end))[0][0];
             let spent = f64::from(self.evaluations) / f64::from(limits.steps);
             let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
             let finest = finest.max(rounding);
-            let least = proof.least(&self.ray, [last, end], self.segment <= finest);
             if least > zero || self.segment <= finest {
                 let proven = least > zero || end - last <= near.max(rounding);
                 self.unproven = self.unproven || !proven;

@@ -13,17 +13,9 @@ pub(crate) struct Limits<T> {
     pub(crate) records_clearance: bool,
     /// True if a small value of the field may be far from the surface.
     pub(crate) is_loose: bool,
-    /// The number of operations of the field's range on a segment.
-    pub(crate) range_operations: usize,
 }
 
 impl<T: Real> Limits<T> {
-    /// True if rays skip what is proven free. Rays that need no proofs, and those that record their
-    /// clearance, take every step.
-    pub(crate) fn skips(&self) -> bool {
-        !self.records_clearance && self.method.proves()
-    }
-
     /// The distance from the surface below which a point is a hit.
     pub(crate) fn tolerance(&self, ray: &Ray<T>, t: T) -> T {
         match self.method {

@@ -2,7 +2,6 @@
 
 use sdfc_graph::eval::{Evaluator, Packet};
 
-use super::proof::Proof;
 use super::{Limits, Trace, Walk};
 use crate::cpu::cells::{Cell, Cells};
 use crate::cpu::pre_intersection::PreIntersection;
@@ -28,15 +27,12 @@ pub(crate) fn trace<T: Real>(
     let mut traces = vec![Trace::untraced(); rays.len()];
     let mut walks: Vec<Walk<T>> = rays.iter().map(|&(ray, known)| Walk::new(ray, known)).collect();
     let mut waiting = Vec::with_capacity(rays.len());
-    for (index, walk) in walks.iter_mut().enumerate() {
+    for (index, walk) in walks.iter().enumerate() {
         if !walk.known.must_march() {
             traces[index] = walk.without_hit();
             continue;
         }
-        match Crossing::new(cells, index, walk, limits) {
-            Ok(crossing) => waiting.push(crossing),
-            Err(ended) => traces[index] = ended,
-        }
+        waiting.push(Crossing::new(cells, index, walk));
     }
     let mut onward = Vec::with_capacity(waiting.len());
     while !waiting.is_empty() {
@@ -44,14 +40,17 @@ pub(crate) fn trace<T: Real>(
         for crossings in waiting.chunk_by(|a, b| a.cell.id() == b.cell.id()) {
             let Some(&Crossing { cell, .. }) = crossings.first() else { continue };
             let mut field = cells.evaluator(cell);
-            let mut proof = Proof::new(cells, cell, range.as_deref_mut(), limits);
-            cross(crossings, &mut walks, &mut field, &mut proof, limits, |index, walk, ended| {
-                let next = ended.map_or_else(|| Crossing::new(cells, index, walk, limits), Err);
-                match next {
-                    Ok(crossing) if crossing.cell.id() == cell.id() => return Some(crossing),
-                    Ok(crossing) => onward.push(crossing),
-                    Err(ended) => traces[index] = ended,
+            let range = range.as_deref_mut();
+            cross(crossings, &mut walks, &mut field, range, limits, |index, walk, ended| {
+                if let Some(ended) = ended {
+                    traces[index] = ended;
+                    return None;
                 }
+                let crossing = Crossing::new(cells, index, walk);
+                if crossing.cell.id() == cell.id() {
+                    return Some(crossing);
+                }
+                onward.push(crossing);
                 None
             });
         }
@@ -68,9 +67,9 @@ fn cross<'c, T: Real>(
     crossings: &[Crossing<'c, T>],
     walks: &mut [Walk<T>],
     field: &mut Batch<'_, T>,
-    proof: &mut Proof<'_, '_, T>,
+    mut range: Option<&mut Evaluator<'_, T>>,
     limits: &Limits<T>,
-    mut next: impl FnMut(usize, &mut Walk<T>, Option<Trace<T>>) -> Option<Crossing<'c, T>>,
+    mut next: impl FnMut(usize, &Walk<T>, Option<Trace<T>>) -> Option<Crossing<'c, T>>,
 ) {
     let mut waiting = crossings.iter().copied();
     let mut lanes: [Option<Crossing<'c, T>>; LANES] = std::array::from_fn(|_| waiting.next());
@@ -84,10 +83,9 @@ fn cross<'c, T: Real>(
         }
         let Packet(distances) = field.scalar(packed(&points));
         for (lane, distance) in lanes.iter_mut().zip(distances) {
-            let Some(Crossing { cell, index, span: [enter, exit] }) = *lane else { continue };
+            let Some(Crossing { index, span: [enter, exit], .. }) = *lane else { continue };
             let walk = &mut walks[index];
-            proof.enter(cell, exit);
-            let ended = walk.take_sample(distance, limits, proof);
+            let ended = walk.take_sample(distance, limits, range.as_deref_mut());
             // A position that is NaN has ended the ray.
             if ended.is_some() || walk.t < enter || walk.t >= exit {
                 *lane = next(index, walk, ended).or_else(|| waiting.next());
@@ -97,37 +95,14 @@ fn cross<'c, T: Real>(
 }
 
 impl<'c, T: Real> Crossing<'c, T> {
-    /// Moves a ray on to the next position that must be sampled; its result if it ends before.
-    fn new(
-        cells: &'c Cells<'_>,
-        index: usize,
-        walk: &mut Walk<T>,
-        limits: &Limits<T>,
-    ) -> Result<Self, Trace<T>> {
+    /// The crossing of the cell around the next sample of a ray.
+    fn new(cells: &'c Cells<'_>, index: usize, walk: &Walk<T>) -> Self {
         let ray = [walk.ray.origin, walk.ray.direction].map(|v| v.map(Into::into));
-        let skips = limits.skips() && walk.inside.is_none();
-        loop {
-            let cell = cells.at(walk.ray.at(walk.t).map(Into::into));
-            let [enter, exit] = cell.span(ray);
-            let (t, nudge): (f64, f64) = (walk.t.into(), walk.ray.rounding(walk.t).into());
-            // Rounded up, so that each cell is left.
-            let exit = exit.max(t) + nudge;
-            let span = [enter.min(t) - nudge, exit].map(T::constant);
-            let crossing = Self { index, cell, span };
-            if !skips {
-                return Ok(crossing);
-            }
-            let free = cell.free_until(ray, t, exit);
-            if free <= t + nudge {
-                return Ok(crossing);
-            }
-            walk.skip_to(T::constant(free));
-            if let Some(ended) = walk.ended(walk.t <= walk.end, limits) {
-                return Err(ended);
-            }
-            if free < exit {
-                return Ok(crossing);
-            }
-        }
+        let cell = cells.at(walk.ray.at(walk.t).map(Into::into));
+        let [enter, exit] = cell.span(ray);
+        let (t, nudge): (f64, f64) = (walk.t.into(), walk.ray.rounding(walk.t).into());
+        // Rounded outwards, so that each cell is left.
+        let span = [enter.min(t) - nudge, exit.max(t) + nudge].map(T::constant);
+        Self { index, cell, span }
     }
 }
