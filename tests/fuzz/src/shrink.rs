@@ -1,6 +1,7 @@
 //! Makes a program small while a fault stays.
 
 use crate::tree::{Path, Piece, Program, Tree};
+use crate::types::Ty;
 
 /// Returns a smaller program that still fails. `fails` is asked at most `most` times.
 ///
@@ -69,7 +70,12 @@ fn candidates(program: &Program, path: &Path) -> Vec<Program> {
     let mut inner = Vec::new();
     part.paths(&mut Vec::new(), &mut inner);
     let inner = inner.iter().filter_map(|path| part.at(path)).skip(1);
-    let mut inner: Vec<Tree> = inner.filter(|tree| tree.ty == part.ty).cloned().collect();
+    let in_place = |tree: &Tree| match (&part.ty, &tree.ty) {
+        // A solid within a declaration is drawn instead.
+        (Ty::Statement, Ty::Solid) => Some(Tree::new(Ty::Statement, "{}", [tree.clone()])),
+        (whole, ty) => (whole == ty).then(|| tree.clone()),
+    };
+    let mut inner: Vec<Tree> = inner.filter_map(in_place).collect();
     inner.sort_by_key(Tree::size);
     parts.extend(inner);
     parts.extend(shorter_lists(part));
