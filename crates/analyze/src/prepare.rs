@@ -17,7 +17,7 @@ use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
 use crate::reroll::materials::reroll_materials;
-use crate::reroll::rewrite::{Rerolled, reroll, similar_groups};
+use crate::reroll::rewrite::{reroll, similar_groups};
 use crate::reroll::strategy::{LoopStrategy, has_secondary_rays};
 use crate::shapes::minimum;
 
@@ -108,19 +108,18 @@ fn flatten(
     let folded = fold_transforms(graph, &flat);
     program.names = folded.names(graph, &expander.names());
     let (fields, material) = folded.roots.split_at(count);
-    let unrolled = || Rerolled { roots: fields.to_vec(), ..Rerolled::default() };
-    let rerolled = if uses_loops { reroll(graph, fields) } else { unrolled() };
-    let material = match uses_loops {
-        true => reroll_materials(graph, material, &rerolled.replaced),
-        false => material.to_vec(),
-    };
-    let Rerolled { roots: fields, loops, .. } = rerolled;
+    let (mut fields, mut material, mut loops) = (fields.to_vec(), material.to_vec(), Vec::new());
+    if uses_loops {
+        let rerolled = reroll(graph, &fields);
+        material = reroll_materials(graph, &material, &rerolled.replaced);
+        (fields, loops) = (rerolled.roots, rerolled.loops);
+    }
     let Some(&distance) = fields.first() else { return Ok(Report::default()) };
     program.distance = Some(distance);
-    program.material = material.try_into().ok();
     let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
     program.gradient = Some(gradient);
-    (program.material, program.seen_material) = materials(graph, program.material, gradient);
+    (program.material, program.seen_material) =
+        materials(graph, material.try_into().ok(), gradient);
     program.is_loose = field.divided.iter().any(|&shape| is_loose(graph, &qualities, shape));
     program.cullable_loops = cullable_loops(graph, &fields, lipschitz);
     if !program.cullable_loops.is_empty() && has_secondary_rays(&program.settings) {
@@ -148,7 +147,8 @@ fn flatten(
     })
 }
 
-/// The material of a point, and that of a surface that is seen if it depends on how.
+/// The material of a point; and that of a seen surface, if it depends on the normal or on the
+/// direction to the eye.
 fn materials(
     graph: &mut Graph,
     fields: Option<[NodeId; 6]>,

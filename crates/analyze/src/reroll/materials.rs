@@ -11,10 +11,12 @@
 
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
-    Binary, Const, FAR, Graph, IdMap, Loop, LoopVar, NodeId, SkipCondition, Table, Type, reachable,
+    Binary, Const, FAR, Graph, IdMap, LoopVar, NodeId, SkipCondition, Table, Type, reachable,
 };
 
-use crate::reroll::rewrite::{MIN_OPERANDS, grouped, rebuilt};
+use crate::reroll::rewrite::{
+    MIN_OPERANDS, common_operand, grouped, loop_over, positions_by_key, rebuilt,
+};
 use crate::reroll::selection::{Selection, minimum, selections};
 use crate::reroll::template::{ShapeKeys, template};
 
@@ -29,84 +31,74 @@ pub(crate) fn reroll_materials(
     fields: &[NodeId],
     replaced: &IdMap<NodeId>,
 ) -> Vec<NodeId> {
-    let mut looped = Looped::default();
+    let mut lookups = Lookups::default();
     let mut keys = ShapeKeys::default();
     for selection in selections(graph, &reachable(graph, fields)) {
-        if selection.operands.len() >= MIN_OPERANDS {
-            looped.add(graph, &mut keys, &selection, replaced);
+        if selection.operands.len() < MIN_OPERANDS {
+            continue;
+        }
+        if let Some((nearest, values)) = lookup(graph, &mut keys, &selection, replaced) {
+            lookups.values.extend(selection.heads.iter().copied().zip(values));
+            lookups.minima.insert(selection.distances, nearest.distance);
         }
     }
-    if looped.shown.is_empty() {
+    if lookups.values.is_empty() {
         return fields.to_vec();
     }
     let mut new: IdMap<NodeId> = IdMap::default();
     for id in reachable(graph, fields) {
-        let known = looped.of(graph, id).or_else(|| replaced.get(id));
+        let known = lookups.of(graph, id).or_else(|| replaced.get(id));
         let built = known.unwrap_or_else(|| rebuilt(graph, id, &new));
         new.insert(id, built);
     }
     fields.iter().map(|&field| new.get(field).unwrap_or(field)).collect()
 }
 
-/// What loops have taken the place of.
+/// The nodes that take the place of selections and of their minima.
 #[derive(Default)]
-struct Looped {
-    /// What is shown instead of the heads of selections.
-    shown: FxHashMap<NodeId, NodeId>,
+struct Lookups {
+    /// The new values of the heads of selections.
+    values: FxHashMap<NodeId, NodeId>,
     /// The distances to the nearest operand, by the arguments of the minimum.
     minima: FxHashMap<[NodeId; 2], NodeId>,
 }
 
-impl Looped {
-    /// Adds a selection, unless no loop is worth it.
-    fn add(
-        &mut self,
-        graph: &mut Graph,
-        keys: &mut ShapeKeys,
-        selection: &Selection,
-        replaced: &IdMap<NodeId>,
-    ) -> Option<()> {
-        let kinds = kinds(graph, keys, selection)?;
-        let nearest = nearest(graph, keys, &selection.operands, replaced)?;
-        let shown = shown(graph, keys, selection, &kinds, nearest.number)?;
-        self.shown.extend(selection.heads.iter().copied().zip(shown));
-        self.minima.insert(selection.distances, nearest.distance);
-        Some(())
-    }
-
-    /// What has taken the place of a node.
+impl Lookups {
+    /// The node that takes the place of another one.
     fn of(&self, graph: &Graph, id: NodeId) -> Option<NodeId> {
         let minimum = || self.minima.get(&minimum(graph, id)?);
-        self.shown.get(&id).or_else(minimum).copied()
+        self.values.get(&id).or_else(minimum).copied()
     }
 }
 
-/// What each head of a selection shows of the operand with a number.
-fn shown(
+/// The nearest operand of a selection, and the value of each head for it; `None` if no loop is
+/// worth it.
+fn lookup(
     graph: &mut Graph,
-    keys: &ShapeKeys,
+    keys: &mut ShapeKeys,
     selection: &Selection,
-    kinds: &[Vec<usize>],
-    number: NodeId,
-) -> Option<Vec<NodeId>> {
-    let (kind, index) = places(graph, kinds, number);
-    let mut shown: Option<Vec<NodeId>> = None;
+    replaced: &IdMap<NodeId>,
+) -> Option<(Numbered, Vec<NodeId>)> {
+    let kinds = kinds(graph, keys, selection)?;
+    let nearest = nearest(graph, keys, &selection.operands, replaced)?;
+    let (kind, index) = places(graph, &kinds, nearest.number);
+    let mut values: Option<Vec<NodeId>> = None;
     for (number, members) in kinds.iter().enumerate() {
         let of_members = |values: &Vec<NodeId>| members.iter().map(|&at| values[at]).collect();
         let lists: Vec<Vec<NodeId>> = selection.values.iter().map(of_members).collect();
         let lists: Vec<&[NodeId]> = lists.iter().map(Vec::as_slice).collect();
-        let values = template(graph, keys, &lists, None, index)?;
-        shown = Some(match shown {
-            None => values,
+        let of_kind = template(graph, keys, &lists, None, index)?;
+        values = Some(match values {
+            None => of_kind,
             Some(others) => {
                 let number = graph.number(number as f64);
                 let is_kind = graph.binary(Binary::Eq, kind, number);
-                let both = values.into_iter().zip(others);
+                let both = of_kind.into_iter().zip(others);
                 both.map(|(value, other)| graph.select(is_kind, value, other)).collect()
             }
         });
     }
-    shown
+    Some((nearest, values?))
 }
 
 /// Groups of operands whose materials are equal up to constants; `None` if there are too many.
@@ -115,19 +107,13 @@ fn kinds(
     keys: &mut ShapeKeys,
     selection: &Selection,
 ) -> Option<Vec<Vec<usize>>> {
-    let mut kind_of: FxHashMap<Vec<u32>, usize> = FxHashMap::default();
-    let mut kinds: Vec<Vec<usize>> = Vec::new();
     for values in &selection.values {
         keys.compute(graph, values);
     }
-    for operand in 0..selection.operands.len() {
-        let key = selection.values.iter().map(|values| keys.of(values[operand])).collect();
-        let kind = *kind_of.entry(key).or_insert(kinds.len());
-        if kind == kinds.len() {
-            kinds.push(Vec::new());
-        }
-        kinds[kind].push(operand);
-    }
+    let key = |operand: usize| -> Vec<u32> {
+        selection.values.iter().map(|values| keys.of(values[operand])).collect()
+    };
+    let kinds = positions_by_key((0..selection.operands.len()).map(key));
     (kinds.len() <= MAX_KINDS).then_some(kinds)
 }
 
@@ -163,11 +149,7 @@ fn nearest(
     let mut nearest: Option<Numbered> = None;
     let mut has_loop = false;
     for group in grouped(graph, keys, operands) {
-        let looped = if group.len() < MIN_OPERANDS {
-            None
-        } else {
-            nearest_of_kind(graph, keys, operands, &group)
-        };
+        let looped = nearest_of_kind(graph, keys, operands, &group);
         has_loop |= looped.is_some();
         let found = looped.map_or_else(
             || group.iter().map(|&member| alone(graph, operands, member, replaced)).collect(),
@@ -193,7 +175,7 @@ fn alone(
     Numbered { distance, number: graph.number(member as f64) }
 }
 
-/// The nearest of similar operands, by a loop; `None` if they have no common formula.
+/// The nearest of similar operands, by a loop; `None` if they are too few or have no common formula.
 fn nearest_of_kind(
     graph: &mut Graph,
     keys: &ShapeKeys,
@@ -201,8 +183,8 @@ fn nearest_of_kind(
     group: &[usize],
 ) -> Option<Numbered> {
     let members: Vec<NodeId> = group.iter().map(|&member| operands[member]).collect();
+    let operand = common_operand(graph, keys, &members)?;
     let index = graph.variable(0, LoopVar::Index, Type::Scalar);
-    let operand = template(graph, keys, &[&members], None, index)?[0];
     let elements = group.iter().map(|&member| Const::new(Type::Scalar, &[member as f64]));
     let elements: Vec<Const> = elements.collect();
     let number = graph.element(Table { ty: Type::Scalar, elements }, index);
@@ -211,15 +193,8 @@ fn nearest_of_kind(
     let init = vec![graph.number(FAR), graph.number(0.0)];
     let step = vec![graph.min(best[0], operand), graph.select(is_nearer, number, best[1])];
     let margin = graph.number(0.0);
-    let result = graph.add_loop(Loop {
-        depth: 0,
-        max_iterations: group.len() as u32,
-        count: None,
-        condition: None,
-        init,
-        step,
-        skip: Some(SkipCondition { operand, margin }),
-    });
+    let skip = Some(SkipCondition { operand, margin });
+    let result = loop_over(graph, group.len(), init, step, skip);
     Some(Numbered { distance: result[0], number: result[1] })
 }
 

@@ -9,6 +9,8 @@
 //! The pass recognises formulas, not shapes: `chain` finds the chains, and `template` compares
 //! operands up to constants.
 
+use std::hash::Hash;
+
 use rustc_hash::FxHashMap;
 use sdfc_graph::{
     Blends, FAR, Graph, IdMap, IdSet, Loop, LoopVar, NodeId, SkipCondition, Type, substitute,
@@ -29,14 +31,14 @@ pub struct RerolledLoop {
     pub blended: bool,
 }
 
-/// What the pass makes of some roots.
-#[derive(Debug, Default)]
+/// The result of the pass.
+#[derive(Debug)]
 pub(crate) struct Rerolled {
     /// The new roots.
     pub(crate) roots: Vec<NodeId>,
     /// The loops in them.
     pub(crate) loops: Vec<RerolledLoop>,
-    /// What has become of the chains that have loops now.
+    /// For each chain that has loops now, by its old value, the new value.
     pub(crate) replaced: IdMap<NodeId>,
 }
 
@@ -85,10 +87,15 @@ pub(super) fn grouped(
     values: &[NodeId],
 ) -> Vec<Vec<usize>> {
     keys.compute(graph, values);
-    let mut group_of: FxHashMap<u32, usize> = FxHashMap::default();
+    positions_by_key(values.iter().map(|&value| keys.of(value)))
+}
+
+/// The positions of equal keys, in the order of their first positions.
+pub(super) fn positions_by_key<K: Eq + Hash>(keys: impl Iterator<Item = K>) -> Vec<Vec<usize>> {
+    let mut group_of: FxHashMap<K, usize> = FxHashMap::default();
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for (position, &value) in values.iter().enumerate() {
-        let group = *group_of.entry(keys.of(value)).or_insert(groups.len());
+    for (position, key) in keys.enumerate() {
+        let group = *group_of.entry(key).or_insert(groups.len());
         if group == groups.len() {
             groups.push(Vec::new());
         }
@@ -190,16 +197,10 @@ impl Rerolling<'_> {
 
     fn plan_min(&mut self, operands: &[NodeId]) -> Vec<Part> {
         let (mut values, mut loops) = (Vec::new(), Vec::new());
-        let index = self.graph.variable(0, LoopVar::Index, Type::Scalar);
         for group in grouped(self.graph, &mut self.keys, operands) {
             let members: Vec<NodeId> = group.iter().map(|&position| operands[position]).collect();
-            let formulas = if members.len() < MIN_OPERANDS {
-                None
-            } else {
-                template(self.graph, &self.keys, &[&members], None, index)
-            };
-            match formulas {
-                Some(formulas) => loops.push(self.min_loop(formulas[0], members.len())),
+            match common_operand(self.graph, &self.keys, &members) {
+                Some(operand) => loops.push(self.min_loop(operand, members.len())),
                 None => values.extend(members.into_iter().map(Part::Value)),
             }
         }
@@ -286,18 +287,7 @@ impl Rerolling<'_> {
                 Part::Loop { next, skip, operands, blended } => {
                     let far = self.graph.number(FAR);
                     let start = value.filter(|_| blended).unwrap_or(far);
-                    let cap = operands as u32;
-                    let (start, next) = (vec![start], vec![next]);
-                    let repeated = Loop {
-                        depth: 0,
-                        max_iterations: cap,
-                        count: None,
-                        condition: None,
-                        init: start,
-                        step: next,
-                        skip,
-                    };
-                    let result = self.graph.add_loop(repeated)[0];
+                    let result = loop_over(self.graph, operands, vec![start], vec![next], skip)[0];
                     match value.filter(|_| !blended) {
                         Some(value) => self.graph.min(value, result),
                         None => result,
@@ -308,6 +298,40 @@ impl Rerolling<'_> {
         self.plans[plan].parts = parts;
         value.unwrap_or_else(|| self.graph.number(FAR))
     }
+}
+
+/// The formula of similar operands of a minimum, by the index of a loop; `None` if they are too few
+/// or differ in more than constants.
+pub(super) fn common_operand(
+    graph: &mut Graph,
+    keys: &ShapeKeys,
+    operands: &[NodeId],
+) -> Option<NodeId> {
+    if operands.len() < MIN_OPERANDS {
+        return None;
+    }
+    let index = graph.variable(0, LoopVar::Index, Type::Scalar);
+    template(graph, keys, &[operands], None, index)?.first().copied()
+}
+
+/// The state after a loop with one iteration for each operand.
+pub(super) fn loop_over(
+    graph: &mut Graph,
+    operands: usize,
+    init: Vec<NodeId>,
+    step: Vec<NodeId>,
+    skip: Option<SkipCondition>,
+) -> Vec<NodeId> {
+    let max_iterations = operands as u32;
+    graph.add_loop(Loop {
+        depth: 0,
+        max_iterations,
+        count: None,
+        condition: None,
+        init,
+        step,
+        skip,
+    })
 }
 
 /// Rebuilds a node if one of its arguments was replaced.

@@ -1,4 +1,4 @@
-//! Selections by the nearest operand: what a union shows at a point.
+//! Selections by the nearest operand, such as the colour of a union.
 //!
 //! The material of a union is that of its nearest operand, the first of equals. Its formula is a
 //! tree: where the distance is `min(a, b)`, the material is `select(a <= b, x, y)`, and `a` and `x`
@@ -8,7 +8,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use sdfc_graph::{Binary, Graph, IdSet, Node, NodeId, Ternary};
 
-/// What several nodes show of the nearest of some operands.
+/// Nodes whose values belong to the nearest of some operands.
 #[derive(Debug)]
 pub(super) struct Selection {
     /// The arguments of the minimum of all operands.
@@ -74,42 +74,42 @@ fn inner_pairs(graph: &Graph, pairs: &[[NodeId; 2]]) -> FxHashSet<[NodeId; 2]> {
     found
 }
 
-/// The operands below two distances, and what the heads show of them.
+/// The operands below two distances, and the values of the heads for each of them.
 fn selection(graph: &Graph, distances: [NodeId; 2], heads: Vec<NodeId>) -> Selection {
     let (mut operands, mut values) = (Vec::new(), vec![Vec::new(); heads.len()]);
     let mut seen = IdSet::default();
     let mut pending = Vec::new();
     push(graph, &mut pending, distances, &heads);
-    while let Some((distance, shown)) = pending.pop() {
+    while let Some((distance, selected)) = pending.pop() {
         // An operand that occurred before is never nearer than itself.
         if !seen.insert(distance) {
             continue;
         }
         if let Some(pair) = minimum(graph, distance) {
-            push(graph, &mut pending, pair, &shown);
+            push(graph, &mut pending, pair, &selected);
             continue;
         }
         operands.push(distance);
-        for (list, value) in values.iter_mut().zip(shown) {
+        for (list, value) in values.iter_mut().zip(selected) {
             list.push(value);
         }
     }
     Selection { distances, heads, operands, values }
 }
 
-/// Adds both arguments of a minimum, the first on top, with what is shown of each.
+/// Adds both arguments of a minimum, the first on top, with the values of each.
 fn push(
     graph: &Graph,
     pending: &mut Vec<(NodeId, Vec<NodeId>)>,
     pair: [NodeId; 2],
-    shown: &[NodeId],
+    selected: &[NodeId],
 ) {
     let side = |side: usize| {
         let value = |&id: &NodeId| match choice(graph, id) {
             Some(choice) if choice.distances == pair => choice.values[side],
             _ => id,
         };
-        (pair[side], shown.iter().map(value).collect())
+        (pair[side], selected.iter().map(value).collect())
     };
     pending.extend([side(1), side(0)]);
 }

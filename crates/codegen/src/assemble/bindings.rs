@@ -5,8 +5,8 @@ use sdfc_graph::{NodeId, Program, Rays};
 use sdfc_march::{Features, MethodDefinition, stubs};
 
 use crate::error::Error;
-use crate::lower::function_of;
 use crate::lower::inputs::Inputs;
+use crate::lower::{POINT, function_of};
 use crate::reflection::Role;
 
 /// The binding of the uniform slots.
@@ -27,7 +27,7 @@ pub(crate) struct StubBinding {
 
 impl StubBinding {
     pub(crate) fn of_point(role: Option<Role>, stub: &'static str, root: NodeId) -> Self {
-        Self { role, stub, root, arguments: &["p"] }
+        Self { role, stub, root, arguments: &[POINT] }
     }
 
     /// A function without arguments, of a per-frame value.

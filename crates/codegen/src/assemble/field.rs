@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::link::template::{bind, find_function, parse_template};
 use crate::lower::inputs::{declare_members, raw_inputs};
 use crate::lower::tables::Tables;
-use crate::lower::{struct_function, types};
+use crate::lower::{POINT, struct_function, types};
 use crate::names::{check_prefix, make_public};
 use crate::options::FieldOptions;
 use crate::reflection::{ModuleParts, Role};
@@ -95,7 +95,7 @@ fn functions(
         let structure = material_type(&mut module);
         let (stub, types) = (stubs::MATERIAL, &mut module.types);
         let function =
-            struct_function(program, &inputs, types, stub, (&fields, structure), &["p"])?;
+            struct_function(program, &inputs, types, stub, (&fields, structure), &[POINT])?;
         parts.functions.push((Role::Material, bind_or_add(&mut module, stub, function)?));
     }
     for (role, name) in [(Role::Trace, stubs::TRACE), (Role::Intersect, stubs::INTERSECT)] {

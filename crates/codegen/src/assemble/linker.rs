@@ -9,7 +9,7 @@ use super::template::{features, is_culled, template, used_slots};
 use crate::error::Error;
 use crate::link::template::{bind, find_function};
 use crate::lower::inputs::{Inputs, declare_variable};
-use crate::lower::{store_function, struct_function};
+use crate::lower::{POINT, store_function, struct_function};
 use crate::reflection::{ModuleParts, Role};
 use crate::shader::Shader;
 use sdfc_march::Features;
@@ -27,7 +27,7 @@ struct MaterialStub {
 
 /// The stub that shading calls; `None` without materials.
 fn material(program: &Program) -> Option<MaterialStub> {
-    let arguments = &["p", "normal", "toward_eye"];
+    let arguments = &[POINT, "normal", "toward_eye"];
     let seen = program.seen_material.map(|fields| (stubs::SEEN_MATERIAL, fields, &arguments[..]));
     let (stub, fields, arguments) =
         seen.or_else(|| Some((stubs::MATERIAL, program.material?, &arguments[..1])))?;

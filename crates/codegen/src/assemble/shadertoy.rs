@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::link::template::{bind, find_function, find_variable};
 use crate::lower::body::Body;
 use crate::lower::inputs::{Inputs, Raw, input_name, raw_inputs};
-use crate::lower::{struct_function, types};
+use crate::lower::{POINT, struct_function, types};
 use crate::shader::Shader;
 
 /// The members of the view that `set_view` of `shadertoy.wgsl` sets.
@@ -159,7 +159,7 @@ fn camera_of_scene(
     nodes: &[NodeId],
 ) -> Result<Function, Error> {
     let structure = camera_type(module)?;
-    struct_function(program, inputs, &mut module.types, stubs::CAMERA, (nodes, structure), &["p"])
+    struct_function(program, inputs, &mut module.types, stubs::CAMERA, (nodes, structure), &[POINT])
 }
 
 /// The camera of the view.

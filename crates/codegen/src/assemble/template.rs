@@ -35,7 +35,6 @@ pub(crate) fn ray_features(program: &Program, pre_intersects: bool) -> Features 
         copies: pre_intersects && copies.is_some(),
         proved: program.range.is_some(),
         loose: program.is_loose,
-        loops: has_loops(program),
         ..Features::default()
     }
 }
@@ -47,6 +46,7 @@ pub(super) fn features(program: &Program, pre_intersects: bool) -> Features {
         materials: program.material.is_some(),
         seen_materials: program.seen_material.is_some(),
         unlit: is_unlit(program),
+        loops: has_loops(program),
         reflections: settings.reflections.is_some_and(|mirrors| mirrors.count > 0),
         occlusion: settings.occlusion.is_some(),
         sky: settings.sky.is_some(),

@@ -8,7 +8,7 @@ use sdfc_graph::{LoopId, LoopVar, Node, NodeId, SkipCondition, TableId, Type};
 
 use super::body::{Body, Value};
 use super::iteration::Iteration;
-use super::lowering::{Lowering, hint};
+use super::lowering::{Lowering, POINT, hint};
 use super::types;
 use crate::error::Error;
 
@@ -110,10 +110,10 @@ impl Lowering<'_> {
     }
 
     /// Where the active iterations are listed, if they are. Lists depend on the point, so a
-    /// function of a whole ray runs all iterations.
+    /// function of a ray or of a segment, whose first argument is its start, runs all iterations.
     fn listed(&mut self, skip: Option<SkipCondition>) -> Option<Listed> {
-        let is_at_a_point = self.arguments.first() == Some(&"p");
-        let lists = self.inputs.active_lists.as_ref().filter(|_| is_at_a_point)?;
+        let is_of_a_point = self.arguments.first() == Some(&POINT);
+        let lists = self.inputs.active_lists.as_ref().filter(|_| is_of_a_point)?;
         let (spans, number, listed) = (lists.spans, lists.index_of(skip)?, lists.counter);
         let is_first = !self.uses_lists;
         self.uses_lists = true;

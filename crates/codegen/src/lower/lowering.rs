@@ -16,6 +16,9 @@ use super::types;
 use super::uses::{Uses, is_component, scheduled};
 use crate::error::Error;
 
+/// The name of the point that a function is evaluated at.
+pub(crate) const POINT: &str = "p";
+
 /// Makes a function of several points, by level, that returns one node's value.
 pub(crate) fn function_of(
     program: &Program,
@@ -126,7 +129,7 @@ impl<'a> Lowering<'a> {
     ) -> Self {
         let uses = Uses::count(&program.graph, roots, inputs);
         let (body, values, matrices, words, loops, iterations, uses_lists) = Default::default();
-        let arguments = &["p"];
+        let arguments = &[POINT];
         Self {
             program,
             inputs,

@@ -12,4 +12,6 @@ pub(crate) mod tables;
 pub(crate) mod types;
 mod uses;
 
-pub(crate) use lowering::{function_of, function_of_iteration, store_function, struct_function};
+pub(crate) use lowering::{
+    POINT, function_of, function_of_iteration, store_function, struct_function,
+};

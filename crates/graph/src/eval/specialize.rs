@@ -70,19 +70,19 @@ impl Tape {
     /// ```
     pub fn over(&self, frame: &FrameValues, region: [Affine; 3]) -> FieldOver {
         let trace = Trace::default();
-        let axes = trace.0.borrow_mut().point();
+        let axes = trace.recorder.borrow_mut().point();
         let point = std::array::from_fn(|axis| Traced {
             form: region[axis],
             constant: None,
             source: Some((&trace, axes[axis])),
         });
         let kept = |value: f64| Traced {
-            source: Some((&trace, trace.0.borrow_mut().constant(value))),
+            source: Some((&trace, trace.recorder.borrow_mut().constant(value))),
             ..Traced::constant(value)
         };
         let result = self.evaluator(frame, kept).scalar(point);
         let output = result.id(&trace);
-        let (recorder, operations) = (trace.0.take(), trace.1.get());
+        let (recorder, operations) = (trace.recorder.take(), trace.operations.get());
         let is_whole = recorder.definitions.len() <= MOST_OPERATIONS;
         let output = output.filter(|_| is_whole);
         let tape = output.map(|output| recorder.finish(vec![Lanes::scalar(output)]));
@@ -102,9 +102,14 @@ pub struct FieldOver {
     pub operations: usize,
 }
 
-/// The operations recorded so far, and the number of all operations.
+/// The evaluation so far.
 #[derive(Default)]
-struct Trace(RefCell<Recorder>, Cell<usize>);
+struct Trace {
+    /// The operations that are recorded.
+    recorder: RefCell<Recorder>,
+    /// Number of operations that were run.
+    operations: Cell<usize>,
+}
 
 /// A number over the region, and where it comes from.
 #[derive(Clone, Copy)]
@@ -122,7 +127,7 @@ impl<'t> Traced<'t> {
     fn id(self, trace: &Trace) -> Option<u32> {
         match (self.source, self.constant) {
             (Some((_, id)), _) => Some(id),
-            (None, Some(constant)) => Some(trace.0.borrow_mut().constant(constant)),
+            (None, Some(constant)) => Some(trace.recorder.borrow_mut().constant(constant)),
             (None, None) => None,
         }
     }
@@ -140,7 +145,7 @@ impl<'t> Traced<'t> {
     fn apply(op: Op, x: [Self; 3]) -> Self {
         let form: Affine = op.apply(|i| x[i].form);
         if let Some((trace, _)) = x[..op.arity()].iter().find_map(|x| x.source) {
-            trace.1.set(trace.1.get() + 1);
+            trace.operations.set(trace.operations.get() + 1);
         }
         match Self::picked(op, x) {
             Some(i) => Self { form, ..x[i] },
@@ -223,11 +228,11 @@ impl<'t> Traced<'t> {
         let trace = arguments.iter().find_map(|x| x.source).map(|(trace, _)| trace);
         let source = trace.and_then(|trace| {
             if let Some(constant) = constant {
-                return Some((trace, trace.0.borrow_mut().constant(constant)));
+                return Some((trace, trace.recorder.borrow_mut().constant(constant)));
             }
             let [a, b, c] = x.map(|x| x.id(trace));
             let ids = [a?, b?, c?];
-            let mut recorder = trace.0.borrow_mut();
+            let mut recorder = trace.recorder.borrow_mut();
             // A tape that is too long is given up at the end.
             let is_full = recorder.definitions.len() > MOST_OPERATIONS;
             Some((trace, if is_full { ids[0] } else { recorder.define_apply(op, ids) }))
@@ -253,7 +258,7 @@ macro_rules! traced_number {
                 let form = self.form.element(list);
                 let constant = self.constant.map(|at| at.element(list));
                 let source = self.source.map(|(trace, at)| {
-                    let mut recorder = trace.0.borrow_mut();
+                    let mut recorder = trace.recorder.borrow_mut();
                     let id = match constant {
                         Some(constant) => recorder.constant(constant),
                         None => recorder.lookup(list.to_vec(), at),

@@ -130,12 +130,11 @@ fn march(ray: Ray, end: f32) -> Trace {
         close = distance < near;
         if close {
             stride = distance / max(-gain, MIN_SLOPE);
-            // A ray along the surface need not take shorter steps.
-            if gain > -MIN_SLOPE {
-                stride = max(stride, MIN_STEP_FRACTION * near);
-            }
+            // A ray along the surface, or one that looks for a change of sign, need not take shorter
+            // steps.
             if LOOSE {
-                // A ray that must find a change of sign needs no shorter steps either.
+                stride = max(stride, MIN_STEP_FRACTION * near);
+            } else if gain > -MIN_SLOPE {
                 stride = max(stride, MIN_STEP_FRACTION * near);
             }
         } else {

@@ -1,4 +1,4 @@
-//! Cells of space: what rays and points of one frame share.
+//! The cells of space that the rays and points of one frame share.
 //!
 //! Each cell holds a shorter tape of the field, from one evaluation in affine arithmetic: it leaves
 //! out the operands that cannot matter in the cell's cube. So a large formula is examined once for
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use sdfc_graph::eval::{Evaluator, FrameValues, Number, Packet, Tape};
 
-use super::ray::{LANES, Real, packed};
+use super::ray::{LANES, Real, packed_from};
 use crate::view::View;
 pub(super) use cell::Cell;
 use octree::Octree;
@@ -62,11 +62,8 @@ impl<'a> Cells<'a> {
         self.by_cell(points, |cell, indices| {
             let mut field = self.evaluator::<Packet<T, LANES>>(cell);
             for group in indices.chunks(LANES) {
-                let mut filled = [[T::constant(0.0); 3]; LANES];
-                for (point, &index) in filled.iter_mut().zip(group) {
-                    *point = points[index];
-                }
-                let Packet(found) = field.scalar(packed(&filled));
+                let group_points = group.iter().map(|&index| points[index]);
+                let Packet(found) = field.scalar(packed_from(group_points));
                 for (&index, value) in group.iter().zip(found) {
                     values[index] = value.into();
                 }

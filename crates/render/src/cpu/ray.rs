@@ -75,12 +75,8 @@ pub(super) fn values_at<T: Real>(
 ) -> Vec<Vec<[f64; 4]>> {
     let mut values = Vec::with_capacity(points.len());
     for group in points.chunks(LANES) {
-        let mut filled = [[T::constant(0.0); 3]; LANES];
-        filled[..group.len()].copy_from_slice(group);
-        let roots = evaluator.eval(packed(&filled));
-        values.extend((0..group.len()).map(|lane| {
-            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
-        }));
+        let roots = evaluator.eval(packed_from(group.iter().copied()));
+        values.extend((0..group.len()).map(|lane| unpacked(roots, lane)));
     }
     values
 }
@@ -92,20 +88,26 @@ pub(super) fn surface_values<T: Real>(
 ) -> Vec<Vec<[f64; 4]>> {
     let mut values = Vec::with_capacity(surfaces.len());
     for group in surfaces.chunks(LANES) {
-        let vectors: [[Packet<T, LANES>; 3]; 3] = std::array::from_fn(|vector| {
-            let mut filled = [[T::constant(0.0); 3]; LANES];
-            for (lane, surface) in filled.iter_mut().zip(group) {
-                *lane = surface[vector];
-            }
-            packed(&filled)
-        });
-        let [point, normal, view] = vectors;
+        let [point, normal, view] =
+            [0, 1, 2].map(|vector| packed_from(group.iter().map(|surface| surface[vector])));
         let roots = evaluator.eval_surface(point, normal, view);
-        values.extend((0..group.len()).map(|lane| {
-            roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
-        }));
+        values.extend((0..group.len()).map(|lane| unpacked(roots, lane)));
     }
     values
+}
+
+/// One lane of the values of roots.
+fn unpacked<T: Real>(roots: &[[Packet<T, LANES>; 4]], lane: usize) -> Vec<[f64; 4]> {
+    roots.iter().map(|root| root.map(|Packet(lanes)| lanes[lane].into())).collect()
+}
+
+/// At most [`LANES`] points as one point. Lanes without a point are 0.
+pub(super) fn packed_from<T: Real>(points: impl Iterator<Item = [T; 3]>) -> [Packet<T, LANES>; 3] {
+    let mut filled = [[T::constant(0.0); 3]; LANES];
+    for (lane, point) in filled.iter_mut().zip(points) {
+        *lane = point;
+    }
+    packed(&filled)
 }
 
 pub(super) fn packed<T: Real>(points: &[[T; 3]; LANES]) -> [Packet<T, LANES>; 3] {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sdfc_graph::eval::Evaluator;
-use sdfc_march::PixelBlock;
+use sdfc_march::{PixelBlock, UNPROVEN};
 
 use super::cells::Cells;
 use super::gradients::Gradient;
@@ -311,7 +311,7 @@ impl<T: Real> Wave<'_, T> {
             color: color.as_vec3().extend(1.0).to_array(),
             depth: depth as f32,
             status: trace.status,
-            unproven: u16::from(shade.unproven),
+            unproven: if shade.unproven { UNPROVEN } else { 0 },
             evaluations: shade.evaluations,
             primary_evaluations: trace.evaluations,
         }

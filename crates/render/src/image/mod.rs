@@ -186,9 +186,9 @@ mod tests {
         }
         image.pixels_mut()[3].depth = f32::NAN;
         image.pixels_mut()[4].color[1] = f32::INFINITY;
-        image.pixels_mut()[0].unproven = 1;
+        image.pixels_mut()[0].unproven = LOOPS_ENDED;
         let expected =
-            PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2, unproven: 2, loops_ended: 0 };
+            PixelCounts { hit: 1, miss: 1, capped: 1, nan: 2, unproven: 2, loops_ended: 1 };
         assert_eq!(image.counts(), expected);
     }
 

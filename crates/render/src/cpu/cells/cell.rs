@@ -1,4 +1,4 @@
-//! A part of space, and what is known of the field there.
+//! A cell of space, with the field there.
 
 use std::sync::Arc;
 
@@ -44,13 +44,14 @@ impl Cube {
     }
 }
 
-/// A part of space, and the facts about the field there.
+/// A cell of space, with the field there.
 #[derive(Debug)]
 pub(crate) struct Cell {
     /// Infinite for all of space.
     pub(super) cube: Cube,
     /// The field there.
     pub(super) tape: Arc<Tape>,
+    /// True if smaller cells take its place.
     pub(super) is_divided: bool,
 }
 

@@ -32,7 +32,7 @@ const MARGIN: f64 = 4e-6;
 /// It keeps them below 600 MB.
 const MAX_OPERATIONS: usize = 1 << 25;
 
-/// A cube of the octree. What it holds is found when it is first asked for.
+/// A cube of the octree. Its contents are made when they are first needed.
 #[derive(Debug, Default)]
 struct Node {
     cell: OnceLock<Cell>,
@@ -93,7 +93,7 @@ impl Octree {
         around
     }
 
-    /// The facts about the field in a cube, given the cell around it.
+    /// The cell of a cube, given the cell around it.
     fn examine(&self, around: &Cell, frame: &FrameValues, cube: Cube, depth: u32) -> Cell {
         let side = 2.0 * cube.half;
         let width = 2.0 * self.footprint.at(cube.distance(self.eye));
@@ -102,17 +102,16 @@ impl Octree {
             return Cell { cube, is_divided: true, ..Cell::everything(&around.tape) };
         }
         let over = around.tape.over(frame, cube.coordinates(self.margin));
-        let value = over.value;
+        let is_free = over.value.range().lo() > 0.0;
         let (tape, price) = self.shortened(around, frame, cube, over);
-        let is_free = value.range().lo() > 0.0;
         let finest = FINEST_PIXELS * price.sqrt();
         let is_worth = tape.operations() >= FEW_OPERATIONS;
         let is_divided = !is_free && is_worth && is_open && side > finest * width;
         Cell { cube, tape, is_divided }
     }
 
-    /// The tape of a cube, and the price of another division: what it takes, in operations of a
-    /// point for each of these operations that it is expected to save.
+    /// The tape of a cube, and the price of another division: the number of operations that it takes
+    /// for each operation at a point that it is expected to save.
     fn shortened(
         &self,
         around: &Cell,
