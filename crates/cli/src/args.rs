@@ -303,21 +303,15 @@ pub struct Mesh {
     /// scene's name with .stl, in the current folder]
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Greatest distance between mesh and surface, in scene units
-    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
-    pub error: Option<f64>,
-    /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
-    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
-    pub error_relative: Option<f64>,
+    /// How exact it is.
+    #[command(flatten)]
+    pub exactness: Exactness,
     /// Output file for the certificate, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
     /// Values of params and time.
     #[command(flatten)]
     pub values: Values,
-    /// Most cells that are examined
-    #[arg(long, value_name = "N")]
-    pub max_cells: Option<u64>,
 }
 
 /// Arguments of `contour`.
@@ -333,21 +327,15 @@ pub struct Contour {
     /// 1,1,0=2
     #[arg(long, value_name = "AXIS=LENGTH", default_value = "z=0", value_parser = plane)]
     pub plane: Plane,
-    /// Greatest distance between outlines and section, in scene units
-    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
-    pub error: Option<f64>,
-    /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
-    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
-    pub error_relative: Option<f64>,
+    /// How exact it is.
+    #[command(flatten)]
+    pub exactness: Exactness,
     /// Output file for the certificate and the paths, as JSON; `-` is stdout
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
     /// Values of params and time.
     #[command(flatten)]
     pub values: Values,
-    /// Most cells that are examined
-    #[arg(long, value_name = "N")]
-    pub max_cells: Option<u64>,
 }
 
 /// Arguments of `measure`.
@@ -391,6 +379,21 @@ pub struct Bake {
     /// Values of params and time.
     #[command(flatten)]
     pub values: Values,
+}
+
+/// How exact a mesh or a contour is.
+#[derive(clap::Args, Debug)]
+pub struct Exactness {
+    /// Greatest distance from the surface, in scene units, of what is written, and of the surface
+    /// from it
+    #[arg(long, value_name = "LENGTH", value_parser = above_0, conflicts_with = "error_relative")]
+    pub error: Option<f64>,
+    /// The same, as a fraction of the longest side of the scene's bounds [default: 0.001]
+    #[arg(long, value_name = "FRACTION", value_parser = above_0)]
+    pub error_relative: Option<f64>,
+    /// Most cells that are examined
+    #[arg(long, value_name = "N")]
+    pub max_cells: Option<u64>,
 }
 
 /// Values of params and time.

@@ -4,6 +4,7 @@ use std::io::{ErrorKind, Write, stdout};
 use std::path::{Path, PathBuf};
 
 use sdfc_files::{check_writable, write};
+use serde::Serialize;
 
 use crate::failure::Failure;
 
@@ -45,6 +46,65 @@ impl Output {
             Self::File(path) => write(path, bytes).map_err(|e| cannot_write(path, &e)),
         }
     }
+}
+
+/// A result and, if it is asked for, a report about it in JSON.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WithReport {
+    /// The path of the result.
+    pub path: PathBuf,
+    output: Output,
+    report: Option<Output>,
+}
+
+impl WithReport {
+    /// Makes the destinations, and checks early that they can be written. Without `path` the result
+    /// is named after the scene.
+    ///
+    /// # Errors
+    ///
+    /// Two of the outputs and the scene are the same file, or a folder does not exist or is not
+    /// writable.
+    pub fn new(
+        scene: &Path,
+        path: Option<&Path>,
+        extension: &str,
+        report: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let path = path.map_or_else(|| named_after(scene, extension), Path::to_owned);
+        let paths = [Some(path.as_path()), report];
+        distinct(scene, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
+        let output = Output::new(&path);
+        output.check()?;
+        let report = report.map(Output::new);
+        report.as_ref().map_or(Ok(()), Output::check)?;
+        Ok(Self { path, output, report })
+    }
+
+    /// Writes the result, and the report if it is asked for.
+    ///
+    /// # Errors
+    ///
+    /// A destination is not writable, the disk is full, or the report is no JSON.
+    pub fn write(&self, bytes: &[u8], report: &impl Serialize) -> Result<(), Failure> {
+        self.output.write(bytes)?;
+        match &self.report {
+            Some(output) => output.write(&json(report)?),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns a value as JSON with a final newline.
+///
+/// # Errors
+///
+/// Never, for the plain data that commands write.
+pub fn json(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
+    let text = serde_json::to_vec_pretty(value);
+    let mut bytes = text.map_err(|e| Failure::Machine(format!("cannot write JSON: {e}")))?;
+    bytes.push(b'\n');
+    Ok(bytes)
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {

@@ -77,7 +77,7 @@ impl Reply {
 
 /// A question about a scene, with the texts as they were when it was asked.
 pub struct Question<'d> {
-    /// What is asked.
+    /// The request.
     pub ask: Ask,
     /// The name of the scene's file.
     pub name: String,

@@ -24,7 +24,7 @@ pub struct Contour {
     /// Closed paths that neither cross nor touch, with the inside of the scene on their left: outer
     /// paths are counter-clockwise, and holes are clockwise.
     pub paths: Vec<ContourPath>,
-    /// What is proven.
+    /// The proven properties.
     pub certificate: ContourCertificate,
 }
 
@@ -40,7 +40,7 @@ pub struct ContourPath {
     pub parent: Option<usize>,
 }
 
-/// What is proven about a contour.
+/// The proven properties of a contour.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ContourCertificate {

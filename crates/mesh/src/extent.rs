@@ -8,7 +8,7 @@ const MOST_BOXES: usize = 20_000;
 /// Steps of a bisection.
 const MOST_STEPS: usize = 60;
 
-/// What is found in a box.
+/// The result of examining a box.
 enum Found {
     /// It is proven that nothing of the box is inside.
     Nothing,

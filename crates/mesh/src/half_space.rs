@@ -8,7 +8,7 @@ const WEAK: f64 = 1e-3;
 /// More than the rounding error of the formula, whose terms are at most `1 / WEAK^2` in size.
 const ROUNDING: f64 = 1e-8;
 
-/// What is known about the inside of a box.
+/// The knowledge about the inside of a box.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Share {
     /// The part of the box that is inside, from 0 to 1.

@@ -281,7 +281,7 @@ fn examine<'f>(bounds: [Vec3; 2], field: &LocalField<'f>, longest: f64) -> Outco
     let Share { inside, density } = share;
     let size = volume(bounds).hi();
     let area = size * density * gradient;
-    // What is unknown of the volume, and of the first moment in units of the longest side.
+    // The undecided volume, plus the undecided first moment in units of the longest side.
     let position = inside.hi() * (bounds[1][0] - bounds[0][0]) / longest;
     let width = size * (inside.hi() - inside.lo() + position);
     Outcome::Open(Open { bounds, inside, area, width, field: field.clone() })

@@ -21,11 +21,11 @@ pub struct Mesh {
     pub colors: Vec<[f32; 3]>,
     /// True if all positions are 32-bit floats, so that formats with such floats lose nothing.
     pub is_single_precision: bool,
-    /// What is proven.
+    /// The proven properties.
     pub certificate: MeshCertificate,
 }
 
-/// What is proven about a mesh.
+/// The proven properties of a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MeshCertificate {

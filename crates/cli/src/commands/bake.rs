@@ -7,7 +7,7 @@ use sdfc::{BakeOptions, DistanceGrid, GridFormat};
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::output::{self, Output};
+use crate::output::WithReport;
 
 /// Samples a scene on a grid, and prints the error.
 ///
@@ -17,23 +17,15 @@ use crate::output::{self, Output};
 /// value; the grid has too many samples; two of the outputs and the scene are the same file; an
 /// output cannot be written; Ctrl-C.
 pub fn run(args: &args::Bake, console: &Console) -> Result<(), Failure> {
-    let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "npy"));
-    let format = GridFormat::of(&path).map_err(Failure::Call)?;
-    let paths = [Some(path.as_path()), args.json.as_deref()];
-    output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
+    let (result, report) = (args.output.as_deref(), args.json.as_deref());
+    let output = WithReport::new(&args.file, result, "npy", report)?;
+    let format = GridFormat::of(&output.path).map_err(Failure::Call)?;
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
-    let output = Output::new(&path);
-    let report = args.json.as_deref().map(Output::new);
-    output.check()?;
-    report.as_ref().map_or(Ok(()), Output::check)?;
     let frame = super::values(&scene, args.values.time);
     let options = BakeOptions::new().resolution(args.resolution).frame(frame);
     let grid = super::mesh_work("baking", console, |progress| scene.bake(&options, progress))?;
-    output.write(&format.encode(&grid))?;
-    if let Some(report) = report {
-        report.write(&super::json(&grid)?)?;
-    }
-    print(&path, &grid, console);
+    output.write(&format.encode(&grid), &grid)?;
+    print(&output.path, &grid, console);
     Ok(())
 }
 

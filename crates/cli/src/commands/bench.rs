@@ -63,7 +63,7 @@ pub fn run(args: &Bench, console: &Console) -> Result<(), Failure> {
         let drawn = growth_svg(&growth(&report), Font(sdfc_lang::font::SANS));
         plot.write(drawn.map_err(|error| Failure::Machine(error.to_string()))?.as_bytes())?;
     }
-    json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
+    json.map_or(Ok(()), |json| json.write(&output::json(&report)?))
 }
 
 /// Returns the cost per pixel of the scattered scenes, as CPU time if the GPU is a software one.

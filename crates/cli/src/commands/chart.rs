@@ -38,7 +38,7 @@ pub(super) fn one(args: &Chart, file: &Path, console: &Console) -> Result<(), Fa
     if let Some(picture) = picture {
         picture.write(&drawn(&chart, form, args.dark)?)?;
     }
-    json.map_or(Ok(()), |json| json.write(&super::json(&chart)?))
+    json.map_or(Ok(()), |json| json.write(&output::json(&chart)?))
 }
 
 /// Returns the chart of a scene.

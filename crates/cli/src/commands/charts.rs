@@ -10,7 +10,7 @@ use super::chart::{Form, charted, drawn, one, outdone, statistic};
 use crate::args::Chart;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{self, Output};
 
 /// The first line of a page of charts.
 const TITLE: &str = "# Charts\n";
@@ -57,7 +57,7 @@ fn folder_of_charts(
         let chart = charted(args, file, console)?;
         svg.write(&drawn(&chart, Form::Svg, false)?)?;
         png.write(&drawn(&chart, Form::Png, args.dark)?)?;
-        json.write(&super::json(&chart)?)?;
+        json.write(&output::json(&chart)?)?;
         charts.push((name, chart));
     }
     Output::new(&index).write(page(args, &charts).as_bytes())

@@ -25,7 +25,7 @@ pub fn run(args: &Check, console: &Console) -> Result<(), Failure> {
         if diagnostics.has_errors() { Err(Failure::Scene) } else { Ok(()) }
     });
     if args.json {
-        output::to_stdout(&super::json(&rows)?)?;
+        output::to_stdout(&output::json(&rows)?)?;
     }
     result
 }

@@ -26,7 +26,7 @@ pub fn run(args: &Compile, console: &Console) -> Result<(), Failure> {
     let mut results = Vec::new();
     if let Some(path) = &args.reflect {
         let reflection = scene.reflect(&options, &written);
-        results.push((Output::new(path), super::json(&reflection)?));
+        results.push((Output::new(path), output::json(&reflection)?));
     }
     results.push((Output::new(&args.output), written.code.into_bytes()));
     for (output, _) in &results {

@@ -8,9 +8,9 @@ use serde::Serialize;
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::output::{self, Output};
+use crate::output::WithReport;
 
-/// What `--json` writes.
+/// The report of `--json`.
 #[derive(Serialize)]
 struct Report<'a> {
     /// Positions in space: of the origin of the section's coordinates, and their directions.
@@ -31,25 +31,16 @@ struct Report<'a> {
 /// value; the plane misses the scene; the error is too small; two of the outputs and the scene are
 /// the same file; an output cannot be written; Ctrl-C.
 pub fn run(args: &args::Contour, console: &Console) -> Result<(), Failure> {
-    let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "svg"));
-    let format = ContourFormat::of(&path).map_err(Failure::Call)?;
-    let paths = [Some(path.as_path()), args.json.as_deref()];
-    output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
+    let (result, report) = (args.output.as_deref(), args.json.as_deref());
+    let output = WithReport::new(&args.file, result, "svg", report)?;
+    let format = ContourFormat::of(&output.path).map_err(Failure::Call)?;
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
-    let output = Output::new(&path);
-    let report = args.json.as_deref().map(Output::new);
-    output.check()?;
-    report.as_ref().map_or(Ok(()), Output::check)?;
-    let error = [args.error, args.error_relative];
-    let options = super::mesh_options(&scene, error, args.values.time, args.max_cells);
+    let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let contour = super::mesh_work("tracing", console, |progress| {
         scene.contour(args.plane, &options, progress)
     })?;
-    output.write(&format.encode(&contour))?;
-    if let Some(report) = report {
-        report.write(&super::json(&describe(&contour, args))?)?;
-    }
-    print(&path, &contour, console);
+    output.write(&format.encode(&contour), &describe(&contour, args))?;
+    print(&output.path, &contour, console);
     Ok(())
 }
 

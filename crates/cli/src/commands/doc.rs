@@ -64,7 +64,7 @@ pub fn run(args: &Doc, console: &Console) -> Result<(), Failure> {
     if args.json {
         let rows: Vec<Row> =
             found.full.iter().chain(&found.listed).map(|entry| row(entry)).collect();
-        return output::to_stdout(&super::json(&rows)?);
+        return output::to_stdout(&output::json(&rows)?);
     }
     let mut page = Page::new(console.output_color());
     page.full(&found.full);
@@ -84,7 +84,7 @@ fn write_code(row: &CodeInfo, as_json: bool, console: &Console) -> Result<(), Fa
     if as_json {
         let row =
             CodeRow { code: row.code.0, title: row.title, meaning: row.page, help: row.suggestion };
-        return output::to_stdout(&super::json(&[row])?);
+        return output::to_stdout(&output::json(&[row])?);
     }
     let mut page = Page::new(console.output_color());
     page.code(row);

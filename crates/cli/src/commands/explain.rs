@@ -14,6 +14,6 @@ pub fn run(args: &Explain, console: &Console) -> Result<(), Failure> {
     let scene = super::scene_with(&args.file, super::compiler(), &args.set, console)?;
     let explanation = scene.explain().map_err(|e| super::lowering(&e, console))?;
     let bytes =
-        if args.json { super::json(&explanation)? } else { explanation.to_string().into_bytes() };
+        if args.json { output::json(&explanation)? } else { explanation.to_string().into_bytes() };
     output::to_stdout(&bytes)
 }

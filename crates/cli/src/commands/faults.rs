@@ -27,7 +27,7 @@ pub fn run(size: [u32; 2], json: Option<Output>, console: &Console) -> Result<()
     if json != Some(Output::Stdout) {
         output::to_stdout(table(&report).as_bytes())?;
     }
-    json.map_or(Ok(()), |json| json.write(&super::json(&report)?))
+    json.map_or(Ok(()), |json| json.write(&output::json(&report)?))
 }
 
 /// Formats the report: numbers of pixels, and the wrong ones in percent.

@@ -49,7 +49,7 @@ fn text<T: Serialize>(
     found: &T,
     table: impl Fn(&T) -> String,
 ) -> Result<Vec<u8>, Failure> {
-    if args.json { super::json(found) } else { Ok(table(found).into_bytes()) }
+    if args.json { output::json(found) } else { Ok(table(found).into_bytes()) }
 }
 
 fn clearance_table(found: &Clearance) -> String {

@@ -8,9 +8,9 @@ use serde::Serialize;
 use crate::args;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::output::{self, Output};
+use crate::output::WithReport;
 
-/// What `--json` writes.
+/// The report of `--json`.
 #[derive(Serialize)]
 struct Report<'a> {
     vertices: usize,
@@ -30,24 +30,15 @@ struct Report<'a> {
 /// value; the error is too small; two of the outputs and the scene are the same file; an output
 /// cannot be written; Ctrl-C.
 pub fn run(args: &args::Mesh, console: &Console) -> Result<(), Failure> {
-    let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "stl"));
-    let format = MeshFormat::of(&path).map_err(Failure::Call)?;
-    let paths = [Some(path.as_path()), args.json.as_deref()];
-    output::distinct(&args.file, &paths.into_iter().flatten().collect::<Vec<&Path>>())?;
+    let (result, report) = (args.output.as_deref(), args.json.as_deref());
+    let output = WithReport::new(&args.file, result, "stl", report)?;
+    let format = MeshFormat::of(&output.path).map_err(Failure::Call)?;
     let scene = super::scene_with(&args.file, super::compiler(), &args.values.set, console)?;
-    let output = Output::new(&path);
-    let report = args.json.as_deref().map(Output::new);
-    output.check()?;
-    report.as_ref().map_or(Ok(()), Output::check)?;
-    let error = [args.error, args.error_relative];
-    let options = super::mesh_options(&scene, error, args.values.time, args.max_cells);
+    let options = super::mesh_options(&scene, &args.exactness, args.values.time);
     let mesh = super::mesh_work("meshing", console, |progress| scene.mesh(&options, progress))?;
     let bytes = format.encode(&mesh).map_err(|error| Failure::Call(error.to_string()))?;
-    output.write(&bytes)?;
-    if let Some(report) = report {
-        report.write(&super::json(&describe(&mesh))?)?;
-    }
-    print(&path, &mesh, console);
+    output.write(&bytes, &describe(&mesh))?;
+    print(&output.path, &mesh, console);
     Ok(())
 }
 

@@ -28,7 +28,7 @@ use sdfc::{
 use sdfc_measure::MeasureError;
 use sdfc_render::{Gpu, RenderError};
 
-use crate::args::Assignment;
+use crate::args::{Assignment, Exactness};
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupt;
@@ -75,19 +75,14 @@ fn values(scene: &Scene, time: f64) -> FrameValues {
 }
 
 /// Returns the options of a mesh or a contour.
-fn mesh_options(
-    scene: &Scene,
-    error: [Option<f64>; 2],
-    time: f64,
-    max_cells: Option<u64>,
-) -> MeshOptions {
+fn mesh_options(scene: &Scene, exactness: &Exactness, time: f64) -> MeshOptions {
     let options = MeshOptions::new().frame(values(scene, time));
-    let options = match error {
-        [Some(length), _] => options.error(MeshSize::Length(length)),
-        [None, Some(part)] => options.error(MeshSize::Relative(part)),
-        [None, None] => options,
+    let options = match (exactness.error, exactness.error_relative) {
+        (Some(length), _) => options.error(MeshSize::Length(length)),
+        (None, Some(part)) => options.error(MeshSize::Relative(part)),
+        (None, None) => options,
     };
-    max_cells.map_or(options.clone(), |limit| options.max_cells(limit))
+    exactness.max_cells.map_or(options.clone(), |limit| options.max_cells(limit))
 }
 
 /// Runs work on a mesh or a contour, with a progress bar, until it is done or Ctrl-C is pressed.
@@ -209,16 +204,4 @@ fn show(diagnostics: &Diagnostics, console: &Console) {
         false => diagnostics.without_warnings().render(console.color),
     };
     console.text(&text);
-}
-
-/// Returns a value as JSON with a final newline.
-///
-/// # Errors
-///
-/// Never, for the plain data that commands write.
-fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, Failure> {
-    let text = serde_json::to_vec_pretty(value);
-    let mut bytes = text.map_err(|e| Failure::Machine(format!("cannot write JSON: {e}")))?;
-    bytes.push(b'\n');
-    Ok(bytes)
 }

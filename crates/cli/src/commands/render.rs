@@ -151,7 +151,7 @@ impl Job<'_> {
         output.write(&self.encode(&picture, outputs.format)?)?;
         self.write_depth(&picture, outputs.depth(None))?;
         if let Some(stats_output) = &outputs.stats {
-            stats_output.write(&super::json(&picture.stats)?)?;
+            stats_output.write(&output::json(&picture.stats)?)?;
         }
         self.print_notes(&picture);
         if let Some(unproven) = &picture.unproven {

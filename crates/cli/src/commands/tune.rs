@@ -27,7 +27,7 @@ pub fn run(args: &Tune, console: &Console) -> Result<(), Failure> {
     let chart = measured(&args.file, &scene, &options, &args.cache, console)?;
     // Written first: the results show why no method stays within the limit, if none does.
     if let Some(json) = &json {
-        json.write(&super::json(&chart)?)?;
+        json.write(&output::json(&chart)?)?;
     }
     let advice = advice(&chart, args.max_error, scene.method().name())?;
     if json == Some(Output::Stdout) { Ok(()) } else { output::to_stdout(advice.as_bytes()) }
