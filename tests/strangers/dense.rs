@@ -10,7 +10,7 @@ const THIRDS: usize = 40;
 const HALVINGS: usize = 50;
 
 /// Draws where the rays of a picture first enter a solid: status and depth, no colours.
-pub fn dense(field: fn([f64; 3]) -> f64, view: &View) -> Result<Image, RenderError> {
+pub fn dense(field: impl Fn([f64; 3]) -> f64, view: &View) -> Result<Image, RenderError> {
     let mut image = Image::new(view.size, view.footprint())?;
     let width = view.size[0];
     for (index, pixel) in (0..).zip(image.pixels_mut()) {

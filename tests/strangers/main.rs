@@ -8,15 +8,19 @@
 
 mod dense;
 mod formulas;
+mod page;
 
 use dense::dense;
 use formulas::{FORMULAS, Formula};
 use libtest_mimic::{Arguments, Failed, Trial};
+use page::Page;
 use sdfc::{Backend, Compiler, Method, PictureOptions, Scene, no_progress};
 use sdfc_render::{HIT, Image, edges, is_unproven, linear_to_srgb8, testing};
 
 /// Width and height in pixels.
 const SIZE: [u32; 2] = [32, 24];
+/// The same for the page of letters, which has thin strokes.
+const PAGE: [u32; 2] = [64, 48];
 /// Largest 99th percentile of the error in depth, in widths of a pixel.
 const DEPTH: f32 = 0.05;
 /// Largest number of wrong pixels that the picture calls unproven, as a part of the hits.
@@ -46,6 +50,8 @@ fn main() {
     let mut trials: Vec<Trial> = trials.collect();
     let shadows = Trial::test("shadows of letters", shadows_agree);
     trials.push(shadows.with_ignored_flag(without_gpu));
+    let page = Trial::test("page of letters", page_is_right);
+    trials.push(page.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -68,6 +74,15 @@ fn shadows_agree() -> Result<(), Failed> {
         return Err(format!("{} of {compared} pixels differ: {wrong:?}", wrong.len()).into());
     }
     Ok(())
+}
+
+/// A flat formula of over a thousand operations is right. Software drivers once compiled the shader
+/// of such a formula again for each tile.
+fn page_is_right() -> Result<(), Failed> {
+    let page = Page::new(35);
+    let scene = Compiler::new().compile("page", &page.scene())?;
+    let view = scene.view(&scene.defaults(), PAGE)?;
+    is_right(&dense(|p| page.at(p), &view)?, &drawn(&scene, Method::Auto, PAGE)?)
 }
 
 /// True if the pixels around a pixel have its colour: no edge and no shadow ends there.
@@ -119,7 +134,8 @@ fn is_right(expected: &Image, drawn: &Image) -> Result<(), Failed> {
             // The picture says so itself.
             _ if is_unproven(pixel) => unproven += 1,
             [a, b] => {
-                wrong.push(format!("({}, {}): {b}, not {a}", index % SIZE[0], index / SIZE[0]))
+                let width = expected.size()[0];
+                wrong.push(format!("({}, {}): {b}, not {a}", index % width, index / width));
             }
         }
     }
