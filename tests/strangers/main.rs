@@ -15,7 +15,7 @@ use formulas::{FORMULAS, Formula};
 use libtest_mimic::{Arguments, Failed, Trial};
 use page::Page;
 use sdfc::{Backend, Compiler, Method, PictureOptions, Scene, no_progress};
-use sdfc_render::{HIT, Image, edges, is_unproven, linear_to_srgb8, testing};
+use sdfc_render::{Gpu, HIT, Image, edges, is_unproven, linear_to_srgb8, testing};
 
 /// Width and height in pixels.
 const SIZE: [u32; 2] = [32, 24];
@@ -52,6 +52,8 @@ fn main() {
     trials.push(shadows.with_ignored_flag(without_gpu));
     let page = Trial::test("page of letters", page_is_right);
     trials.push(page.with_ignored_flag(without_gpu));
+    let long = Trial::test("long page of letters", long_page_is_drawn_on_the_cpu);
+    trials.push(long.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
@@ -83,6 +85,19 @@ fn page_is_right() -> Result<(), Failed> {
     let scene = Compiler::new().compile("page", &page.scene())?;
     let view = scene.view(&scene.defaults(), PAGE)?;
     is_right(&dense(|p| page.at(p), &view)?, &drawn(&scene, Method::Auto, PAGE)?)
+}
+
+/// By default, the CPU draws a flat formula that is too long for a software driver, and the picture
+/// is that of the shader.
+fn long_page_is_drawn_on_the_cpu() -> Result<(), Failed> {
+    let scene = Compiler::new().compile("page", &Page::new(140).scene())?;
+    let options = PictureOptions::new().size(SIZE).samples(1);
+    let picture = scene.render(&options, &mut no_progress)?;
+    let is_software = Gpu::new()?.info().software;
+    if is_software != picture.stats.adapter.is_none() {
+        return Err(format!("drawn on {:?}", picture.stats.adapter).into());
+    }
+    is_right(&drawn(&scene, Method::Auto, SIZE)?, &picture.image)
 }
 
 /// True if the pixels around a pixel have its colour: no edge and no shadow ends there.

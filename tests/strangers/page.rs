@@ -17,7 +17,13 @@ const PITCH: f64 = 0.36;
 const STEEPEST: f64 = 0.5;
 
 /// A page of letters.
-pub struct Page(Vec<Stroke>);
+pub struct Page(Vec<Letter>);
+
+/// A letter: its strokes, cut where the next letter begins.
+struct Letter {
+    strokes: Vec<Stroke>,
+    right: f64,
+}
 
 /// A stroke of a letter, from its lower left corner or about its center.
 struct Stroke {
@@ -49,9 +55,9 @@ impl Page {
             Kind::Ring,
             Kind::Arc,
         ];
-        let mut strokes = Vec::new();
-        for letter in 0..letters {
+        let letter = |letter: u32| {
             let corner = [letter % COLUMNS, letter / COLUMNS].map(|at| PITCH * f64::from(at) - 1.2);
+            let mut strokes = Vec::new();
             for _ in 0..random.u32(2..=4) {
                 let kind = kinds[random.usize(..kinds.len())];
                 // Short decimal numbers are the same numbers in the scene and here.
@@ -59,27 +65,42 @@ impl Page {
                 let [x, y] = corner.map(&mut moved);
                 strokes.push(Stroke { kind, x, y });
             }
-        }
-        Self(strokes)
+            let right = (1e3 * (corner[0] + PITCH)).round() / 1e3;
+            Letter { strokes, right }
+        };
+        Self((0..letters).map(letter).collect())
     }
 
     /// The scene.
     pub fn scene(&self) -> String {
         let mut text = "solid page() = {\n".to_owned();
-        for (index, stroke) in self.0.iter().enumerate() {
+        let mut page = "1e3".to_owned();
+        for (index, letter) in self.0.iter().enumerate() {
             // Writing to a string does not fail.
-            let _ = writeln!(text, "let v{index} = {}", stroke.text());
+            let _ = writeln!(text, "let v{index} = min({page}, {})", letter.text());
+            page = format!("v{index}");
         }
-        let names: Vec<String> = (0..self.0.len()).map(|index| format!("v{index}")).collect();
-        let page = names.into_iter().reduce(|a, b| format!("min({a}, {b})")).unwrap_or_default();
-        let _ = writeln!(text, "max({page}, abs(p.z) - {HALF})\n}}\npage() & box([4, 4, 0.2])");
+        let _ = writeln!(text, "max({page}, abs(p.z) - {HALF})\n}}\npage() & box([4, 9, 0.2])");
         text + "camera(eye: [0.5, 0.3, 6], target: [0, -0.4, 0], fov: 26deg)\nsun()\n"
     }
 
     /// The value of the formula at a point.
     pub fn at(&self, [x, y, z]: [f64; 3]) -> f64 {
-        let page = self.0.iter().map(|stroke| stroke.at(x, y)).fold(f64::INFINITY, f64::min);
+        let page = self.0.iter().map(|letter| letter.at(x, y)).fold(f64::INFINITY, f64::min);
         page.max(z.abs() - HALF)
+    }
+}
+
+impl Letter {
+    fn text(&self) -> String {
+        let strokes = self.strokes.iter().map(Stroke::text);
+        let all = strokes.reduce(|a, b| format!("min({a}, {b})")).unwrap_or_default();
+        format!("max({all}, p.x - {})", self.right)
+    }
+
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let all = self.strokes.iter().map(|stroke| stroke.at(x, y)).fold(f64::INFINITY, f64::min);
+        all.max(x - self.right)
     }
 }
 

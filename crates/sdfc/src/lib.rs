@@ -76,6 +76,8 @@ mod reflection;
 mod scene;
 mod shader;
 mod shape_facts;
+#[cfg(feature = "render")]
+mod software;
 mod source_id;
 mod tapes;
 mod uniforms;

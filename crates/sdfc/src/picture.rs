@@ -20,7 +20,8 @@ use crate::scene::Scene;
 /// The device that draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
-    /// The GPU if there is one, otherwise the CPU.
+    /// The GPU if there is one, otherwise the CPU. The CPU also draws long flat formulas for which
+    /// a software driver of a GPU would take longer.
     #[default]
     Auto,
     /// The GPU. Without one, drawing fails.
@@ -181,7 +182,10 @@ impl Scene {
         let gpu = match options.backend {
             Backend::Gpu => Ok(Gpu::new()?),
             Backend::Cpu => Err(None),
-            Backend::Auto => Gpu::new().map_err(|error| Some(format!("{error}; drawn on the CPU"))),
+            Backend::Auto => match Gpu::new() {
+                Ok(gpu) => self.faster_on_cpu(&gpu, method).map_or(Ok(gpu), |why| Err(Some(why))),
+                Err(error) => Err(Some(format!("{error}; drawn on the CPU"))),
+            },
         };
         // A method that the CPU lacks is an error if both are asked for by name.
         let both = options.backend == Backend::Cpu && options.method.is_some();

@@ -175,7 +175,8 @@ fn alone(
     Numbered { distance, number: graph.number(member as f64) }
 }
 
-/// The nearest of similar operands, by a loop; `None` if they are too few or have no common formula.
+/// The nearest of similar operands, by a loop; `None` if they are too few or have no common
+/// formula.
 fn nearest_of_kind(
     graph: &mut Graph,
     keys: &ShapeKeys,

@@ -130,8 +130,8 @@ fn march(ray: Ray, end: f32) -> Trace {
         close = distance < near;
         if close {
             stride = distance / max(-gain, MIN_SLOPE);
-            // A ray along the surface, or one that looks for a change of sign, need not take shorter
-            // steps.
+            // A ray along the surface, or one that looks for a change of sign, need not take
+            // shorter steps.
             if LOOSE {
                 stride = max(stride, MIN_STEP_FRACTION * near);
             } else if gain > -MIN_SLOPE {

@@ -110,8 +110,8 @@ impl Octree {
         Cell { cube, tape, is_divided }
     }
 
-    /// The tape of a cube, and the price of another division: the number of operations that it takes
-    /// for each operation at a point that it is expected to save.
+    /// The tape of a cube, and the price of another division: the number of operations that it
+    /// takes for each operation at a point that it is expected to save.
     fn shortened(
         &self,
         around: &Cell,
