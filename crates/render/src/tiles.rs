@@ -224,7 +224,8 @@ mod tests {
 
     #[test]
     fn tiles_become_narrow_where_a_band_meets_something_costly() {
-        let mut tiler = whole([16_384, 4096], 1 << 16);
+        let picture = [16_384, 4096];
+        let mut tiler = Tiler::new(picture, Tile::whole(picture), TileSize::default(), 1 << 16);
         // Cheap until a tile has as many rows and columns as it may.
         let wide = loop {
             let tile = tiler.next().unwrap();
@@ -237,6 +238,28 @@ mod tests {
         assert_eq!((met.origin[1], met.size), (wide.origin[1], wide.size));
         tiler.took(met, 1e5);
         assert_eq!(tiler.next().unwrap().size, [1024 / 16, MAX_ROWS]);
+    }
+
+    #[test]
+    fn tiles_cover_a_region_in_blocks_of_the_picture() {
+        let region = Tile { origin: [13, 7], size: [30, 90] };
+        for size in [TileSize::default(), TileSize::Fixed([16, 24])] {
+            let mut tiler = Tiler::new([100, 99], region, size, 1 << 16);
+            let (mut covered, mut tiles) = (tiler.pixels(), Vec::new());
+            while let Some(tile) = tiler.next() {
+                assert_eq!(tile.origin.map(|first| first % STEP), [0, 0]);
+                assert!(tile.is_within([100, 99]), "{tile:?}");
+                covered -= tile.pixels() as u64;
+                tiler.took(tile, 1.0);
+                tiles.push(tile);
+            }
+            assert_eq!(covered, 0);
+            assert_eq!(tiles.first().map(|tile| tile.origin), Some([8, 0]));
+            let last = tiles.last().map(|tile| [0, 1].map(|a| tile.origin[a] + tile.size[a]));
+            assert_eq!(last, Some([48, 99]), "beyond the region, but not beyond the picture");
+        }
+        let far = Tile { origin: [u32::MAX, 0], size: [2, 1] };
+        assert!(!far.is_within([100, 99]));
     }
 
     #[test]

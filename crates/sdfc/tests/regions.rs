@@ -21,8 +21,7 @@ fn main() {
 }
 
 fn scenes() -> Vec<(&'static str, String)> {
-    let balls = "for i in 0..150: sphere(0.2)\
-                 .translate([4 * rand(i, 1) - 2, 4 * rand(i, 2) - 2, 4 * rand(i, 3) - 2])";
+    let balls = "for i in 0..150: sphere(0.2).translate(4 * hash3(i) - [2, 2, 2])";
     vec![
         ("a fitted camera and the default light", "box(1).rotate(y: 30deg)\nplane(y: -1)\n".into()),
         (
@@ -32,8 +31,12 @@ fn scenes() -> Vec<(&'static str, String)> {
                 .into(),
         ),
         ("parallel rays", "torus(1, 0.3)\ncamera(eye: [4, 3, 6], target: 0, height: 4)\n".into()),
-        ("an uncertified field", "field(p.y - sin(3 * p.x) * sin(3 * p.z) * 0.3)\n\
-             .bounds([[-2, -1, -2], [2, 1, 2]])\n".into()),
+        (
+            "an uncertified field",
+            "solid lump()\n  bounds -1..1\n  \
+             = max(length(p) - 1, p.y * p.y * p.y - 0.2 * sin(300deg * p.x))\nlump()\n"
+                .into(),
+        ),
         ("many parts, culled", format!("union({balls})\nplane(y: -2.5)\n")),
         ("many blended parts, culled", format!("union({balls}, blend: smooth(0.15))\n")),
     ]

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "files")]
 mod file;
+#[cfg(feature = "files")]
+mod raster;
 mod samples;
 
 use sdfc_graph::linear_to_srgb8;
@@ -13,6 +15,8 @@ use crate::tiles::Tile;
 use crate::view::footprint::Footprint;
 #[cfg(feature = "files")]
 pub use file::Animation;
+#[cfg(feature = "files")]
+pub use raster::Raster;
 pub use samples::sample_offsets;
 
 /// [`PixelBlock::status`] of a ray that hit nothing.
