@@ -8,6 +8,7 @@ use sdfc::{Method, Plane};
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
+use crate::farm::options::Farm;
 use crate::sequence::{self, Frames};
 
 /// Compiles scenes of signed distance functions to shaders and pictures.
@@ -68,6 +69,8 @@ pub enum Command {
     Compile(Compile),
     /// Draw a picture of a scene
     Render(Render),
+    /// Join the regions of a picture that were drawn separately
+    Join(Join),
     /// Write a closed mesh of a scene, with a proven error
     Mesh(Mesh),
     /// Write the outlines of a section of a scene, with a proven error
@@ -292,6 +295,23 @@ pub struct Render {
     /// Fail, and write no picture, if a part of it is unproven: if a ray may have missed a surface
     #[arg(long)]
     pub strict: bool,
+    /// Work that is shared between machines.
+    #[command(flatten)]
+    pub farm: Farm,
+}
+
+/// Arguments of `join`.
+#[derive(clap::Args, Debug)]
+pub struct Join {
+    /// Files of `sdfc render --region`: all regions of one picture
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// Output file, with the extension of the parts; `-` is stdout
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Join parts that were drawn on different devices, although borders may be visible
+    #[arg(long)]
+    pub any_device: bool,
 }
 
 /// Arguments of `mesh`.

@@ -10,6 +10,7 @@ mod cache;
 mod commands;
 mod console;
 mod failure;
+mod farm;
 mod interrupt;
 mod output;
 mod sequence;
@@ -39,6 +40,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
+        Command::Join(args) => commands::join::run(args),
         Command::Mesh(args) => commands::mesh::run(args, console),
         Command::Contour(args) => commands::contour::run(args, console),
         Command::Measure(args) => commands::measure::run(args, console),

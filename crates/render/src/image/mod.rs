@@ -16,7 +16,7 @@ use crate::view::footprint::Footprint;
 #[cfg(feature = "files")]
 pub use file::Animation;
 #[cfg(feature = "files")]
-pub use raster::Raster;
+pub use raster::{Raster, RasterKind};
 pub use samples::sample_offsets;
 
 /// [`PixelBlock::status`] of a ray that hit nothing.

@@ -25,6 +25,27 @@ pub struct Raster {
     samples: Samples,
 }
 
+/// What the pixels of a file hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RasterKind {
+    /// Colours in sRGB, for PNG.
+    Srgb,
+    /// Colours in linear light, for EXR.
+    Linear,
+    /// Distances along rays, for EXR.
+    Depth,
+}
+
+impl std::fmt::Display for RasterKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Srgb => "colours as PNG",
+            Self::Linear => "colours as EXR",
+            Self::Depth => "depths as EXR",
+        })
+    }
+}
+
 /// The values of pixels, channel by channel within a pixel.
 #[derive(Clone, Debug, PartialEq)]
 enum Samples {
@@ -68,12 +89,12 @@ impl Raster {
         self.size
     }
 
-    /// The name of what the pixels hold: `colours (PNG)`, `colours (EXR)` or `depths (EXR)`.
-    pub fn kind(&self) -> &'static str {
+    /// What the pixels hold.
+    pub fn kind(&self) -> RasterKind {
         match self.samples {
-            Samples::Srgb(_) => "colours (PNG)",
-            Samples::Linear(_) => "colours (EXR)",
-            Samples::Depth(_) => "depths (EXR)",
+            Samples::Srgb(_) => RasterKind::Srgb,
+            Samples::Linear(_) => RasterKind::Linear,
+            Samples::Depth(_) => RasterKind::Depth,
         }
     }
 
