@@ -54,6 +54,11 @@ pub fn time(number: u32, rate: f64) -> f64 {
     f64::from(number) / rate
 }
 
+/// Returns the number of the frame that a single picture shows.
+pub fn frame(time: f64, rate: f64) -> f64 {
+    (time * rate).round()
+}
+
 /// Returns how long a frame is shown, in hundredths of a second. Rounding errors of a sequence do
 /// not add up.
 pub fn hundredths(number: u32, rate: f64) -> u32 {

@@ -86,7 +86,7 @@ impl Joined {
     ) -> Result<(), Failure> {
         let (name, first) = (path.display(), &self.first);
         if let Some(what) = self.drawing.difference(&said.drawing) {
-            return Err(Failure::Call(format!("{name} was drawn from {what} than {first}")));
+            return Err(Failure::Call(format!("{name} was drawn with {what} than {first}")));
         }
         if part.kind() != self.raster.kind() {
             let (one, other) = (part.kind(), self.raster.kind());

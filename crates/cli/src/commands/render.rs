@@ -196,7 +196,7 @@ fn options(args: &Render) -> PictureOptions {
 
 /// Returns the values of params, time and frame.
 fn values(scene: &Scene, args: &Render) -> FrameValues {
-    FrameValues { frame: (args.time * args.fps).round(), ..super::values(scene, args.time) }
+    FrameValues { frame: sequence::frame(args.time, args.fps), ..super::values(scene, args.time) }
 }
 
 /// Everything that drawing needs.

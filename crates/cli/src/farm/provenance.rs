@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::args::Render;
+use crate::sequence::frame;
 
 /// The version that draws.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -28,8 +29,8 @@ pub struct Drawing {
     pub size: [u32; 2],
     /// First column and row, then width and height, of the region; null for a whole picture.
     pub region: Option<[u32; 4]>,
-    /// The number of the frame; null for a single picture.
-    pub frame: Option<u32>,
+    /// The number of the frame, which is time * fps, rounded.
+    pub frame: String,
     /// Time in seconds.
     pub time: String,
     /// Frames per second.
@@ -96,7 +97,7 @@ impl Drawing {
             scene,
             size: *size,
             region: None,
-            frame: None,
+            frame: frame(*time, *fps).to_string(),
             time: time.to_string(),
             fps: fps.to_string(),
             settings: Settings {
@@ -111,7 +112,7 @@ impl Drawing {
 
     /// The same for a frame.
     pub fn at_frame(&self, number: u32, time: f64) -> Self {
-        Self { frame: Some(number), time: time.to_string(), ..self.clone() }
+        Self { frame: number.to_string(), time: time.to_string(), ..self.clone() }
     }
 
     /// The same for a region.
@@ -134,7 +135,7 @@ impl Drawing {
             (self.sdfc != other.sdfc, "another version of sdfc"),
             (self.scene != other.scene, "another scene"),
             (self.size != other.size, "another size of the whole picture"),
-            ((self.frame, &self.time) != (other.frame, &other.time), "another frame or time"),
+            ((&self.frame, &self.time) != (&other.frame, &other.time), "another frame or time"),
             ((&self.fps, &self.settings) != (&other.fps, &other.settings), "other settings"),
         ]
         .into_iter()

@@ -30,7 +30,7 @@ pub fn existing(path: &Path, drawing: &Drawing, kind: RasterKind) -> Existing {
         Err(reason) => return Existing::Other(reason),
     };
     if let Some(what) = drawing.difference(&said.drawing) {
-        return Existing::Other(format!("it was drawn from {what}"));
+        return Existing::Other(format!("it was drawn with {what}"));
     }
     if drawing.tile() != said.drawing.tile() {
         return Existing::Other("it is another region".to_owned());
