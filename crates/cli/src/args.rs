@@ -275,7 +275,7 @@ pub struct Render {
           value_parser = finite, conflicts_with = "frames")]
     pub time: f64,
     /// Draw frames A to B - 1 as OUT.0007.png and so on, or as one GIF; the time of frame n is
-    /// n / fps
+    /// n / fps. A-B includes B, and A alone is one frame
     #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
     pub frames: Option<Frames>,
     /// Frames per second
