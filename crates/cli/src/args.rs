@@ -303,8 +303,9 @@ pub struct Render {
 /// Arguments of `join`.
 #[derive(clap::Args, Debug)]
 pub struct Join {
-    /// Files of `sdfc render --region`: all regions of one picture
-    #[arg(required = true, value_name = "PART")]
+    /// Files of `sdfc render --region`: all regions of one picture [default: the files beside OUT
+    /// that are named like its parts, such as OUT.part-0-512-3840x256.png]
+    #[arg(value_name = "PART")]
     pub parts: Vec<PathBuf>,
     /// Output file, with the extension of the parts; `-` is stdout
     #[arg(short, long, value_name = "OUT")]

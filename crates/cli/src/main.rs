@@ -40,7 +40,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
-        Command::Join(args) => commands::join::run(args),
+        Command::Join(args) => commands::join::run(args, console),
         Command::Mesh(args) => commands::mesh::run(args, console),
         Command::Contour(args) => commands::contour::run(args, console),
         Command::Measure(args) => commands::measure::run(args, console),

@@ -59,6 +59,10 @@ fn joined_parts_are_the_file_of_the_whole() {
             let output = join(&folder, &format!("{} -o {joined}", parts(&folder, part)));
             assert_eq!(output.status.code(), Some(0), "{}", said(&output));
             assert_eq!(read(&folder, &whole), read(&folder, &joined), "{whole}");
+            let beside = whole.replacen(['w', 'z'], part, 1);
+            let output = join(&folder, &format!("-o {beside}"));
+            assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+            assert_eq!(read(&folder, &whole), read(&folder, &beside), "{beside}");
         }
         for part in parts(&folder, "p").split(' ').chain(parts(&folder, "q").split(' ')) {
             std::fs::remove_file(folder.path().join(part)).unwrap();
@@ -90,6 +94,7 @@ fn parts_that_do_not_make_one_picture_are_refused() {
     refused(&format!("{one} e.part-0-16-50x21.exr -o out.png"), 2, "holds colours as EXR");
     refused(&format!("{one} missing.png -o out.png"), 3, "cannot read missing.png");
     refused(&format!("{one} {two} -o {two}"), 2, two);
+    refused("-o out.png", 2, "no parts beside out.png");
     refused(&format!("{one} {two} -o out.exr"), 2, "the parts hold colours as PNG");
     let mut damaged = read(&folder, two);
     damaged.truncate(damaged.len() - 20);

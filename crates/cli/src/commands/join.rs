@@ -1,11 +1,12 @@
 //! `sdfc join`: joins the regions of a picture that were drawn separately.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sdfc::Tile;
 use sdfc_render::Raster;
 
 use crate::args::Join;
+use crate::console::Console;
 use crate::failure::Failure;
 use crate::farm::provenance::{Drawing, Provenance};
 use crate::farm::region;
@@ -20,25 +21,47 @@ const SEVERAL_DEVICES: &str = "several devices";
 ///
 /// A part cannot be read, is damaged or is from another picture; parts overlap or are missing; the
 /// result cannot be written.
-pub fn run(args: &Join) -> Result<(), Failure> {
+pub fn run(args: &Join, console: &Console) -> Result<(), Failure> {
     let output = Output::new(&args.output);
+    let parts = parts(args)?;
     if let Output::File(path) = &output {
-        for part in &args.parts {
+        for part in &parts {
             output::distinct(part, &[path])?;
         }
     }
     output.check()?;
     let mut picture: Option<Joined> = None;
-    for path in &args.parts {
+    for path in &parts {
         let (raster, said) = read(path)?;
         match &mut picture {
             Some(joined) => joined.add(path, &raster, &said, args.any_device)?,
             None => picture = Some(Joined::new(path, &raster, said)?),
         }
     }
-    // The parser demands at least one part.
+    // There is at least one part.
     let Some(picture) = picture else { return Ok(()) };
-    output.write(&picture.file(&args.output)?)
+    let [width, height] = picture.drawing.size;
+    output.write(&picture.file(&args.output)?)?;
+    if let Output::File(_) = output {
+        console.note(&format!("{output}: {width}x{height}, joined from {} parts", parts.len()));
+    }
+    Ok(())
+}
+
+/// Returns the files of the parts: those of the command line, or those beside the result.
+fn parts(args: &Join) -> Result<Vec<PathBuf>, Failure> {
+    if !args.parts.is_empty() {
+        return Ok(args.parts.clone());
+    }
+    let name = args.output.display();
+    let parts = region::parts_of(&args.output).map_err(|error| {
+        Failure::Machine(format!("cannot look for the parts of {name}: {error}"))
+    })?;
+    if parts.is_empty() {
+        let message = format!("there are no parts beside {name}; name their files");
+        return Err(Failure::Call(message));
+    }
+    Ok(parts)
 }
 
 fn read(path: &Path) -> Result<(Raster, Provenance), Failure> {

@@ -10,6 +10,9 @@ use super::share::{Share, share};
 /// this side, so no block is drawn twice.
 const BAND_STEP: u32 = 8;
 
+/// Stands in file names between the name of a picture and the region of a part.
+const PART: &str = ".part-";
+
 /// A region of a picture, as the command line states it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
@@ -69,10 +72,31 @@ pub fn name(Tile { origin: [x, y], size: [width, height] }: Tile) -> String {
     format!("{x},{y},{width}x{height}")
 }
 
+/// Returns the files beside a picture that are named like its parts, by name.
+///
+/// # Errors
+///
+/// The folder cannot be read.
+pub fn parts_of(path: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned() + PART;
+    let mut parts = Vec::new();
+    for entry in std::fs::read_dir(folder.unwrap_or(Path::new(".")))? {
+        let entry = entry?;
+        let is_part = entry.file_name().to_string_lossy().starts_with(&stem);
+        let file = Path::new(&entry.file_name()).to_owned();
+        if is_part && file.extension() == path.extension() {
+            parts.push(path.with_file_name(file));
+        }
+    }
+    parts.sort();
+    Ok(parts)
+}
+
 /// Returns the file name of a part: `ball.part-0-512-3840x256.png` for `ball.png`.
 pub fn part_path(path: &Path, region: Tile) -> PathBuf {
     let mut file = path.file_stem().unwrap_or_default().to_owned();
-    file.push(format!(".part-{}", name(region).replace(',', "-")));
+    file.push(format!("{PART}{}", name(region).replace(',', "-")));
     if let Some(extension) = path.extension() {
         file.push(".");
         file.push(extension);
