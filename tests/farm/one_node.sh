@@ -40,7 +40,7 @@ KillWait=1
 NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
 PartitionName=test Nodes=ALL Default=YES State=UP
 CONF
-  echo "CgroupPlugin=disabled" > "$folder/cgroup.conf"
+  echo "CgroupPlugin=cgroup/v1" > "$folder/cgroup.conf"
   export SLURM_CONF=$folder/slurm.conf
   munged --foreground --force --socket "$folder/munge.socket" --key-file "$folder/munge.key" \
     --pid-file "$folder/munge.pid" --log-file "$folder/log/munge" \
@@ -51,7 +51,10 @@ CONF
   slurm_processes+=($!)
   slurmd -D -f "$SLURM_CONF" 2>> "$folder/log/slurmd" &
   slurm_processes+=($!)
-  wait_for 60 node_is_idle
+  wait_for 20 node_is_idle || {
+    tail -n 12 "$folder"/log/* >&2
+    return 1
+  }
 }
 
 node_is_idle() {
