@@ -28,8 +28,8 @@ impl Frames {
     }
 }
 
-/// Parses a range. `0..60` is half-open, so that adjacent ranges share no frame. `0-59` includes its
-/// end, and `7` is one frame: so render farms write ranges.
+/// Parses a range. `0..60` is half-open, so that adjacent ranges share no frame. `0-59` includes
+/// its end, and `7` is one frame: so render farms write ranges.
 pub fn frames(text: &str) -> Result<Frames, String> {
     let expected = "expected FIRST..END, such as 0..60 for frames 0 to 59, or FIRST-LAST";
     let number = |text: &str| text.parse::<u32>().map_err(|_| expected.to_owned());
