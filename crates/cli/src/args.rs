@@ -87,12 +87,30 @@ pub enum Command {
     Bench(Bench),
     /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
+    /// Print the script with which a shell completes commands and options
+    Completions(Completions),
+    /// Write the manual pages of all commands into a folder
+    Manual(Manual),
     /// Serve an editor: the Language Server Protocol over stdin and stdout
     Lsp(Lsp),
     /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
     /// Find the cheapest ray method and setting within an error limit
     Tune(Tune),
+}
+
+/// Arguments of `completions`.
+#[derive(clap::Args, Debug)]
+pub struct Completions {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `manual`.
+#[derive(clap::Args, Debug)]
+pub struct Manual {
+    /// An existing folder
+    pub folder: PathBuf,
 }
 
 /// Arguments of `lsp`.

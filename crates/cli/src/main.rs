@@ -49,6 +49,8 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),
         Command::Doc(args) => commands::doc::run(args, console),
+        Command::Completions(args) => commands::completions::run(args),
+        Command::Manual(args) => commands::manual::run(args),
         Command::Lsp(_) => commands::lsp::run(),
         Command::Chart(args) => commands::charts::run(args, console),
         Command::Tune(args) => commands::tune::run(args, console),

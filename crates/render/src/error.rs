@@ -7,11 +7,19 @@ use crate::cpu::method::CpuMethod;
 use crate::limits::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 use crate::tiles::Tile;
 
+/// What to install where there is no adapter.
+const INSTALL: &str = if cfg!(target_os = "linux") {
+    "; install a Vulkan driver, such as the package `mesa-vulkan-drivers` of Debian, Ubuntu and \
+     Fedora"
+} else {
+    ""
+};
+
 /// Why a picture could not be drawn. Nothing in this crate panics in its place.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RenderError {
     /// The machine has no suitable GPU; contains the drivers' message.
-    #[error("this machine has no Vulkan, Metal or DX12 adapter ({0})")]
+    #[error("this machine has no Vulkan, Metal or DX12 adapter{INSTALL}")]
     NoAdapter(String),
     /// The adapter gave no device; contains its message.
     #[error("the adapter gave no device: {0}")]
