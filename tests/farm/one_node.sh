@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # A Slurm cluster of one node, for tests: `start_slurm FOLDER` starts it as root with all of its
 # files in a folder, and `stop_slurm` ends it. It needs these packages of Debian or Ubuntu:
 # slurmctld, slurmd, slurm-client, munge.
@@ -44,7 +45,7 @@ CONF
   export SLURM_CONF=$folder/slurm.conf
   munged --foreground --force --socket "$folder/munge.socket" --key-file "$folder/munge.key" \
     --pid-file "$folder/munge.pid" --log-file "$folder/log/munge" \
-    --seed-file "$folder/munge.seed" 2>> "$folder/log/munge" &
+    --seed-file "$folder/munge.seed" 2> "$folder/log/munge.stderr" &
   slurm_processes+=($!)
   wait_for 20 test -S "$folder/munge.socket"
   slurmctld -D -f "$SLURM_CONF" 2>> "$folder/log/slurmctld" &

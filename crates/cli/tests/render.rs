@@ -212,6 +212,13 @@ fn without_a_gpu_auto_replaces_methods_that_the_cpu_lacks() {
             "{}",
             said(&output)
         );
+        let required = "render a.sdf -o b.png --size 24x16 --backend gpu";
+        let output = run_in(folder.path(), required, b"", &hidden);
+        assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+        let expected = "error: this machine has no Vulkan, Metal or DX12 adapter; install a Vulkan \
+                        driver, such as the package `mesa-vulkan-drivers` of Debian, Ubuntu and \
+                        Fedora\n";
+        assert_eq!(said(&output), expected);
     }
     let both = run(&folder, "render a.sdf -o b.png --size 24x16 --backend cpu --march segment");
     assert_eq!(both.status.code(), Some(2), "{}", said(&both));
