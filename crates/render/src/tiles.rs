@@ -92,9 +92,11 @@ const SHRINKAGE: f64 = 16.0;
 
 /// Iterates over the tiles of a region: bands from the top, tiles in a band from the left.
 ///
-/// The tiles are those of a picture's blocks of [`STEP`] by [`STEP`] pixels. So they cover a little
-/// more than a region whose sides are no multiples, and a block that a region cuts is drawn as in
-/// the whole picture.
+/// The tiles consist of the picture's blocks of [`STEP`] by [`STEP`] pixels. So they cover a little
+/// more than a region whose sides are no multiples, and a block that a region cuts has the active
+/// lists that it has in the whole picture. Wider tiles, which begin with the drawn ones, only sort
+/// out iterations that each block in them would sort out: along the narrower cone of a block, no
+/// step of the same search is shorter.
 #[derive(Clone, Debug)]
 pub(crate) struct Tiler {
     region: Tile,

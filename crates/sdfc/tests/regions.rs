@@ -39,6 +39,12 @@ fn scenes() -> Vec<(&'static str, String)> {
         ),
         ("many parts, culled", format!("union({balls})\nplane(y: -2.5)\n")),
         ("many blended parts, culled", format!("union({balls}, blend: smooth(0.15))\n")),
+        (
+            "many small parts from within, culled",
+            "union(for i in 0..600: sphere(0.05 * hash(i, 7)).translate(4 * hash3(i) - [2, 2, 2]))\n\
+             camera(eye: [0.1, 0.2, 0.3], target: [1, 0.4, 2], fov: 100deg)\n"
+                .into(),
+        ),
     ]
 }
 

@@ -33,7 +33,7 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// the outputs and the scene are the same file; with `--strict`, a part of the picture is unproven;
 /// the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
-    let Some((frames, region)) = share(args, console)? else { return Ok(()) };
+    let Some(Work { frames, region }) = Work::of(args, console)? else { return Ok(()) };
     let outputs = Outputs::new(args, region)?;
     let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
     let (scene, checksum) = super::scene_and_checksum(&args.file, compiler, &args.set, console)?;
@@ -61,29 +61,38 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// Returns the frames and the region to draw. `None`, after a note, if the share has none.
-fn share(
-    args: &Render,
-    console: &Console,
-) -> Result<Option<(Option<Frames>, Option<Tile>)>, Failure> {
-    let frames = match (args.frames, args.farm.chunk) {
-        (Some(all), Some(share)) => {
-            let Some(frames) = share.of_frames(all) else {
-                let count = all.count();
-                console.note(&format!("there is no frame in share {share} of {count} frames"));
-                return Ok(None);
-            };
-            Some(frames)
+/// What is drawn of a sequence and of each picture.
+struct Work {
+    /// `None` for a single picture.
+    frames: Option<Frames>,
+    /// `None` for whole pictures.
+    region: Option<Tile>,
+}
+
+impl Work {
+    /// Returns the share that the command line asks for. `None`, after a note, if it is empty.
+    fn of(args: &Render, console: &Console) -> Result<Option<Self>, Failure> {
+        let frames = match (args.frames, args.farm.chunk) {
+            (Some(all), Some(share)) => {
+                let Some(frames) = share.of_frames(all) else {
+                    let count = all.count();
+                    console.note(&format!("there is no frame in share {share} of {count} frames"));
+                    return Ok(None);
+                };
+                Some(frames)
+            }
+            (frames, _) => frames,
+        };
+        let Some(region) = args.farm.region else {
+            return Ok(Some(Self { frames, region: None }));
+        };
+        let region = region.of(args.size).map_err(Failure::Call)?;
+        if region.is_none() {
+            let height = args.size[1];
+            console.note(&format!("there is no row in this share of {height} rows"));
         }
-        (frames, _) => frames,
-    };
-    let Some(region) = args.farm.region else { return Ok(Some((frames, None))) };
-    let region = region.of(args.size).map_err(Failure::Call)?;
-    if region.is_none() {
-        let height = args.size[1];
-        console.note(&format!("there is no row in this share of {height} rows"));
+        Ok(region.map(|region| Self { frames, region: Some(region) }))
     }
-    Ok(region.map(|region| (frames, Some(region))))
 }
 
 /// The destinations of the results.
@@ -218,7 +227,7 @@ impl<'a> Job<'a> {
         let drawing = self.drawing.in_region(outputs.region);
         let output = outputs.picture(None);
         if let Some(unproven) = self.finished(outputs, None, &drawing) {
-            self.report(outputs, None, Some(unproven), [1, 1], unproven)?;
+            self.report(outputs, None, true, [1, 1], unproven)?;
             self.console.note(&format!("{output}: finished before"));
             return Ok(());
         }
@@ -230,7 +239,7 @@ impl<'a> Job<'a> {
         if let Some(stats_output) = &outputs.stats {
             stats_output.write(&output::json(&picture.stats)?)?;
         }
-        self.report(outputs, None, None, [1, 1], picture.stats.pixels.unproven)?;
+        self.report(outputs, None, false, [1, 1], picture.stats.pixels.unproven)?;
         self.print_notes(&picture);
         if let Some(unproven) = &picture.unproven {
             self.console.warning(unproven);
@@ -250,7 +259,10 @@ impl<'a> Job<'a> {
             let drawing = self.drawing.at_frame(number, time).in_region(outputs.region);
             let position = [before + 1, frames.count()];
             if let Some(unproven) = self.finished(outputs, Some(number), &drawing) {
-                self.report(outputs, Some(number), Some(unproven), position, unproven)?;
+                if self.interrupt.flow().is_break() {
+                    return Err(stopped([before, frames.count()]));
+                }
+                self.report(outputs, Some(number), true, position, unproven)?;
                 skipped += 1;
                 continue;
             }
@@ -258,7 +270,7 @@ impl<'a> Job<'a> {
             self.warn_once(&picture, number, &mut said);
             self.save(&picture, outputs, Some(number), &drawing)?;
             let unproven = picture.stats.pixels.unproven;
-            self.report(outputs, Some(number), None, position, unproven)?;
+            self.report(outputs, Some(number), false, position, unproven)?;
             if last.is_none() {
                 self.print_notes(&picture);
             }
@@ -335,12 +347,12 @@ impl<'a> Job<'a> {
         file.map_err(|e| super::lowering(&e.into(), self.console))
     }
 
-    /// Reports a picture that is finished; `skipped` is set if it was finished before.
+    /// Reports a picture that is finished; `skipped` is true if it was finished before.
     fn report(
         &self,
         outputs: &Outputs,
         frame: Option<u32>,
-        skipped: Option<u64>,
+        skipped: bool,
         position: [u32; 2],
         unproven: u64,
     ) -> Result<(), Failure> {
@@ -350,7 +362,6 @@ impl<'a> Job<'a> {
             Output::Stdout => None,
         };
         let region = outputs.region.map(region::name);
-        let skipped = skipped.is_some();
         self.reporter.finished(Finished { frame, region, skipped, file, position, unproven })
     }
 
@@ -382,7 +393,7 @@ impl<'a> Job<'a> {
                 output.write(&self.encode(&picture, &picture.image.depth_raster(), &drawing)?)?;
             }
             let unproven = picture.stats.pixels.unproven;
-            self.report(outputs, Some(number), None, [before + 1, frames.count()], unproven)?;
+            self.report(outputs, Some(number), false, [before + 1, frames.count()], unproven)?;
             last = Some(picture);
         }
         drop((animation, progress));
@@ -410,11 +421,7 @@ impl<'a> Job<'a> {
         let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
         let picture = self.paint(&values, 1, progress, position);
         picture.map_err(|failure| {
-            if !matches!(failure, Failure::Interrupted(_)) {
-                return failure;
-            }
-            let [before, all] = position;
-            Failure::Interrupted(format!("stopped after {before} of {all} frames"))
+            if matches!(failure, Failure::Interrupted(_)) { stopped(position) } else { failure }
         })
     }
 
@@ -488,6 +495,11 @@ impl<'a> Job<'a> {
         let [width, height] = picture.stats.size;
         self.console.note(&format!("{name}: {width}x{height}, drawn on {}", adapter(picture)));
     }
+}
+
+/// Ctrl-C in a sequence, after this many of this many frames.
+fn stopped([before, all]: [u32; 2]) -> Failure {
+    Failure::Interrupted(format!("stopped after {before} of {all} frames"))
 }
 
 /// The device that drew, with its driver.

@@ -127,25 +127,13 @@ fn side_of(at: u32) -> u32 {
     return TILE << (WIDER_BITS * at);
 }
 
-// The first tile of a level, counted from the corner of the whole picture. So all tiles are those
-// of the picture, and lists do not depend on how much of it is drawn at once.
-fn first_of(at: u32) -> vec2u {
-    return view.tile_origin / side_of(at);
-}
-
 fn counts_of(at: u32) -> vec2u {
-    let end = first_of(0u) + tile_counts();
-    let wide = 1u << (WIDER_BITS * at);
-    return (end + (wide - 1u)) / wide - first_of(at);
-}
-
-// The tile of a level that a tile of the level below is part of.
-fn wider(at: u32, tile: vec2u) -> vec2u {
-    return ((first_of(at - 1u) + tile) >> vec2u(WIDER_BITS)) - first_of(at);
+    let side = side_of(at);
+    return (view.tile_size + (side - 1u)) / side;
 }
 
 fn cone_around(tile: vec2u) -> Cone {
-    let corner = view.tile_origin % TILE + side_of(level) * (first_of(level) + tile);
+    let corner = view.tile_origin + side_of(level) * tile;
     let side = f32(side_of(level));
     let middle = ray_through(vec2f(corner) + 0.5 * side);
     let margin = Margin(2.0 * middle.radius, 2.0 * middle.spread);
@@ -234,7 +222,7 @@ fn mark(@builtin(global_invocation_id) id: vec3u) {
     let cone = cone_around(tile);
     var candidates = 0xffffffffu >> (32u - min(32u, count_all - 32u * word));
     if level < TOP_LEVEL {
-        candidates = masks[mask_words(level + 1u, wider(level + 1u, tile), loop_index) + word];
+        candidates = masks[mask_words(level + 1u, tile >> vec2u(WIDER_BITS), loop_index) + word];
     }
     var bits = 0u;
     while candidates != 0u {
@@ -285,7 +273,7 @@ fn list(@builtin(global_invocation_id) id: vec3u) {
     var counts: array<u32, MAX_LOOPS>;
     for (var loop_index = 0u; loop_index < loops; loop_index++) {
         let count_all = active_lists[ALL_ITERATIONS + 2u * loop_index];
-        let words = mask_words(1u, wider(1u, tile), loop_index);
+        let words = mask_words(1u, tile >> vec2u(WIDER_BITS), loop_index);
         for (var word = 0u; 32u * word < count_all; word++) {
             var bits = masks[words + word];
             while bits != 0u {

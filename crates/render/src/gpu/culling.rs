@@ -179,18 +179,15 @@ impl Culling {
         pass.dispatch_workgroups((groups * group(&self.iterations).pow(3)).div_ceil(LANES), 1, 1);
     }
 
-    /// Lists what can affect this many columns and rows of tiles, of which the first begins at a
-    /// pixel of the picture.
+    /// Lists what can affect this many columns and rows of tiles.
     pub(crate) fn run(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
         active: &ActiveBuffers,
-        origin: [u32; 2],
         tiles: [u32; 2],
     ) {
         let loops = self.iterations.len() as u32;
-        let first = origin.map(|pixel| pixel / WORKGROUP);
-        let levels: Vec<_> = each_level(first, tiles).zip(&active.bind_groups).collect();
+        let levels: Vec<_> = each_level(tiles).zip(&active.bind_groups).collect();
         let Some((&(lowest_tiles, list_group), wide)) = levels.split_first() else { return };
         pass.set_pipeline(&self.mark);
         for &(tiles, bind_group) in wide.iter().rev() {

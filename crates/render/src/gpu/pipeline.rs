@@ -227,7 +227,7 @@ impl Pipeline {
         let mut run = Run::new(&self.kernel, None, Moment { uniforms, within: None })?;
         run.allocate(WORKGROUP * WORKGROUP, [1, 1])?;
         let empty = vec![0; VIEW_BYTES];
-        run.submit(&empty, [0, 0], [1, 1], 1, 0)?;
+        run.submit(&empty, [1, 1], 1, 0)?;
         // No timeout: compiling thousands of primitives can take a software driver many minutes.
         self.kernel.gpu.wait(None)
     }

@@ -192,17 +192,15 @@ impl<'a> Run<'a> {
         let groups = tile.size.map(|side| side.div_ceil(WORKGROUP));
         self.allocate(count.max(WORKGROUP * WORKGROUP), groups)?;
         let cell_groups = self.cells_to_list()?;
-        self.submit(&view_bytes(&view.block(tile)), tile.origin, groups, cell_groups, count)?;
+        self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, count)?;
         self.buffers.listed = Some(self.moment.clone());
         self.read(tile, origin, image)
     }
 
     /// Submits workgroups, the culling before them, and the copy of the pixels that they write.
-    /// `origin` is the first pixel, as the view has it.
     pub(crate) fn submit(
         &self,
         view: &[u8],
-        origin: [u32; 2],
         groups: [u32; 2],
         cell_groups: u32,
         pixels: u32,
@@ -229,7 +227,7 @@ impl<'a> Run<'a> {
                     if cell_groups > 0 {
                         culling.run_cells(&mut pass, active, cell_groups);
                     }
-                    culling.run(&mut pass, active, origin, groups);
+                    culling.run(&mut pass, active, groups);
                 }
                 pass.set_pipeline(&self.kernel.pipeline);
                 pass.set_bind_group(0, &buffers.bind_group, &[]);
