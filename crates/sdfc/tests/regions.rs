@@ -34,7 +34,7 @@ fn scenes() -> Vec<(&'static str, String)> {
         (
             "an uncertified field",
             "solid lump()\n  bounds -1..1\n  \
-             = max(length(p) - 1, p.y * p.y * p.y - 0.2 * sin(300deg * p.x))\nlump()\n"
+             = max(length(p) - 1, sqrt(abs(p.x)) - 0.7)\nlump()\n"
                 .into(),
         ),
         ("many parts, culled", format!("union({balls})\nplane(y: -2.5)\n")),
