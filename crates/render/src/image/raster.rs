@@ -16,6 +16,9 @@ use crate::tiles::Tile;
 /// The keyword of the note in PNG files, and its attribute in EXR files.
 const NOTE: &str = "sdfc";
 
+/// The most channels of an EXR file that is read: those of colours, and one for depths or alpha.
+const MAX_CHANNELS: usize = 4;
+
 /// The pixels of a picture file: a picture, or a region of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
@@ -291,6 +294,9 @@ fn from_exr(file: &[u8]) -> Result<(Raster, Option<String>), String> {
         let Vec2(width, height) = header.layer_size;
         let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
         check_size([side(width), side(height)]).map_err(|error| error.to_string())?;
+        if header.channels.list.len() > MAX_CHANNELS {
+            return Err(format!("the EXR file has more than {MAX_CHANNELS} channels"));
+        }
     }
     let image = exr::prelude::read()
         .no_deep_data()
