@@ -34,16 +34,17 @@ state_of() {
 is_running() { [[ $(state_of "$1") == RUNNING ]]; }
 is_completed() { [[ $(state_of "$1" | sort -u) == COMPLETED ]]; }
 
-# has_parts FOLDER COUNT: a folder has at least this many files.
+# has_files FOLDER COUNT: a folder has at least this many files.
 has_files() { (($(find "$1" -type f -name '[!.]*' | wc -l) >= $2)); }
 
-# Kills the program of a task, as a machine without memory does, and queues the task again.
-kill_and_requeue() {
+is_failed() { [[ $(state_of "$1") == FAILED ]]; }
+
+# Kills the program of a task, as a machine without memory does.
+kill_task() {
   local process
   for process in $(pgrep -x sdfc); do
-    if grep -qz "SLURM_ARRAY_TASK_ID=$2\$" "/proc/$process/environ" 2> /dev/null; then
+    if grep -qz "SLURM_ARRAY_TASK_ID=$1\$" "/proc/$process/environ" 2> /dev/null; then
       kill -KILL "$process"
-      scontrol requeue "$1_$2" || fail "the task could not be queued again"
       return 0
     fi
   done
@@ -60,8 +61,10 @@ echo "an array draws 24 frames; a task is killed after its first frame"
 array=$(sbatch --parsable --array=1-3 "$scripts/frames.sbatch" 3 scene.sdf frames/frame.png 0..24 \
   "${size[@]}")
 wait_for 60 has_files frames 2
-wait_for 10 kill_and_requeue "$array" 2
-wait_for 300 is_completed "$array"
+wait_for 10 kill_task 2
+wait_for 60 is_failed "${array}_2" || fail "the killed task has not failed"
+scontrol requeue "${array}_2"
+wait_for 300 is_completed "$array" || fail "the array does not end"
 for file in alone/frame.*.png; do
   cmp "$file" "frames/${file#alone/}" || fail "$file differs"
 done
@@ -73,7 +76,12 @@ to its end and skipped $(grep -c '"state":"skipped"' "sdfc-frames-${array}_2.log
 echo "an array draws a picture in eight bands; a task is killed in the middle"
 read -r bands join < <("$scripts/picture.sh" 8 scene.sdf picture/large.png "${large[@]}")
 wait_for 60 is_running "${bands}_1"
-wait_for 60 kill_and_requeue "$bands" 1
-wait_for 600 is_completed "$join"
+wait_for 60 kill_task 1
+wait_for 300 is_failed "$join" || fail "a part is missing, and the picture was joined"
+grep -q 'a part is missing: draw it with --region 0,0,' "sdfc-join-$join.log" || fail "no reason"
+scontrol requeue "${bands}_1"
+wait_for 300 is_completed "$bands" || fail "the array does not end"
+scontrol requeue "$join"
+wait_for 60 is_completed "$join" || fail "the bands are not joined"
 cmp alone/large.png picture/large.png || fail "the joined picture differs"
 echo "the joined picture is identical: $(sha256sum < picture/large.png)"

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Submits a picture: an array of tasks that draw bands of rows, and a job that joins the bands when
-# all of them are drawn. Prints the numbers of both jobs.
+# all tasks have ended. If a task has failed, that job fails too and says which region is missing.
+# Prints the numbers of both jobs.
 #
 #   picture.sh 8 scene.sdf picture/large.png --size 3840x2160
 set -euo pipefail
@@ -11,5 +12,5 @@ if (($# < 3)); then
 fi
 here=$(cd "$(dirname "$0")" && pwd)
 bands=$(sbatch --parsable --array="1-$1" "$here/bands.sbatch" "$@")
-join=$(sbatch --parsable --dependency="afterok:$bands" "$here/join.sbatch" "$3")
+join=$(sbatch --parsable --dependency="afterany:$bands" "$here/join.sbatch" "$3")
 echo "$bands $join"
