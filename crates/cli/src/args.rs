@@ -8,6 +8,7 @@ use sdfc::{Method, Plane};
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_render::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
 
+use crate::farm::options::Farm;
 use crate::sequence::{self, Frames};
 
 /// Compiles scenes of signed distance functions to shaders and pictures.
@@ -68,6 +69,8 @@ pub enum Command {
     Compile(Compile),
     /// Draw a picture of a scene
     Render(Render),
+    /// Join the regions of a picture that were drawn separately
+    Join(Join),
     /// Write a closed mesh of a scene, with a proven error
     Mesh(Mesh),
     /// Write the outlines of a section of a scene, with a proven error
@@ -84,12 +87,30 @@ pub enum Command {
     Bench(Bench),
     /// Look up shapes, operators, functions, settings, types and error codes
     Doc(Doc),
+    /// Print the script with which a shell completes commands and options
+    Completions(Completions),
+    /// Write the manual pages of all commands into a folder
+    Manual(Manual),
     /// Serve an editor: the Language Server Protocol over stdin and stdout
     Lsp(Lsp),
     /// Compare the cost and the error of all ray methods on a scene
     Chart(Chart),
     /// Find the cheapest ray method and setting within an error limit
     Tune(Tune),
+}
+
+/// Arguments of `completions`.
+#[derive(clap::Args, Debug)]
+pub struct Completions {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `manual`.
+#[derive(clap::Args, Debug)]
+pub struct Manual {
+    /// An existing folder
+    pub folder: PathBuf,
 }
 
 /// Arguments of `lsp`.
@@ -272,7 +293,7 @@ pub struct Render {
           value_parser = finite, conflicts_with = "frames")]
     pub time: f64,
     /// Draw frames A to B - 1 as OUT.0007.png and so on, or as one GIF; the time of frame n is
-    /// n / fps
+    /// n / fps. A-B includes B, and A alone is one frame
     #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
     pub frames: Option<Frames>,
     /// Frames per second
@@ -292,6 +313,24 @@ pub struct Render {
     /// Fail, and write no picture, if a part of it is unproven: if a ray may have missed a surface
     #[arg(long)]
     pub strict: bool,
+    /// Work that is shared between machines.
+    #[command(flatten)]
+    pub farm: Farm,
+}
+
+/// Arguments of `join`.
+#[derive(clap::Args, Debug)]
+pub struct Join {
+    /// Files of `sdfc render --region`: all regions of one picture [default: the files beside OUT
+    /// that are named like its parts, such as OUT.part-0-512-3840x256.png]
+    #[arg(value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// Output file, with the extension of the parts; `-` is stdout
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Join parts that were drawn on different devices, although borders may be visible
+    #[arg(long)]
+    pub any_device: bool,
 }
 
 /// Arguments of `mesh`.

@@ -10,6 +10,7 @@ mod cache;
 mod commands;
 mod console;
 mod failure;
+mod farm;
 mod interrupt;
 mod output;
 mod sequence;
@@ -39,6 +40,7 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Format(args) => commands::format::run(args, console),
         Command::Compile(args) => commands::compile::run(args, console),
         Command::Render(args) => commands::render::run(args, console),
+        Command::Join(args) => commands::join::run(args, console),
         Command::Mesh(args) => commands::mesh::run(args, console),
         Command::Contour(args) => commands::contour::run(args, console),
         Command::Measure(args) => commands::measure::run(args, console),
@@ -47,6 +49,8 @@ fn run(args: &Args, console: &Console) -> Result<(), Failure> {
         Command::Explain(args) => commands::explain::run(args, console),
         Command::Bench(args) => commands::bench::run(args, console),
         Command::Doc(args) => commands::doc::run(args, console),
+        Command::Completions(args) => commands::completions::run(args),
+        Command::Manual(args) => commands::manual::run(args),
         Command::Lsp(_) => commands::lsp::run(),
         Command::Chart(args) => commands::charts::run(args, console),
         Command::Tune(args) => commands::tune::run(args, console),

@@ -48,6 +48,15 @@ impl Output {
     }
 }
 
+impl std::fmt::Display for Output {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::File(path) => write!(f, "{}", path.display()),
+            Self::Stdout => f.write_str("stdout"),
+        }
+    }
+}
+
 /// A result and, if it is asked for, a report about it in JSON.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WithReport {

@@ -28,14 +28,19 @@ impl Frames {
     }
 }
 
-/// Parses a range such as `0..60`. It is half-open, so that adjacent ranges share no frame.
+/// Parses a range. `0..60` is half-open, so that adjacent ranges share no frame. `0-59` includes
+/// its end, and `7` is one frame: so render farms write ranges.
 pub fn frames(text: &str) -> Result<Frames, String> {
-    let ends = text.split_once("..").map(|(a, b)| (a.parse::<u32>(), b.parse::<u32>()));
-    let Some((Ok(first), Ok(end))) = ends else {
-        return Err("expected FIRST..END, such as 0..60 for frames 0 to 59".to_owned());
+    let expected = "expected FIRST..END, such as 0..60 for frames 0 to 59, or FIRST-LAST";
+    let number = |text: &str| text.parse::<u32>().map_err(|_| expected.to_owned());
+    let after = |last: u32| last.checked_add(1).ok_or_else(|| expected.to_owned());
+    let (first, end) = match (text.split_once(".."), text.split_once('-')) {
+        (Some((first, end)), _) => (number(first)?, number(end)?),
+        (None, Some((first, last))) => (number(first)?, after(number(last)?)?),
+        (None, None) => (number(text)?, after(number(text)?)?),
     };
     if first >= end {
-        return Err(format!("{text} contains no frame: END itself is not drawn"));
+        return Err(format!("{text} contains no frame; the END of FIRST..END itself is not drawn"));
     }
     if end - first > MAX_FRAMES {
         return Err(format!("a sequence has at most {MAX_FRAMES} frames"));
@@ -52,6 +57,11 @@ pub fn rate(text: &str) -> Result<f64, String> {
 /// Returns the time of a frame in seconds.
 pub fn time(number: u32, rate: f64) -> f64 {
     f64::from(number) / rate
+}
+
+/// Returns the number of the frame that a single picture shows.
+pub fn frame(time: f64, rate: f64) -> f64 {
+    (time * rate).round()
 }
 
 /// Returns how long a frame is shown, in hundredths of a second. Rounding errors of a sequence do
@@ -77,10 +87,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges_are_half_open() {
+    fn ranges_are_half_open_with_dots_and_closed_with_a_dash() {
         let range = frames("5..8").unwrap();
         assert_eq!((range.count(), range.numbers()), (3, 5..8));
-        for wrong in ["", "5", "5..", "..5", "8..5", "5..5", "-1..5", "0..5..9", "0..99999999"] {
+        assert_eq!(frames("5-7"), Ok(range));
+        assert_eq!(frames("5").unwrap().numbers(), 5..6);
+        for wrong in [
+            "",
+            "-5",
+            "5-",
+            "8-5",
+            "1-2,4",
+            "4294967295",
+            "5..",
+            "..5",
+            "8..5",
+            "5..5",
+            "-1..5",
+            "0..5..9",
+            "0..99999999",
+        ] {
             assert!(frames(wrong).is_err(), "{wrong}");
         }
     }

@@ -18,12 +18,17 @@ fn with_params() -> TempDir {
     folder(&[("params.sdf", WITH_PARAMS)])
 }
 
-/// Returns the bytes of the picture with these options, 24 by 16 pixels.
+/// Returns the pixels of a PNG file. Files of equal pictures differ in how they were drawn.
+fn pixels(file: &[u8]) -> Vec<u8> {
+    image::load_from_memory(file).unwrap().to_rgb8().into_raw()
+}
+
+/// Returns the pixels of the picture with these options, 24 by 16.
 fn drawn(folder: &TempDir, options: &str) -> Vec<u8> {
     let args = format!("render params.sdf --backend cpu --size 24x16 -o out.png {options}");
     let output = run(folder, &args);
     assert_eq!(output.status.code(), Some(0), "{options}: {}", said(&output));
-    std::fs::read(folder.path().join("out.png")).unwrap()
+    pixels(&std::fs::read(folder.path().join("out.png")).unwrap())
 }
 
 fn refused(folder: &TempDir, options: &str, part: &str) {
@@ -99,7 +104,7 @@ fn a_sequence_cut_into_ranges_gives_the_same_files() {
         assert_eq!(read(&whole, number), read(&cut, number), "{number}");
     }
     // At 2 frames per second frame 2 is at second 1.
-    assert_eq!(read(&whole, 2), drawn(&whole, "--time 1"));
+    assert_eq!(pixels(&read(&whole, 2)), drawn(&whole, "--time 1"));
     assert_ne!(read(&whole, 2), read(&whole, 3));
 }
 
@@ -127,8 +132,7 @@ fn more_samples_soften_edges() {
                 camera(eye: [0, 0, 5], target: 0, fov: 45deg)\nsun(direction: [0, 0, 1])\n";
     let folder = folder(&[("params.sdf", bars)]);
     let shades = |options: &str| {
-        let picture = image::load_from_memory(&drawn(&folder, options)).unwrap().to_rgb8();
-        picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>()
+        drawn(&folder, options).as_chunks::<3>().0.iter().copied().collect::<BTreeSet<_>>()
     };
     let (one, many) = (shades(""), shades("--samples 9"));
     assert_eq!(one.len(), 2, "{one:?}");
@@ -208,6 +212,13 @@ fn without_a_gpu_auto_replaces_methods_that_the_cpu_lacks() {
             "{}",
             said(&output)
         );
+        let required = "render a.sdf -o b.png --size 24x16 --backend gpu";
+        let output = run_in(folder.path(), required, b"", &hidden);
+        assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+        let expected = "error: this machine has no Vulkan, Metal or DX12 adapter; install a Vulkan \
+                        driver, such as the package `mesa-vulkan-drivers` of Debian, Ubuntu and \
+                        Fedora\n";
+        assert_eq!(said(&output), expected);
     }
     let both = run(&folder, "render a.sdf -o b.png --size 24x16 --backend cpu --march segment");
     assert_eq!(both.status.code(), Some(2), "{}", said(&both));

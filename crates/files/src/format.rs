@@ -1,8 +1,28 @@
 //! The file formats of pictures.
 
+use std::io::{Error, ErrorKind, Read as _};
 use std::path::Path;
 
-use sdfc::{Animation, Image, RenderError};
+use sdfc::{Animation, Image, RasterKind, RenderError};
+
+/// The largest file of a picture that is read, in bytes: more than three f32 channels of the most
+/// pixels that a picture has.
+const MAX_PICTURE_BYTES: u64 = 1 << 30;
+
+/// Reads the file of a picture.
+///
+/// # Errors
+///
+/// The file is missing, unreadable or larger than 1 GiB.
+pub fn read_picture(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(MAX_PICTURE_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_PICTURE_BYTES {
+        let most = MAX_PICTURE_BYTES >> 20;
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it is larger than {most} MiB")));
+    }
+    Ok(bytes)
+}
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +49,14 @@ impl Format {
             let path = path.display();
             format!("{path}: pictures are written as .png, .exr or .gif")
         })
+    }
+
+    /// Returns true if files of this format hold pixels of this kind.
+    pub fn holds(self, kind: RasterKind) -> bool {
+        match kind {
+            RasterKind::Srgb => self == Self::Png,
+            RasterKind::Linear | RasterKind::Depth => self == Self::Exr,
+        }
     }
 
     /// Encodes a picture.

@@ -16,7 +16,7 @@ mod format;
 mod write;
 
 #[cfg(feature = "pictures")]
-pub use format::Format;
+pub use format::{Format, read_picture};
 pub use write::{check_writable, write};
 
 use std::io::{ErrorKind, Read};

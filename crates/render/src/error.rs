@@ -5,12 +5,21 @@ use thiserror::Error;
 
 use crate::cpu::method::CpuMethod;
 use crate::limits::{MAX_PIXELS, MAX_SAMPLES, MAX_SIDE};
+use crate::tiles::Tile;
+
+/// What to install where there is no adapter.
+const INSTALL: &str = if cfg!(target_os = "linux") {
+    "; install a Vulkan driver, such as the package `mesa-vulkan-drivers` of Debian, Ubuntu and \
+     Fedora"
+} else {
+    ""
+};
 
 /// Why a picture could not be drawn. Nothing in this crate panics in its place.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum RenderError {
     /// The machine has no suitable GPU; contains the drivers' message.
-    #[error("this machine has no Vulkan, Metal or DX12 adapter ({0})")]
+    #[error("this machine has no Vulkan, Metal or DX12 adapter{INSTALL}")]
     NoAdapter(String),
     /// The adapter gave no device; contains its message.
     #[error("the adapter gave no device: {0}")]
@@ -34,6 +43,17 @@ pub enum RenderError {
          {MAX_PIXELS} pixels", .0[0], .0[1]
     )]
     Size([u32; 2]),
+    /// The region has no pixels, or reaches beyond the picture.
+    #[error(
+        "the region {},{},{}x{} is not within the picture of {}x{} pixels",
+        region.origin[0], region.origin[1], region.size[0], region.size[1], picture[0], picture[1]
+    )]
+    Region {
+        /// The region.
+        region: Tile,
+        /// The size of the picture.
+        picture: [u32; 2],
+    },
     /// There are no samples per pixel, or more than [`MAX_SAMPLES`].
     #[error("{0} samples for each pixel: there must be 1 to {MAX_SAMPLES}")]
     Samples(u32),
@@ -98,6 +118,7 @@ impl RenderError {
             | Self::Uniforms { .. }
             | Self::Limit { .. } => true,
             Self::Size(_)
+            | Self::Region { .. }
             | Self::Samples(_)
             | Self::UniformCount { .. }
             | Self::NothingDrawn

@@ -8,14 +8,18 @@ use sdfc_graph::{
 };
 
 use crate::clock::Clock;
-use crate::image::Image;
-use crate::tiles::TileSize;
+use crate::error::RenderError;
+use crate::image::{Image, check_size};
+use crate::tiles::{Tile, TileSize};
 
 /// Options for drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderOptions {
     /// The size of tiles.
     pub tile_size: TileSize,
+    /// The region of the picture that is drawn; `None` is all of it. Its pixels are those of the
+    /// whole picture, bit for bit.
+    pub region: Option<Tile>,
 }
 
 /// The progress of a frame.
@@ -55,4 +59,16 @@ pub struct Frame {
 pub fn uniform_values(program: &Program, frame: &FrameValues) -> Vec<[f32; 4]> {
     let values = evaluate_frame(&program.graph, &program.uniforms, frame);
     values.into_iter().map(|lanes| lanes.map(|lane| lane as f32)).collect()
+}
+
+/// Returns the region that is drawn of a picture.
+///
+/// # Errors
+///
+/// [`RenderError::Size`], [`RenderError::Region`].
+pub(crate) fn region_of(picture: [u32; 2], options: &RenderOptions) -> Result<Tile, RenderError> {
+    check_size(picture)?;
+    let region = options.region.unwrap_or(Tile::whole(picture));
+    let is_within = region.is_within(picture);
+    if is_within { Ok(region) } else { Err(RenderError::Region { region, picture }) }
 }

@@ -71,7 +71,7 @@ pub use frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, uniform
 #[cfg(feature = "gpu")]
 pub use gpu::{Gpu, Pipeline, testing};
 #[cfg(feature = "files")]
-pub use image::Animation;
+pub use image::{Animation, Raster, RasterKind};
 pub use image::{
     CAPPED, HIT, Image, MISS, NOT_FINITE_COLOR, PixelCounts, is_finite, is_unproven, sample_offsets,
 };

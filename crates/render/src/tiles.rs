@@ -10,6 +10,30 @@ pub struct Tile {
 }
 
 impl Tile {
+    /// All of a picture.
+    pub fn whole(size: [u32; 2]) -> Self {
+        Self { origin: [0, 0], size }
+    }
+
+    /// Returns true if it has pixels, and all of them are in a picture of this size.
+    pub fn is_within(&self, picture: [u32; 2]) -> bool {
+        (0..2).all(|axis| {
+            let [first, length] = [self.origin[axis], self.size[axis]];
+            length > 0 && first.checked_add(length).is_some_and(|end| end <= picture[axis])
+        })
+    }
+
+    /// The smallest tile around it whose sides are multiples of [`STEP`], except at the border of
+    /// the picture. Renderers work in blocks of that size.
+    fn aligned(&self, picture: [u32; 2]) -> Self {
+        let origin = self.origin.map(|first| first / STEP * STEP);
+        let end = |axis: usize| {
+            let end = self.origin[axis].saturating_add(self.size[axis]);
+            end.div_ceil(STEP).saturating_mul(STEP).min(picture[axis])
+        };
+        Self { origin, size: [0, 1].map(|axis| end(axis).saturating_sub(origin[axis])) }
+    }
+
     /// The number of its pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
@@ -66,10 +90,16 @@ const GROWTH: f64 = 4.0;
 /// The maximum shrinkage in pixels from one tile to the next.
 const SHRINKAGE: f64 = 16.0;
 
-/// Iterates over the tiles of a picture: bands from the top, tiles in a band from the left.
+/// Iterates over the tiles of a region: bands from the top, tiles in a band from the left.
+///
+/// The tiles consist of the picture's blocks of [`STEP`] by [`STEP`] pixels. So they cover a little
+/// more than a region whose sides are no multiples, and a block that a region cuts has the active
+/// lists that it has in the whole picture. Wider tiles, which begin with the drawn ones, only sort
+/// out iterations that each block in them would sort out: along the narrower cone of a block, no
+/// step of the same search is shorter.
 #[derive(Clone, Debug)]
 pub(crate) struct Tiler {
-    picture: [u32; 2],
+    region: Tile,
     tile_size: TileSize,
     /// The target number of pixels of an adaptive tile, and its maximum.
     wanted: u32,
@@ -79,10 +109,17 @@ pub(crate) struct Tiler {
 }
 
 impl Tiler {
-    /// Tiles of a picture with at most `most` pixels each, and as many columns or rows.
-    pub(crate) fn new(picture: [u32; 2], tile_size: TileSize, most: u32) -> Self {
+    /// Tiles of a region of a picture with at most `most` pixels each, and as many columns or rows.
+    pub(crate) fn new(picture: [u32; 2], region: Tile, tile_size: TileSize, most: u32) -> Self {
         let most = most.max(STEP * STEP);
-        Self { picture, tile_size, wanted: FIRST_PIXELS.min(most), most, next: [0, 0], band: 0 }
+        let wanted = FIRST_PIXELS.min(most);
+        let region = region.aligned(picture);
+        Self { region, tile_size, wanted, most, next: [0, 0], band: 0 }
+    }
+
+    /// The number of pixels of all tiles.
+    pub(crate) fn pixels(&self) -> u64 {
+        self.region.pixels() as u64
     }
 
     /// The same tiles, the first of which has this many pixels if they adapt.
@@ -92,7 +129,7 @@ impl Tiler {
 
     /// The next tile.
     pub(crate) fn next(&mut self) -> Option<Tile> {
-        let [width, height] = self.picture;
+        let [width, height] = self.region.size;
         let [x, y] = self.next;
         if y >= height || width == 0 {
             return None;
@@ -101,7 +138,8 @@ impl Tiler {
             self.band = self.rows().clamp(1, height - y);
         }
         let columns = self.columns().clamp(1, width - x);
-        let tile = Tile { origin: [x, y], size: [columns, self.band] };
+        let [left, top] = self.region.origin;
+        let tile = Tile { origin: [left + x, top + y], size: [columns, self.band] };
         self.next = if x + columns < width { [x + columns, y] } else { [0, y + self.band] };
         Some(tile)
     }
@@ -110,7 +148,7 @@ impl Tiler {
         match self.tile_size {
             TileSize::Adaptive { .. } => {
                 // As square as the picture allows.
-                let width = (self.wanted.isqrt()).min(self.picture[0]).max(1);
+                let width = (self.wanted.isqrt()).min(self.region.size[0]).max(1);
                 multiple(self.wanted / width).min(MAX_ROWS)
             }
             TileSize::Fixed([width, height]) => height.min(self.most / width.clamp(1, self.most)),
@@ -152,7 +190,7 @@ mod tests {
         most: u32,
         time: impl Fn(usize) -> f64,
     ) -> Vec<Tile> {
-        let mut tiler = Tiler::new(picture, size, most);
+        let mut tiler = Tiler::new(picture, Tile::whole(picture), size, most);
         let mut seen = vec![0u8; picture[0] as usize * picture[1] as usize];
         let mut tiles = Vec::new();
         while let Some(tile) = tiler.next() {
@@ -188,7 +226,8 @@ mod tests {
 
     #[test]
     fn tiles_become_narrow_where_a_band_meets_something_costly() {
-        let mut tiler = Tiler::new([16_384, 4096], TileSize::default(), 1 << 16);
+        let picture = [16_384, 4096];
+        let mut tiler = Tiler::new(picture, Tile::whole(picture), TileSize::default(), 1 << 16);
         // Cheap until a tile has as many rows and columns as it may.
         let wide = loop {
             let tile = tiler.next().unwrap();
@@ -201,6 +240,28 @@ mod tests {
         assert_eq!((met.origin[1], met.size), (wide.origin[1], wide.size));
         tiler.took(met, 1e5);
         assert_eq!(tiler.next().unwrap().size, [1024 / 16, MAX_ROWS]);
+    }
+
+    #[test]
+    fn tiles_cover_a_region_in_blocks_of_the_picture() {
+        let region = Tile { origin: [13, 7], size: [30, 90] };
+        for size in [TileSize::default(), TileSize::Fixed([16, 24])] {
+            let mut tiler = Tiler::new([100, 99], region, size, 1 << 16);
+            let (mut covered, mut tiles) = (tiler.pixels(), Vec::new());
+            while let Some(tile) = tiler.next() {
+                assert_eq!(tile.origin.map(|first| first % STEP), [0, 0]);
+                assert!(tile.is_within([100, 99]), "{tile:?}");
+                covered -= tile.pixels() as u64;
+                tiler.took(tile, 1.0);
+                tiles.push(tile);
+            }
+            assert_eq!(covered, 0);
+            assert_eq!(tiles.first().map(|tile| tile.origin), Some([8, 0]));
+            let last = tiles.last().map(|tile| [0, 1].map(|a| tile.origin[a] + tile.size[a]));
+            assert_eq!(last, Some([48, 99]), "beyond the region, but not beyond the picture");
+        }
+        let far = Tile { origin: [u32::MAX, 0], size: [2, 1] };
+        assert!(!far.is_within([100, 99]));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use sdfc_render::{
 
 fn draw(program: &Program, size: [u32; 2], method: Method, tile_size: TileSize) -> Frame {
     let view = common::view(program, size);
-    let options = RenderOptions { tile_size };
+    let options = RenderOptions { tile_size, region: None };
     CpuScene::new(program)
         .unwrap()
         .render(&view, &FrameValues::default(), method, &options, &mut no_progress)
@@ -410,7 +410,7 @@ fn faults_of_the_call_are_errors() {
     let program = common::sphere();
     let (view, frame) = (common::view(&program, [64, 64]), FrameValues::default());
     let scene = CpuScene::new(&program).unwrap();
-    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
+    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]), region: None };
     let error = scene.render(&view, &frame, Method::Fixed, &options, &mut no_progress).unwrap_err();
     assert_eq!(error, RenderError::MethodNotOnCpu(Method::Fixed));
 

@@ -43,7 +43,7 @@ fn main() {
 }
 
 fn pattern(gpu: &Gpu, view: &View, tile_size: TileSize) -> Result<Frame, RenderError> {
-    let options = RenderOptions { tile_size };
+    let options = RenderOptions { tile_size, region: None };
     Pipeline::from_wgsl(gpu, PATTERN, 2)?.render(view, &VALUES, &options, &mut no_progress)
 }
 
@@ -60,7 +60,7 @@ fn draw(
     let pipeline = Pipeline::new(gpu, shader, program.uniforms.len())?;
     let view = View::new(program, frame, None, size)?;
     let uniforms = uniform_values(program, frame);
-    let options = RenderOptions { tile_size };
+    let options = RenderOptions { tile_size, region: None };
     Ok(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
 }
 
@@ -249,7 +249,7 @@ fn a_lost_device_stays_lost() -> Outcome {
     let gpu = Gpu::new()?;
     let view = common::view(&common::sphere(), [64, 64]);
     let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;
-    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
+    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]), region: None };
     let mut tiles = 0;
     let mut lose = |_: Progress| {
         tiles += 1;
@@ -274,7 +274,7 @@ fn progress_is_reported_and_can_cancel_the_frame() -> Outcome {
     let gpu = Gpu::new()?;
     let view = common::view(&common::sphere(), [64, 64]);
     let pipeline = Pipeline::from_wgsl(&gpu, PATTERN, 2)?;
-    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]) };
+    let options = RenderOptions { tile_size: TileSize::Fixed([16, 16]), region: None };
     let mut seen = Vec::new();
     let mut stop = |Progress { done, total }| {
         seen.push((done, total));

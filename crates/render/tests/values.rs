@@ -37,7 +37,7 @@ fn values(
     let mut padded = points.to_vec();
     padded.resize(POINTS, [0.0; 4]);
     let view = common::view(&common::sphere(), [points.len() as u32, 1]);
-    let options = RenderOptions { tile_size: TileSize::default() };
+    let options = RenderOptions { tile_size: TileSize::default(), region: None };
     let frame = pipeline.render(&view, &padded, &options, &mut no_progress)?;
 
     let tape = Tape::new(&program.graph, program.distance.as_slice())?;

@@ -124,7 +124,7 @@ pub use sdfc_mesh::{
     Plane, Progress as MeshProgress, Proven,
 };
 #[cfg(feature = "render")]
-pub use sdfc_render::{Animation, Image, Progress, Stats, no_progress};
+pub use sdfc_render::{Animation, Image, Progress, RasterKind, Stats, Tile, no_progress};
 pub use sdfc_render::{Pose, RenderError, View, ViewError};
 #[cfg(feature = "wgpu")]
 pub use wgpu;

@@ -9,8 +9,8 @@ use sdfc_graph::eval::FrameValues;
 use sdfc_march::Method;
 use sdfc_render::{
     AdapterInfo, CompileTimes, CpuScene, Frame, FrameTimes, Gpu, Image, LeafEvaluations,
-    OnProgress, Pipeline, PixelCounts, Pose, Progress, RenderError, RenderOptions, Stats, View,
-    Why, milliseconds_since, sample_offsets, uniform_values,
+    OnProgress, Pipeline, PixelCounts, Pose, Progress, RenderError, RenderOptions, Stats, Tile,
+    View, Why, milliseconds_since, sample_offsets, uniform_values,
 };
 
 use crate::error::Error;
@@ -36,6 +36,9 @@ pub enum Backend {
 pub struct PictureOptions {
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// The region of the picture that is drawn; `None` is all of it. Its pixels are those of the
+    /// whole picture, bit for bit.
+    pub region: Option<Tile>,
     /// Ray method; `None` takes the scene's, or `auto`.
     pub method: Option<Method>,
     /// The device that draws.
@@ -66,6 +69,12 @@ impl PictureOptions {
     #[must_use]
     pub fn size(self, size: [u32; 2]) -> Self {
         Self { size, ..self }
+    }
+
+    /// Sets the region of the picture that is drawn; `None` is all of it.
+    #[must_use]
+    pub fn region(self, region: impl Into<Option<Tile>>) -> Self {
+        Self { region: region.into(), ..self }
     }
 
     /// Sets the ray method; `None` takes the scene's, or `auto`.
@@ -123,6 +132,7 @@ impl Default for PictureOptions {
     fn default() -> Self {
         Self {
             size: [640, 360],
+            region: None,
             method: None,
             backend: Backend::Auto,
             pose: None,
@@ -211,7 +221,7 @@ impl Scene {
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
-        let PictureOptions { size, pose, tolerance, hdr, .. } = *options;
+        let PictureOptions { size, region, pose, tolerance, hdr, .. } = *options;
         Ok(Painter {
             scene: self,
             program,
@@ -219,6 +229,7 @@ impl Scene {
             method,
             why,
             size,
+            region,
             pose,
             tolerance,
             hdr,
@@ -281,6 +292,7 @@ pub struct Painter<'s> {
     /// Why this method draws, if the field is uncertified.
     why: Option<String>,
     size: [u32; 2],
+    region: Option<Tile>,
     pose: Option<Pose>,
     tolerance: f64,
     hdr: bool,
@@ -382,7 +394,8 @@ impl Painter<'_> {
         Ok(view.with_scaled_parameter(self.method.definition().parameter, self.tolerance))
     }
 
-    fn adapter(&self) -> Option<&AdapterInfo> {
+    /// The GPU that draws; `None` for the CPU.
+    pub fn adapter(&self) -> Option<&AdapterInfo> {
         match &self.engine {
             Engine::Gpu(pipeline) => Some(pipeline.gpu().info()),
             Engine::Cpu(_) => None,
@@ -425,7 +438,7 @@ impl Painter<'_> {
         values: &FrameValues,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
-        let options = RenderOptions::default();
+        let options = RenderOptions { region: self.region, ..RenderOptions::default() };
         match &self.engine {
             Engine::Gpu(pipeline) => {
                 let uniforms = uniform_values(&self.program, values);

@@ -188,7 +188,7 @@ fn frame(scene: &Scene, program: &Program, shader: Shader) -> Result<Frame, Fail
     let view = View::new(program, &frame, scene.bounds_at(&frame), SIZE)?;
     let uniforms = uniform_values(program, &frame);
     let pipeline = Pipeline::new(&gpu, shader, uniforms.len())?;
-    let options = RenderOptions { tile_size: TileSize::Fixed([60, 44]) };
+    let options = RenderOptions { tile_size: TileSize::Fixed([60, 44]), region: None };
     Ok(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
 }
 
@@ -365,7 +365,7 @@ fn cells_are_kept() -> Result<(), Failed> {
         frame.params = vec![[s, 0.0, 0.0, 0.0]];
         let view = View::new(program, &frame, scene.bounds_at(&frame), [width, SIZE[1]])?;
         let uniforms = uniform_values(program, &frame);
-        let options = RenderOptions { tile_size: TileSize::Fixed(SIZE) };
+        let options = RenderOptions { tile_size: TileSize::Fixed(SIZE), region: None };
         Ok::<_, Failed>(pipeline.render(&view, &uniforms, &options, &mut no_progress)?)
     };
     let kept = pipeline()?;

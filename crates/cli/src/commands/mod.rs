@@ -6,12 +6,15 @@ mod chart;
 pub mod charts;
 pub mod check;
 pub mod compile;
+pub mod completions;
 pub mod contour;
 pub mod doc;
 pub mod explain;
 mod faults;
 pub mod format;
+pub mod join;
 pub mod lsp;
+pub mod manual;
 pub mod measure;
 pub mod mesh;
 pub mod render;
@@ -31,6 +34,7 @@ use sdfc_render::{Gpu, RenderError};
 use crate::args::{Assignment, Exactness};
 use crate::console::Console;
 use crate::failure::Failure;
+use crate::farm::provenance::Recorded;
 use crate::interrupt::Interrupt;
 
 /// Reads and compiles a scene, and prints its diagnostics.
@@ -55,18 +59,41 @@ fn scene_with(
     set: &[Assignment],
     console: &Console,
 ) -> Result<Scene, Failure> {
-    if set.is_empty() {
-        return scene(path, compiler, console);
-    }
     let input = sdfc_files::read(path)?;
     let folder = sdfc_files::Folder::of(path);
+    compiled_with(&input, compiler.resolver(&folder), set, console)
+}
+
+fn compiled_with(
+    input: &sdfc_files::Input,
+    compiler: Compiler<'_>,
+    set: &[Assignment],
+    console: &Console,
+) -> Result<Scene, Failure> {
     let set: Vec<_> = set.iter().map(|it| (it.name.as_str(), it.value.as_str())).collect();
-    let compiled = compiler.resolver(&folder).compile_with(&input.name, &input.text, &set);
-    match compiled {
+    match compiler.compile_with(&input.name, &input.text, &set) {
         Ok(scene) => shown(Ok(scene), console),
         Err(CompileWithError::Scene(errors)) => shown(Err(errors), console),
         Err(error) => Err(Failure::Call(error.to_string())),
     }
+}
+
+/// Like [`scene_with`], with the checksum of the scene and of the files that it imports.
+///
+/// # Errors
+///
+/// As [`scene_with`].
+fn scene_and_checksum(
+    path: &Path,
+    compiler: Compiler<'_>,
+    set: &[Assignment],
+    console: &Console,
+) -> Result<(Scene, String), Failure> {
+    let input = sdfc_files::read(path)?;
+    let folder = sdfc_files::Folder::of(path);
+    let files = Recorded::new(&folder);
+    let scene = compiled_with(&input, compiler.resolver(&files), set, console)?;
+    Ok((scene, files.checksum(&input.text)))
 }
 
 /// Returns the frame of a time, with the params' defaults.

@@ -1,14 +1,20 @@
 //! `sdfc render`: draws pictures of a scene.
 
+use std::cell::OnceCell;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene};
-use sdfc_render::{Animation, RenderError};
+use sdfc::{Error, FrameValues, Painter, Picture, PictureOptions, Scene, Tile};
+use sdfc_render::{Animation, Raster, RasterKind, RenderError};
 
 use crate::args::{Backend, Render};
 use crate::console::{Console, Progress};
 use crate::failure::Failure;
+use crate::farm::options::ProgressForm;
+use crate::farm::progress::{Finished, Reporter};
+use crate::farm::provenance::{Drawing, Provenance};
+use crate::farm::region;
+use crate::farm::resume::{Existing, existing};
 use crate::interrupt::Interrupt;
 use crate::output::{self, Output};
 use crate::sequence::{self, Frames};
@@ -27,22 +33,65 @@ const MAX_GIF_RATE: f64 = 50.0;
 /// the outputs and the scene are the same file; with `--strict`, a part of the picture is unproven;
 /// the machine cannot draw or write; Ctrl-C.
 pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
-    let outputs = Outputs::new(args)?;
+    let Some(Work { frames, region }) = Work::of(args, console)? else { return Ok(()) };
+    let outputs = Outputs::new(args, region)?;
     let compiler = super::compiler_with(args.live_literals).loops(args.loops.into());
-    let scene = super::scene_with(&args.file, compiler, &args.set, console)?;
+    let (scene, checksum) = super::scene_and_checksum(&args.file, compiler, &args.set, console)?;
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }
     let values = values(&scene, args);
-    outputs.check(args.frames)?;
+    outputs.check(frames)?;
     let interrupt = Interrupt::watch();
-    let options = options(args).hdr(outputs.format == Format::Exr);
-    let painter = scene.painter(&options).map_err(|e| super::lowering(&e, console))?;
-    let job = Job { args, console, interrupt, painter, values };
-    match args.frames {
+    let job = Job {
+        args,
+        console,
+        interrupt,
+        scene: &scene,
+        options: options(args).region(region).hdr(outputs.format == Format::Exr),
+        painter: OnceCell::new(),
+        values,
+        drawing: Drawing::new(args, checksum),
+        reporter: Reporter::new(args.farm.progress),
+    };
+    match frames {
         None => job.still(&outputs),
         Some(frames) if outputs.format == Format::Gif => job.animation(&outputs, frames),
         Some(frames) => job.sequence(&outputs, frames),
+    }
+}
+
+/// What is drawn of a sequence and of each picture.
+struct Work {
+    /// `None` for a single picture.
+    frames: Option<Frames>,
+    /// `None` for whole pictures.
+    region: Option<Tile>,
+}
+
+impl Work {
+    /// Returns the share that the command line asks for. `None`, after a note, if it is empty.
+    fn of(args: &Render, console: &Console) -> Result<Option<Self>, Failure> {
+        let frames = match (args.frames, args.farm.chunk) {
+            (Some(all), Some(share)) => {
+                let Some(frames) = share.of_frames(all) else {
+                    let count = all.count();
+                    console.note(&format!("there is no frame in share {share} of {count} frames"));
+                    return Ok(None);
+                };
+                Some(frames)
+            }
+            (frames, _) => frames,
+        };
+        let Some(region) = args.farm.region else {
+            return Ok(Some(Self { frames, region: None }));
+        };
+        let region = region.of(args.size).map_err(Failure::Call)?;
+        if region.is_none() {
+            let height = args.size[1];
+            console.note(&format!("there is no row in this share of {height} rows"));
+        }
+        Ok(region.map(|region| Self { frames, region: Some(region) }))
     }
 }
 
@@ -52,10 +101,11 @@ struct Outputs {
     format: Format,
     depth: Option<PathBuf>,
     stats: Option<Output>,
+    region: Option<Tile>,
 }
 
 impl Outputs {
-    fn new(args: &Render) -> Result<Self, Failure> {
+    fn new(args: &Render, region: Option<Tile>) -> Result<Self, Failure> {
         let path = args.output.clone().unwrap_or_else(|| output::named_after(&args.file, "png"));
         let format = Format::of(&path).map_err(Failure::Call)?;
         let paths: Vec<&Path> =
@@ -85,8 +135,20 @@ impl Outputs {
             let message = "a sequence cannot be written to stdout; name a file with -o";
             return Err(Failure::Call(message.to_owned()));
         }
+        if let (Format::Gif, Some(option)) = (format, args.farm.for_separate_files()) {
+            let message = format!(
+                "{option} needs one file per picture, and a GIF holds all frames; write PNG or EXR \
+                 files and join them with a program such as ffmpeg"
+            );
+            return Err(Failure::Call(message));
+        }
         let stats = args.stats.as_deref().map(Output::new);
-        Ok(Self { path, format, depth: args.depth.clone(), stats })
+        let lines = args.farm.progress == ProgressForm::Json;
+        if lines && (to_stdout || stats == Some(Output::Stdout)) {
+            let message = "--progress json writes to stdout; write the results to files";
+            return Err(Failure::Call(message.to_owned()));
+        }
+        Ok(Self { path, format, depth: args.depth.clone(), stats, region })
     }
 
     /// Checks early that the outputs can be written, before long work.
@@ -100,18 +162,32 @@ impl Outputs {
     /// The destination of a picture. Frames of a sequence are numbered, except in a GIF.
     fn picture(&self, number: Option<u32>) -> Output {
         match number {
-            Some(number) if self.format != Format::Gif => {
-                Output::new(&sequence::numbered(&self.path, number))
-            }
-            Some(_) | None => Output::new(&self.path),
+            Some(_) if self.format == Format::Gif => Output::new(&self.path),
+            Some(_) | None => self.named(&self.path, number),
+        }
+    }
+
+    /// The destination with the number of the frame and the region in its name.
+    fn named(&self, path: &Path, number: Option<u32>) -> Output {
+        let numbered = number.map(|number| sequence::numbered(path, number));
+        let path = numbered.as_deref().unwrap_or(path);
+        match (Output::new(path), self.region) {
+            (Output::File(path), Some(region)) => Output::File(region::part_path(&path, region)),
+            (output, _) => output,
+        }
+    }
+
+    /// What the file of a picture holds.
+    fn kind(&self) -> RasterKind {
+        match self.format {
+            Format::Png | Format::Gif => RasterKind::Srgb,
+            Format::Exr => RasterKind::Linear,
         }
     }
 
     /// The destination of a picture's depths. Frames of a sequence are numbered.
     fn depth(&self, number: Option<u32>) -> Option<Output> {
-        let path = self.depth.as_deref()?;
-        let numbered = number.map(|number| sequence::numbered(path, number));
-        Some(Output::new(numbered.as_deref().unwrap_or(path)))
+        self.depth.as_deref().map(|path| self.named(path, number))
     }
 }
 
@@ -129,7 +205,7 @@ fn options(args: &Render) -> PictureOptions {
 
 /// Returns the values of params, time and frame.
 fn values(scene: &Scene, args: &Render) -> FrameValues {
-    FrameValues { frame: (args.time * args.fps).round(), ..super::values(scene, args.time) }
+    FrameValues { frame: sequence::frame(args.time, args.fps), ..super::values(scene, args.time) }
 }
 
 /// Everything that drawing needs.
@@ -137,28 +213,39 @@ struct Job<'a> {
     args: &'a Render,
     console: &'a Console,
     interrupt: Interrupt,
-    painter: Painter<'a>,
+    scene: &'a Scene,
+    options: PictureOptions,
+    painter: OnceCell<Painter<'a>>,
     values: FrameValues,
+    /// What files say of the whole picture at `--time`.
+    drawing: Drawing,
+    reporter: Reporter,
 }
 
-impl Job<'_> {
+impl<'a> Job<'a> {
     fn still(&self, outputs: &Outputs) -> Result<(), Failure> {
+        let drawing = self.drawing.in_region(outputs.region);
+        let output = outputs.picture(None);
+        if let Some(unproven) = self.finished(outputs, None, &drawing) {
+            self.report(outputs, None, true, [1, 1], unproven)?;
+            self.console.note(&format!("{output}: finished before"));
+            return Ok(());
+        }
         let repetitions = if outputs.stats.is_some() { TIMED_FRAMES } else { 1 };
         let progress = self.console.progress("drawing");
         let picture = self.paint(&self.values, repetitions, &progress, [0, 1])?;
         drop(progress);
-        let output = outputs.picture(None);
-        output.write(&self.encode(&picture, outputs.format)?)?;
-        self.write_depth(&picture, outputs.depth(None))?;
+        self.save(&picture, outputs, None, &drawing)?;
         if let Some(stats_output) = &outputs.stats {
             stats_output.write(&output::json(&picture.stats)?)?;
         }
+        self.report(outputs, None, false, [1, 1], picture.stats.pixels.unproven)?;
         self.print_notes(&picture);
         if let Some(unproven) = &picture.unproven {
             self.console.warning(unproven);
         }
-        if let Output::File(path) = output {
-            self.print_files(&picture, &path.display().to_string());
+        if let Output::File(_) = output {
+            self.print_files(&picture, &output.to_string());
         }
         Ok(())
     }
@@ -166,23 +253,126 @@ impl Job<'_> {
     /// Writes one file per frame as soon as it is drawn.
     fn sequence(&self, outputs: &Outputs, frames: Frames) -> Result<(), Failure> {
         let progress = self.console.progress("drawing");
-        let mut said = false;
+        let (mut said, mut skipped, mut last) = (false, 0, None);
         for (number, before) in frames.numbers().zip(0..) {
+            let time = sequence::time(number, self.args.fps);
+            let drawing = self.drawing.at_frame(number, time).in_region(outputs.region);
+            let position = [before + 1, frames.count()];
+            if let Some(unproven) = self.finished(outputs, Some(number), &drawing) {
+                if self.interrupt.flow().is_break() {
+                    return Err(stopped([before, frames.count()]));
+                }
+                self.report(outputs, Some(number), true, position, unproven)?;
+                skipped += 1;
+                continue;
+            }
             let picture = self.frame(number, &progress, [before, frames.count()])?;
             self.warn_once(&picture, number, &mut said);
-            outputs.picture(Some(number)).write(&self.encode(&picture, outputs.format)?)?;
-            self.write_depth(&picture, outputs.depth(Some(number)))?;
-            if before == 0 {
+            self.save(&picture, outputs, Some(number), &drawing)?;
+            let unproven = picture.stats.pixels.unproven;
+            self.report(outputs, Some(number), false, position, unproven)?;
+            if last.is_none() {
                 self.print_notes(&picture);
             }
-            if before + 1 == frames.count() {
-                let first = sequence::numbered(&outputs.path, frames.first);
-                let last = sequence::numbered(&outputs.path, number);
-                let names = format!("{} to {}", first.display(), last.display());
-                self.print_files(&picture, &names);
-            }
+            last = Some(picture);
+        }
+        drop(progress);
+        let [first, end] =
+            [frames.first, frames.end - 1].map(|number| outputs.picture(Some(number)));
+        let names = format!("{first} to {end}");
+        if skipped > 0 {
+            self.console.note(&format!("{names}: {skipped} of them finished before"));
+        }
+        if let Some(picture) = last {
+            self.print_files(&picture, &names);
         }
         Ok(())
+    }
+
+    /// Returns the number of unproven pixels of a picture whose files are finished, if `--resume`
+    /// skips those. Says why a file is drawn again.
+    fn finished(&self, outputs: &Outputs, number: Option<u32>, drawing: &Drawing) -> Option<u64> {
+        if !self.args.farm.resume {
+            return None;
+        }
+        let picture = (outputs.picture(number), outputs.kind());
+        let depth = outputs.depth(number).map(|output| (output, RasterKind::Depth));
+        let mut all = None;
+        for (output, kind) in std::iter::once(picture).chain(depth) {
+            let Output::File(path) = &output else { return None };
+            match existing(path, drawing, kind) {
+                Existing::Missing => return None,
+                Existing::Finished(unproven) if self.args.strict && unproven > 0 => return None,
+                Existing::Finished(unproven) => all = Some(unproven),
+                Existing::Other(reason) => {
+                    self.console.note(&format!("{output} is drawn again: {reason}"));
+                    return None;
+                }
+            }
+        }
+        all
+    }
+
+    /// Writes a picture and its depths.
+    fn save(
+        &self,
+        picture: &Picture,
+        outputs: &Outputs,
+        number: Option<u32>,
+        drawing: &Drawing,
+    ) -> Result<(), Failure> {
+        let file = match outputs.format {
+            Format::Png => self.encode(picture, &picture.image.srgb_raster(), drawing)?,
+            Format::Exr => self.encode(picture, &picture.image.linear_raster(), drawing)?,
+            Format::Gif => {
+                let file = outputs.format.encode(&picture.image);
+                file.map_err(|e| super::lowering(&e.into(), self.console))?
+            }
+        };
+        outputs.picture(number).write(&file)?;
+        let Some(output) = outputs.depth(number) else { return Ok(()) };
+        output.write(&self.encode(picture, &picture.image.depth_raster(), drawing)?)
+    }
+
+    fn encode(
+        &self,
+        picture: &Picture,
+        raster: &Raster,
+        drawing: &Drawing,
+    ) -> Result<Vec<u8>, Failure> {
+        let (origin, size) = (drawing.tile().origin, drawing.size);
+        let unproven = picture.stats.pixels.unproven;
+        let said = Provenance::new(drawing.clone(), &device(picture), unproven, raster);
+        let file = raster.to_file(origin, size, Some(&said.to_note()));
+        file.map_err(|e| super::lowering(&e.into(), self.console))
+    }
+
+    /// Reports a picture that is finished; `skipped` is true if it was finished before.
+    fn report(
+        &self,
+        outputs: &Outputs,
+        frame: Option<u32>,
+        skipped: bool,
+        position: [u32; 2],
+        unproven: u64,
+    ) -> Result<(), Failure> {
+        let output = outputs.picture(frame);
+        let file = match &output {
+            Output::File(path) => Some(path.as_path()),
+            Output::Stdout => None,
+        };
+        let region = outputs.region.map(region::name);
+        self.reporter.finished(Finished { frame, region, skipped, file, position, unproven })
+    }
+
+    /// The painter, which is made for the first picture that is not finished.
+    fn painter(&self) -> Result<&Painter<'a>, Failure> {
+        if let Some(painter) = self.painter.get() {
+            return Ok(painter);
+        }
+        let painter = self.scene.painter(&self.options);
+        let painter = painter.map_err(|e| super::lowering(&e, self.console))?;
+        Ok(self.painter.get_or_init(|| painter))
     }
 
     /// Writes all frames to one file after the last is drawn.
@@ -197,7 +387,13 @@ impl Job<'_> {
             self.warn_once(&picture, number, &mut said);
             let shown = sequence::hundredths(number, self.args.fps);
             animation.push(&picture.image, shown).map_err(refused)?;
-            self.write_depth(&picture, outputs.depth(Some(number)))?;
+            if let Some(output) = outputs.depth(Some(number)) {
+                let time = sequence::time(number, self.args.fps);
+                let drawing = self.drawing.at_frame(number, time);
+                output.write(&self.encode(&picture, &picture.image.depth_raster(), &drawing)?)?;
+            }
+            let unproven = picture.stats.pixels.unproven;
+            self.report(outputs, Some(number), false, [before + 1, frames.count()], unproven)?;
             last = Some(picture);
         }
         drop((animation, progress));
@@ -225,11 +421,7 @@ impl Job<'_> {
         let values = FrameValues { time, frame: f64::from(number), ..self.values.clone() };
         let picture = self.paint(&values, 1, progress, position);
         picture.map_err(|failure| {
-            if !matches!(failure, Failure::Interrupted(_)) {
-                return failure;
-            }
-            let [before, all] = position;
-            Failure::Interrupted(format!("stopped after {before} of {all} frames"))
+            if matches!(failure, Failure::Interrupted(_)) { stopped(position) } else { failure }
         })
     }
 
@@ -240,7 +432,7 @@ impl Job<'_> {
         progress: &Progress,
         [before, all]: [u32; 2],
     ) -> Result<Picture, Failure> {
-        let picture = self.painter.paint(values, repetitions, &mut |part| {
+        let picture = self.painter()?.paint(values, repetitions, &mut |part| {
             let total = part.total * u64::from(all);
             progress.set(part.total * u64::from(before) + part.done, total);
             self.interrupt.flow()
@@ -258,16 +450,6 @@ impl Job<'_> {
             }
             Some(_) | None => Ok(picture),
         }
-    }
-
-    fn encode(&self, picture: &Picture, format: Format) -> Result<Vec<u8>, Failure> {
-        format.encode(&picture.image).map_err(|e| super::lowering(&e.into(), self.console))
-    }
-
-    fn write_depth(&self, picture: &Picture, output: Option<Output>) -> Result<(), Failure> {
-        let Some(output) = output else { return Ok(()) };
-        let file = picture.image.depth_to_exr();
-        output.write(&file.map_err(|e| super::lowering(&e.into(), self.console))?)
     }
 
     /// Warns of the first frame of a sequence that is unproven in part.
@@ -312,6 +494,20 @@ impl Job<'_> {
     fn print_files(&self, picture: &Picture, name: &str) {
         let [width, height] = picture.stats.size;
         self.console.note(&format!("{name}: {width}x{height}, drawn on {}", adapter(picture)));
+    }
+}
+
+/// Ctrl-C in a sequence, after this many of this many frames.
+fn stopped([before, all]: [u32; 2]) -> Failure {
+    Failure::Interrupted(format!("stopped after {before} of {all} frames"))
+}
+
+/// The device that drew, with its driver.
+fn device(picture: &Picture) -> String {
+    match (&picture.stats.adapter, &picture.stats.driver) {
+        (Some(adapter), Some(driver)) => format!("{adapter}, {driver}"),
+        (Some(adapter), None) => adapter.clone(),
+        (None, _) => "CPU".to_owned(),
     }
 }
 

@@ -102,7 +102,7 @@ impl Setup<'_> {
             uniforms,
             first_picture,
             compile,
-            options: RenderOptions { tile_size },
+            options: RenderOptions { tile_size, region: None },
             repetitions: if once { 1 } else { self.options.repetitions.max(1) },
             leaf_evaluations: match &data {
                 Data::Uniforms(uniforms) if kind == Kind::Culled => {
@@ -134,7 +134,7 @@ impl Setup<'_> {
         let shader = instrumented_module(program, self.options.method)?;
         let pipeline = Pipeline::new(self.gpu, shader, uniforms.len())?;
         // A single tile, because the lists of each tile would evaluate the wide tiles again.
-        let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size) };
+        let options = RenderOptions { tile_size: TileSize::Fixed(self.options.size), region: None };
         let frame = counter.draw(&pipeline, &self.view, uniforms, &options)?;
         counter.drawn -= 1;
         let visited = EvaluationCounts::of(&frame.image).mean;

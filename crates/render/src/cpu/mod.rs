@@ -28,8 +28,8 @@ use sdfc_march::{Method, PixelBlock};
 
 use crate::clock::{Clock, milliseconds_since};
 use crate::error::RenderError;
-use crate::frame::{Frame, OnProgress, Progress, RenderOptions, no_progress};
-use crate::image::{Image, check_size};
+use crate::frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, region_of};
+use crate::image::Image;
 use crate::tiles::{Tile, Tiler};
 use crate::view::View;
 use cells::Cells;
@@ -200,16 +200,16 @@ impl CpuScene {
         progress: &mut OnProgress<'_>,
         wave: &Wave<'_, T>,
     ) -> Result<Frame, RenderError> {
-        check_size(view.size)?;
-        let mut image = Image::new(view.size, view.footprint())?;
-        let mut tiler =
-            Tiler::new(view.size, options.tile_size, MAX_TILE_PIXELS).starting_with(BLOCK * BLOCK);
+        let region = region_of(view.size, options)?;
+        let mut image = Image::new(region.size, view.footprint())?;
+        let mut tiler = Tiler::new(view.size, region, options.tile_size, MAX_TILE_PIXELS)
+            .starting_with(BLOCK * BLOCK);
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
-        let total = image.pixels().len() as u64;
+        let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
             let start = now();
             for (block, pixels) in draw_tile(wave, tile) {
-                image.put(block, pixels.into_iter());
+                image.put(region.origin, block, pixels.into_iter());
             }
             let elapsed = start.map_or(0.0, milliseconds_since);
             tiler.took(tile, elapsed);

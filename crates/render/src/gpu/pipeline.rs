@@ -11,8 +11,8 @@ use super::testing;
 use crate::blocks::{PIXEL_BYTES, UNIFORM_BYTES, VIEW_BYTES, uniform_bytes};
 use crate::clock::{Clock, milliseconds_since};
 use crate::error::RenderError;
-use crate::frame::{Frame, OnProgress, Progress, RenderOptions};
-use crate::image::{Image, check_size};
+use crate::frame::{Frame, OnProgress, Progress, RenderOptions, region_of};
+use crate::image::Image;
 use crate::tiles::Tiler;
 use crate::view::View;
 
@@ -168,22 +168,22 @@ impl Pipeline {
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
-        check_size(view.size)?;
+        let region = region_of(view.size, options)?;
         if uniforms.len() != self.uniform_count {
             let (given, expected) = (uniforms.len(), self.uniform_count);
             return Err(RenderError::UniformCount { given, expected });
         }
-        let mut image = Image::new(view.size, view.footprint())?;
-        let mut tiler = Tiler::new(view.size, options.tile_size, self.max_tile_pixels());
+        let mut image = Image::new(region.size, view.footprint())?;
+        let mut tiler = Tiler::new(view.size, region, options.tile_size, self.max_tile_pixels());
         let clock = if self.kernel.gpu.has_timestamps() { Clock::Gpu } else { Clock::Wall };
         let moment = Moment { uniforms: uniforms.to_vec(), within: view.within };
         let mut run = Run::new(&self.kernel, self.take_buffers(), moment)?;
         let (mut milliseconds, mut tiles, mut done) = (0.0, 0, 0);
-        let total = image.pixels().len() as u64;
+        let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
             testing::lose_if_asked(&self.kernel.gpu);
             let start = Instant::now();
-            let gpu_time = run.draw(view, tile, &mut image)?;
+            let gpu_time = run.draw(view, tile, region.origin, &mut image)?;
             let elapsed = milliseconds_since(start);
             tiler.took(tile, elapsed);
             milliseconds += gpu_time.unwrap_or(elapsed);

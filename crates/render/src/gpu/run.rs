@@ -179,11 +179,13 @@ impl<'a> Run<'a> {
         Ok(within.map_or(0, |_| culling_layout::GROUPS))
     }
 
-    /// Draws a tile into the image. Returns its time in milliseconds if the adapter measures times.
+    /// Draws a tile into the image, whose position in the picture is `origin`. Returns its time in
+    /// milliseconds if the adapter measures times.
     pub(crate) fn draw(
         &mut self,
         view: &View,
         tile: Tile,
+        origin: [u32; 2],
         image: &mut Image,
     ) -> Result<Option<f64>, RenderError> {
         let count = tile.pixels() as u32;
@@ -192,7 +194,7 @@ impl<'a> Run<'a> {
         let cell_groups = self.cells_to_list()?;
         self.submit(&view_bytes(&view.block(tile)), groups, cell_groups, count)?;
         self.buffers.listed = Some(self.moment.clone());
-        self.read(tile, image)
+        self.read(tile, origin, image)
     }
 
     /// Submits workgroups, the culling before them, and the copy of the pixels that they write.
@@ -251,7 +253,12 @@ impl<'a> Run<'a> {
     }
 
     /// Reads back the pixels of a tile, and its time.
-    fn read(&mut self, tile: Tile, image: &mut Image) -> Result<Option<f64>, RenderError> {
+    fn read(
+        &mut self,
+        tile: Tile,
+        origin: [u32; 2],
+        image: &mut Image,
+    ) -> Result<Option<f64>, RenderError> {
         let Some(buffers) = &self.buffers.pixels else { return Ok(None) };
         let bytes = (tile.pixels() * PIXEL_BYTES) as u64;
         let slice = buffers.staging.slice(..bytes + BESIDE_PIXELS);
@@ -276,7 +283,7 @@ impl<'a> Run<'a> {
             let count = count.try_into().map_or(0, u32::from_ne_bytes);
             self.culling_evaluations = self.culling_evaluations.saturating_add(count);
         }
-        image.put(tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
+        image.put(origin, tile, pixels.chunks_exact(PIXEL_BYTES).map(pixel_from_bytes));
         let time =
             self.buffers.timestamps.as_ref().map(|timestamps| timestamps.milliseconds(times));
         drop(mapped);

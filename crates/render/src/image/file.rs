@@ -1,15 +1,8 @@
 //! Pictures as files.
 
-use std::io::Cursor;
-
-use image::ImageEncoder as _;
 use image::codecs::gif::{GifEncoder, Repeat};
 
-use exr::error::UnitResult;
-use exr::prelude::{SpecificChannels, Vec2, WritableImage as _};
-use sdfc_march::PixelBlock;
-
-use super::{HIT, Image};
+use super::Image;
 use crate::error::RenderError;
 
 impl Image {
@@ -19,12 +12,7 @@ impl Image {
     ///
     /// [`RenderError::OutOfMemory`] if the encoder fails, which it does for no other reason.
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
-        let [width, height] = self.size;
-        let mut file = Cursor::new(Vec::new());
-        image::codecs::png::PngEncoder::new(&mut file)
-            .write_image(&self.to_srgb8(), width, height, image::ExtendedColorType::Rgb8)
-            .map_err(|error| RenderError::OutOfMemory(format!("the PNG file: {error}")))?;
-        Ok(file.into_inner())
+        self.srgb_raster().to_file([0, 0], self.size, None)
     }
 
     /// Encodes the picture as an OpenEXR file: channels `R`, `G`, `B` in f32, linear light, not
@@ -34,12 +22,7 @@ impl Image {
     ///
     /// As [`Self::to_png`].
     pub fn to_exr(&self) -> Result<Vec<u8>, RenderError> {
-        let color = |at| {
-            let [red, green, blue, _] = self.at(at).color;
-            (red, green, blue)
-        };
-        let layer = exr::image::Image::from_channels(self.sides(), SpecificChannels::rgb(color));
-        exr_file(|file| layer.write().non_parallel().to_buffered(file))
+        self.linear_raster().to_file([0, 0], self.size, None)
     }
 
     /// Encodes the depths as an OpenEXR file: one channel `Z` in f32, the distance from the eye to
@@ -50,31 +33,8 @@ impl Image {
     ///
     /// As [`Self::to_png`].
     pub fn depth_to_exr(&self) -> Result<Vec<u8>, RenderError> {
-        let depth = |at| {
-            let pixel = self.at(at);
-            (if pixel.status == HIT { pixel.depth } else { f32::INFINITY },)
-        };
-        let channels = SpecificChannels::build().with_channel::<f32>("Z").with_pixel_fn(depth);
-        let layer = exr::image::Image::from_channels(self.sides(), channels);
-        exr_file(|file| layer.write().non_parallel().to_buffered(file))
+        self.depth_raster().to_file([0, 0], self.size, None)
     }
-
-    fn sides(&self) -> (usize, usize) {
-        (self.size[0] as usize, self.size[1] as usize)
-    }
-
-    fn at(&self, Vec2(x, y): Vec2<usize>) -> PixelBlock {
-        self.pixel(x as u32, y as u32).copied().unwrap_or_default()
-    }
-}
-
-fn exr_file(
-    write: impl FnOnce(&mut Cursor<Vec<u8>>) -> UnitResult,
-) -> Result<Vec<u8>, RenderError> {
-    let mut file = Cursor::new(Vec::new());
-    let refused = |error| RenderError::OutOfMemory(format!("the EXR file: {error}"));
-    write(&mut file).map_err(refused)?;
-    Ok(file.into_inner())
 }
 
 /// An animated GIF while its frames are added; it repeats without end. Each frame has its own 256
@@ -118,7 +78,10 @@ fn refused(error: image::ImageError) -> RenderError {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Cursor;
+
     use super::*;
+    use crate::image::HIT;
     use crate::view::footprint::Footprint;
     use exr::prelude::traits::*;
     use image::AnimationDecoder as _;

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "files")]
 mod file;
+#[cfg(feature = "files")]
+mod raster;
 mod samples;
 
 use sdfc_graph::linear_to_srgb8;
@@ -13,6 +15,8 @@ use crate::tiles::Tile;
 use crate::view::footprint::Footprint;
 #[cfg(feature = "files")]
 pub use file::Animation;
+#[cfg(feature = "files")]
+pub use raster::{Raster, RasterKind};
 pub use samples::sample_offsets;
 
 /// [`PixelBlock::status`] of a ray that hit nothing.
@@ -102,14 +106,25 @@ impl Image {
         (x < width && y < height).then(|| self.pixels.get(index)).flatten()
     }
 
-    /// Writes the pixels of a tile, row by row.
-    pub(crate) fn put(&mut self, tile: Tile, mut pixels: impl Iterator<Item = PixelBlock>) {
-        let [x, y] = tile.origin.map(|first| first as usize);
-        let [columns, rows] = tile.size.map(|side| side as usize);
-        for row in self.pixels.chunks_exact_mut(self.size[0] as usize).skip(y).take(rows) {
-            let columns = row.iter_mut().skip(x).take(columns);
-            // The row decides how many pixels are taken.
-            columns.for_each(|pixel| *pixel = pixels.next().unwrap_or_default());
+    /// Writes the pixels of a tile, row by row. `origin` is the position of this picture in the
+    /// whole one, which the tile is relative to; pixels outside of this picture are left out.
+    pub(crate) fn put(
+        &mut self,
+        origin: [u32; 2],
+        tile: Tile,
+        mut pixels: impl Iterator<Item = PixelBlock>,
+    ) {
+        let width = self.size[0] as usize;
+        let [left, top] = [0, 1].map(|axis| i64::from(tile.origin[axis]) - i64::from(origin[axis]));
+        for y in (top..).take(tile.size[1] as usize) {
+            let row = usize::try_from(y).ok().and_then(|y| self.pixels.chunks_mut(width).nth(y));
+            let row = row.unwrap_or_default();
+            for x in (left..).take(tile.size[0] as usize) {
+                // The tile decides how many pixels are taken.
+                let pixel = pixels.next().unwrap_or_default();
+                let slot = usize::try_from(x).ok().and_then(|x| row.get_mut(x));
+                slot.into_iter().for_each(|slot| *slot = pixel);
+            }
         }
     }
 

@@ -209,7 +209,8 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
                 ControlFlow::Continue(())
             }
         };
-        let options = RenderOptions { tile_size: TileSize::Adaptive { milliseconds: TILE_MS } };
+        let options =
+            RenderOptions { tile_size: TileSize::Adaptive { milliseconds: TILE_MS }, region: None };
         let (model, values) = (&request.model, &request.frame);
         let result = match &model.engine {
             Engine::Gpu(pipeline) => {
