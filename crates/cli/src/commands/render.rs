@@ -33,6 +33,9 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }
+    if args.depth.is_some() {
+        scene.needs_solids("`--depth`").map_err(|e| super::lowering(&e, console))?;
+    }
     let values = values(&scene, args);
     outputs.check(args.frames)?;
     let interrupt = Interrupt::watch();
@@ -125,6 +128,7 @@ fn options(args: &Render) -> PictureOptions {
             Backend::Cpu => sdfc::Backend::Cpu,
         })
         .samples(args.samples)
+        .isolines(args.isolines)
 }
 
 /// Returns the values of params, time and frame.
