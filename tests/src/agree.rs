@@ -10,7 +10,8 @@ use sdfc::{
 };
 use sdfc_march::PixelBlock;
 use sdfc_render::{
-    CpuScene, Difference, HIT, Image, View, compare, edges, is_unproven, linear_to_srgb8,
+    CpuScene, Difference, HIT, Image, RenderOptions, View, compare, edges, is_unproven,
+    linear_to_srgb8,
 };
 
 /// Width and height in pixels.
@@ -68,12 +69,44 @@ pub fn scene(name: &str, text: &str) -> Result<Scene, Diagnostics> {
     Compiler::new().compile(name, text)
 }
 
+/// The pictures of a planar scene by the CPU in f32 and f64. They are compared in all pixels, those
+/// at edges included, since a formula gives each of them.
+fn planar_pictures(scene: &Scene) -> Result<[Image; 2], Disagreement> {
+    let frame = FrameValues::defaults(scene.params());
+    let view = scene.view(&frame, [SIDE; 2])?;
+    let cpu = CpuScene::new(scene.drawn())?;
+    let options = RenderOptions::default();
+    let single = cpu.render_in::<f32>(&view, &frame, METHOD, &options, &mut no_progress)?;
+    let double = cpu.render_in::<f64>(&view, &frame, METHOD, &options, &mut no_progress)?;
+    Ok([single.image, double.image])
+}
+
+/// The difference of two pictures of a planar scene.
+fn planar_difference(a: &Image, b: &Image, pair: &str) -> Result<Difference, Disagreement> {
+    let step = |a: f32, b: f32| linear_to_srgb8(a).abs_diff(linear_to_srgb8(b));
+    let colors = a.pixels().iter().zip(b.pixels()).map(|(a, b)| {
+        let channels = [0, 1, 2].map(|channel| step(a.color[channel], b.color[channel]));
+        channels.into_iter().max().unwrap_or(0)
+    });
+    let color = colors.max().unwrap_or(0);
+    let found = Difference { color, compared: a.pixels().len(), ..Difference::default() };
+    if color > COLOR {
+        return Err(Disagreement::Differ(format!("{pair}: {found:?}")));
+    }
+    Ok(found)
+}
+
 /// Compares f32 with f64 on the CPU. Returns the number of pixels with a hit, and the difference.
 ///
 /// # Errors
 ///
 /// The pictures do not agree.
 pub fn precisions(scene: &Scene) -> Result<(usize, Difference), Disagreement> {
+    if scene.is_planar() {
+        let [single, double] = planar_pictures(scene)?;
+        let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
+        return Ok((hit, planar_difference(&single, &double, "f32 and f64")?));
+    }
     let Depths { single, double, limit } = Depths::of(scene)?;
     let hit = double.pixels().iter().filter(|pixel| pixel.status == HIT).count();
     if hit == 0 {
@@ -116,6 +149,11 @@ pub fn devices(scene: &Scene) -> Result<Difference, Disagreement> {
         scene.render(&options, &mut no_progress)
     };
     let (gpu, cpu) = (picture(Backend::Gpu)?.image, picture(Backend::Cpu)?.image);
+    if scene.is_planar() {
+        let [_, double] = planar_pictures(scene)?;
+        planar_difference(&gpu, &double, "GPU and CPU in f64")?;
+        return planar_difference(&gpu, &cpu, "GPU and CPU in f32");
+    }
     let Depths { double, limit, .. } = Depths::of(scene)?;
     let found = agree(&gpu, &cpu, "GPU and CPU in f32", limit, Some(COLOR))?;
     agree(&gpu, &double, "GPU and CPU in f64", limit, None)?;

@@ -32,6 +32,11 @@ pub fn is_supported(target: Target, part: Part) -> bool {
     has_stage && (target != Target::Shadertoy || part.emit == Emit::Render)
 }
 
+/// Returns true if a part of a scene's shader can be written. Regions have no rays to march.
+pub fn is_written(scene: &Scene, target: Target, part: Part) -> bool {
+    is_supported(target, part) && (part.emit != Emit::March || !scene.is_planar())
+}
+
 /// Writes a part of a scene's shader.
 ///
 /// # Errors

@@ -16,7 +16,8 @@
 //!
 //! The modules are named after the stages: `certify` derives promises, constants and the
 //! conservative field; `analytic` intersects rays without marching; `reroll` makes loops; `refute`
-//! tests clauses; `prepare` runs the passes in order.
+//! tests clauses; `planar` makes the pixels of scenes of regions, which have no rays; `prepare`
+//! runs the passes in order.
 //!
 //! # Limits
 //!
@@ -28,11 +29,13 @@ mod analytic;
 mod certify;
 mod cost;
 mod leaves;
+mod planar;
 mod prepare;
 mod refute;
 mod report;
 mod reroll;
 mod shapes;
+mod unit_slope;
 
 pub use analytic::copies::{CopiesObstacle, copies_obstacle};
 pub use certify::conservative::Uncertified;

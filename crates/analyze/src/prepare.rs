@@ -11,8 +11,9 @@ use crate::analytic::split::split_analytic;
 use crate::certify::conservative::conservative_field;
 use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
-use crate::cost::cost;
+use crate::cost::{Cost, cost};
 use crate::leaves::count_leaves;
+use crate::planar::planar_picture;
 use crate::report::{Report, shape_reports};
 use crate::reroll::cullable::cullable_loops;
 use crate::reroll::marched_bounds::looped_bounds;
@@ -35,9 +36,9 @@ pub struct Prepared {
 /// pixel.
 const LOOSE: f64 = 8.0;
 
-/// Turns a scene into a flat program: derives promises and constants, expands the conservative
-/// field and the materials, splits off analytic operands, folds transforms, rerolls loops, derives
-/// the gradient and lists the uniform slots.
+/// Turns a scene into a flat program. For solids, it derives promises and constants, expands the
+/// conservative field and the materials, splits off analytic operands, folds transforms, rerolls
+/// loops, derives the gradient and lists the uniform slots. Regions need no rays: see `planar`.
 ///
 /// # Errors
 ///
@@ -68,6 +69,9 @@ pub fn prepare_with(
         ..Program::default()
     };
     let report = match scene.root {
+        Some(root) if scene.graph.shape(root).dim == Dim::Two => {
+            planar_picture(&mut program, scene, root, strategy)?
+        }
         Some(root) => flatten(&mut program, root, scene.has_materials, strategy)?,
         None => Report::default(),
     };
@@ -136,6 +140,7 @@ fn flatten(
         distance_cost: cost(graph, &[distance]),
         gradient_cost: cost(graph, &[gradient]),
         gradient: gradient_report,
+        pixel_cost: Cost::default(),
         ray_cost: cost(graph, &queries),
         marched_cost: cost(graph, copies.or(marched).as_slice()),
         analytic: operands.analytic.iter().map(|operand| operand.shape).collect(),

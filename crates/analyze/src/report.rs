@@ -27,6 +27,8 @@ pub struct Report {
     pub gradient_cost: Cost,
     /// How the gradient is derived.
     pub gradient: GradientReport,
+    /// Cost of a pixel of a planar picture; nothing for solids.
+    pub pixel_cost: Cost,
     /// Cost of the functions of a ray that are evaluated before it is marched.
     pub ray_cost: Cost,
     /// Cost of the distance to the marched operands.

@@ -303,6 +303,9 @@ pub struct Render {
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
+    /// Draw isolines this far apart, in scene units, in a picture of regions; default the scene's
+    #[arg(long, value_name = "SPACING")]
+    pub isolines: Option<f64>,
     /// Output file for depths, as EXR: channel Z is the distance along each ray in scene units,
     /// infinite if the ray hits nothing
     #[arg(long, value_name = "OUT.exr")]

@@ -12,6 +12,12 @@ pub enum Error {
     /// The program draws nothing: it has no distance.
     #[error("the scene draws nothing, so there is no field")]
     NothingDrawn,
+    /// The program is planar: its shapes are regions, which no ray meets.
+    #[error(
+        "the scene draws regions, which have no rays: {0} needs solids; write .extrude(0.2) after \
+         the shapes, or ask for the field or the whole picture"
+    )]
+    Planar(&'static str),
     /// The program has no root for a function that was requested.
     #[error("the program has no {0}")]
     MissingRoot(&'static str),
@@ -78,7 +84,10 @@ impl Error {
     /// Returns true if the request is the cause, not the scene.
     pub fn is_call(&self) -> bool {
         match self {
-            Self::BadPrefix(_) | Self::Unsupported { .. } | Self::BindingTooLarge { .. } => true,
+            Self::BadPrefix(_)
+            | Self::Planar(_)
+            | Self::Unsupported { .. }
+            | Self::BindingTooLarge { .. } => true,
             Self::NothingDrawn
             | Self::MissingRoot(_)
             | Self::NotFinite { .. }

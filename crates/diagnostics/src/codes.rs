@@ -89,7 +89,7 @@ codes! {
         "rename one of them";
     SETTING_TWICE "E0203" "Setting given twice"
         "These settings may be given at most once: camera, ambient, sky, fog, background, \
-         ambient_occlusion, reflections, antialias and march."
+         ambient_occlusion, reflections, exposure, antialias, isolines and march."
         "keep one of them";
     MISPLACED_SETTING "E0204" "Setting outside the top level"
         "Settings such as `camera(...)` have no value. Write each on a line of its own at the top \
@@ -104,7 +104,7 @@ codes! {
          variadic one must be named."
         "`sdfc doc NAME` shows the parameters of a library entry";
     UNUSED_VALUE "E0207" "Unused value at top level"
-        "Only solids and settings may stand alone at the top level. Name other values with `let`."
+        "Only shapes and settings may stand alone at the top level. Name other values with `let`."
         "name it with `let`, or remove it";
     NO_FIELD "E0208" "Unknown field or swizzle"
         "A vector has as many of the components `xyzw` (or `rgba`) as its length; a range has `lo` \
@@ -125,7 +125,8 @@ codes! {
         "use the clock without declaring a `param`, or choose another name";
 
     REGION_FOR_SOLID "E0301" "Region (2D) where a solid (3D) is expected"
-        "`.extrude(h)` or `.revolve()` makes a solid of a region."
+        "`.extrude(h)` or `.revolve()` makes a solid of a region. A scene draws regions, as a \
+         planar picture, or solids, but not both."
         ".extrude(0.2) or .revolve()";
     SOLID_FOR_REGION "E0302" "Solid (3D) where a region (2D) is expected"
         "Regions come from `circle`, `rect` and the other 2D entries of the library."
@@ -242,9 +243,9 @@ codes! {
         "Remove it, or use it. Names with a leading `_` are private to their file."
         "remove it, or use it";
     NOTHING_DRAWN "W0604" "File that draws nothing"
-        "The file can be imported, but not rendered. Every solid that stands alone at the top \
+        "The file can be imported, but not rendered. Every shape that stands alone at the top \
          level is drawn."
-        "write a solid on a line of its own; a file that is only imported need not draw";
+        "write a shape on a line of its own; a file that is only imported need not draw";
     SOFT_SHADOW "W0605" "Soft shadows of a field that is not the exact distance"
         "A soft shadow is computed from the distances at which rays to the light pass the shape \
          that throws it. Where the field is less than the distance, edges are wider and darker \
@@ -260,6 +261,12 @@ codes! {
          that bounds the distance to all other copies. A `min` inside an `if` on a param does not \
          count."
         "bring the formula into that form, or remove the clause";
+    IDLE_SETTING "W0607" "Setting without effect"
+        "A scene of regions is drawn as a planar picture, in the colours that it states. Lights, \
+         sky, fog and the ray method change only pictures of solids, and `isolines` only pictures \
+         of regions. \
+         `.extrude(0.2)` makes a solid of a region."
+        "remove it, or draw shapes of the other kind";
 }
 
 #[cfg(test)]

@@ -54,7 +54,8 @@ pub struct CullableLoop {
 /// Flat math of one scene.
 ///
 /// No `Sample` and no `MaterialAt` is reachable from any of the roots. The only point is
-/// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range` and `seen_material`.
+/// `Point(0, Dim::Three)`, except in `rays`, `range`, `slope_range` and `seen_material`. In a
+/// planar program, whose shapes are regions, it is `Point(0, Dim::Two)`, except in `planar_pixel`.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     /// The arena.
@@ -64,8 +65,12 @@ pub struct Program {
     /// Signed distance, already divided by Lipschitz constants where needed. `None`: nothing is
     /// drawn.
     pub distance: Option<NodeId>,
-    /// Gradient of `distance`, a 3-vector.
+    /// Gradient of `distance`, a vector of the point's type.
     pub gradient: Option<NodeId>,
+    /// What a pixel of a planar picture shows: linear red, green and blue, and the distance. The
+    /// middle of the pixel is `Point(0, Dim::Two)`, its width and height are `Point(1, Dim::Two)`.
+    /// `None`: rays draw the scene, which consists of solids.
+    pub planar_pixel: Option<NodeId>,
     /// True if `distance` is divided by a large Lipschitz constant, so that a small value may be
     /// far from the surface.
     pub is_loose: bool,
@@ -102,6 +107,16 @@ pub struct Program {
 }
 
 impl Program {
+    /// True if the program's shapes are regions, so that its picture has no rays.
+    pub fn is_planar(&self) -> bool {
+        self.planar_pixel.is_some()
+    }
+
+    /// The dimension of the points that the field is a function of.
+    pub fn dim(&self) -> Dim {
+        if self.is_planar() { Dim::Two } else { Dim::Three }
+    }
+
     /// The program with `range` if `value` is set and with `slope_range` if `slope` is set.
     /// Unchanged if there is no distance.
     pub fn with_segment_bounds(&self, value: bool, slope: bool) -> Self {
@@ -130,7 +145,8 @@ impl Program {
         let material = self.material.into_iter().chain(self.seen_material).flatten();
         let culling_bounds = self.cullable_loops.iter().map(|cullable| cullable.culling_bounds);
         let exposure = self.settings.exposure.and_then(|exposure| exposure.factor);
-        let single = fields.into_iter().chain(rays).chain([exposure]).flatten();
+        let singles = [exposure, self.planar_pixel];
+        let single = fields.into_iter().chain(rays).chain(singles).flatten();
         single.chain(material).chain(culling_bounds).collect()
     }
 }

@@ -82,6 +82,8 @@ pub struct Settings {
     pub reflections: Option<Reflections>,
     /// How light becomes the colours of the picture; `None`: unchanged.
     pub exposure: Option<Exposure>,
+    /// Distance between the isolines of a planar picture; `None`: it has none.
+    pub isolines: Option<NodeId>,
     /// Camera rays per pixel.
     pub samples: Option<u32>,
     /// Settings of the ray marcher.
@@ -107,6 +109,7 @@ impl Settings {
             occlusion,
             reflections,
             exposure,
+            isolines,
             samples: _,
             march: _,
         } = self;
@@ -146,6 +149,7 @@ impl Settings {
         if let Some(Exposure { factor, tone: _ }) = *exposure {
             nodes.extend(factor);
         }
+        nodes.extend(isolines);
         nodes
     }
 }
@@ -300,8 +304,11 @@ pub struct March {
 pub struct Scene {
     /// The shapes and the math.
     pub graph: Graph,
-    /// The union of everything that is drawn; `None` if the file draws nothing.
+    /// The union of everything that is drawn; `None` if the file draws nothing. It is a solid, or a
+    /// region if the scene is planar.
     pub root: Option<ShapeId>,
+    /// The regions that a planar scene draws, from the lowest to the topmost. Empty for solids.
+    pub layers: Vec<ShapeId>,
     /// The params in order of declaration; `FrameInput::Param` is an index into them.
     pub params: Vec<Param>,
     /// Camera, lights and ray marcher.

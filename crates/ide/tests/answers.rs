@@ -253,8 +253,8 @@ fn fixes_change_the_source() {
     assert_eq!(fixed("spere(1)"), "sphere(1)");
     assert_eq!(fixed("camera(eey: [1, 2, 3])"), "camera(eye: [1, 2, 3])");
     assert_eq!(fixed("sphere(1).rotate(x: 90)"), "sphere(1).rotate(x: 90deg)");
-    assert_eq!(fixed("circle(1)"), "circle(1).extrude(0.2)");
-    assert_eq!(fixed("circle(1) | circle(2)"), "(circle(1) | circle(2)).extrude(0.2)");
+    assert_eq!(fixed("circle(1)\nbox(1)"), "circle(1).extrude(0.2)\nbox(1)");
+    assert_eq!(fixed("circle(1) | rect(2)\nbox(1)"), "(circle(1) | rect(2)).extrude(0.2)\nbox(1)");
     assert_eq!(fixed("sphere(.5)"), "sphere(0.5)");
     assert_eq!(fixed("sphere(r = 1)"), "sphere(r : 1)");
     assert_eq!(fixed("sphere(1"), "sphere(1)");

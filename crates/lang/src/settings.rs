@@ -65,7 +65,8 @@ pub fn table() -> Vec<SettingRow> {
     vec![
         row(
             (Kind::Camera, "camera", ONCE),
-            "The camera. Without this setting the view is fitted to the scene.",
+            "The camera. Without this setting the view is fitted to the scene. A planar picture \
+             takes its middle from `target` and needs `height`.",
             "camera(eye: [4, 3, 5], target: [0, 0.5, 0], fov: 35deg)",
             &[
                 ("eye", vec3.clone(), false, "position of the camera, in scene units"),
@@ -164,6 +165,13 @@ pub fn table() -> Vec<SettingRow> {
             "Antialiasing: averages several rays per pixel. The command line option `--samples` overrides it.",
             "antialias(samples: 4)",
             &[("samples", Int, true, "number of rays per pixel, at most 1024; default 4")],
+        ),
+        row(
+            (Kind::Isolines, "isolines", ONCE),
+            "Isolines of a planar picture: lines where the distance is a multiple of the spacing, and a \
+             wider one where it is 0. The command line option `--isolines` overrides it.",
+            "isolines(spacing: 0.1)",
+            &[("spacing", Number, false, "distance between two lines, in scene units")],
         ),
         row(
             (Kind::March, "march", ONCE),

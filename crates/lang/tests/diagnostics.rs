@@ -79,7 +79,10 @@ fn wrong_ray_intersections_are_reported() {
 #[test]
 fn wrong_dimensions_are_reported() {
     assert_findings!(all(&[
-        "circle(1)",
+        "circle(1)\nsphere(1)\nrect([1, 2])",
+        "circle(1)\ncamera(eye: [0, 0, 5])\nsky()\nisolines(0.1)",
+        "circle(1)\ncamera(eye: [0, 0, 5], fov: 30deg)\nmarch()",
+        "sphere(1)\nisolines(0.1)",
         "circle(1).translate(z: 1).extrude(1)",
         "union(sphere(1), circle(1))\nsphere(1) | rect([1, 2])",
         "sphere(1).extrude(1)",

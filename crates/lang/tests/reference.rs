@@ -7,11 +7,18 @@ mod support;
 use sdfc_lang::{library, reference, settings};
 use support::front;
 
+/// A shape that the entry is about: a region for a setting that only regions have.
+fn drawn(entry: &library::Entry) -> &'static str {
+    let rows = settings::table();
+    let row = rows.iter().find(|row| entry.kind == "setting" && row.name == entry.name);
+    if row.is_some_and(|row| !row.kind.is_for_solids()) { "circle(1)" } else { "sphere(1)" }
+}
+
 /// A scene with an entry's example.
 fn scene(entry: &library::Entry) -> String {
     match entry.kind {
         "kernel" => format!("let it = {}\nsphere(1)", entry.example),
-        "setting" | "type" => format!("sphere(1)\n{}", entry.example),
+        "setting" | "type" => format!("{}\n{}", drawn(entry), entry.example),
         _ => entry.example.clone(),
     }
 }

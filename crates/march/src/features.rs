@@ -5,9 +5,11 @@ use crate::stubs;
 /// The optional parts of a shader that a scene needs.
 ///
 /// Each is an override of `features.wgsl` on which the WGSL files branch. The linker takes one side
-/// of each branch and drops the other.
+/// of each branch and drops the other. `planar` and `materials` choose files instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Features {
+    /// The scene consists of regions: a pixel is a formula, and there are no rays.
+    pub planar: bool,
     /// The scene has materials.
     pub materials: bool,
     /// Materials depend on the normal or on the direction to the eye.
@@ -80,6 +82,7 @@ impl Features {
     pub fn overrides(self) -> [(&'static str, bool); 31] {
         // Destructured so that a new feature does not compile until it is handled here.
         let Self {
+            planar: _,
             materials,
             seen_materials,
             unlit,

@@ -54,6 +54,7 @@ pub enum Form {
 }
 
 impl Form {
+    /// The files of a picture that rays draw.
     fn files(self) -> &'static [&'static str] {
         const PICTURE: &str = include_str!("wgsl/picture.wgsl");
         const BUFFER: &str = include_str!("wgsl/view_buffer.wgsl");
@@ -65,6 +66,20 @@ impl Form {
             Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
             Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
             Self::Shadertoy => &[PICTURE, include_str!("wgsl/shadertoy.wgsl")],
+        }
+    }
+
+    /// The files of a planar picture. It has no normals.
+    fn planar_files(self) -> &'static [&'static str] {
+        const PICTURE: &str = include_str!("wgsl/planar.wgsl");
+        const BUFFER: &str = include_str!("wgsl/view_buffer.wgsl");
+        const COMPUTE: &str = include_str!("wgsl/compute.wgsl");
+        const FRAGMENT: &str = include_str!("wgsl/fragment.wgsl");
+        match self {
+            Self::Compute | Self::Normals => &[PICTURE, BUFFER, COMPUTE],
+            Self::Fragment => &[PICTURE, BUFFER, include_str!("wgsl/rows_down.wgsl"), FRAGMENT],
+            Self::FragmentUp => &[PICTURE, BUFFER, include_str!("wgsl/rows_up.wgsl"), FRAGMENT],
+            Self::Shadertoy => &[PICTURE, include_str!("wgsl/planar_shadertoy.wgsl")],
         }
     }
 }
@@ -114,7 +129,7 @@ pub fn source_with(
         include_str!("wgsl/tone.wgsl"),
         include_str!("wgsl/pixel.wgsl"),
     ]);
-    files.extend(form.files());
+    files.extend(if features.planar { form.planar_files() } else { form.files() });
     files.join("\n")
 }
 

@@ -33,6 +33,10 @@ pub const MATERIAL: &str = "material";
 /// `fn seen_material(p: vec3f, normal: vec3f, toward_eye: vec3f) -> Material`. Called in place of
 /// [`MATERIAL`] if [`Features::seen_materials`](crate::Features::seen_materials) is set.
 pub const SEEN_MATERIAL: &str = "seen_material";
+/// `fn planar_pixel(p: vec2f, size: vec2f) -> vec4f`: the linear colour of a pixel with the middle
+/// p, and the field there. Called in place of all others if
+/// [`Features::planar`](crate::Features::planar) is set.
+pub const PLANAR_PIXEL: &str = "planar_pixel";
 /// `fn exposure() -> f32`, the factor of all light. Called if
 /// [`Features::exposure`](crate::Features::exposure) is set.
 pub const EXPOSURE: &str = "exposure";

@@ -34,8 +34,9 @@ impl Default for OracleOptions<'_> {
 ///
 /// # Errors
 ///
-/// [`Error::NothingDrawn`], [`Error::Evaluate`].
+/// [`Error::NothingDrawn`], [`Error::Planar`], [`Error::Evaluate`].
 pub fn oracle(scene: &Scene) -> Result<Oracle, Error> {
+    scene.needs_solids("the oracle")?;
     Oracle::new(scene.drawn()).map_err(|error| match error {
         OracleError::NothingDrawn => Error::NothingDrawn,
         OracleError::NotFlat(error) => Error::Evaluate(error),

@@ -105,7 +105,15 @@ fn auto_is_right(name: &str, text: &str) -> Result<(), Failed> {
     let methods = if is_alone { METHODS[..1].to_vec() } else { METHODS.to_vec() };
     let once = ChartOptions::new().repetitions(1).defaults_only(true);
     let options = once.size(*size).methods(methods);
-    let chart = chart(&scene, name, &gpu, &options, OracleOptions::default(), &mut no_progress)?;
+    let chart = chart(&scene, name, &gpu, &options, OracleOptions::default(), &mut no_progress);
+    if scene.is_planar() {
+        // Regions have no rays, and a chart of them is refused.
+        return match chart {
+            Err(sdfc::Error::Planar(_)) => Ok(()),
+            other => Err(format!("a chart of regions: {:?}", other.map(drop)).into()),
+        };
+    }
+    let chart = chart?;
     let open = chart.oracle.undecided as f64 / pixels;
     if open > *undecided {
         return Err(format!("the oracle leaves {open:.4} of the pixels undecided").into());

@@ -36,6 +36,9 @@ pub enum RenderError {
     /// The device refused the shader or a call: a bug of the compiler, not of the scene.
     #[error("the device refused the shader: {0}")]
     Validation(String),
+    /// The program is planar: its shapes are regions, which no ray meets.
+    #[error("the scene draws regions, which have no rays; .extrude(0.2) makes solids of them")]
+    Planar,
     /// A side of the picture is 0 or greater than [`MAX_SIDE`], or it has more than
     /// [`MAX_PIXELS`].
     #[error(
@@ -117,7 +120,8 @@ impl RenderError {
             | Self::Validation(_)
             | Self::Uniforms { .. }
             | Self::Limit { .. } => true,
-            Self::Size(_)
+            Self::Planar
+            | Self::Size(_)
             | Self::Region { .. }
             | Self::Samples(_)
             | Self::UniformCount { .. }

@@ -69,6 +69,7 @@ impl Scene {
         options: &BakeOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<DistanceGrid, Error> {
+        self.needs_solids("a grid of samples")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let options = sdfc_mesh::BakeOptions::new(self.filled_bounds(&frame)?)
             .resolution(options.resolution)

@@ -9,8 +9,24 @@ use sdfc_render::{RenderError, ViewError};
 #[non_exhaustive]
 pub enum Error {
     /// The scene draws nothing.
-    #[error("the scene draws nothing: every solid that stands alone on a line is drawn")]
+    #[error("the scene draws nothing: every shape that stands alone on a line is drawn")]
     NothingDrawn,
+    /// The scene draws regions, and the request needs solids.
+    #[error(
+        "the scene draws regions (2D), and {0} needs solids (3D): write .extrude(0.2) or \
+         .revolve() after the regions"
+    )]
+    Planar(&'static str),
+    /// The scene draws solids, and the request needs regions.
+    #[error("the scene draws solids (3D), and isolines are drawn in pictures of regions (2D) only")]
+    NotPlanar,
+    /// The spacing of isolines is not above 0 and finite.
+    #[error("a spacing of isolines of {0}: it must be above 0 and finite")]
+    Spacing(f64),
+    /// A contour of regions in another plane than z = 0.
+    #[cfg(feature = "mesh")]
+    #[error("the scene draws regions, which lie in the plane z=0: leave `--plane` out")]
+    PlaneOfRegions,
     /// The field has more nodes than the limit.
     #[error(transparent)]
     Expand(#[from] ExpandError),
@@ -51,12 +67,15 @@ impl Error {
         match self {
             Self::Render(error) => error.is_machine(),
             Self::NothingDrawn
+            | Self::Planar(_)
+            | Self::NotPlanar
+            | Self::Spacing(_)
             | Self::Expand(_)
             | Self::Codegen(_)
             | Self::Evaluate(_)
             | Self::View(_) => false,
             #[cfg(feature = "mesh")]
-            Self::Mesh(_) | Self::UnknownSolid { .. } => false,
+            Self::Mesh(_) | Self::UnknownSolid { .. } | Self::PlaneOfRegions => false,
         }
     }
 
@@ -67,11 +86,12 @@ impl Error {
             Self::Render(error) => {
                 matches!(error, RenderError::Size(_) | RenderError::MethodNotOnCpu(_))
             }
+            Self::Planar(_) | Self::NotPlanar | Self::Spacing(_) => true,
             Self::NothingDrawn | Self::Expand(_) | Self::Evaluate(_) | Self::View(_) => false,
             #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_call(),
             #[cfg(feature = "mesh")]
-            Self::UnknownSolid { .. } => true,
+            Self::UnknownSolid { .. } | Self::PlaneOfRegions => true,
         }
     }
 }

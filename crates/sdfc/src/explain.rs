@@ -43,8 +43,13 @@ impl Scene {
             spirv_instructions: field.map_or(0, |cost| cost.instructions as usize),
             spirv_arithmetic: field.map_or(0, |cost| cost.arithmetic as usize),
             features: feature_names(features),
-            method: self.marched_by(self.method()).name(),
-            method_why: self.why_marched_by(self.method()),
+            method: if self.is_planar() { "none" } else { self.marched_by(self.method()).name() },
+            method_why: match self.is_planar() {
+                true => Some("regions have no rays".to_owned()),
+                false => self.why_marched_by(self.method()),
+            },
+            layers: self.graph().layers.len(),
+            ops_per_pixel: report.pixel_cost.operations,
             step_scale: 1.0,
             certified: self.is_certified(),
             bounds: self.finite_bounds(),
@@ -70,6 +75,7 @@ impl Scene {
             count => format!("{count} loops"),
         };
         let culling = match self.program.cullable_loops.is_empty() {
+            true if self.is_planar() => "pixels evaluate all of them",
             true => "rays evaluate all of them",
             false => "rays evaluate those that they can hit",
         };
@@ -128,6 +134,7 @@ impl Scene {
 /// Returns the names of the features that a shader has.
 pub(crate) fn feature_names(features: Features) -> Vec<String> {
     let Features {
+        planar: _,
         materials,
         seen_materials,
         unlit,

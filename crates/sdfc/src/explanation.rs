@@ -44,10 +44,14 @@ pub struct Explanation {
     pub spirv_arithmetic: usize,
     /// Features of the picture's shader: `material`, `shadow` and so on.
     pub features: Vec<String>,
-    /// The ray method that pictures are drawn with.
+    /// The ray method that pictures are drawn with; `none` for regions.
     pub method: &'static str,
     /// Why this method was chosen, if the field is uncertified.
     pub method_why: Option<String>,
+    /// Number of regions that a planar picture paints one over the other; 0 for solids.
+    pub layers: usize,
+    /// Arithmetic operations of a pixel of a planar picture; 0 for solids.
+    pub ops_per_pixel: usize,
     /// Factor that turns a distance into a safe step. Always 1: the field is already divided by its
     /// constant.
     pub step_scale: f64,
@@ -148,7 +152,15 @@ impl std::fmt::Display for Explanation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "leaves              {}", self.leaves)?;
         writeln!(f, "operations          {} per field evaluation", self.ops_per_eval)?;
-        writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?;
+        match self.layers {
+            0 => {
+                writeln!(f, "                    {} per gradient, at hits", self.ops_per_gradient)?
+            }
+            1 => writeln!(f, "                    {} per pixel", self.ops_per_pixel)?,
+            many => {
+                writeln!(f, "                    {} per pixel, {many} layers", self.ops_per_pixel)?;
+            }
+        }
         writeln!(f, "                    {} per frame, on the CPU", self.ops_per_frame)?;
         let (live, of_sweep) = (self.gradient_live, self.gradient_live_of_sweep);
         match self.gradient {

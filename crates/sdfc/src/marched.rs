@@ -38,6 +38,9 @@ impl Scene {
 
     /// The program and the method that draw pictures on a GPU if `method` is requested.
     pub fn marched(&self, method: Method) -> Marched<'_> {
+        if self.is_planar() {
+            return self.unmarched();
+        }
         let program = self.with_bounds_for(self.drawn(), method);
         Marched { program, method: self.marched_by(method), note: self.why_marched_by(method) }
     }
@@ -45,6 +48,9 @@ impl Scene {
     /// The program and the method that draw pictures on the CPU if `method` is requested. `auto`
     /// replaces the methods that the CPU renderer does not have.
     pub fn marched_on_cpu(&self, method: Method) -> Marched<'_> {
+        if self.is_planar() {
+            return self.unmarched();
+        }
         let (known, other) = if CpuScene::METHODS.contains(&method) {
             (method, None)
         } else {
@@ -57,6 +63,12 @@ impl Scene {
         let notes: Vec<String> = other.into_iter().chain(self.why_marched_by(known)).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         Marched { program, method: used, note }
+    }
+
+    /// A planar picture has no rays, so there is no method. The default one stands for it.
+    fn unmarched(&self) -> Marched<'_> {
+        let (program, method) = (Cow::Borrowed(self.drawn()), Method::default());
+        Marched { program, method, note: None }
     }
 
     /// The ray method that draws if `method` is requested.
@@ -131,7 +143,7 @@ impl Scene {
 pub(crate) fn with_segment_bounds(program: &Program, method: Method) -> Cow<'_, Program> {
     let definition = method.definition();
     let (range, slope) = (definition.calls(stubs::RANGE), definition.calls(stubs::SLOPE_RANGE));
-    if range || slope {
+    if (range || slope) && !program.is_planar() {
         Cow::Owned(program.with_segment_bounds(range, slope))
     } else {
         Cow::Borrowed(program)

@@ -80,6 +80,7 @@ impl Scene {
         options: &MeasureOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Measurements, Error> {
+        self.needs_solids("a measurement")?;
         let frame = options.frame.clone().unwrap_or_else(|| self.defaults());
         let bounds = self.filled_bounds(&frame)?;
         let options = sdfc_mesh::MeasureOptions::new(bounds)

@@ -79,18 +79,21 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// [`Error::Mesh`]: the scene is empty or has no limit, the error is too small, the mesh needs
+    /// [`Error::Planar`]; [`Error::Mesh`]: the scene is empty or has no limit, the error is too
+    /// small, the mesh needs
     /// too many cells, or `progress` stopped the work.
     pub fn mesh(
         &self,
         options: &MeshOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Mesh, Error> {
+        self.needs_solids("a mesh")?;
         let (frame, options) = self.mesh_options(options)?;
         Ok(sdfc_mesh::mesh(&self.program, &frame, &options, progress)?)
     }
 
-    /// The closed paths around the section of the scene by a plane, with a certificate.
+    /// The closed paths around the section of the scene by a plane, with a certificate. Regions lie
+    /// in the plane z = 0.
     ///
     /// The work runs on all cores. It stops if `progress` breaks.
     ///
@@ -110,12 +113,16 @@ impl Scene {
     /// # Errors
     ///
     /// [`Error::Mesh`]: the same as for a mesh, or the plane meets no inside.
+    /// [`Error::PlaneOfRegions`].
     pub fn contour(
         &self,
         plane: Plane,
         options: &MeshOptions,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Contour, Error> {
+        if self.is_planar() && Some(plane) != Plane::new([0.0, 0.0, 1.0], 0.0) {
+            return Err(Error::PlaneOfRegions);
+        }
         let (frame, options) = self.mesh_options(options)?;
         Ok(sdfc_mesh::contour(&self.program, &frame, plane, &options, progress)?)
     }

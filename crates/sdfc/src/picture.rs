@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::time::Instant;
 
+use sdfc_analyze::prepare_with;
 use sdfc_codegen::{render_module, render_module_with_camera};
 use sdfc_graph::Program;
 use sdfc_graph::eval::FrameValues;
@@ -52,6 +53,8 @@ pub struct PictureOptions {
     /// Rays per pixel, from 1 to [`MAX_SAMPLES`](sdfc_render::MAX_SAMPLES); `None` takes the
     /// scene's, or 1.
     pub samples: Option<u32>,
+    /// Distance between the isolines of a planar picture; `None` takes the scene's.
+    pub isolines: Option<f64>,
     /// True for linear light without exposure and tone curve, as files with a high dynamic range
     /// hold it.
     pub hdr: bool,
@@ -114,6 +117,12 @@ impl PictureOptions {
         Self { samples: samples.into(), ..self }
     }
 
+    /// Sets the distance between the isolines of a planar picture; `None` takes the scene's.
+    #[must_use]
+    pub fn isolines(self, isolines: impl Into<Option<f64>>) -> Self {
+        Self { isolines: isolines.into(), ..self }
+    }
+
     /// Draws linear light, without exposure and tone curve.
     #[must_use]
     pub fn hdr(self, hdr: bool) -> Self {
@@ -139,6 +148,7 @@ impl Default for PictureOptions {
             tolerance: 1.0,
             frame: None,
             samples: None,
+            isolines: None,
             hdr: false,
             repetitions: 1,
         }
@@ -183,7 +193,8 @@ impl Scene {
     /// # Errors
     ///
     /// [`Error::Render`] if the machine cannot draw or there are too many samples,
-    /// [`Error::Codegen`] if the scene cannot be lowered.
+    /// [`Error::Codegen`] if the scene cannot be lowered, [`Error::NotPlanar`] and
+    /// [`Error::Spacing`] if isolines cannot be drawn.
     pub fn painter(&self, options: &PictureOptions) -> Result<Painter<'_>, Error> {
         let start = Instant::now();
         let method = options.method.unwrap_or(self.method());
@@ -206,6 +217,9 @@ impl Scene {
         if options.hdr {
             program.to_mut().settings.exposure = None;
         }
+        if let Some(spacing) = options.isolines {
+            program = Cow::Owned(self.with_isolines(spacing)?);
+        }
         let (engine, compile, note) = match gpu {
             Ok(gpu) => {
                 let parallel = options.pose.map(|pose| pose.parallel);
@@ -217,7 +231,9 @@ impl Scene {
                 (Engine::Cpu(Box::new(scene)), cpu_times(start), note)
             }
         };
-        let notes: Vec<String> = note.into_iter().chain(why.clone()).collect();
+        let idle = options.method.filter(|_| self.is_planar());
+        let idle = idle.map(|method| format!("regions have no rays, so `{method}` has no effect"));
+        let notes: Vec<String> = note.into_iter().chain(why.clone()).chain(idle).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
         let (front, analyze) = (Some(self.times.front), Some(self.times.analyze));
         let compile = CompileTimes { front, analyze, ..compile };
@@ -238,6 +254,19 @@ impl Scene {
             note,
             start,
         })
+    }
+
+    /// The program of the picture with other isolines.
+    fn with_isolines(&self, spacing: f64) -> Result<Program, Error> {
+        if !self.is_planar() {
+            return Err(Error::NotPlanar);
+        }
+        if !(spacing > 0.0 && spacing.is_finite()) {
+            return Err(Error::Spacing(spacing));
+        }
+        let mut scene = self.graph().clone();
+        scene.settings.isolines = Some(scene.graph.number(spacing));
+        Ok(prepare_with(&scene, self.drawn().origin, self.loops)?.program)
     }
 
     fn pipeline(
@@ -326,7 +355,7 @@ impl Painter<'_> {
         let frame_ms = FrameTimes::of(&spent, frame.clock).ok_or(Error::NothingDrawn)?;
         let adapter = self.adapter();
         let mut stats =
-            Stats::new(&frame, frame_ms, adapter, self.method.name(), self.compile.clone());
+            Stats::new(&frame, frame_ms, adapter, self.method_name(), self.compile.clone());
         match &self.engine {
             Engine::Gpu(pipeline) if pipeline.leaves_out() => {
                 let why = "rays visit the parts that can matter to them, which `sdfc bench` counts";
@@ -352,6 +381,11 @@ impl Painter<'_> {
             (self.size, self.pose) = (size, Some(pose));
         }
         fits
+    }
+
+    /// The name of the ray method; "none" for a planar picture.
+    fn method_name(&self) -> &'static str {
+        if self.program.is_planar() { "none" } else { self.method.name() }
     }
 
     /// Returns what part of a picture with these pixels is unproven, and counts it.

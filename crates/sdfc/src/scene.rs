@@ -110,6 +110,12 @@ impl Scene {
         self.program.distance.is_some()
     }
 
+    /// True if the scene draws regions: its picture is planar, and its field is a function of x and
+    /// y.
+    pub fn is_planar(&self) -> bool {
+        self.program.is_planar()
+    }
+
     /// True if the field is proven never to exceed the distance to the surface.
     pub fn is_certified(&self) -> bool {
         self.report.uncertified.is_empty()
@@ -167,6 +173,15 @@ impl Scene {
 
 /// Internal representations, for the other crates of this workspace.
 impl Scene {
+    /// Returns an error that names `what` if the scene draws regions.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Planar`].
+    pub fn needs_solids(&self, what: &'static str) -> Result<(), Error> {
+        if self.is_planar() { Err(Error::Planar(what)) } else { Ok(()) }
+    }
+
     /// The flat program, with its origin at the origin of the scene.
     pub fn program(&self) -> &Program {
         &self.program

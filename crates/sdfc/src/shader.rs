@@ -200,6 +200,9 @@ impl Scene {
             return Err(sdfc_codegen::Error::Unsupported { target, what }.into());
         }
         let lists = target.lists();
+        if self.is_planar() && options.emit == Emit::March {
+            return Err(Error::Planar("`--emit march`, which finds where rays meet surfaces,"));
+        }
         let functions = || {
             let prefix = prefix.clone();
             FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }

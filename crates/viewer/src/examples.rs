@@ -23,7 +23,7 @@ macro_rules! examples {
 /// All examples, by name.
 pub const EXAMPLES: &[Example] = examples![
     "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lantern" "lettering" "mandelbulb" "materials"
-    "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "polyhedra" "profiles" "recursion" "round"
+    "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "planar" "polyhedra" "profiles" "recursion" "round"
     "snowman" "solids" "surface_directions" "table" "terrain" "time" "transforms" "twist"
 ];
 

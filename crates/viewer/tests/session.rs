@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_args();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let ignored = !required && Gpu::new().is_err();
-    let tests: [(&str, Test); 10] = [
+    let tests: [(&str, Test); 11] = [
         ("a_changed_number_makes_no_pipeline", numbers),
         ("a_changed_number_in_a_rerolled_scene_makes_no_pipeline", many),
         ("a_param_that_decides_what_is_built_compiles_the_scene_again", counts),
@@ -35,6 +35,7 @@ fn main() -> ExitCode {
         ("all_views_are_computed_from_one_image", views),
         ("all_methods_draw_as_the_command_line_does", methods),
         ("the_projection_can_differ_from_the_scenes_camera", parallel),
+        ("regions_are_panned_instead_of_turned", planar),
         ("lost_devices_are_opened_again", lost),
         ("all_methods_are_compared_with_the_oracle", compared),
     ];
@@ -299,6 +300,37 @@ fn parallel() -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// A drag moves a planar picture, and every view of it is computed.
+fn planar() -> Result<(), Failed> {
+    let text = "circle(1).color(#f00)\nrect([0.5, 0.5]).color(#00f)\n";
+    let mut fixture = Fixture::new(text)?;
+    fixture.session.samples = Some(1);
+    fixture.finish()?;
+    let model = fixture.model()?;
+    expect(model.parallel && model.pipelines == 1, "it is drawn twice")?;
+    let middle = fixture.session.pixel_info([0.5, 0.5]).ok_or("nothing is there")?;
+    let shape = middle.shape.unwrap_or_default();
+    expect(shape.contains("rect"), &format!("the middle shows {shape}"))?;
+    expect(middle.distance.is_some_and(|distance| distance < -0.9), "not the union's field")?;
+    // One unit to the right: the left edge of the disc is in the middle.
+    let pictures = fixture.session.picture_count;
+    fixture.session.move_camera(|camera| {
+        let height = camera.pose().height_at_target();
+        camera.orbit(1.0 / height, 0.0);
+    });
+    fixture.until(|session| session.picture_count > pictures)?;
+    let edge = fixture.session.pixel_info([0.5, 0.5]).ok_or("nothing is there")?;
+    expect((edge.point.x + 1.0).abs() < 0.05, &format!("{edge:?}"))?;
+    for mode in ViewMode::ALL {
+        fixture.session.mode = mode;
+        fixture.until(|session| {
+            session.picture.as_ref().is_some_and(|picture| picture.request.mode == mode)
+        })?;
+    }
+    fixture.session.compare(false);
+    expect(fixture.session.accuracy.progress().is_none(), "rays are compared")
 }
 
 /// More losses than are allowed without a picture in between.

@@ -40,6 +40,9 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     if !scene.draws() {
         return Err(super::lowering(&Error::NothingDrawn, console));
     }
+    if args.depth.is_some() {
+        scene.needs_solids("`--depth`").map_err(|e| super::lowering(&e, console))?;
+    }
     let values = values(&scene, args);
     outputs.check(frames)?;
     let interrupt = Interrupt::watch();
@@ -201,6 +204,7 @@ fn options(args: &Render) -> PictureOptions {
             Backend::Cpu => sdfc::Backend::Cpu,
         })
         .samples(args.samples)
+        .isolines(args.isolines)
 }
 
 /// Returns the values of params, time and frame.

@@ -44,6 +44,8 @@ pub struct Drawing {
 pub struct Settings {
     /// Rays per pixel.
     pub samples: Option<u32>,
+    /// Spacing of isolines, in scene units.
+    pub isolines: Option<String>,
     /// Ray method.
     pub march: Option<String>,
     /// When parts become loops.
@@ -86,6 +88,7 @@ impl Drawing {
             frames: _,
             fps,
             samples,
+            isolines,
             depth: _,
             stats: _,
             strict: _,
@@ -102,6 +105,7 @@ impl Drawing {
             fps: fps.to_string(),
             settings: Settings {
                 samples: *samples,
+                isolines: isolines.map(|spacing| spacing.to_string()),
                 march: march.map(|method| method.name().to_owned()),
                 loops: format!("{:?}", loops).to_lowercase(),
                 live_literals: *live_literals,

@@ -35,6 +35,11 @@ impl StubBinding {
         Self { role: None, stub, root, arguments: &[] }
     }
 
+    /// The formula of a pixel: a function of its middle and its size.
+    pub(crate) fn of_pixel(root: NodeId) -> Self {
+        Self { role: None, stub: stubs::PLANAR_PIXEL, root, arguments: &[POINT, "size"] }
+    }
+
     fn of_ray(stub: &'static str, root: NodeId) -> Self {
         Self { role: None, stub, root, arguments: &["origin", "direction"] }
     }

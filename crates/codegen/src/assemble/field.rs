@@ -17,7 +17,8 @@ use crate::reflection::{ModuleParts, Role};
 use crate::shader::Shader;
 
 /// Makes a module of the functions `<prefix>distance`, `<prefix>gradient` and `<prefix>material` of
-/// a program, without an entry point. The gradient has the distance in its fourth lane.
+/// a program, without an entry point. The gradient has the distance in its last lane. In a planar
+/// program they are functions of a point in the plane.
 ///
 /// Params, `time` and `frame`, if the functions use them, are members of one uniform structure
 /// ([`crate::Reflection::members`]); values that follow from them are computed in the functions.
@@ -51,6 +52,9 @@ fn functions(
     options: &FieldOptions,
 ) -> Result<Shader, Error> {
     check_prefix(&options.prefix)?;
+    if program.is_planar() && method.is_some() {
+        return Err(Error::Planar("a function of a ray"));
+    }
     let distance = program.distance.ok_or(Error::NothingDrawn)?;
     let mut program = program.clone();
     let features = ray_features(&program, method.is_some_and(|method| method.pre_intersects));
@@ -106,11 +110,13 @@ fn functions(
     Shader::new(module, parts, Features { materials: material.is_some(), ..features })
 }
 
-/// A derivative with its value in the fourth lane: callers often need both, and they share most of
+/// A derivative with its value in one more lane: callers often need both, and they share most of
 /// their work.
 fn with_value(graph: &mut Graph, derivative: NodeId, value: NodeId) -> NodeId {
-    let [x, y, z] = [0, 1, 2].map(|lane| graph.component(derivative, lane));
-    graph.compose(&[x, y, z, value])
+    let width = graph.ty(derivative).width() as u8;
+    let mut lanes: Vec<NodeId> = (0..width).map(|lane| graph.component(derivative, lane)).collect();
+    lanes.push(value);
+    graph.compose(&lanes)
 }
 
 /// Binds the function to the stub of that name if a ray method has it, else adds the function.

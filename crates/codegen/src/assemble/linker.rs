@@ -5,7 +5,7 @@ use sdfc_graph::{NodeId, Program};
 use sdfc_march::{FieldSource, Form, MethodDefinition, source_with, stubs};
 
 use super::bindings::{StubBinding, analytic_bindings, segment_bindings};
-use super::template::{features, is_culled, template, used_slots};
+use super::template::{features, has_loops, is_culled, template, used_slots};
 use crate::error::Error;
 use crate::link::template::{bind, find_function};
 use crate::lower::inputs::{Inputs, declare_variable};
@@ -25,8 +25,12 @@ struct MaterialStub {
     arguments: &'static [&'static str],
 }
 
-/// The stub that shading calls; `None` without materials.
+/// The stub that shading calls; `None` without materials. The formula of a planar picture's pixel
+/// contains them.
 fn material(program: &Program) -> Option<MaterialStub> {
+    if program.is_planar() {
+        return None;
+    }
     let arguments = &[POINT, "normal", "toward_eye"];
     let seen = program.seen_material.map(|fields| (stubs::SEEN_MATERIAL, fields, &arguments[..]));
     let (stub, fields, arguments) =
@@ -58,6 +62,9 @@ impl<'p> PictureLinker<'p> {
         unused: &[&str],
         culled: bool,
     ) -> Result<Self, Error> {
+        if let Some(pixel) = program.planar_pixel {
+            return Self::of_planar(program, form, method, pixel, unused);
+        }
         let distance = program.distance.ok_or(Error::NothingDrawn)?;
         let gradient = program.gradient.ok_or(Error::MissingRoot("gradient"))?;
         let mut features = features(program, method.pre_intersects);
@@ -79,6 +86,27 @@ impl<'p> PictureLinker<'p> {
         let mut roots: Vec<_> = bindings.iter().map(|binding| binding.root).collect();
         roots.extend(material(program).into_iter().flat_map(|it| it.fields));
         let used = used_slots(program, roots);
+        let source = source_with(FieldSource::Scene, form, method, features);
+        let module = template(&source, features, &used, unused)?;
+        let (inputs, parts) = Default::default();
+        Ok(Self { program, bindings, features, used, module, inputs, parts })
+    }
+
+    /// As [`Self::new`], for a picture without rays. The files of the method are among those that
+    /// the template is parsed from, but nothing reaches them.
+    fn of_planar(
+        program: &'p Program,
+        form: Form,
+        method: &MethodDefinition,
+        pixel: NodeId,
+        unused: &[&str],
+    ) -> Result<Self, Error> {
+        if form == Form::Normals {
+            return Err(Error::Planar("a picture of normals"));
+        }
+        let features = Features { planar: true, loops: has_loops(program), ..Features::default() };
+        let bindings = vec![StubBinding::of_pixel(pixel)];
+        let used = used_slots(program, vec![pixel]);
         let source = source_with(FieldSource::Scene, form, method, features);
         let module = template(&source, features, &used, unused)?;
         let (inputs, parts) = Default::default();

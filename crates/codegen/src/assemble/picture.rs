@@ -101,6 +101,9 @@ fn link_benchmark(
     field: FieldSource,
     instrumented: bool,
 ) -> Result<Shader, Error> {
+    if program.is_planar() {
+        return Err(Error::Planar("a benchmark"));
+    }
     let method = method.definition();
     let distance = match field {
         FieldSource::Scene => return link_picture(program, Form::Compute, method, None),

@@ -21,8 +21,8 @@ const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "siz
 
 /// Makes the shader of a program's picture for [`crate::Target::Shadertoy`]. Params are constants
 /// with their defaults, `time` and `frame` follow the site's clock, and the camera is the scene's.
-/// The rest of the view is constant: `view` holds the bytes of a `sdfc_march::ViewBlock`, as a
-/// buffer would.
+/// Of a picture with rays, the rest of the view is constant: `view` holds the bytes of a
+/// `sdfc_march::ViewBlock`, as a buffer would.
 ///
 /// # Errors
 ///
@@ -46,11 +46,13 @@ pub fn shadertoy_module(program: &Program, method: Method, view: &[u8]) -> Resul
     picture.bind()?;
 
     let values = View::new(&picture.module, view)?;
-    let load = values.load_function(&mut picture.module);
-    bind(&mut picture.module, stubs::LOAD_VIEW, load)?;
+    if !program.is_planar() {
+        let load = values.load_function(&mut picture.module);
+        bind(&mut picture.module, stubs::LOAD_VIEW, load)?;
+    }
     let camera = match camera {
         Some(nodes) => camera_of_scene(&mut picture.module, program, &Inputs::of_raw(raw), &nodes)?,
-        None => camera_of_view(&mut picture.module, &values)?,
+        None => camera_of_view(&mut picture.module, &values, program.is_planar())?,
     };
     bind(&mut picture.module, stubs::CAMERA, camera)?;
     picture.finish()
@@ -162,8 +164,8 @@ fn camera_of_scene(
     struct_function(program, inputs, &mut module.types, stubs::CAMERA, (nodes, structure), &[POINT])
 }
 
-/// The camera of the view.
-fn camera_of_view(module: &mut Module, view: &View<'_>) -> Result<Function, Error> {
+/// The camera of the view: in perspective, or parallel for a planar picture.
+fn camera_of_view(module: &mut Module, view: &View<'_>, parallel: bool) -> Result<Function, Error> {
     let structure = camera_type(module)?;
     let vector = types::value(&mut module.types, Type::Vec3);
     let [eye, forward, up] = [view.vector("eye")?, view.vector("forward")?, view.vector("up")?];
@@ -176,7 +178,8 @@ fn camera_of_view(module: &mut Module, view: &View<'_>) -> Result<Function, Erro
         let compose = Expression::Compose { ty: vector, components: lanes.clone() };
         components.push(body.compute(compose, &lanes));
     }
-    components.push(body.literal(2.0 * half_height.atan()));
+    let lens = if parallel { half_height } else { half_height.atan() };
+    components.push(body.literal(2.0 * lens));
     let compose = Expression::Compose { ty: structure, components: components.clone() };
     let camera = body.compute(compose, &components);
     Ok(body.finish(Some(camera)))

@@ -83,7 +83,7 @@ fn is_unlit(program: &Program) -> bool {
 }
 
 /// Returns true if the functions of a program contain loops.
-fn has_loops(program: &Program) -> bool {
+pub(super) fn has_loops(program: &Program) -> bool {
     let nodes = reachable(&program.graph, &program.roots());
     nodes.into_iter().any(|id| matches!(program.graph.node(id), Node::Loop(..)))
 }

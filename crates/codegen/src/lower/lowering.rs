@@ -7,7 +7,7 @@
 use naga::{BinaryOperator, Literal, Statement, SwizzleComponent, UniqueArena};
 use naga::{Expression, Function, FunctionArgument, FunctionResult, GlobalVariable, Handle};
 use rustc_hash::FxHashMap;
-use sdfc_graph::{Binary, Const, Dim, IdMap, LoopId, Node, NodeId, Program, Type};
+use sdfc_graph::{Binary, Const, IdMap, LoopId, Node, NodeId, Program, Type};
 
 use super::body::{Body, Value};
 use super::inputs::{Inputs, frame_name, input_name};
@@ -199,7 +199,9 @@ impl<'a> Lowering<'a> {
     fn node(&mut self, id: NodeId, node: Node) -> Result<Value, Error> {
         match node {
             Node::Const(constant) => self.constant(id, constant),
-            Node::Point(level, Dim::Three) if usize::from(level) < self.arguments.len() => {
+            Node::Point(level, dim)
+                if dim == self.program.dim() && usize::from(level) < self.arguments.len() =>
+            {
                 let argument = self.first_point + u32::from(level);
                 Ok(self.body.declare(Expression::FunctionArgument(argument)))
             }
@@ -334,7 +336,8 @@ impl<'a> Lowering<'a> {
     }
 
     fn finish(self, name: &str, value: Value, result: Handle<naga::Type>) -> Function {
-        let (point, arguments) = (types::value(self.types, Type::Vec3), self.arguments);
+        let point = types::value(self.types, self.program.dim().point_type());
+        let arguments = self.arguments;
         let mut function = self.body.finish(Some(value));
         function.name = Some(name.to_owned());
         let argument = |&name: &&str| {

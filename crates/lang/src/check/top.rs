@@ -11,7 +11,7 @@ use super::decl::{ParameterSignature, Target};
 use super::names::{Entry, Found, ImportedName, is_private};
 use super::types::{self, describe};
 use super::{Checker, LetIndex, ParamIndex};
-use crate::hir::{Setting, SettingKind, Type};
+use crate::hir::{Expr, Setting, SettingKind, Type};
 use crate::import;
 use crate::spelling::{ask, nearest};
 
@@ -26,7 +26,7 @@ impl<'a> Checker<'a> {
     /// Checks the scene's file.
     pub(super) fn check_scene(&mut self, module: usize, (file, ast): (FileId, &'a ast::File)) {
         self.import(module, ast);
-        self.find_union();
+        self.find_union(Dim::Three);
         for item in self.named_items(module, ast) {
             match item {
                 TopLevel::Let(index) => self.check_let(index),
@@ -34,6 +34,7 @@ impl<'a> Checker<'a> {
                 TopLevel::Expr(e) => self.check_top_level(module, e),
             }
         }
+        self.check_dimensions();
         self.check_declarations(module);
         self.program.params = self.params.iter_mut().filter_map(|p| p.checked.take()).collect();
         self.warn_unused(module);
@@ -41,14 +42,17 @@ impl<'a> Checker<'a> {
             let message = "this file draws nothing";
             self.report(
                 Diagnostic::warning(Code::NOTHING_DRAWN, Span::new(file, 0, 0), message)
-                    .help("a solid on a line of its own is drawn: sphere(1)"),
+                    .help("a shape on a line of its own is drawn: sphere(1)"),
             );
         }
     }
 
     /// Adds the settings of the default look to a scene that does not light itself, except those
-    /// that the scene states.
+    /// that the scene states. They are about light, so a planar scene gets none.
     pub(super) fn check_look(&mut self, module: usize, look: &'a ast::File) {
+        if self.program.is_planar() {
+            return;
+        }
         let stated: Vec<SettingKind> = self.program.settings.iter().map(|s| s.kind).collect();
         if stated.iter().any(|kind| kind.is_light()) {
             return;
@@ -156,12 +160,84 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Resolves the library's union of solids, which joins the shapes that are drawn.
-    fn find_union(&mut self) {
+    /// Reports scenes that draw both regions and solids, and settings without effect on the shapes
+    /// that are drawn.
+    fn check_dimensions(&mut self) {
+        let is_region = |drawn: &Expr| drawn.ty == Type::Shape(Dim::Two);
+        let solid = self.program.drawn.iter().find(|drawn| !is_region(drawn));
+        let regions = self.program.drawn.iter().filter(|drawn| is_region(drawn));
+        let regions: Vec<Span> = regions.map(|region| region.span).collect();
+        if let Some(solid) = solid.map(|solid| solid.span)
+            && !regions.is_empty()
+        {
+            for region in regions {
+                let wanted = "a scene draws either regions or solids, and this one draws solids";
+                let found = region_for_solid(region, wanted);
+                self.report(found.note_at(solid, "this is a solid (3D)"));
+            }
+            return;
+        }
+        if self.program.is_planar() {
+            self.find_union(Dim::Two);
+            self.check_planar_camera();
+        }
+        self.warn_idle_settings();
+    }
+
+    /// Reports a camera that a planar picture cannot have.
+    fn check_planar_camera(&mut self) {
+        let camera = self.program.settings.iter().find(|s| s.kind == SettingKind::Camera);
+        let Some(&Setting { ref args, span, .. }) = camera else { return };
+        let row = self.settings.iter().find(|row| row.kind == SettingKind::Camera);
+        let named = |name: &str| {
+            let position = row?.parameters.iter().position(|it| it.name == name)?;
+            args.get(position)?.as_ref()
+        };
+        if named("height").is_some() {
+            return;
+        }
+        let at = named("fov").map_or(span, |fov| fov.span);
+        let message = "a planar picture has no perspective, so its camera needs `height`";
+        self.report(
+            Diagnostic::error(Code::ARGUMENTS, at, message)
+                .help("write camera(eye: [0, 0, 1], height: 4), without `fov`")
+                .help("or draw solids: .extrude(0.2)"),
+        );
+    }
+
+    /// Warns about settings that do not change the picture.
+    fn warn_idle_settings(&mut self) {
+        if self.program.drawn.is_empty() {
+            return;
+        }
+        let is_planar = self.program.is_planar();
+        let has_effect = |kind: SettingKind| match is_planar {
+            true => kind.is_for_regions(),
+            false => kind.is_for_solids(),
+        };
+        let idle = self.program.settings.iter().filter(|setting| !has_effect(setting.kind));
+        let idle: Vec<(Span, SettingKind)> = idle.map(|it| (it.span, it.kind)).collect();
+        for (span, kind) in idle {
+            let name = self.settings.iter().find(|row| row.kind == kind).map_or("", |row| row.name);
+            let (message, help) = if is_planar {
+                let why = "the scene draws regions, as written and without light";
+                (
+                    format!("`{name}` has no effect: {why}"),
+                    "remove it, or draw solids: .extrude(0.2)",
+                )
+            } else {
+                (format!("`{name}` has no effect: the scene draws solids"), "remove it")
+            };
+            self.report(Diagnostic::warning(Code::IDLE_SETTING, span, message).help(help));
+        }
+    }
+
+    /// Resolves the library's union, which joins the shapes that are drawn.
+    fn find_union(&mut self, dim: Dim) {
         let Some(Found::Decls(decls)) = self.look_up_library("union") else { return };
         let first = decls[0];
         let span = self.decls[first.0].ast.name.span;
-        let dim = self.decls[first.0].generic.then_some(Dim::Three);
+        let dim = self.decls[first.0].generic.then_some(dim);
         if let Some(signature) = self.instance(first, dim, span)
             && let Target::Shape(id) = signature.target
         {
@@ -176,7 +252,7 @@ impl<'a> Checker<'a> {
         self.program.locals = self.program.locals.max(locals);
     }
 
-    /// Checks a solid that is drawn, or a setting.
+    /// Checks a shape that is drawn, or a setting.
     fn check_top_level(&mut self, module: usize, e: &'a ast::Expr) {
         let outer = std::mem::replace(&mut self.body, Body::new(module, e.span.start));
         match self.as_setting(e) {
@@ -203,16 +279,15 @@ impl<'a> Checker<'a> {
         let value = self.infer(e);
         let found = match &value.ty {
             Type::Error => return,
-            Type::Shape(Dim::Three) => {
+            Type::Shape(_) => {
                 self.program.drawn.push(value);
                 return;
             }
-            Type::Shape(Dim::Two) => region_for_solid(value.span, "only solids can be drawn"),
             ty if types::poisoned(ty) => return,
-            Type::List(of) if **of == Type::Shape(Dim::Three) => {
+            Type::List(of) if matches!(**of, Type::Shape(_)) => {
                 unused(value.span, &value.ty).help("join them: union(...)")
             }
-            Type::Fn(_, result) if **result == Type::Shape(Dim::Three) => {
+            Type::Fn(_, result) if matches!(**result, Type::Shape(_)) => {
                 unused(value.span, &value.ty).help("call it, with its arguments in parentheses")
             }
             ty => unused(value.span, ty).help("give it a name: let a = ..."),

@@ -24,16 +24,28 @@ impl<'p> Elaborator<'p> {
             self.globals[index] = value;
         }
         let settings = self.settings();
-        let root = self.drawn();
+        let (root, layers) = self.drawn();
         self.add_intersections();
         let has_materials = root.is_some_and(|root| has_material(&self.graph, root));
         let graph = std::mem::take(&mut self.graph);
         let params = std::mem::take(&mut self.params);
-        Scene { graph, root, params, settings, has_materials }
+        Scene { graph, root, layers, params, settings, has_materials }
     }
 
-    /// The union of the shapes to draw; one shape is returned unchanged.
-    fn drawn(&mut self) -> Option<ShapeId> {
+    /// The union of the shapes to draw, and the shapes themselves if they are regions. One shape is
+    /// its own union.
+    fn drawn(&mut self) -> (Option<ShapeId>, Vec<ShapeId>) {
+        let shapes = self.shapes_to_draw();
+        let layer = |(value, _): &(Value<'p>, Span)| match value {
+            Value::Shape(shape) => Some(*shape),
+            _ => None,
+        };
+        let is_planar = self.program.is_planar();
+        let layers = shapes.iter().filter(|_| is_planar).filter_map(layer).collect();
+        (self.united(shapes), layers)
+    }
+
+    fn shapes_to_draw(&mut self) -> Vec<(Value<'p>, Span)> {
         let program = self.program;
         let mut shapes = Vec::with_capacity(program.drawn.len());
         for expr in &program.drawn {
@@ -42,12 +54,16 @@ impl<'p> Elaborator<'p> {
                 Err(Poison) => self.missing = self.missing.or(Some(expr.span)),
             }
         }
+        shapes
+    }
+
+    fn united(&mut self, shapes: Vec<(Value<'p>, Span)>) -> Option<ShapeId> {
         let (first, span) = shapes.first()?.clone();
         if let (Value::Shape(shape), [_]) = (&first, &shapes[..]) {
             return Some(*shape);
         }
         let parts = Value::List(shapes.into_iter().map(|(value, _)| value).collect());
-        match self.instance(program.union?, vec![Some((parts, span))], span) {
+        match self.instance(self.program.union?, vec![Some((parts, span))], span) {
             Ok(Value::Shape(shape)) => {
                 // The scene's source does not contain this call.
                 self.sites.retain(|site| (site.shape, site.span) != (shape, span));

@@ -7,6 +7,7 @@ use sdfc_graph::{
 };
 
 use super::elaborator::{Elaborator, Env, Outcome, Poison};
+use super::report::show_number;
 use super::value::Value;
 use crate::hir::{Expr, Setting, SettingKind};
 use crate::settings::{RAY_METHODS, TONES};
@@ -66,6 +67,10 @@ impl<'p> Elaborator<'p> {
             SettingKind::Antialias => {
                 let samples = self.known_within(setting, 0, "`samples`", [1.0, MAX_SAMPLES])?;
                 out.samples = Some(samples.map_or(DEFAULT_SAMPLES, |samples| samples as u32));
+            }
+            SettingKind::Isolines => {
+                let spacing = self.setting_within(setting, 0, "`spacing`", POSITIVE)?;
+                out.isolines = Some(spacing.ok_or(Poison)?);
             }
             SettingKind::March => out.march = self.march(setting)?,
             SettingKind::Sun => {
@@ -176,6 +181,15 @@ impl<'p> Elaborator<'p> {
         if from.is_some() && from == to {
             let message = "the camera's eye and target are one point";
             return Err(self.refuse_vector(setting, 0, message, "move one of them"));
+        }
+        if let (true, Some(from), Some(to)) = (self.program.is_planar(), from, to)
+            && (from[..2] != to[..2] || from[2] < to[2])
+        {
+            let message = "this camera is not straight in front of its target, as a planar picture \
+                           needs";
+            let [x, y, z] = [to[0], to[1], to[2] + 1.0].map(show_number);
+            let help = format!("write eye: [{x}, {y}, {z}], or draw solids: .extrude(0.2)");
+            return Err(self.refuse_vector(setting, 0, message, &help));
         }
         Ok(Camera {
             eye,

@@ -18,17 +18,25 @@ pub struct Program {
     pub params: Vec<Param>,
     /// File-level `let`s, in an order in which each depends only on earlier ones.
     pub globals: Vec<Global>,
-    /// The solids to draw: those on lines of their own at the top level of the scene, in order.
+    /// The shapes to draw: those on lines of their own at the top level of the scene, in order. All
+    /// are solids, or all are regions.
     pub drawn: Vec<Expr>,
     /// The settings of the opened file, in order.
     pub settings: Vec<Setting>,
-    /// The library's `union` of solids, which joins the solids to draw.
+    /// The library's `union` of shapes of that dimension, which joins the shapes to draw.
     pub union: Option<ShapeDefId>,
     /// The largest number of locals of any expression of a param, a solid to draw or a setting.
     /// Each of these expressions numbers its own locals from 0.
     pub locals: u32,
     /// Files of the library. An error in one of them is reported at the scene's call.
     pub library: Vec<FileId>,
+}
+
+impl Program {
+    /// True if the scene draws regions: a planar picture.
+    pub fn is_planar(&self) -> bool {
+        self.drawn.first().is_some_and(|drawn| drawn.ty == Type::Shape(Dim::Two))
+    }
 }
 
 /// A parameter of a function or shape. Its index is also its local.
@@ -190,6 +198,7 @@ pub enum SettingKind {
     Reflections,
     Exposure,
     Antialias,
+    Isolines,
     March,
     Sun,
     PointLight,
@@ -209,7 +218,30 @@ impl SettingKind {
             | Self::Reflections
             | Self::Exposure
             | Self::Antialias
+            | Self::Isolines
             | Self::March => false,
         }
+    }
+
+    /// True for a setting that changes pictures of regions.
+    pub fn is_for_regions(self) -> bool {
+        match self {
+            Self::Camera | Self::Background | Self::Antialias | Self::Isolines => true,
+            Self::Ambient
+            | Self::Sun
+            | Self::PointLight
+            | Self::SpotLight
+            | Self::Sky
+            | Self::Fog
+            | Self::AmbientOcclusion
+            | Self::Reflections
+            | Self::Exposure
+            | Self::March => false,
+        }
+    }
+
+    /// True for a setting that changes pictures of solids.
+    pub fn is_for_solids(self) -> bool {
+        self != Self::Isolines
     }
 }

@@ -41,7 +41,8 @@ pub fn verify(program: &Program) {
         let ends = plain(&param.ty);
         param.range.iter().for_each(|range| top(range, &Type::Range(Box::new(ends.clone()))));
     }
-    program.drawn.iter().for_each(|e| top(e, &Type::Shape(Dim::Three)));
+    let drawn = Type::Shape(if program.is_planar() { Dim::Two } else { Dim::Three });
+    program.drawn.iter().for_each(|e| top(e, &drawn));
     for setting in &program.settings {
         let row = sdfc_lang::settings::table().into_iter().find(|row| row.kind == setting.kind);
         let row = row.expect("a row for every setting");

@@ -48,6 +48,7 @@ pub fn bench(
     if !scene.draws() {
         return Err(Error::NothingDrawn.into());
     }
+    scene.needs_solids("a benchmark of rays")?;
     let setup = Setup::new(scene, live, gpu, options)?;
     let repetitions = options.repetitions.max(1);
     let frames = u64::from(repetitions + 1) * Kind::ALL.len() as u64;

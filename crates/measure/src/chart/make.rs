@@ -81,7 +81,8 @@ impl Default for ChartOptions {
 ///
 /// # Errors
 ///
-/// [`Error::NothingDrawn`], [`Error::View`], [`Error::Codegen`], [`Error::Render`].
+/// [`Error::NothingDrawn`], [`Error::Planar`], [`Error::View`], [`Error::Codegen`],
+/// [`Error::Render`].
 pub fn chart(
     scene: &Scene,
     name: &str,
@@ -90,6 +91,7 @@ pub fn chart(
     oracle_options: OracleOptions<'_>,
     progress: &mut OnProgress<'_>,
 ) -> Result<Chart, Error> {
+    scene.needs_solids("a comparison of ray methods")?;
     let frame = options.frame.clone();
     let frame = frame.unwrap_or_else(|| scene.defaults());
     let view = scene.view(&frame, options.size)?;

@@ -3,11 +3,13 @@
 //! It is a second implementation of `sphere`, `auto` and `interval` and of the shading, on purpose:
 //! it shares only the scene's formula with the shader. It works in waves: all camera rays of a
 //! group of pixels, then normals and materials of all hits, then all rays to a light; and the same
-//! again for all reflections.
+//! again for all reflections. A planar picture has no rays: its pixels are one formula.
 
 mod cells;
 mod gradients;
 pub(crate) mod method;
+mod pixels;
+mod planar;
 mod pre_intersection;
 mod ray;
 mod shade;
@@ -35,6 +37,8 @@ use crate::view::View;
 use cells::Cells;
 use gradients::Gradient;
 use method::CpuMethod;
+use pixels::Pixels;
+use planar::PlanarPixels;
 use pre_intersection::PreIntersectionTapes;
 use ray::LANES;
 use trace::Limits;
@@ -60,6 +64,8 @@ pub struct CpuScene {
     material: Option<Tape>,
     /// True if a small value of the field may be far from the surface.
     is_loose: bool,
+    /// The pixel of a planar picture, which replaces all others.
+    planar_pixel: Option<Tape>,
 }
 
 impl CpuScene {
@@ -77,6 +83,8 @@ impl CpuScene {
         let tape = |roots: &[_]| Tape::new(&program.graph, roots).map_err(refused);
         let material = program.seen_material.or(program.material);
         let material = material.map(|fields| Tape::for_surfaces(&program.graph, &fields));
+        let planar_pixel =
+            program.planar_pixel.map(|pixel| Tape::for_rays(&program.graph, &[pixel]));
         let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
             field: Arc::new(tape(&[distance])?),
@@ -85,6 +93,7 @@ impl CpuScene {
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
             material: material.transpose().map_err(refused)?,
             is_loose: program.is_loose,
+            planar_pixel: planar_pixel.transpose().map_err(refused)?,
         })
     }
 
@@ -118,6 +127,10 @@ impl CpuScene {
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
     ) -> Result<Frame, RenderError> {
+        if let Some(tape) = &self.planar_pixel {
+            let pixels = PlanarPixels::<T> { view, pixel: tape.prepare(frame) };
+            return self.draw(view, options, progress, &pixels);
+        }
         if self.gradient.is_none() {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
@@ -133,13 +146,17 @@ impl CpuScene {
     ///
     /// # Errors
     ///
-    /// As [`Self::render`], but a gradient is not needed.
+    /// As [`Self::render`], but a gradient is not needed. [`RenderError::Planar`] if the program is
+    /// planar.
     pub fn depth_map<T: Real>(
         &self,
         view: &View,
         frame: &FrameValues,
         method: Method,
     ) -> Result<Image, RenderError> {
+        if self.planar_pixel.is_some() {
+            return Err(RenderError::Planar);
+        }
         let cells = |tape| Cells::one(tape, frame);
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let wave = self.wave::<T>(view, frame, known_method(method)?, &fields);
@@ -193,12 +210,12 @@ impl CpuScene {
         }
     }
 
-    fn draw<T: Real>(
+    fn draw(
         &self,
         view: &View,
         options: &RenderOptions,
         progress: &mut OnProgress<'_>,
-        wave: &Wave<'_, T>,
+        pixels: &impl Pixels,
     ) -> Result<Frame, RenderError> {
         let region = region_of(view.size, options)?;
         let mut image = Image::new(region.size, view.footprint())?;
@@ -208,8 +225,8 @@ impl CpuScene {
         let total = tiler.pixels();
         while let Some(tile) = tiler.next() {
             let start = now();
-            for (block, pixels) in draw_tile(wave, tile) {
-                image.put(region.origin, block, pixels.into_iter());
+            for (block, drawn) in draw_tile(pixels, tile) {
+                image.put(region.origin, block, drawn.into_iter());
             }
             let elapsed = start.map_or(0.0, milliseconds_since);
             tiler.took(tile, elapsed);
@@ -240,18 +257,18 @@ fn now() -> Option<Instant> {
 }
 
 /// Draws the blocks of a tile on all threads.
-fn draw_tile<T: Real>(wave: &Wave<'_, T>, tile: Tile) -> Vec<(Tile, Vec<PixelBlock>)> {
+fn draw_tile<P: Pixels>(pixels: &P, tile: Tile) -> Vec<(Tile, Vec<PixelBlock>)> {
     let blocks = tile.blocks(BLOCK);
-    let draw = |wave: &mut Wave<'_, T>, block: Tile| {
+    let draw = |pixels: &mut P, block: Tile| {
         let positions: Vec<[u32; 2]> =
             (0..block.pixels()).map(|index| block.position(index)).collect();
-        (block, wave.pixels(&positions))
+        (block, pixels.pixels(&positions))
     };
     #[cfg(feature = "threads")]
-    return blocks.into_par_iter().map_init(|| wave.clone(), draw).collect();
+    return blocks.into_par_iter().map_init(|| pixels.clone(), draw).collect();
     #[cfg(not(feature = "threads"))]
     {
-        let mut wave = wave.clone();
-        blocks.into_iter().map(|block| draw(&mut wave, block)).collect()
+        let mut pixels = pixels.clone();
+        blocks.into_iter().map(|block| draw(&mut pixels, block)).collect()
     }
 }

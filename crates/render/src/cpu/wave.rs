@@ -6,6 +6,7 @@ use sdfc_march::{PixelBlock, UNPROVEN};
 
 use super::cells::Cells;
 use super::gradients::Gradient;
+use super::pixels::Pixels;
 use super::pre_intersection::{PreIntersection, PreIntersectionBatch};
 use super::ray::{Batch, Ray, Real, surface_values};
 use super::shade::{Paint, Surface};
@@ -79,8 +80,8 @@ impl<T: Real> SurfaceHit<T> {
     }
 }
 
-impl<T: Real> Wave<'_, T> {
-    pub(super) fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
+impl<T: Real> Pixels for Wave<'_, T> {
+    fn pixels(&mut self, positions: &[[u32; 2]]) -> Vec<PixelBlock> {
         let mut view_rays: Vec<ViewRay<T>> = positions
             .iter()
             .enumerate()
@@ -101,7 +102,9 @@ impl<T: Real> Wave<'_, T> {
         let pixels = primary.iter().zip(shades);
         pixels.map(|(trace, shade)| self.block(trace, shade)).collect()
     }
+}
 
+impl<T: Real> Wave<'_, T> {
     fn traced(&mut self, view_rays: &[ViewRay<T>], shades: &mut [Shade]) -> Vec<Trace<T>> {
         let rays: Vec<Ray<T>> = view_rays.iter().map(|view_ray| view_ray.ray).collect();
         let traces = self.traces(&rays, false);

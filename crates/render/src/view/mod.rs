@@ -98,7 +98,8 @@ impl View {
         Self::from_pose(program, frame, bounds, size, &pose)
     }
 
-    /// As [`Self::new`], seen from `pose` whatever the scene's camera is.
+    /// As [`Self::new`], seen from `pose` whatever the scene's camera is. A planar picture is seen
+    /// from the front, with the middle and the height that the pose has at its target.
     ///
     /// # Errors
     ///
@@ -114,7 +115,8 @@ impl View {
         let nodes = settings.nodes();
         let values = evaluate_frame(&program.graph, &nodes, frame);
         let value = |id| value_of(&nodes, &values, id);
-        let view = Self::of_settings(settings, &value, bounds, size, pose)?;
+        let pose = if program.is_planar() { pose.facing_the_plane() } else { *pose };
+        let view = Self::of_settings(settings, &value, bounds, size, &pose)?;
         let bounds = bounds.map(|corners| corners.map(DVec3::from));
         let within = within(program, frame).or(bounds).filter(|[lo, hi]| (*hi - *lo).is_finite());
         Ok(Self { within, ..view }.about(DVec3::from(program.origin)))

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sdfc_graph::{
-    Camera, Lens, NodeId, Program, Settings,
+    Camera, Lens, NodeId, Program,
     eval::{FrameValues, evaluate_frame},
 };
 
@@ -48,19 +48,34 @@ impl Pose {
         let settings = &program.settings;
         let nodes = settings.nodes();
         let values = evaluate_frame(&program.graph, &nodes, frame);
-        Self::of_settings(settings, &|id| value_of(&nodes, &values, id), bounds, aspect)
-    }
-
-    pub(super) fn of_settings(
-        settings: &Settings,
-        value: &dyn Fn(NodeId) -> [f64; 4],
-        bounds: Option<Bounds>,
-        aspect: f64,
-    ) -> Result<Self, ViewError> {
-        match &settings.camera {
-            Some(camera) => Self::of_camera(camera, value),
+        let stated = settings
+            .camera
+            .map(|camera| Self::of_camera(&camera, &|id| value_of(&nodes, &values, id)));
+        match stated.transpose()? {
+            Some(camera) if program.is_planar() => Ok(camera.facing_the_plane()),
+            Some(camera) => Ok(camera),
+            None if program.is_planar() => Ok(Self::planar(bounds, aspect)),
             None => Ok(Self::fitted(bounds, aspect)),
         }
+    }
+
+    /// A camera straight in front of a planar picture, which sees the whole of the bounds with a
+    /// margin; an unlimited side counts as long as the longest limited one.
+    pub fn planar(bounds: Option<Bounds>, aspect: f64) -> Self {
+        let [lo, hi] = limited(bounds);
+        let half = (hi - lo) / 2.0;
+        // A single point still needs some size.
+        let half_height = half.y.max(half.x / aspect).max(1e-3) / FITTED_FILL;
+        let target = (lo + hi) / 2.0;
+        let pose = Self { eye: target, target, up: DVec3::Y, parallel: true, half_height };
+        pose.facing_the_plane()
+    }
+
+    /// The camera moved to where it looks along -z at the plane z = 0 from a distance of 1, with
+    /// parallel rays. What it shows at its target keeps its size.
+    pub(super) fn facing_the_plane(self) -> Self {
+        let (target, half_height) = (self.target.with_z(0.0), self.height_at_target() / 2.0);
+        Self { eye: target + DVec3::Z, target, parallel: true, half_height, ..self }
     }
 
     /// The camera that the scene states.

@@ -339,7 +339,8 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
 }
 
 fn is_parallel(request: &BuildRequest, scene: &Scene) -> bool {
-    request.parallel.unwrap_or_else(|| scene.program().settings.is_parallel())
+    let is_parallel = || scene.program().settings.is_parallel();
+    scene.is_planar() || request.parallel.unwrap_or_else(is_parallel)
 }
 
 /// True if loop rerolling made loops of the scene's parts.

@@ -23,6 +23,7 @@ use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::scene::model::Engine;
 use crate::views::input::ViewInput;
 use crate::views::mode::ViewMode;
+use crate::views::slice_plane::SlicePlane;
 use crate::worker_thread::WorkerThread;
 
 /// The longest time of a pass while the camera moves, in milliseconds.
@@ -268,7 +269,10 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             scene: &request.model.scene,
             shapes: &request.model.shapes,
             frame: &request.frame,
-            slice: request.slice,
+            slice: match request.model.scene.is_planar() {
+                true => SlicePlane { axis: 2, offset: 0.0, ..request.slice },
+                false => request.slice,
+            },
             origin: request.model.scene.drawn().origin,
         };
         let (rgba, legend) = request.mode.paint(&input);

@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use sdfc::{FrameValues, Scene};
 use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::Tape;
-use sdfc_graph::{Dim, Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
+use sdfc_graph::{Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
 
 use crate::scene::field_probe::in_parallel;
 
@@ -151,6 +151,8 @@ fn pass_of(scene: &Scene, shapes: &[ShapeId], from: u32) -> Option<Tape> {
     let root = scene.graph().root?;
     let mut extract = scene.graph().graph.extract(&[], &[root]);
     let root = extract.shape(root)?;
+    let layers = scene.graph().layers.iter().filter_map(|layer| extract.shape(*layer));
+    let layers: Vec<ShapeId> = layers.collect();
     let numbers: HashMap<ShapeId, usize> = shapes.iter().copied().zip(1..).collect();
     for shape in scene.report().shapes.iter().map(|report| report.shape) {
         let Some(copy) = extract.shape(shape) else { continue };
@@ -164,10 +166,23 @@ fn pass_of(scene: &Scene, shapes: &[ShapeId], from: u32) -> Option<Tape> {
         graph.set_material(copy, rule);
     }
     let graph = &mut extract.graph;
-    let own = graph.point(0, Dim::Three);
-    let origin = graph.constant(Dim::Three.point_type(), &scene.drawn().origin);
+    let program = scene.drawn();
+    let ty = program.dim().point_type();
+    let own = graph.point(0, program.dim());
+    let origin = graph.constant(ty, &program.origin[..ty.width()]);
     let point = graph.add(own, origin);
-    let fields = Expander::new().material(graph, root, point).ok()?;
+    let mut expander = Expander::new();
+    let mut fields = expander.material(graph, root, point).ok()?;
+    // Of regions, the topmost one at a point is seen.
+    for layer in layers {
+        let distance = expander.field(graph, layer, point).ok()?;
+        let above = expander.material(graph, layer, point).ok()?;
+        let zero = graph.number(0.0);
+        let inside = graph.le(distance, zero);
+        for (field, above) in fields.iter_mut().zip(above) {
+            *field = graph.select(inside, above, *field);
+        }
+    }
     Tape::new(graph, &fields).ok()
 }
 

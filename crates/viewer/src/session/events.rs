@@ -50,7 +50,7 @@ impl Session {
                 }
             }
             CompileEvent::Empty => {
-                let text = "the scene draws nothing: write a solid on a line of its own";
+                let text = "the scene draws nothing: write a shape on a line of its own";
                 self.problem = Some(text.to_owned());
             }
             CompileEvent::Failed(why) => (self.building, self.problem) = (false, Some(why)),

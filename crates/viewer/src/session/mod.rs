@@ -225,7 +225,10 @@ impl Session {
         }
         self.size = size;
         self.follow_scene_camera();
-        let (Some(model), Some(mut camera)) = (self.model.clone(), self.camera) else { return };
+        let Some(model) = self.model.clone() else { return };
+        let Some(camera) = &mut self.camera else { return };
+        camera.set_planar(model.scene.is_planar());
+        let mut camera = *camera;
         let parallel = camera.is_parallel();
         if model.parallel != parallel {
             // Until there is a shader for this projection, the running one is used.
@@ -262,10 +265,10 @@ impl Session {
         }
     }
 
-    /// The last request as a comparison job.
+    /// The last request as a comparison job; `None` for a planar picture, which has no rays.
     fn comparison_job(&self, all_methods: bool) -> Option<ComparisonJob> {
         let RenderRequest { model, frame, pose, size, tolerance, .. } =
-            self.last_request.as_ref()?.clone();
+            self.last_request.as_ref().filter(|last| !last.model.scene.is_planar())?.clone();
         Some(ComparisonJob { model, frame, pose, size, tolerance, all_methods })
     }
 

@@ -30,6 +30,8 @@ pub struct OrbitCamera {
     half_height: f64,
     /// The tangent of half the field of view of the last perspective projection.
     perspective: f64,
+    /// True for a planar picture: the camera only pans and zooms.
+    planar: bool,
 }
 
 /// A camera as it is stored in the settings file.
@@ -74,7 +76,7 @@ impl OrbitCamera {
         let up = pose.up.normalize_or(DVec3::Y);
         let (eye, pivot, parallel, half_height) =
             (pose.eye, pose.target, pose.parallel, pose.half_height);
-        Self { eye, forward, up, pivot, parallel, half_height, perspective }
+        Self { eye, forward, up, pivot, parallel, half_height, perspective, planar: false }
     }
 
     /// The camera as it is stored.
@@ -121,15 +123,34 @@ impl OrbitCamera {
         self.parallel
     }
 
-    /// Orbits around the pivot by a drag to the right and down, in heights of the picture.
+    /// Looks at a planar picture from the front and stays there, or may turn again.
+    pub fn set_planar(&mut self, planar: bool) {
+        if planar && !self.planar {
+            self.set_parallel(true);
+            self.look_from(Side::Front);
+            self.pivot.z = 0.0;
+            self.eye = self.pivot + DVec3::Z;
+        }
+        self.planar = planar;
+    }
+
+    /// Orbits around the pivot by a drag to the right and down, in heights of the picture. A planar
+    /// picture follows the pointer instead.
     pub fn orbit(&mut self, right: f64, down: f64) {
+        if self.planar {
+            return self.pan(right, down);
+        }
         let rotation = self.rotation(-right * RADIANS_PER_HEIGHT, -down * RADIANS_PER_HEIGHT);
         self.eye = self.pivot + rotation * (self.eye - self.pivot);
         self.rotate_direction(rotation);
     }
 
-    /// Turns around its own position by a drag, in heights of the picture.
+    /// Turns around its own position by a drag, in heights of the picture. A planar picture follows
+    /// the pointer instead.
     pub fn look_around(&mut self, right: f64, down: f64) {
+        if self.planar {
+            return self.pan(right, down);
+        }
         let rotation =
             self.rotation(-right * RADIANS_PER_HEIGHT / 2.0, -down * RADIANS_PER_HEIGHT / 2.0);
         self.pivot = self.eye + rotation * (self.pivot - self.eye);
@@ -170,7 +191,8 @@ impl OrbitCamera {
     pub fn fly(&mut self, by: DVec3) {
         let [x, y, z] = self.pose().basis();
         let scale = if self.parallel { self.half_height } else { self.depth() };
-        self.shift((x * by.x + y * by.y + z * by.z) * scale);
+        let forward = if self.planar { 0.0 } else { by.z };
+        self.shift((x * by.x + y * by.y + z * forward) * scale);
     }
 
     /// Moves so that it sees all of the bounds, without turning.
@@ -188,8 +210,11 @@ impl OrbitCamera {
         }
     }
 
-    /// Looks at the pivot from a side, at the same distance.
+    /// Looks at the pivot from a side, at the same distance. A planar picture has no other side.
     pub fn look_from(&mut self, side: Side) {
+        if self.planar {
+            return;
+        }
         self.up = DVec3::Y;
         self.forward = match side {
             Side::Front => DVec3::NEG_Z,
@@ -212,9 +237,9 @@ impl OrbitCamera {
     }
 
     /// Switches between perspective and orthographic projection. Points at the pivot's depth keep
-    /// their size.
+    /// their size. A planar picture has no perspective.
     pub fn set_parallel(&mut self, parallel: bool) {
-        if parallel == self.parallel {
+        if parallel == self.parallel || self.planar {
             return;
         }
         if parallel {

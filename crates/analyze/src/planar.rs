@@ -1,0 +1,229 @@
+//! The picture of a scene of regions, as one formula of a pixel.
+//!
+//! A planar picture has no rays, so nothing is marched: a pixel is a formula of its middle and its
+//! size. The regions are layers, each over the ones before it. A layer covers the fraction `1/2 - d
+//! / (|grad d| w)` of a pixel of width w, clamped to 0..1: the part of the pixel on the inner side
+//! of a straight edge at the signed distance `d / |grad d|`. The gradient is not computed where its
+//! length is known to be 1.
+//!
+//! Shaders and the CPU renderer evaluate the same formula, as they do for fields.
+
+use sdfc_graph::{
+    Binary, Dim, ExpandError, Expander, Graph, MaterialField, NodeId, Program, Scene, ShapeId,
+    SurfaceVector, Ternary, Type, Unary, best_gradient, fold_transforms, substitute,
+};
+
+use crate::certify::inexact::{inexact_operators, inexact_outside};
+use crate::certify::quality::Qualities;
+use crate::cost::cost;
+use crate::leaves::count_leaves;
+use crate::report::{Report, shape_reports};
+use crate::reroll::materials::reroll_materials;
+use crate::reroll::rewrite::reroll;
+use crate::reroll::strategy::LoopStrategy;
+use crate::unit_slope::unit_slopes;
+
+/// Linear colour of the background of a scene that states none: #1c2027.
+const BACKGROUND: [f64; 3] = [0.0116, 0.0144, 0.0203];
+/// Lower bound of the length of a gradient that is divided by.
+const LEAST_SLOPE: f64 = 1e-6;
+/// Lower bound of the spacing of isolines, which a param may set to 0.
+const LEAST_SPACING: f64 = 1e-9;
+/// Width of an isoline in pixels, and of the one where the distance is 0.
+const LINE_WIDTHS: [f64; 2] = [1.0, 2.5];
+/// Opacity of an isoline, and of the one where the distance is 0.
+const LINE_OPACITIES: [f64; 2] = [0.3, 0.9];
+/// Isolines vanish where they are this many pixels apart, and are whole from twice that on.
+const LEAST_LINE_SPACING: f64 = 3.0;
+/// Lines are black on colours of at least this luminance, and white on darker ones. It is the
+/// linear value of middle grey.
+const BRIGHT: f64 = 0.18;
+/// Luminance of linear red, green and blue (ITU-R BT.709).
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+type Material = [NodeId; 6];
+
+/// One region of a planar picture.
+struct Layer {
+    distance: NodeId,
+    material: Option<Material>,
+    /// True if the gradient has length 1.
+    has_unit_slope: bool,
+}
+
+/// Fills in the program of a planar scene, whose graph is a copy of the scene's graph.
+pub(crate) fn planar_picture(
+    program: &mut Program,
+    scene: &Scene,
+    root: ShapeId,
+    strategy: LoopStrategy,
+) -> Result<Report, ExpandError> {
+    let graph = &mut program.graph;
+    let mut expander = Expander::new();
+    let own_point = graph.point(0, Dim::Two);
+    let origin = graph.constant(Type::Vec2, &program.origin[..2]);
+    let point = graph.add(own_point, origin);
+    let qualities = Qualities::of_scene(graph, root, &scene.params);
+    let mut fields = vec![expander.field(graph, root, point)?];
+    for &layer in &scene.layers {
+        fields.push(expander.field(graph, layer, point)?);
+    }
+    let leaves = count_leaves(graph, &mut expander, root, point)?;
+    let mut materials = Vec::new();
+    if scene.has_materials {
+        for &shape in [root].iter().chain(&scene.layers) {
+            let material = expander.material(graph, shape, point)?;
+            materials.extend(seen_from_the_front(graph, material));
+        }
+    }
+    let (uses_loops, unrolled_limit) =
+        strategy.uses_loops(graph, fields[0], &program.settings, None);
+    let count = fields.len();
+    fields.extend(materials);
+    let folded = fold_transforms(graph, &fields);
+    program.names = folded.names(graph, &expander.names());
+    let (fields, materials) = folded.roots.split_at(count);
+    let (mut fields, mut materials, mut loops) = (fields.to_vec(), materials.to_vec(), Vec::new());
+    if uses_loops {
+        let rerolled = reroll(graph, &fields);
+        materials = reroll_materials(graph, &materials, &rerolled.replaced);
+        (fields, loops) = (rerolled.roots, rerolled.loops);
+    }
+    let materials: Vec<Material> = materials.as_chunks().0.to_vec();
+    let unit_slopes = unit_slopes(graph, &qualities, root);
+    let layers = scene.layers.iter().zip(&fields[1..]).enumerate();
+    let layers: Vec<Layer> = layers
+        .map(|(index, (shape, &distance))| Layer {
+            distance,
+            material: materials.get(index + 1).copied(),
+            has_unit_slope: unit_slopes.contains(shape),
+        })
+        .collect();
+    let distance = fields[0];
+    let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
+    (program.distance, program.gradient) = (Some(distance), Some(gradient));
+    program.material = materials.first().map(|&nearest| topmost(graph, nearest, &layers));
+    let background = program.settings.background;
+    let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
+    let mut color = layered(graph, background, &layers, own_point);
+    if let Some(spacing) = program.settings.isolines {
+        let whole = Layer { distance, material: None, has_unit_slope: unit_slopes.contains(&root) };
+        let distance = in_pixels(graph, &whole, own_point);
+        color = with_isolines(graph, [color, background], distance, spacing);
+    }
+    let [red, green, blue] = [0, 1, 2].map(|lane| graph.component(color, lane));
+    let pixel = graph.compose(&[red, green, blue, distance]);
+    program.planar_pixel = Some(pixel);
+    Ok(Report {
+        loops,
+        unrolled_limit,
+        leaves,
+        distance_cost: cost(graph, &[distance]),
+        gradient_cost: cost(graph, &[gradient]),
+        gradient: gradient_report,
+        pixel_cost: cost(graph, &[pixel]),
+        shapes: shape_reports(graph, &qualities, root, &[]),
+        inexact_operators: inexact_operators(graph, &qualities, root),
+        inexact_outside: inexact_outside(graph, &qualities, root),
+        ..Report::default()
+    })
+}
+
+/// A material whose normal and direction to the eye are z.
+fn seen_from_the_front(graph: &mut Graph, material: Material) -> Material {
+    let front = graph.constant(Type::Vec3, &[0.0, 0.0, 1.0]);
+    let pairs = SurfaceVector::ALL.map(|vector| (graph.surface_vector(vector), front));
+    material.map(|field| substitute(graph, field, &pairs))
+}
+
+/// The material of the topmost layer at a point; outside of all layers, of the nearest one.
+fn topmost(graph: &mut Graph, nearest: Material, layers: &[Layer]) -> Material {
+    let zero = graph.number(0.0);
+    layers.iter().filter_map(|layer| Some((layer, layer.material?))).fold(
+        nearest,
+        |below, (layer, material)| {
+            let inside = graph.le(layer.distance, zero);
+            [0, 1, 2, 3, 4, 5].map(|field| graph.select(inside, material[field], below[field]))
+        },
+    )
+}
+
+/// The background with all layers over it.
+fn layered(graph: &mut Graph, background: NodeId, layers: &[Layer], point: NodeId) -> NodeId {
+    layers.iter().fold(background, |below, layer| {
+        let color = color_of(graph, layer.material);
+        let (distance, _) = in_pixels(graph, layer, point);
+        let half = graph.number(0.5);
+        let covered = graph.sub(half, distance);
+        let covered = graph.unary(Unary::Saturate, covered);
+        graph.ternary(Ternary::Mix, below, color, covered)
+    })
+}
+
+/// What a material shows without any light on it: its colour and the light that it emits.
+fn color_of(graph: &mut Graph, material: Option<Material>) -> NodeId {
+    let default = MaterialField::Color.default_value();
+    let default = graph.constant(Type::Vec3, &default[..3]);
+    let Some(material) = material else { return default };
+    let field = |field: MaterialField| material[field.index()];
+    let coverage = field(MaterialField::Coverage);
+    let color = graph.ternary(Ternary::Mix, default, field(MaterialField::Color), coverage);
+    graph.add(color, field(MaterialField::Emission))
+}
+
+/// The signed distance to the edge of a region in pixels, and the change of its field over a pixel.
+fn in_pixels(graph: &mut Graph, layer: &Layer, point: NodeId) -> (NodeId, NodeId) {
+    let size = graph.point(1, Dim::Two);
+    let mut change = graph.component(size, 0);
+    if !layer.has_unit_slope {
+        let (gradient, _) = best_gradient(graph, layer.distance, point);
+        let slope = graph.length(gradient);
+        let least = graph.number(LEAST_SLOPE);
+        let slope = graph.max(slope, least);
+        change = graph.mul(slope, change);
+    }
+    (graph.div(layer.distance, change), change)
+}
+
+/// A colour with isolines over it, given the results of [`in_pixels`]. Lines contrast with the
+/// colour below them, and the line around a region with the background.
+fn with_isolines(
+    graph: &mut Graph,
+    [color, background]: [NodeId; 2],
+    (distance, change): (NodeId, NodeId),
+    spacing: NodeId,
+) -> NodeId {
+    let [zero, one] = [0.0, 1.0].map(|number| graph.number(number));
+    let least = graph.number(LEAST_SPACING);
+    let spacing = graph.max(spacing, least);
+    let apart = graph.div(spacing, change);
+    // The distance to the nearest line, in pixels.
+    let lines = graph.div(distance, apart);
+    let nearest = graph.unary(Unary::Round, lines);
+    let aside = graph.sub(lines, nearest);
+    let aside = graph.mul(aside, apart);
+    let aside = graph.unary(Unary::Abs, aside);
+    let is_edge = graph.binary(Binary::Eq, nearest, zero);
+    let line = |graph: &mut Graph, index: usize| {
+        let reach = graph.number(0.5 + 0.5 * LINE_WIDTHS[index]);
+        let covered = graph.sub(reach, aside);
+        let covered = graph.unary(Unary::Saturate, covered);
+        let opacity = graph.number(LINE_OPACITIES[index]);
+        graph.mul(covered, opacity)
+    };
+    let (between, edge) = (line(graph, 0), line(graph, 1));
+    let least = graph.number(1.0 / LEAST_LINE_SPACING);
+    let fade = graph.mul(apart, least);
+    let fade = graph.sub(fade, one);
+    let fade = graph.unary(Unary::Saturate, fade);
+    let between = graph.mul(between, fade);
+    let opacity = graph.select(is_edge, edge, between);
+    let weights = graph.constant(Type::Vec3, &LUMINANCE);
+    let below = graph.select(is_edge, background, color);
+    let luminance = graph.dot(below, weights);
+    let bright = graph.number(BRIGHT);
+    let is_bright = graph.le(bright, luminance);
+    let ink = graph.select(is_bright, zero, one);
+    let ink = graph.splat(Type::Vec3, ink);
+    graph.ternary(Ternary::Mix, color, ink, opacity)
+}
