@@ -56,6 +56,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 19] = [
             "measure",
             "render",
             "sdfc",
+            "syntax",
         ],
     ),
 ];

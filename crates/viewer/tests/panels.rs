@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, DroppedFile, Key, ViewportEvent, ViewportId};
+use eframe::egui::{Context, DroppedFile, Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
@@ -65,9 +65,8 @@ impl Fixture {
     fn change_a_number(&mut self) {
         let session = self.harness.state_mut().session();
         let model = session.model.clone().unwrap();
-        let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
-        let (literal, _) = model.literals().find(|(literal, _)| literal.span.start == at).unwrap();
-        session.param_values.set_literal(literal, 1.25);
+        let at = SCENE.find("sphere(1)").unwrap() + 7;
+        session.param_values.set_number(model.number_at(at).unwrap(), 1.25);
         self.harness.run_steps(2);
     }
 
@@ -79,6 +78,17 @@ impl Fixture {
         let viewports = &mut self.harness.input_mut().viewports;
         viewports.entry(ViewportId::ROOT).or_default().events.clear();
         self.harness.run_steps(2);
+    }
+
+    /// Draws some frames; true if the window closes in one of them.
+    fn closes(&mut self) -> bool {
+        let mut closes = false;
+        for _ in 0..5 {
+            self.harness.step();
+            let viewports = &self.harness.output().viewport_output;
+            closes |= viewports[&ViewportId::ROOT].commands.contains(&ViewportCommand::Close);
+        }
+        closes
     }
 
     /// Widgets that can be clicked, dragged or typed into and have no hover text.
@@ -177,6 +187,83 @@ fn a_window_with_changed_numbers_asks_before_it_closes() {
     fixture.click("Save and close");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap().contains("sphere(1.25) "));
+}
+
+#[test]
+fn if_saving_fails_the_window_stays_open_and_says_why() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.request_close();
+    // A folder has taken the place of the file.
+    let path = fixture.folder.path().join("scene.sdf");
+    std::fs::remove_file(&path).unwrap();
+    std::fs::create_dir(&path).unwrap();
+    fixture.harness.get_by_label("Save and close").click();
+    assert!(!fixture.closes());
+    // The words of the operating system.
+    let why = std::fs::read_to_string(&path).unwrap_err().to_string();
+    fixture.until(|harness| harness.query_all_by_label_contains(&why).next().is_some());
+    assert!(!fixture.closes() && fixture.has("1 changed number is not saved"));
+    fixture.harness.get_by_label("Close without saving").click();
+    assert!(fixture.closes());
+}
+
+#[test]
+fn changed_numbers_are_kept_when_the_file_is_edited() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    let edited = format!("// A new line.\n{}", SCENE.replace("0.1 in", "0.2 in"));
+    fixture.write(&edited);
+    fixture.until(|harness| {
+        harness.state().opened().model.as_ref().is_some_and(|model| model.source == edited)
+    });
+    let session = fixture.harness.state_mut().session();
+    assert_eq!(session.param_values.changed_numbers(), 1);
+    let expected = edited.replace("sphere(1) ", "sphere(1.25) ");
+    assert_eq!(session.param_values.source_with_values(&edited), expected);
+    // The number itself is edited: the file has the newer one.
+    let edited = edited.replace("sphere(1) ", "sphere(0.75) ");
+    fixture.write(&edited);
+    fixture.until(|harness| {
+        harness.query_all_by_label_contains("had changed: 1 -> 1.25").next().is_some()
+    });
+    assert_eq!(fixture.harness.state_mut().session().param_values.changed_numbers(), 0);
+}
+
+#[test]
+fn opening_another_scene_asks_before_changed_numbers_are_lost() {
+    let mut fixture = Fixture::new();
+    let other = fixture.folder.path().join("other.sdf");
+    std::fs::write(&other, "param rind = 0.5\nsphere(rind)\n").unwrap();
+    let drop = |fixture: &mut Fixture| {
+        fixture.harness.input_mut().dropped_files.push(Arc::new(Dropped(other.clone())));
+        fixture.harness.run_steps(1);
+        fixture.harness.input_mut().dropped_files.clear();
+        fixture.harness.run_steps(2);
+    };
+    fixture.change_a_number();
+    drop(&mut fixture);
+    fixture.click("Cancel");
+    assert!(fixture.harness.state_mut().session().path().ends_with("scene.sdf"));
+    drop(&mut fixture);
+    fixture.click("Save and open");
+    fixture.until(|harness| harness.query_all_by_label("rind").next().is_some());
+    let saved = std::fs::read_to_string(fixture.folder.path().join("scene.sdf")).unwrap();
+    assert!(saved.contains("sphere(1.25) "), "{saved}");
+}
+
+#[test]
+fn params_are_saved_as_defaults() {
+    let mut fixture = Fixture::new();
+    let changed = [0.4, 0.0, 0.0, 0.0];
+    fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
+    fixture.harness.run_steps(2);
+    fixture.click("Save params");
+    let text = SCENE.replace("0.1 in", "0.4 in");
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
+    fixture.until(|harness| harness.state().opened().model.as_ref().unwrap().source == text);
+    assert!(fixture.harness.state_mut().session().param_values.params.is_empty());
 }
 
 #[test]

@@ -1,20 +1,18 @@
 //! The panel with the scene's source, in which live literals can be dragged.
 
-use eframe::egui::{self, RichText, Ui};
-use sdfc_graph::{Param, ParamKind};
-use sdfc_lang::live_literals::LiveLiteral;
-
 use super::action::Action;
 use super::number_widget::number_drag;
-use super::{literal_buttons, theme};
+use super::{number_buttons, theme};
 use crate::scene::model::Model;
+use crate::scene::source_numbers::SourceNumber;
 use crate::session::Session;
+use eframe::egui::{self, RichText, Ui};
 
 /// Shows the source of the last good scene.
 pub fn show(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) {
     let Some(model) = session.model.clone() else { return };
     ui.add_space(4.0);
-    literal_buttons::show(ui, session, &model, actions);
+    number_buttons::show(ui, session, &model, actions);
     ui.separator();
     let lines: Vec<(usize, &str)> = lines(&model.source);
     let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
@@ -53,17 +51,13 @@ fn lines(source: &str) -> Vec<(usize, &str)> {
 
 fn line(ui: &mut Ui, session: &mut Session, model: &Model, start: usize, text: &str) {
     let end = start + text.len();
-    let mut literals: Vec<(&LiveLiteral, &Param)> = model
-        .literals()
-        .filter(|(literal, _)| (start..end).contains(&(literal.span.start as usize)))
-        .collect();
-    literals.sort_by_key(|(literal, _)| literal.span.start);
+    let first = model.numbers.partition_point(|number| number.written.start < start);
+    let numbers = model.numbers[first..].iter().take_while(|number| number.written.start < end);
     let mut from = 0;
-    for (literal, param) in literals {
-        let at = literal.span.start as usize - start;
-        plain(ui, text.get(from..at).unwrap_or_default());
-        number(ui, session, literal, param);
-        from = literal.span.end as usize - start;
+    for number in numbers {
+        plain(ui, text.get(from..number.written.start - start).unwrap_or_default());
+        number_drag_of(ui, session, number);
+        from = number.written.end - start;
     }
     plain(ui, text.get(from..).unwrap_or_default());
 }
@@ -77,16 +71,15 @@ fn plain(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).monospace().color(color));
 }
 
-fn number(ui: &mut Ui, session: &mut Session, literal: &LiveLiteral, param: &Param) {
-    let is_angle = param.kind == ParamKind::Angle;
-    let unit = if is_angle { 1f64.to_degrees() } else { 1.0 };
-    let before = session.param_values.literal(literal);
+fn number_drag_of(ui: &mut Ui, session: &mut Session, number: &SourceNumber) {
+    let unit = if number.is_angle { 1f64.to_degrees() } else { 1.0 };
+    let before = session.param_values.number(number);
     let mut value = before * unit;
-    let [low, high] = param.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let speed = (literal.value.abs() * unit * 0.005).max(0.002);
+    let [low, high] = number.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let speed = (number.value.abs() * unit * 0.005).max(0.002);
     let drag = number_drag(&mut value).speed(speed).range(low * unit..=high * unit);
-    let drag = drag.suffix(if is_angle { "deg" } else { "" });
-    let changed = before != literal.value;
+    let drag = drag.suffix(if number.is_angle { "deg" } else { "" });
+    let changed = before != number.value;
     let response = ui
         .scope(|ui| {
             ui.style_mut().drag_value_text_style = egui::TextStyle::Monospace;
@@ -96,9 +89,9 @@ fn number(ui: &mut Ui, session: &mut Session, literal: &LiveLiteral, param: &Par
             ui.add(drag)
         })
         .inner;
-    let text = format!("Drag, or click to type. In the file: {}", param.summary);
+    let text = format!("Drag, or click to type. In the file: {}", number.text);
     if response.on_hover_text(text).changed() {
-        session.param_values.set_literal(literal, value / unit);
+        session.param_values.set_number(number, value / unit);
     }
 }
 

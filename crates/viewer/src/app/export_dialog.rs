@@ -258,7 +258,7 @@ impl ExportDialog {
             ExportKind::Animation => session.frames(model, self.seconds, HUNDREDTHS),
             ExportKind::Shader => {
                 let (scene, source) =
-                    (self.scene.clone(), session.param_values.source_with_values(model));
+                    (self.scene.clone(), session.param_values.source_with_values(&model.source));
                 let (target, emit, stage) = (self.target, self.emit, self.stage);
                 let method = session.build().method;
                 let options =

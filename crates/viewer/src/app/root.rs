@@ -8,10 +8,10 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::canvas::Canvas;
-use super::close_dialog::CloseDialog;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
+use super::unsaved_dialog::{Exit, UnsavedDialog};
 use super::{
     code_panel, controls, diagnostics_overlay, help, scene_menu, shortcuts, status_bar, theme,
     toolbar,
@@ -33,7 +33,9 @@ pub struct App {
     message: Option<(String, Instant)>,
     panels: OpenPanels,
     export: ExportDialog,
-    close_dialog: CloseDialog,
+    unsaved: UnsavedDialog,
+    /// True once the user has confirmed that the window closes.
+    may_close: bool,
     settings: Settings,
     settings_path: Option<PathBuf>,
     last_frame: Instant,
@@ -66,7 +68,8 @@ impl App {
             message: None,
             panels: OpenPanels::default(),
             export: ExportDialog::default(),
-            close_dialog: CloseDialog::default(),
+            unsaved: UnsavedDialog::default(),
+            may_close: false,
             settings,
             settings_path,
             last_frame: Instant::now(),
@@ -87,6 +90,11 @@ impl App {
     pub(super) fn close(&mut self) {
         let ctx = current_context(&self.context);
         self.store_settings(&ctx);
+    }
+
+    /// The open scene, to look at.
+    pub fn opened(&self) -> &Session {
+        &self.session
     }
 
     /// The open scene.
@@ -113,7 +121,7 @@ impl App {
         let (session, panels, settings) = (&mut self.session, &mut self.panels, &mut self.settings);
         let chosen = bar.show(ui, |ui| toolbar::show(ui, session, panels, settings)).inner;
         match chosen {
-            Some(scene_menu::Choice::Open(path)) => self.open(&ctx, path),
+            Some(scene_menu::Choice::Open(path)) => self.leave(&ctx, Exit::Open(path)),
             Some(scene_menu::Choice::Failed(why)) => actions.push(Action::Message(why)),
             None => {}
         }
@@ -138,7 +146,10 @@ impl App {
         show_drop_hint(&ctx);
         help::show(&ctx, &mut self.panels.help);
         self.export.show(&ctx, &self.session, &mut self.panels.export);
-        self.close_dialog.show(&ctx, &self.session);
+        self.ask_before_closing(&ctx);
+        if let Some(exit) = self.unsaved.show(&ctx, &mut self.session) {
+            self.perform_exit(&ctx, exit);
+        }
         actions.into_iter().for_each(|action| self.perform(action));
         if let Some((_, since)) = &self.message {
             if since.elapsed() < MESSAGE_TIME {
@@ -172,7 +183,32 @@ impl App {
     fn open_dropped_file(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         if let Some(path) = dropped.first().map(|file| file.path()) {
-            self.open(ctx, path.to_owned());
+            self.leave(ctx, Exit::Open(path.to_owned()));
+        }
+    }
+
+    /// Leaves the scene, or asks first if changed numbers would be lost.
+    fn leave(&mut self, ctx: &Context, exit: Exit) {
+        if let Some(exit) = self.unsaved.request(exit, &self.session) {
+            self.perform_exit(ctx, exit);
+        }
+    }
+
+    fn ask_before_closing(&mut self, ctx: &Context) {
+        let closing = ctx.input(|input| input.viewport().close_requested());
+        if closing && !self.may_close && self.unsaved.request(Exit::Close, &self.session).is_none()
+        {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+        }
+    }
+
+    fn perform_exit(&mut self, ctx: &Context, exit: Exit) {
+        match exit {
+            Exit::Close => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            Exit::Open(path) => self.open(ctx, path),
         }
     }
 

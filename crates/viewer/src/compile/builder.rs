@@ -22,6 +22,7 @@ use crate::scene::document::{Document, Imports};
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::model::{BuildTimes, Model, is_animated};
 use crate::scene::shapes::ShapeIndex;
+use crate::scene::source_numbers::source_numbers;
 
 /// A scene with at most this many nodes is never rerolled, so that its numbers stay live, even if
 /// loops would draw faster. See `docs/scale.md`.
@@ -144,7 +145,8 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         self.last_read =
             Some(LastRead { request: request.clone(), source: document.source.clone(), imports });
         let draws = scene.as_ref().is_some_and(Scene::draws);
-        (self.report)(CompileEvent::Compiled { diagnostics, folders, draws });
+        let source = document.source.as_str().into();
+        (self.report)(CompileEvent::Compiled { source, diagnostics, folders, draws });
         match scene {
             None => false,
             Some(_) if !draws => {
@@ -295,10 +297,14 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         let SceneContent { scene, source, shapes, field, animated, read_at, id, .. } =
             content.clone();
         let PreparedEngine { engine, method, method_program, note } = prepared;
+        let literals = scene.live_literals().iter();
+        let literals = literals.filter_map(|it| Some((it, scene.params().get(it.param)?)));
+        let numbers = source_numbers(&source, literals);
         Model {
             parallel: is_parallel(request, &scene),
             scene,
             source,
+            numbers,
             engine,
             method,
             method_program,

@@ -50,6 +50,8 @@ pub enum CompileEvent {
     Unreadable(String),
     /// The source was compiled, with or without errors.
     Compiled {
+        /// The source as it was read.
+        source: Arc<str>,
         /// Errors and warnings.
         diagnostics: SceneDiagnostics,
         /// The folders to watch: a change in one of them can change the scene.

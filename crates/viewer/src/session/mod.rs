@@ -4,6 +4,7 @@ mod camera_control;
 pub mod clock;
 mod events;
 pub mod orbit_camera;
+pub mod saving;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic};
 use crate::compile::file_watcher::FileWatcher;
 use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
-use crate::export::exporter::{ExportJob, ExportOutcome};
+use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
@@ -28,6 +29,7 @@ use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
+use crate::session::saving::Saving;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
@@ -72,6 +74,10 @@ pub struct Session {
     pub refine: bool,
     /// The last good scene.
     pub model: Option<Arc<Model>>,
+    /// The scene's file as it was last read, with or without errors.
+    pub source: Arc<str>,
+    /// Whether the changed values are being written to the file.
+    saving: Saving,
     /// Errors and warnings of the scene's file as it is now.
     pub diagnostics: SceneDiagnostics,
     /// Why there is no newer model, apart from diagnostics.
@@ -138,6 +144,8 @@ impl Session {
             tolerance: 1.0,
             refine: true,
             model: None,
+            source: Arc::default(),
+            saving: Saving::default(),
             diagnostics: SceneDiagnostics::default(),
             problem: None,
             render_error: None,
@@ -188,6 +196,7 @@ impl Session {
         (self.param_values, self.clock) = (ParamValues::default(), Clock::default());
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
+        (self.source, self.saving) = (Arc::default(), Saving::default());
         (self.follows_scene, self.tolerance) = (true, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
@@ -322,16 +331,6 @@ impl Session {
     /// The path of the file that a diagnostic is about, absolute if the scene's path is.
     pub fn path_of(&self, diagnostic: &ShownDiagnostic) -> PathBuf {
         path_of(&self.build.path, &diagnostic.file)
-    }
-
-    /// Saves the changed literals to the scene's file, unless the file has changed on disk. The
-    /// outcome is reported later as a [message](Self::messages).
-    pub fn save_literals(&self) {
-        let Some(model) = &self.model else { return };
-        let before = model.source.clone();
-        let after = self.param_values.source_with_values(model);
-        let path = self.path().to_owned();
-        self.export_worker.send(ExportJob::SaveScene { path, before, after });
     }
 
     fn watch_own_folder(&mut self) {
