@@ -92,7 +92,10 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
 
 /// The resolution or the samples of the picture, if it is not finished.
 fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
-    let text = if picture.divisor > 1 {
+    let text = if picture.stride > 1 {
+        let scale = picture.divisor * picture.stride;
+        format!("computing {}: 1/{scale} resolution", picture.request.mode.name())
+    } else if picture.divisor > 1 {
         let more = match (session.refine, picture.request.moving) {
             (false, _) => ", not refined: Esc resumes",
             (true, true) => "",

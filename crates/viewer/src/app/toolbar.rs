@@ -86,6 +86,7 @@ fn named(name: &str, value: &str, wide: bool) -> String {
 
 fn views(ui: &mut Ui, session: &mut Session, wide: bool) {
     let text = named("View", session.mode.name(), wide);
+    let text = if session.is_view_pending() { format!("{text}, computing…") } else { text };
     let combo = egui::ComboBox::from_id_salt("view").selected_text(text);
     let combo = combo.height(400.0).show_ui(ui, |ui| {
         for mode in ViewMode::ALL {

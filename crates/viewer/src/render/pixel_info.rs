@@ -43,7 +43,7 @@ impl PixelInfo {
         let gradient = field.map(|field| DVec3::from(field.partials));
         let (shapes, scene) = (&request.model.shapes, &request.model.scene);
         let shape = shapes.known_leaves().filter(|_| pixel.status == HIT).and_then(|leaves| {
-            let index = leaves.at(&request.frame, &[Some(point.to_array())]).pop()??;
+            let index = leaves.at(&request.frame, &[Some(point.to_array())], &|| false).pop()??;
             Some(shapes.label(scene, *leaves.shapes().get(index)?))
         });
         Some(Self {

@@ -13,7 +13,7 @@ use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::Tape;
 use sdfc_graph::{Dim, Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
 
-use crate::scene::field_probe::in_parallel;
+use crate::scene::field_probe::{IsInterrupted, in_parallel};
 
 /// The number of digits that one material holds: the lanes of all its fields except coverage, which
 /// is 1.
@@ -84,10 +84,15 @@ impl ShapeClassifier {
     }
 
     /// For each point, relative to the program's origin, the index of its shape in the list.
-    pub fn at(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<usize>> {
+    pub fn at(
+        &self,
+        frame: &FrameValues,
+        points: &[Option<[f64; 3]>],
+        interrupted: IsInterrupted<'_>,
+    ) -> Vec<Option<usize>> {
         let mut numbers = vec![0; points.len()];
         for (pass, tape) in self.passes.iter().enumerate() {
-            let digits = in_parallel(points, || {
+            let digits = in_parallel(points, interrupted, || {
                 let mut fields = tape.prepare::<f64>(frame);
                 move |point: &Option<[f64; 3]>| point.map_or(0, |point| number(fields.eval(point)))
             });
@@ -204,7 +209,7 @@ mod tests {
         let scene = sdfc::Compiler::new().compile("a", text).unwrap();
         let frame = FrameValues::defaults(scene.params());
         let classifier = ShapeClassifier::leaves(&scene);
-        let index = classifier.at(&frame, &[None, Some(point)])[1]?;
+        let index = classifier.at(&frame, &[None, Some(point)], &|| false)[1]?;
         Some(scene.graph().graph.shape(classifier.shapes()[index]).definition.clone())
     }
 
@@ -232,7 +237,8 @@ mod tests {
         let classifier = ShapeClassifier::operands(&scene);
         assert_eq!((classifier.passes.len(), classifier.shapes().len()), (2, 600));
         let points: Vec<_> = (0..600).map(|x| Some([f64::from(x), 0.0, 0.0])).collect();
-        let mut found: Vec<_> = classifier.at(&frame, &points).into_iter().flatten().collect();
+        let mut found: Vec<_> =
+            classifier.at(&frame, &points, &|| false).into_iter().flatten().collect();
         found.sort_unstable();
         found.dedup();
         assert_eq!(found.len(), 600);

@@ -271,6 +271,11 @@ impl Session {
         }
     }
 
+    /// Returns true until the chosen view of the picture is there, if only for some of its pixels.
+    pub fn is_view_pending(&self) -> bool {
+        self.picture.as_ref().is_some_and(|picture| picture.request.mode != self.mode)
+    }
+
     /// The last request as a comparison job.
     fn comparison_job(&self, all_methods: bool) -> Option<ComparisonJob> {
         let RenderRequest { model, frame, pose, size, tolerance, .. } =
