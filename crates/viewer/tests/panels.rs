@@ -142,9 +142,8 @@ fn errors_are_shown_as_on_the_command_line_and_disappear_when_fixed() {
 }
 
 #[test]
-fn the_code_panel_opens_and_params_can_be_reset() {
+fn the_code_panel_is_open_and_params_can_be_reset() {
     let mut fixture = Fixture::new();
-    fixture.click("Code");
     assert!(fixture.has("drag a number"));
     let changed = [0.4, 0.0, 0.0, 0.0];
     fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
@@ -159,7 +158,8 @@ fn a_literal_that_a_let_names_has_a_slider() {
     let slider = fixture.harness.get_by_role_and_label(Role::Slider, "k");
     slider.set_value_accesskit(0.6);
     fixture.harness.run_steps(3);
-    fixture.click("Save to file");
+    // In the panels "Code" and "Controls".
+    fixture.harness.get_all_by_label("Save to file").last().unwrap().click();
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == "let k = 0.6\nsphere(k)\n");
 }
@@ -167,7 +167,6 @@ fn a_literal_that_a_let_names_has_a_slider() {
 #[test]
 fn changed_numbers_are_saved_to_the_file() {
     let mut fixture = Fixture::new();
-    fixture.click("Code");
     fixture.change_a_number();
     fixture.click("Save to file");
     let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
@@ -309,7 +308,6 @@ const ALL_KINDS: &str = "param width = 0.5 in 0..1\nparam count: int = 2 in 1..5
 #[test]
 fn every_widget_has_a_hover_text() {
     let mut fixture = Fixture::of(ALL_KINDS);
-    fixture.click("Code");
     fixture.click("Export");
     fixture.harness.state_mut().session().mode = ViewMode::Slice;
     let mut without_hover_text = BTreeSet::new();
@@ -335,7 +333,7 @@ fn every_widget_has_a_hover_text() {
 }
 
 #[test]
-fn escape_closes_menus_and_dialogs_before_it_stops_refining() {
+fn escape_closes_menus_and_dialogs_and_nothing_else() {
     let mut fixture = Fixture::new();
     let refines = |fixture: &mut Fixture| fixture.harness.state_mut().session().refine;
     let escape = |fixture: &mut Fixture| {
@@ -352,9 +350,71 @@ fn escape_closes_menus_and_dialogs_before_it_stops_refining() {
     assert!(!fixture.has("1 changed number is not saved") && refines(&mut fixture));
     fixture.click("Export");
     escape(&mut fixture);
-    assert!(refines(&mut fixture));
     escape(&mut fixture);
+    assert!(refines(&mut fixture) && !fixture.has("length"));
+    fixture.harness.key_press(Key::R);
+    fixture.harness.run_steps(3);
     assert!(!refines(&mut fixture));
+    fixture.click("Resume");
+    assert!(refines(&mut fixture));
+}
+
+#[test]
+fn the_code_panel_shows_the_file_with_its_errors() {
+    let mut fixture = Fixture::new();
+    fixture.write("// new\nlet own_name = spere(1)\n");
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    assert!(fixture.has("let own_name = ") && !fixture.has("How thick"));
+    // The marked word.
+    assert!(fixture.harness.query_by_label("spere").is_some());
+}
+
+#[test]
+fn errors_can_be_folded_away() {
+    let mut fixture = Fixture::new();
+    fixture.write("spere(1)\nspere(2)\n");
+    fixture.until(|harness| harness.query_all_by_label("error[E0201]").count() == 2);
+    fixture.click("hide 2 errors");
+    assert!(fixture.harness.query_by_label("error[E0201]").is_none());
+    fixture.click("show 2 errors");
+    assert!(fixture.has("error[E0201]"));
+}
+
+#[test]
+fn the_camera_rests_while_a_scene_without_a_camera_is_edited() {
+    let mut fixture = Fixture::of("sphere(1)\n");
+    let pose = |fixture: &Fixture| fixture.harness.state().opened().camera().unwrap().pose();
+    let before = pose(&fixture);
+    fixture.write("sphere(3)\n");
+    fixture.until(|harness| {
+        let session = harness.state().opened();
+        session.model.as_ref().is_some_and(|model| model.source == "sphere(3)\n")
+    });
+    fixture.harness.run_steps(3);
+    assert_eq!(pose(&fixture), before);
+    fixture.click("Fit view");
+    assert!((pose(&fixture).eye - before.eye).length() > 1.0);
+}
+
+#[test]
+fn enter_in_a_size_field_does_not_save_and_an_existing_file_is_not_replaced_at_once() {
+    let mut fixture = Fixture::new();
+    let picture = fixture.folder.path().join("scene.png");
+    std::fs::write(&picture, "mine").unwrap();
+    fixture.click("Export");
+    fixture.harness.get_by_value("1920").click();
+    fixture.harness.run_steps(3);
+    fixture.harness.key_press(Key::Enter);
+    fixture.harness.run_steps(3);
+    assert!(!fixture.has("replace it?"));
+    fixture.harness.get_all_by_label("1").last().unwrap().click();
+    fixture.harness.run_steps(3);
+    fixture.click("Save");
+    assert!(fixture.has("replace it?"));
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(std::fs::read(&picture).unwrap(), b"mine");
+    fixture.click("Replace");
+    fixture.until(|_| image::open(&picture).is_ok_and(|it| it.width() == 1920));
 }
 
 #[test]

@@ -6,15 +6,20 @@ use super::{number_buttons, theme};
 use crate::scene::model::Model;
 use crate::scene::source_numbers::SourceNumber;
 use crate::session::Session;
+use std::sync::Arc;
+
 use eframe::egui::{self, RichText, Ui};
 
-/// Shows the source of the last good scene.
+/// Shows the scene's file as it is now. While it has errors, no number can be dragged.
 pub fn show(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) {
-    let Some(model) = session.model.clone() else { return };
     ui.add_space(4.0);
-    number_buttons::show(ui, session, &model, actions);
-    ui.separator();
-    let lines: Vec<(usize, &str)> = lines(&model.source);
+    if let Some(model) = session.model.clone() {
+        number_buttons::show(ui, session, &model, actions);
+        ui.separator();
+    }
+    let source = Arc::clone(&session.source);
+    let model = session.model.clone().filter(|model| model.source == *source);
+    let lines: Vec<(usize, &str)> = lines(&source);
     let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
     let scroll = egui::ScrollArea::both().auto_shrink(false);
     ui.spacing_mut().item_spacing.y = 0.0;
@@ -30,7 +35,10 @@ pub fn show(ui: &mut Ui, session: &mut Session, actions: &mut Vec<Action>) {
                 ui.label(
                     RichText::new(number).monospace().color(theme::of(ui).weak.gamma_multiply(0.6)),
                 );
-                line(ui, session, &model, *start, text);
+                match &model {
+                    Some(model) => line(ui, session, model, *start, text),
+                    None => plain_line(ui, session, row, text),
+                }
             });
         }
     });
@@ -60,6 +68,23 @@ fn line(ui: &mut Ui, session: &mut Session, model: &Model, start: usize, text: &
         from = number.written.end - start;
     }
     plain(ui, text.get(from..).unwrap_or_default());
+}
+
+/// A line of a file with errors. Those of the line are marked.
+fn plain_line(ui: &mut Ui, session: &Session, row: usize, text: &str) {
+    let own = session.path().file_name().unwrap_or_default().to_string_lossy();
+    let errors = session.diagnostics.all.iter().filter(|found| {
+        found.is_error && found.file == own && found.position[0] as usize == row + 1
+    });
+    let Some((first, marked)) = errors.map(|found| (found, &found.marked)).next() else {
+        return plain(ui, text);
+    };
+    let character = |index: usize| text.char_indices().nth(index).map_or(text.len(), |(at, _)| at);
+    let [from, to] = [marked.start, marked.end].map(character);
+    plain(ui, &text[..from]);
+    let shown = RichText::new(&text[from..to]).monospace().color(theme::of(ui).error).underline();
+    ui.label(shown).on_hover_text(&first.message);
+    plain(ui, &text[to..]);
 }
 
 fn plain(ui: &mut Ui, text: &str) {

@@ -15,7 +15,7 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 20] = [
+const ROWS: [(&str, &str); 22] = [
     ("drag", "orbit around the pivot"),
     ("right or middle drag", "pan"),
     ("wheel", "zoom at the pointer"),
@@ -30,9 +30,11 @@ const ROWS: [(&str, &str); 20] = [
     ("C", "copy the camera to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),
-    ("Ctrl + S", "export a picture, an animation, a shader"),
+    ("Ctrl + S", "save changed values to the scene's file"),
+    ("Ctrl + E", "export a picture, an animation, a shader"),
     ("K, T", "show the panel “Controls”, “Code”"),
-    ("Esc", "stop or resume refining the picture"),
+    ("R", "pause or resume refining the picture"),
+    ("Esc", "close a menu or a dialog"),
     ("drop a file", "open that scene"),
     ("?, F1", "show this list"),
     ("Ctrl + Q", "close the window"),

@@ -11,12 +11,15 @@ pub struct OpenPanels {
     pub export: bool,
     /// The list of keys.
     pub help: bool,
-    /// The warnings over the picture; errors are always shown.
+    /// The errors over the picture.
+    pub errors: bool,
+    /// The warnings over the picture.
     pub warnings: bool,
 }
 
 impl Default for OpenPanels {
     fn default() -> Self {
-        Self { controls: true, code: false, export: false, help: false, warnings: false }
+        let [export, help, warnings] = [false; 3];
+        Self { controls: true, code: true, export, help, errors: true, warnings }
     }
 }

@@ -140,8 +140,7 @@ impl App {
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
             self.canvas.show(ui, &mut self.session);
-            let warnings = &mut self.panels.warnings;
-            diagnostics_overlay::show(ui, &self.session, warnings, &mut actions);
+            diagnostics_overlay::show(ui, &self.session, &mut self.panels, &mut actions);
         });
         show_drop_hint(&ctx);
         help::show(&ctx, &mut self.panels.help);

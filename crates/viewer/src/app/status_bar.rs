@@ -13,8 +13,9 @@ use crate::session::Session;
 pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
     ui.horizontal(|ui| {
         if let Some(picture) = session.picture.as_deref() {
-            metrics(ui, session, picture);
+            metrics(ui, picture);
         }
+        refinement(ui, session);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             export_progress(ui, session);
             let problem = session.problem.as_ref().or(session.render_error.as_ref());
@@ -43,7 +44,7 @@ fn export_progress(ui: &mut Ui, session: &Session) {
     ui.add(bar).on_hover_text("Drawing a picture to export.");
 }
 
-fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
+fn metrics(ui: &mut Ui, picture: &Picture) {
     let color = theme::of(ui).weak;
     let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
@@ -87,19 +88,29 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
              Thin parts may be missing there.",
         );
     }
-    refinement(ui, session, picture);
 }
 
-/// The resolution or the samples of the picture, if it is not finished.
-fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
+/// The resolution or the samples of the picture, if it is not finished, and a button that pauses
+/// refining.
+fn refinement(ui: &mut Ui, session: &mut Session) {
+    let Some(picture) = session.picture.as_deref() else { return };
+    if !session.refine || !picture.finished && !picture.request.moving {
+        let (text, help) = match session.refine {
+            true => ("Pause", "Stop refining the picture (R)."),
+            false => ("Resume", "Refine the picture to full resolution (R)."),
+        };
+        if ui.small_button(text).on_hover_text(help).clicked() {
+            session.refine = !session.refine;
+        }
+    }
     let text = if picture.stride > 1 {
         let scale = picture.divisor * picture.stride;
         format!("computing {}: 1/{scale} resolution", picture.request.mode.name())
     } else if picture.divisor > 1 {
         let more = match (session.refine, picture.request.moving) {
-            (false, _) => ", not refined: Esc resumes",
+            (false, _) => ", refining is paused",
             (true, true) => "",
-            (true, false) => ", refining: Esc stops",
+            (true, false) => ", refining",
         };
         let full = picture.milliseconds * f64::from(picture.divisor * picture.divisor);
         let why = if full > PASS_BUDGET_MS { "slow scene: " } else { "" };
@@ -110,7 +121,7 @@ fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
         return;
     };
     let help = "A slow scene is drawn at a lower resolution while something moves, and refined \
-                when it rests. Esc stops and resumes refining.";
+                when it rests. R pauses and resumes refining.";
     ui.label(RichText::new(text).small().color(theme::of(ui).accent)).on_hover_text(help);
 }
 

@@ -32,7 +32,7 @@ pub fn show(
             ui.toggle_value(&mut panels.code, "Code")
                 .on_hover_text("The scene's source, in which numbers can be dragged (T).");
             ui.toggle_value(&mut panels.export, "Export")
-                .on_hover_text("Save a picture, an animation, a shader or a screenshot (Ctrl+S).");
+                .on_hover_text("Save a picture, an animation, a shader or a screenshot (Ctrl+E).");
             ui.separator();
             tolerance(ui, session, wide);
             methods(ui, session, wide);

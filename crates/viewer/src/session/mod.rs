@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use sdfc::{CompileValues, FrameValues};
+use sdfc::{CompileValues, FrameValues, Scene};
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
@@ -56,7 +56,9 @@ pub struct Session {
     camera: Option<OrbitCamera>,
     /// True while the camera is the scene's own and has not been moved by hand.
     follows_scene: bool,
-    /// The changed params and literals.
+    /// The scene and its values that the camera of a scene without a camera was fitted to.
+    fitted: Option<(Arc<Scene>, FrameValues)>,
+    /// The changed params and numbers.
     pub param_values: ParamValues,
     /// The scene's time.
     pub clock: Clock,
@@ -135,6 +137,7 @@ impl Session {
             repeated_build,
             camera: None,
             follows_scene: true,
+            fitted: None,
             param_values: ParamValues::default(),
             clock: Clock::default(),
             mode: ViewMode::default(),
@@ -197,7 +200,7 @@ impl Session {
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
         (self.source, self.saving) = (Arc::default(), Saving::default());
-        (self.follows_scene, self.tolerance) = (true, 1.0);
+        (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
         self.request_build();
