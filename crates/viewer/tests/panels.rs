@@ -37,11 +37,15 @@ impl Fixture {
         let settings = Some(folder.path().join("view.json"));
         let mut app = App::new(&Context::default(), &path, settings).unwrap();
         app.session().update_build(|build| build.on_cpu = true);
-        let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
-        let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
-        let mut fixture = Self { harness, folder };
+        let mut fixture = Self::shown(app, folder);
         fixture.until(|harness| harness.state().picture_is_finished());
         fixture
+    }
+
+    fn shown(app: App, folder: tempfile::TempDir) -> Self {
+        let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
+        let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
+        Self { harness, folder }
     }
 
     fn write(&self, text: &str) {
@@ -493,8 +497,46 @@ fn a_scene_is_opened_with_its_last_camera_and_params() {
 }
 
 #[test]
-fn stdin_two_files_and_a_missing_file_are_refused() {
-    for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing.sdf"]] {
+fn a_missing_scene_can_be_created() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("new.sdf");
+    let mut app = App::new(&Context::default(), &path, None).unwrap();
+    app.session().update_build(|build| build.on_cpu = true);
+    let mut fixture = Fixture::shown(app, folder);
+    fixture.until(|harness| harness.query_by_label("Create new.sdf").is_some());
+    fixture.click("Create new.sdf");
+    fixture.until(|harness| harness.state().picture_is_finished());
+    assert!(path.is_file());
+}
+
+#[test]
+fn the_scene_is_saved_as_another_file_with_its_changed_numbers() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.click("scene.sdf");
+    fixture.click("Save as…");
+    fixture.click("Save");
+    let copy = fixture.folder.path().join("scene-copy.sdf");
+    fixture.until(|harness| harness.state().opened().path() == copy);
+    let text = std::fs::read_to_string(&copy).unwrap();
+    assert_eq!(text, SCENE.replace("sphere(1) ", "sphere(1.25) "));
+    assert_eq!(std::fs::read_to_string(copy.with_file_name("scene.sdf")).unwrap(), SCENE);
+}
+
+#[test]
+fn a_new_scene_asks_before_changed_numbers_are_lost() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.click("scene.sdf");
+    fixture.click("New…");
+    fixture.click("Create");
+    fixture.click("Open without saving");
+    fixture.until(|harness| harness.state().opened().path().ends_with("new.sdf"));
+}
+
+#[test]
+fn stdin_two_files_and_a_file_in_a_missing_folder_are_refused() {
+    for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing/a.sdf"], &["missing.txt"]] {
         let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
         let output = program.args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");

@@ -236,11 +236,12 @@ fn pixel_info(ui: &mut Ui, response: &Response, [rect, shown]: [Rect; 2], sessio
     let area =
         area.pivot(egui::Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(10.0, -10.0));
     area.show(ui.ctx(), |ui| {
+        ui.set_max_width(rect.width() - 20.0);
         card(ui).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             for (line, color) in lines {
                 let text = RichText::new(line).monospace().size(11.5).color(color);
-                ui.add(egui::Label::new(text).extend());
+                ui.add(egui::Label::new(text).truncate());
             }
         });
     });

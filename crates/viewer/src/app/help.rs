@@ -42,7 +42,11 @@ const ROWS: [(&str, &str); 22] = [
 
 /// Shows the list if it is open.
 pub fn show(ctx: &Context, open: &mut bool) {
-    let window = egui::Window::new("Keys and mouse").open(open).resizable(false).collapsible(false);
+    let window = egui::Window::new("Keys and mouse")
+        .open(open)
+        .resizable(false)
+        .collapsible(false)
+        .vscroll(true);
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
             for (key, what) in ROWS {

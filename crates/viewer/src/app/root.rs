@@ -11,16 +11,20 @@ use super::canvas::Canvas;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
+use super::path_dialog::{Chosen, NEW_SCENE, PathDialog};
 use super::unsaved_dialog::{Exit, UnsavedDialog};
 use super::{
-    code_panel, controls, diagnostics_overlay, help, scene_menu, shortcuts, status_bar, theme,
-    toolbar,
+    code_panel, controls, diagnostics_overlay, help, missing_file, path_dialog, scene_menu,
+    shortcuts, status_bar, theme, toolbar,
 };
 use crate::session::Session;
 use crate::settings::Settings;
 
 /// The time that a message stays in the status line.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
+
+/// The panels leave this width in points for the picture, unless the window is narrower.
+const MIN_PICTURE: f32 = 240.0;
 
 /// The application, which can move from one window to another.
 pub struct App {
@@ -34,6 +38,7 @@ pub struct App {
     panels: OpenPanels,
     export: ExportDialog,
     unsaved: UnsavedDialog,
+    path_dialog: PathDialog,
     /// True once the user has confirmed that the window closes.
     may_close: bool,
     settings: Settings,
@@ -69,6 +74,7 @@ impl App {
             panels: OpenPanels::default(),
             export: ExportDialog::default(),
             unsaved: UnsavedDialog::default(),
+            path_dialog: PathDialog::default(),
             may_close: false,
             settings,
             settings_path,
@@ -122,19 +128,24 @@ impl App {
         let chosen = bar.show(ui, |ui| toolbar::show(ui, session, panels, settings)).inner;
         match chosen {
             Some(scene_menu::Choice::Open(path)) => self.leave(&ctx, Exit::Open(path)),
+            Some(scene_menu::Choice::Ask(purpose)) => self.path_dialog.open(purpose, &self.session),
             Some(scene_menu::Choice::Failed(why)) => actions.push(Action::Message(why)),
             None => {}
         }
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        self.panels.keep_room_for_picture(ui.available_width());
+        let most = (ui.available_width() - MIN_PICTURE).max(220.0);
         if self.panels.controls {
-            let panel = egui::Panel::right("controls").default_size(290.0).min_size(220.0);
+            let panel =
+                egui::Panel::right("controls").default_size(290.0).min_size(220.0).max_size(most);
             panel.show(ui, |ui| controls::show(ui, &mut self.session, &mut actions));
         }
         if self.panels.code {
-            let size = (ui.available_width() * 0.42).clamp(270.0, 400.0);
-            let panel = egui::Panel::left("code").default_size(size).min_size(220.0);
+            let most = (ui.available_width() - MIN_PICTURE).max(220.0);
+            let size = (ui.available_width() * 0.48).clamp(270.0, 440.0);
+            let panel = egui::Panel::left("code").default_size(size).min_size(220.0).max_size(most);
             panel.show(ui, |ui| code_panel::show(ui, &mut self.session, &mut actions));
         }
         let center = egui::CentralPanel::no_frame();
@@ -145,6 +156,12 @@ impl App {
         show_drop_hint(&ctx);
         help::show(&ctx, &mut self.panels.help);
         self.export.show(&ctx, &self.session, &mut self.panels.export);
+        if let Some(path) = missing_file::show(&ctx, &self.session) {
+            self.create(&ctx, &path);
+        }
+        if let Some(exit) = self.path_dialog.show(&ctx, &self.session) {
+            self.leave_for(&ctx, exit);
+        }
         self.ask_before_closing(&ctx);
         if let Some(exit) = self.unsaved.show(&ctx, &mut self.session) {
             self.perform_exit(&ctx, exit);
@@ -190,6 +207,23 @@ impl App {
     fn leave(&mut self, ctx: &Context, exit: Exit) {
         if let Some(exit) = self.unsaved.request(exit, &self.session) {
             self.perform_exit(ctx, exit);
+        }
+    }
+
+    /// Opens a file that was chosen in the dialog for paths.
+    fn leave_for(&mut self, ctx: &Context, chosen: Chosen) {
+        match chosen {
+            Chosen::Open(path) => self.leave(ctx, Exit::Open(path)),
+            // The changed numbers are in the new file.
+            Chosen::SavedAs(path) => self.open(ctx, path),
+        }
+    }
+
+    /// Creates the missing file of the scene, which the file watcher then notices.
+    fn create(&mut self, ctx: &Context, path: &Path) {
+        match path_dialog::create(path, NEW_SCENE) {
+            Ok(()) => self.open(ctx, path.to_owned()),
+            Err(why) => self.message = Some((why, Instant::now())),
         }
     }
 

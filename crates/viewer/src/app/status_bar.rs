@@ -9,6 +9,9 @@ use crate::render::worker::PASS_BUDGET_MS;
 use crate::scene::model::{BuildTimes, Model};
 use crate::session::Session;
 
+/// Below this width in points the size of the picture and the evaluations are left out.
+const WIDE: f32 = 760.0;
+
 /// Shows the line. A message takes precedence over a problem, and that over the GPU's name.
 pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
     ui.horizontal(|ui| {
@@ -49,8 +52,11 @@ fn metrics(ui: &mut Ui, picture: &Picture) {
     let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
     ui.label(weak(model.method.to_string())).on_hover_text("The ray method.");
+    let wide = ui.available_width() >= WIDE;
     let [width, height] = picture.request.size;
-    ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
+    if wide {
+        ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
+    }
     let clock = match picture.clock {
         Clock::Gpu => "by the GPU's clock",
         Clock::Wall => "by the CPU's clock, with the transfer of the picture",
@@ -73,7 +79,10 @@ fn metrics(ui: &mut Ui, picture: &Picture) {
         picture.counts.capped,
         picture.counts.nan
     );
-    ui.label(weak(format!("{:.1} evaluations per pixel", evaluations.mean))).on_hover_text(text);
+    if wide {
+        let shown = weak(format!("{:.1} evaluations per pixel", evaluations.mean));
+        ui.label(shown).on_hover_text(text);
+    }
     if picture.counts.capped > 0 {
         let text = format!("{} out of steps", picture.counts.capped);
         ui.label(RichText::new(text).small().color(theme::of(ui).warning)).on_hover_text(
@@ -129,7 +138,8 @@ fn refinement(ui: &mut Ui, session: &mut Session) {
 fn device(ui: &mut Ui, model: &Model) {
     let name = model.gpu_name().unwrap_or("CPU");
     let text = RichText::new(name).small().color(theme::of(ui).weak);
-    ui.label(text).on_hover_text(build_summary(model.build_times, model.pipelines));
+    let label = ui.add(egui::Label::new(text).truncate());
+    label.on_hover_text(build_summary(model.build_times, model.pipelines));
     if let Some(why) = &model.note {
         truncated(ui, why, theme::of(ui).warning);
     }

@@ -63,6 +63,15 @@ impl Session {
         self.param_values.changed_numbers() > 0
     }
 
+    /// The scene's source with its changed numbers.
+    pub fn current_text(&self) -> String {
+        let is_shown = self.model.as_ref().is_some_and(|model| model.source == *self.source);
+        match is_shown {
+            true => self.param_values.source_with_values(&self.source),
+            false => self.source.to_string(),
+        }
+    }
+
     /// Writes changed values to the scene's file, unless it has changed on disk. The outcome is
     /// the later [`save_state`](Self::save_state), and a [message](Self::messages).
     pub fn save_to_file(&mut self, what: Saved) {
