@@ -8,7 +8,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, DroppedFile, Key, ViewportCommand, ViewportEvent, ViewportId};
+use eframe::egui::{
+    Context, DroppedFile, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
@@ -72,6 +74,19 @@ impl Fixture {
         let at = SCENE.find("sphere(1)").unwrap() + 7;
         session.param_values.set_number(model.number_at(at).unwrap(), 1.25);
         self.harness.run_steps(2);
+    }
+
+    fn key(&mut self, modifiers: Modifiers, key: Key) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.run_steps(3);
+    }
+
+    /// Types in the editor of the panel "Code".
+    fn type_at_end(&mut self, text: &str) {
+        self.harness.get_by_role(Role::MultilineTextInput).focus();
+        self.harness.run_steps(2);
+        self.harness.get_by_role(Role::MultilineTextInput).type_text(text);
+        self.harness.run_steps(3);
     }
 
     /// Closes the window as a window manager does.
@@ -148,6 +163,7 @@ fn errors_are_shown_as_on_the_command_line_and_disappear_when_fixed() {
 #[test]
 fn the_code_panel_is_open_and_params_can_be_reset() {
     let mut fixture = Fixture::new();
+    fixture.click("Drag numbers");
     assert!(fixture.has("drag a number"));
     let changed = [0.4, 0.0, 0.0, 0.0];
     fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
@@ -366,11 +382,86 @@ fn escape_closes_menus_and_dialogs_and_nothing_else() {
 #[test]
 fn the_code_panel_shows_the_file_with_its_errors() {
     let mut fixture = Fixture::new();
+    fixture.click("Drag numbers");
     fixture.write("// new\nlet own_name = spere(1)\n");
     fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
     assert!(fixture.has("let own_name = ") && !fixture.has("How thick"));
     // The marked word.
     assert!(fixture.harness.query_by_label("spere").is_some());
+}
+
+#[test]
+fn typing_edits_the_scene_and_ctrl_s_saves_it() {
+    let mut fixture = Fixture::new();
+    let path = fixture.folder.path().join("scene.sdf");
+    let on_disk = || std::fs::read_to_string(&path).unwrap();
+    fixture.type_at_end("box(0.1)\n");
+    let edited = format!("{SCENE}box(0.1)\n");
+    let shows = |text: &str| {
+        let text = text.to_owned();
+        move |harness: &Harness<'_, App>| {
+            harness.state().opened().model.as_ref().is_some_and(|model| model.source == text)
+        }
+    };
+    fixture.until(shows(&edited));
+    assert_eq!(on_disk(), SCENE);
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    fixture.until(shows(SCENE));
+    assert!(!fixture.harness.state().opened().has_unsaved_changes());
+    fixture.key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    fixture.until(shows(&edited));
+    // A changed number is saved with the text.
+    let session = fixture.harness.state_mut().session();
+    let model = session.model.clone().unwrap();
+    session.param_values.set_number(model.number_at(edited.find("40deg").unwrap()).unwrap(), 0.5);
+    let expected = session.current_text();
+    assert_ne!(expected, edited);
+    fixture.key(Modifiers::COMMAND, Key::S);
+    fixture.until(|_| on_disk() == expected);
+    fixture.until(shows(&expected));
+    assert!(!fixture.harness.state().opened().has_unsaved_changes());
+    // The file is followed again.
+    fixture.write(SCENE);
+    fixture.until(shows(SCENE));
+}
+
+#[test]
+fn typed_text_is_kept_when_the_file_changes() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("// mine\n");
+    fixture.write(&format!("// theirs\n{SCENE}"));
+    fixture
+        .until(|harness| harness.query_all_by_label_contains("changed outside").next().is_some());
+    let mine = format!("{SCENE}// mine\n");
+    assert_eq!(**fixture.harness.state().opened().text(), *mine);
+    fixture.key(Modifiers::COMMAND, Key::S);
+    assert!(fixture.has("not saved"));
+    fixture.request_close();
+    assert!(fixture.has("The edited text is not saved"));
+    fixture.click("Cancel");
+    fixture.click("Keep this text");
+    fixture.key(Modifiers::COMMAND, Key::S);
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == mine);
+    // Now the file wins.
+    fixture.type_at_end("// again\n");
+    fixture.write(SCENE);
+    fixture.until(|harness| harness.query_by_label("Load the file").is_some());
+    fixture.click("Load the file");
+    assert_eq!(**fixture.harness.state().opened().text(), *SCENE);
+}
+
+#[test]
+fn a_fix_changes_the_text_but_not_the_file() {
+    let mut fixture = Fixture::new();
+    fixture.write("spere(1)\n");
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    let fix = fixture.harness.state().opened().diagnostics.all[0].fixes[0].clone();
+    fixture.click(&fix.title);
+    fixture.until(|harness| harness.state().opened().diagnostics.errors() == 0);
+    assert_eq!(**fixture.harness.state().opened().text(), *"sphere(1)\n");
+    let path = fixture.folder.path().join("scene.sdf");
+    assert_eq!(std::fs::read_to_string(path).unwrap(), "spere(1)\n");
 }
 
 #[test]

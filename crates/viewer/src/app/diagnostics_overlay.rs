@@ -79,6 +79,12 @@ fn card_of(
         for help in &diagnostic.help {
             ui.label(RichText::new(help).color(theme::of(ui).weak));
         }
+        for fix in &diagnostic.fixes {
+            let button = ui.small_button(&fix.title);
+            if button.on_hover_text("Make this change in the text.").clicked() {
+                actions.push(Action::Fix(diagnostic.clone(), fix.clone()));
+            }
+        }
     });
 }
 

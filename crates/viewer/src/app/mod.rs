@@ -5,6 +5,8 @@ mod accuracy_panel;
 mod action;
 mod axes_overlay;
 mod canvas;
+mod code_editor;
+mod code_numbers;
 mod code_panel;
 mod controls;
 mod diagnostics_overlay;

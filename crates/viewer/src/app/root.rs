@@ -8,6 +8,7 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::canvas::Canvas;
+use super::code_panel::CodeMode;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
@@ -36,6 +37,7 @@ pub struct App {
     clipboard: Option<arboard::Clipboard>,
     message: Option<(String, Instant)>,
     panels: OpenPanels,
+    code_mode: CodeMode,
     export: ExportDialog,
     unsaved: UnsavedDialog,
     path_dialog: PathDialog,
@@ -72,6 +74,7 @@ impl App {
             clipboard: None,
             message: None,
             panels: OpenPanels::default(),
+            code_mode: CodeMode::default(),
             export: ExportDialog::default(),
             unsaved: UnsavedDialog::default(),
             path_dialog: PathDialog::default(),
@@ -146,7 +149,8 @@ impl App {
             let most = (ui.available_width() - MIN_PICTURE).max(220.0);
             let size = (ui.available_width() * 0.48).clamp(270.0, 440.0);
             let panel = egui::Panel::left("code").default_size(size).min_size(220.0).max_size(most);
-            panel.show(ui, |ui| code_panel::show(ui, &mut self.session, &mut actions));
+            let (session, mode) = (&mut self.session, &mut self.code_mode);
+            panel.show(ui, |ui| code_panel::show(ui, session, mode, &mut actions));
         }
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
@@ -269,6 +273,7 @@ impl App {
     fn perform(&mut self, action: Action) {
         let text = match action {
             Action::Message(text) => text,
+            Action::Fix(diagnostic, fix) => return self.session.apply_fix(&diagnostic, &fix),
             Action::Copy(text) => match self.copy(&text) {
                 Ok(()) => format!("copied: {text}"),
                 Err(error) => format!("cannot copy: {error}"),

@@ -73,7 +73,7 @@ fn restore_example(ui: &mut Ui, session: &Session, choice: &mut Option<Choice>) 
     let folder = examples_folder().filter(|folder| session.path().parent() == Some(folder));
     let is_open = |example: &&Example| session.path().file_stem() == Some(example.name.as_ref());
     let Some((folder, example)) = folder.zip(EXAMPLES.iter().find(is_open)) else { return };
-    let edited = *session.source != *example.source;
+    let edited = **session.text() != *example.source;
     let button = ui.add_enabled(edited, egui::Button::new("Restore example"));
     let text = "Open the example as it was. Your version is kept in a file beside it.";
     let button = button.on_hover_text(text);

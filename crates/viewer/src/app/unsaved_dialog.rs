@@ -1,4 +1,4 @@
-//! Asks whether changed numbers are saved before the scene is left.
+//! Asks whether edited text and changed numbers are saved before the scene is left.
 
 use std::path::PathBuf;
 
@@ -28,7 +28,7 @@ pub struct UnsavedDialog {
 impl UnsavedDialog {
     /// Returns the exit if nothing would be lost; otherwise asks.
     pub fn request(&mut self, exit: Exit, session: &Session) -> Option<Exit> {
-        if !session.has_unsaved_numbers() {
+        if !session.has_unsaved_changes() {
             return Some(exit);
         }
         *self = Self { exit: Some(exit), saving: false };
@@ -56,11 +56,16 @@ impl UnsavedDialog {
     /// Returns whether the scene is left and whether it stays open.
     fn question(&mut self, ui: &mut Ui, exit: &Exit, session: &mut Session) -> (bool, bool) {
         ui.set_width(360.0);
-        let text = match session.param_values.changed_numbers() {
-            1 => "1 changed number is not saved to the file.".to_owned(),
-            changed => format!("{changed} changed numbers are not saved to the file."),
-        };
-        ui.label(text);
+        if session.draft().is_edited() {
+            ui.label("The edited text is not saved to the file.");
+        }
+        match session.param_values.changed_numbers() {
+            0 => {}
+            1 => drop(ui.label("1 changed number is not saved to the file.")),
+            changed => {
+                ui.label(format!("{changed} changed numbers are not saved to the file."));
+            }
+        }
         let writing = self.saving && *session.save_state() == SaveState::Writing;
         if let SaveState::Failed(why) = session.save_state()
             && self.saving
@@ -76,11 +81,11 @@ impl UnsavedDialog {
         };
         let buttons = ui.horizontal(|ui| {
             let save = ui.add_enabled(!writing, egui::Button::new(save));
-            if save.on_hover_text("Write the numbers to the scene's file.").clicked() {
+            if save.on_hover_text("Write text and numbers to the scene's file.").clicked() {
                 self.saving = true;
                 session.save_to_file(Saved::Numbers);
             }
-            let discard = ui.button(discard).on_hover_text("The changed numbers are lost.");
+            let discard = ui.button(discard).on_hover_text("The changes are lost.");
             let cancel = ui.button("Cancel").on_hover_text("Stay with this scene (Esc).");
             (discard.clicked(), cancel.clicked())
         });

@@ -14,7 +14,7 @@ use crate::scene::model::Model;
 /// A file to write.
 #[derive(Debug)]
 pub enum ExportJob {
-    /// The scene's own file, unless it has changed on disk.
+    /// The scene's own file, unless it has another text on disk.
     SaveScene {
         /// The file.
         path: PathBuf,
@@ -100,9 +100,11 @@ impl Exporter {
     fn write_file(&self, job: ExportJob) -> Result<String, String> {
         match job {
             ExportJob::SaveScene { path, before, after } => {
-                let document = Document::read(&path).map_err(|error| error.to_string())?;
-                if document.source != before {
-                    return Err("not saved: the file has changed on disk".to_owned());
+                if path.exists() {
+                    let document = Document::read(&path).map_err(|error| error.to_string())?;
+                    if document.source != before {
+                        return Err("not saved: the file has changed on disk".to_owned());
+                    }
                 }
                 write(&path, after.as_bytes())
             }
@@ -210,6 +212,9 @@ mod tests {
         };
         assert!(save("box(3)").is_err());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");
+        assert!(save("box(1)").is_ok());
+        // A deleted file is written again.
+        std::fs::remove_file(&path).unwrap();
         assert!(save("box(1)").is_ok());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(2)");
     }

@@ -89,6 +89,17 @@ impl ParamValues {
         lost
     }
 
+    /// The changed numbers in the source of the model, moved to another version of it. Numbers that
+    /// it no longer has are left out.
+    pub fn moved(&self, positions: &BTreeMap<usize, usize>) -> Self {
+        let moved = |(start, (number, value)): (&usize, &(SourceNumber, f64))| {
+            let start = *positions.get(start)?;
+            Some((start, (number.moved_to(start), *value)))
+        };
+        let numbers = self.numbers.iter().filter_map(moved).collect();
+        Self { params: self.params.clone(), numbers }
+    }
+
     /// The source with the changed numbers in it.
     pub fn source_with_values(&self, source: &str) -> String {
         let edit = |(number, value): &(SourceNumber, f64)| {

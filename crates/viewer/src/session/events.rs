@@ -41,8 +41,10 @@ impl Session {
                 self.watch_own_folder();
             }
             CompileEvent::BuildingPipeline => self.building = true,
-            CompileEvent::Compiled { source, diagnostics, folders, draws: _ } => {
-                self.source = source;
+            CompileEvent::FileChanged(file) => self.draft.set_file(file),
+            CompileEvent::Compiled { text, file, diagnostics, folders, draws: _ } => {
+                self.diagnosed = text;
+                file.into_iter().for_each(|file| self.draft.set_file(file));
                 (self.diagnostics, self.building, self.problem) = (diagnostics, false, None);
                 let refused = self.watcher.set_folders(&folders);
                 if let Some(folder) = refused.first() {

@@ -2,6 +2,7 @@
 
 mod camera_control;
 pub mod clock;
+pub mod draft;
 mod events;
 pub mod orbit_camera;
 pub mod saving;
@@ -15,7 +16,7 @@ use sdfc::{CompileValues, FrameValues, Scene};
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
-use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic};
+use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic, ShownFix};
 use crate::compile::file_watcher::FileWatcher;
 use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
@@ -24,10 +25,11 @@ use crate::export::worker::ExportWorker;
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::worker::RenderWorker;
-use crate::scene::document::{Imports, path_of};
+use crate::scene::document::{Imports, path_of, with_replacements};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
+use crate::session::draft::Draft;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
 use crate::session::saving::Saving;
 use crate::views::mode::ViewMode;
@@ -76,12 +78,14 @@ pub struct Session {
     pub refine: bool,
     /// The last good scene.
     pub model: Option<Arc<Model>>,
-    /// The scene's file as it was last read, with or without errors.
-    pub source: Arc<str>,
+    /// The text of the scene: that of the file, or one that was edited in the window.
+    draft: Draft,
     /// Whether the changed values are being written to the file.
     saving: Saving,
-    /// Errors and warnings of the scene's file as it is now.
+    /// Errors and warnings of the text that was compiled last.
     pub diagnostics: SceneDiagnostics,
+    /// That text.
+    diagnosed: Arc<str>,
     /// Why there is no newer model, apart from diagnostics.
     pub problem: Option<String>,
     /// Why the last picture could not be drawn.
@@ -147,9 +151,10 @@ impl Session {
             tolerance: 1.0,
             refine: true,
             model: None,
-            source: Arc::default(),
+            draft: Draft::default(),
             saving: Saving::default(),
             diagnostics: SceneDiagnostics::default(),
+            diagnosed: Arc::default(),
             problem: None,
             render_error: None,
             building: false,
@@ -190,6 +195,7 @@ impl Session {
     pub fn open_other(&mut self, path: PathBuf) {
         self.build = BuildRequest {
             path,
+            draft: None,
             method: None,
             parallel: None,
             values: CompileValues::new(),
@@ -199,7 +205,7 @@ impl Session {
         (self.param_values, self.clock) = (ParamValues::default(), Clock::default());
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
-        (self.source, self.saving) = (Arc::default(), Saving::default());
+        (self.draft, self.saving) = (Draft::default(), Saving::default());
         (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
@@ -298,6 +304,22 @@ impl Session {
         let now = self.comparison_job(false);
         let result = self.accuracy.result.as_ref();
         result.zip(now).is_some_and(|(result, now)| result.job.has_same_picture(&now))
+    }
+
+    /// The errors and warnings of the text as it is now; none while it is being compiled.
+    pub fn diagnostics_of_text(&self) -> impl Iterator<Item = &ShownDiagnostic> {
+        let is_current = self.diagnosed == *self.text();
+        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
+        self.diagnostics.all.iter().filter(move |found| is_current && found.file == own)
+    }
+
+    /// Makes a change that a diagnostic proposes, unless the text has changed since or the
+    /// diagnostic is about another file.
+    pub fn apply_fix(&mut self, diagnostic: &ShownDiagnostic, fix: &ShownFix) {
+        if self.diagnostics_of_text().any(|found| found == diagnostic) {
+            let text = with_replacements(self.text(), &fix.edits);
+            self.edit(|draft| draft.set_text(&text));
+        }
     }
 
     /// Starts an automatic comparison once the picture is finished: drawing and proving at the same

@@ -12,14 +12,14 @@ use crate::scene::rebase::{pair_numbers, rebase_numbers};
 /// The most lost numbers that a message lists.
 const MAX_LISTED: usize = 4;
 
-/// Which changed values are saved.
+/// Which changed values are saved with the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Saved {
-    /// The numbers of the source.
+    /// The text and the changed numbers.
     Numbers,
-    /// The params, as their defaults.
+    /// The text, with the params as their defaults.
     Params,
-    /// Both.
+    /// The text with both.
     All,
 }
 
@@ -45,7 +45,10 @@ pub(super) struct Saving {
 /// The scene's source before and after changed values were written into it.
 #[derive(Debug)]
 struct Edited {
-    before: String,
+    /// The text that the file must have.
+    before: Arc<str>,
+    /// The text of the scene in the window, without the changed values.
+    text: Arc<str>,
     after: String,
     /// The params that became defaults.
     params: BTreeMap<String, [f64; 4]>,
@@ -57,27 +60,31 @@ impl Session {
         &self.saving.state
     }
 
-    /// Returns true if numbers of the source have been changed and are not in the file.
+    /// Returns true if the text was edited or numbers were changed, and the file has neither.
     /// Changed params are not counted, because the settings keep them.
-    pub fn has_unsaved_numbers(&self) -> bool {
-        self.param_values.changed_numbers() > 0
+    pub fn has_unsaved_changes(&self) -> bool {
+        self.draft.is_edited() || self.param_values.changed_numbers() > 0
     }
 
-    /// The scene's source with its changed numbers.
+    /// The text of the scene with its changed numbers.
     pub fn current_text(&self) -> String {
-        let is_shown = self.model.as_ref().is_some_and(|model| model.source == *self.source);
-        match is_shown {
-            true => self.param_values.source_with_values(&self.source),
-            false => self.source.to_string(),
+        let text = self.text();
+        match self.model.as_ref().filter(|_| self.param_values.changed_numbers() > 0) {
+            None => text.to_string(),
+            Some(model) => {
+                let positions = rebase_numbers(&model.source, text);
+                self.param_values.moved(&positions).source_with_values(text)
+            }
         }
     }
 
-    /// Writes changed values to the scene's file, unless it has changed on disk. The outcome is
-    /// the later [`save_state`](Self::save_state), and a [message](Self::messages).
+    /// Writes the text and the changed values to the scene's file, unless that has changed on disk.
+    /// The outcome is the later [`save_state`](Self::save_state), and a
+    /// [message](Self::messages).
     pub fn save_to_file(&mut self, what: Saved) {
-        match self.source_to_save(what) {
+        match self.text_to_save(what) {
             Ok(edited) => {
-                let (before, after) = (edited.before.clone(), edited.after.clone());
+                let (before, after) = (edited.before.to_string(), edited.after.clone());
                 let path = self.path().to_owned();
                 self.saving = Saving { state: SaveState::Writing, written: Some(edited) };
                 self.export_worker.send(ExportJob::SaveScene { path, before, after });
@@ -86,24 +93,32 @@ impl Session {
         }
     }
 
-    fn source_to_save(&self, what: Saved) -> Result<Edited, String> {
-        let Some(model) = &self.model else { return Err("not saved: there is no scene".into()) };
-        if *self.source != *model.source {
-            let why = "not saved: the scene's file was edited and has errors; correct them and \
-                       save again. The changed values are kept";
-            return Err(why.to_owned());
+    /// Writes the changed numbers into the text of the scene, but not into its file.
+    pub fn write_numbers_into_text(&mut self) {
+        if self.param_values.changed_numbers() > 0 {
+            let [before, text] = [self.draft.base(), self.text()].map(Arc::clone);
+            let after = self.current_text();
+            self.edit(|draft| draft.set_text(&after));
+            let params = BTreeMap::new();
+            self.saving.written = Some(Edited { before, text, after, params });
         }
-        let before = model.source.clone();
-        let mut after = before.clone();
+    }
+
+    fn text_to_save(&self, what: Saved) -> Result<Edited, String> {
+        if self.draft.is_in_conflict() {
+            return Err("not saved: the file has changed on disk; the panel Code asks".to_owned());
+        }
+        let [before, text] = [self.draft.base(), self.text()].map(Arc::clone);
+        let mut after = match what {
+            Saved::Params => text.to_string(),
+            Saved::Numbers | Saved::All => self.current_text(),
+        };
         let mut params = BTreeMap::new();
-        if what != Saved::Params {
-            after = self.param_values.source_with_values(&after);
-        }
-        if what != Saved::Numbers {
+        if let Some(model) = self.model.as_ref().filter(|_| what != Saved::Numbers) {
             params = self.param_values.params.clone();
             after = with_param_defaults(&after, model.declared(), &params)?;
         }
-        Ok(Edited { before, after, params })
+        Ok(Edited { before, text, after, params })
     }
 
     fn fail_saving(&mut self, why: String) {
@@ -115,12 +130,16 @@ impl Session {
     pub(super) fn handle_export_outcome(&mut self, outcome: ExportOutcome) {
         match outcome.result {
             Err(why) if outcome.is_scene => self.fail_saving(why),
-            Ok(message) | Err(message) => {
-                if outcome.is_scene {
-                    self.saving.state = SaveState::Idle;
-                }
+            Ok(message) if outcome.is_scene => {
+                self.saving.state = SaveState::Idle;
                 self.messages.push(message);
+                // The text may have been written into the file and then edited in the window.
+                if let Some(written) = &self.saving.written {
+                    let (text, after) = (Arc::clone(&written.text), Arc::from(&*written.after));
+                    self.edit(|draft| draft.set_saved(&text, after));
+                }
             }
+            Ok(message) | Err(message) => self.messages.push(message),
         }
     }
 
@@ -131,10 +150,12 @@ impl Session {
             return;
         };
         let written = self.saving.written.take_if(|edited| edited.after == next.source);
-        if self.has_unsaved_numbers() {
+        if self.param_values.changed_numbers() > 0 {
             let positions = match &written {
-                Some(_) => pair_numbers(&model.source, &next.source),
-                None => rebase_numbers(&model.source, &next.source),
+                Some(edited) if *edited.text == *model.source => {
+                    pair_numbers(&model.source, &next.source)
+                }
+                Some(_) | None => rebase_numbers(&model.source, &next.source),
             };
             let lost = self.param_values.rebase(next, &positions);
             if !lost.is_empty() {
