@@ -51,6 +51,7 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 19] = [
             "diagnostics",
             "files",
             "graph",
+            "ide",
             "lang",
             "march",
             "measure",

@@ -426,6 +426,34 @@ fn typing_edits_the_scene_and_ctrl_s_saves_it() {
 }
 
 #[test]
+fn completions_are_listed_and_inserted() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("sph");
+    fixture.until(|harness| harness.query_by_label("sphere").is_some());
+    fixture.key(Modifiers::NONE, Key::Tab);
+    let text = fixture.harness.state().opened().text().to_string();
+    assert!(text.starts_with(&format!("{SCENE}sphere(")), "{text}");
+    // The first gap is selected: typing replaces it.
+    fixture.harness.get_by_role(Role::MultilineTextInput).type_text("0.25");
+    fixture.harness.run_steps(3);
+    let text = fixture.harness.state().opened().text().to_string();
+    assert!(text.starts_with(&format!("{SCENE}sphere(0.25")), "{text}");
+}
+
+#[test]
+fn a_clicked_shape_leads_to_its_code() {
+    let mut fixture = Fixture::of("box(1).translate(x: 2)\nsphere(1)\n");
+    fixture.until(|harness| {
+        let session = harness.state().opened();
+        let at = |index: u32| [index % 40, index / 40].map(|at| f64::from(at) / 40.0);
+        let found = (0..1600).filter_map(|index| session.code_at(at(index)));
+        let code: BTreeSet<&str> = found.map(|range| &session.text()[range]).collect();
+        code == BTreeSet::from(["box(1)", "sphere(1)"])
+    });
+    assert_eq!(fixture.harness.state().opened().code_at([0.01, 0.01]), None);
+}
+
+#[test]
 fn typed_text_is_kept_when_the_file_changes() {
     let mut fixture = Fixture::new();
     fixture.type_at_end("// mine\n");

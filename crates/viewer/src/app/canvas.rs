@@ -35,7 +35,8 @@ pub struct Canvas {
 
 impl Canvas {
     /// Shows the picture in the whole space, handles camera input, and requests the next picture.
-    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
+    /// Returns the position that was clicked, as fractions of the picture.
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) -> Option<[f64; 2]> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         ui.painter().rect_filled(rect, 0.0, theme::of(ui).ground);
         self.refresh(ui, session);
@@ -71,6 +72,8 @@ impl Canvas {
             legend_card::show(ui, rect, &picture.legend);
         }
         pixel_info(ui, &response, [rect, shown], session);
+        let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+        clicked.map(|at| fractions(shown, at))
     }
 
     /// Uploads a new picture to the window's texture.

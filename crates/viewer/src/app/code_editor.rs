@@ -1,14 +1,19 @@
-//! An editor of the scene's text: colours, line numbers, underlined errors, undo and redo.
+//! An editor of the scene's text: colours, line numbers, underlined errors, descriptions,
+//! completions, undo and redo.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{self, Color32, Event, FontId, Galley, Key, Modifiers, Stroke, TextBuffer, Ui};
-use sdfc_syntax::{Class, classes};
+use eframe::egui::text::{CCursor, CCursorRange};
+use eframe::egui::text_edit::TextEditState;
+use eframe::egui::{self, Event, Galley, Id, Key, Modifiers, Response, TextBuffer, Ui};
+use sdfc_ide::{Completion, hover};
 
-use super::theme::{self, Palette};
+use super::completion_list::CompletionList;
+use super::highlighting::{Mark, highlighted, roles};
+use super::theme;
 use crate::compile::diagnostics::ShownDiagnostic;
+use crate::language::completions::{inserted, matching};
 use crate::session::Session;
 
 /// The width of the line numbers in points.
@@ -16,19 +21,101 @@ const GUTTER: f32 = 40.0;
 /// What the Tab key inserts.
 const INDENT: &str = "  ";
 
-/// Shows the editor. What is typed becomes the text of the session.
-pub fn show(ui: &mut Ui, session: &mut Session) {
-    let palette = theme::of(ui);
-    let found: Vec<ShownDiagnostic> = session.diagnostics_of_text().cloned().collect();
-    let marks: Vec<Mark> = found.iter().map(|found| Mark::of(found, palette)).collect();
-    let font = egui::TextStyle::Monospace.resolve(ui.style());
-    let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| -> Arc<Galley> {
-        let job = highlighted(text.as_str(), &marks, palette, &font);
-        ui.fonts_mut(|fonts| fonts.layout_job(job))
-    };
-    let mut text = session.text().to_string();
-    let id = egui::Id::unique("code editor");
-    if ui.memory(|memory| memory.has_focus(id)) {
+/// The state of the editor beside its text.
+#[derive(Debug, Default)]
+pub struct CodeEditor {
+    list: CompletionList,
+    /// The cursor of the last frame as a byte offset, while the editor has the keyboard.
+    cursor: Option<usize>,
+    /// A range that is lit because its shape was clicked, and the text that it belongs to.
+    lit: Option<(Range<usize>, Arc<str>)>,
+    /// True until the lit range has been scrolled to.
+    scrolls: bool,
+}
+
+impl CodeEditor {
+    /// Lights the code of a shape of a text, and scrolls to it.
+    pub fn light(&mut self, range: Option<Range<usize>>, text: &Arc<str>) {
+        self.scrolls = range.is_some();
+        self.lit = range.map(|range| (range, Arc::clone(text)));
+    }
+
+    /// Shows the editor. What is typed becomes the text of the session.
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
+        let id = Id::unique("code editor");
+        let has_focus = ui.memory(|memory| memory.has_focus(id));
+        session.ask_about_text(self.cursor.filter(|_| has_focus));
+        self.handle_keys(ui, id, has_focus, session);
+        let palette = theme::of(ui);
+        let mut text = session.text().to_string();
+        let found: Vec<ShownDiagnostic> = session.diagnostics_of_text().cloned().collect();
+        let marks: Vec<Mark> = found.iter().map(|found| Mark::of(found, palette)).collect();
+        let roles = roles(session.language.as_ref(), &text);
+        let lit = self.lit.as_ref().filter(|(_, of)| *of == *session.text());
+        let lit = lit.map(|(range, _)| range.clone());
+        let font = egui::TextStyle::Monospace.resolve(ui.style());
+        let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| -> Arc<Galley> {
+            let job = highlighted(text.as_str(), (&roles, &marks, lit.as_ref()), palette, &font);
+            ui.fonts_mut(|fonts| fonts.layout_job(job))
+        };
+        egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            ui.horizontal_top(|ui| {
+                ui.add_space(GUTTER);
+                let edit = egui::TextEdit::multiline(&mut text)
+                    .id(id)
+                    .frame(egui::Frame::NONE)
+                    .code_editor()
+                    .desired_width(f32::INFINITY)
+                    .desired_rows(8)
+                    .layouter(&mut layouter);
+                let output = edit.show(ui);
+                ui.ctx().accesskit_node_builder(id, |node| node.set_label("the scene's text"));
+                line_numbers(ui, &output.galley, output.galley_pos);
+                if let Some(lit) = lit.as_ref().filter(|_| self.scrolls) {
+                    let at = CCursor::new(text[..lit.start].chars().count());
+                    let at =
+                        output.galley.pos_from_cursor(at).translate(output.galley_pos.to_vec2());
+                    ui.scroll_to_rect(at.expand2(egui::vec2(0.0, 60.0)), None);
+                    self.scrolls = false;
+                }
+                let cursor = output.cursor_range.map(|range| range.primary);
+                let before = self.cursor;
+                self.cursor = cursor.map(|cursor| byte_of(&text, cursor.index.0));
+                if output.response.changed() {
+                    session.edit(|draft| draft.set_text(&text));
+                    self.list.typing = true;
+                } else if self.cursor != before {
+                    self.list.typing = false;
+                }
+                if let Some(cursor) = cursor.filter(|_| has_focus) {
+                    let below = output.galley.pos_from_cursor(cursor).left_bottom();
+                    self.show_list(ui, id, output.galley_pos + below.to_vec2(), session);
+                }
+                if let Some(pointer) = output.response.hover_pos() {
+                    let at = output.galley.cursor_from_pos(pointer - output.galley_pos);
+                    describe(
+                        &output.response.response,
+                        session,
+                        &found,
+                        byte_of(&text, at.index.0),
+                    );
+                }
+            });
+        });
+    }
+
+    /// Handles the keys that the editor would use for something else.
+    fn handle_keys(&mut self, ui: &Ui, id: Id, has_focus: bool, session: &mut Session) {
+        if !has_focus {
+            return;
+        }
+        let accepted = {
+            let items = self.items(session);
+            self.list.accept_by_key(ui, &items).cloned()
+        };
+        if let Some(completion) = accepted {
+            self.insert(ui, id, &completion, session);
+        }
         // Tab would move the focus.
         ui.input_mut(|input| {
             if input.consume_key(Modifiers::NONE, Key::Tab) {
@@ -36,34 +123,58 @@ pub fn show(ui: &mut Ui, session: &mut Session) {
             }
         });
     }
-    egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-        ui.horizontal_top(|ui| {
-            ui.add_space(GUTTER);
-            let edit = egui::TextEdit::multiline(&mut text)
-                .id(id)
-                .frame(egui::Frame::NONE)
-                .code_editor()
-                .desired_width(f32::INFINITY)
-                .desired_rows(8)
-                .layouter(&mut layouter);
-            let output = edit.show(ui);
-            ui.ctx().accesskit_node_builder(id, |node| node.set_label("the scene's text"));
-            line_numbers(ui, &output.galley, output.galley_pos);
-            if output.response.changed() {
-                session.edit(|draft| draft.set_text(&text));
-            } else if let Some(pointer) = output.response.hover_pos() {
-                let cursor = output.galley.cursor_from_pos(pointer - output.galley_pos);
-                let at = byte_of(&text, cursor.index.0);
-                if let Some(under) = found.iter().find(|found| found.range.contains(&at)) {
-                    let mut shown = under.message.clone();
-                    for line in under.help.iter().filter(|line| !line.is_empty()) {
-                        shown = format!("{shown}\n{line}");
-                    }
-                    output.response.response.clone().on_hover_text_at_pointer(shown);
-                }
-            }
-        });
-    });
+
+    /// The completions at the cursor.
+    fn items<'s>(&self, session: &'s Session) -> Vec<&'s Completion> {
+        let answer = session.language.as_ref().zip(self.cursor);
+        answer.map(|(it, cursor)| matching(it, session.text(), cursor)).unwrap_or_default()
+    }
+
+    fn show_list(&mut self, ui: &Ui, id: Id, at: egui::Pos2, session: &mut Session) {
+        let clicked = {
+            let items = self.items(session);
+            self.list.show(ui, at, &items).cloned()
+        };
+        if let Some(completion) = clicked {
+            self.insert(ui, id, &completion, session);
+        }
+    }
+
+    /// Inserts a completion and selects its first gap.
+    fn insert(&mut self, ui: &Ui, id: Id, completion: &Completion, session: &mut Session) {
+        let (insert, gap) = inserted(completion);
+        let mut text = session.text().to_string();
+        let start = completion.replace.start;
+        if text.get(completion.replace.clone()).is_none() {
+            return;
+        }
+        text.replace_range(completion.replace.clone(), &insert);
+        let character = |at: usize| CCursor::new(text[..start + at].chars().count());
+        let selected = CCursorRange::two(character(gap.start), character(gap.end));
+        session.edit(|draft| draft.set_text(&text));
+        self.list.typing = false;
+        if let Some(mut state) = TextEditState::load(ui.ctx(), id) {
+            state.cursor.set_char_range(Some(selected));
+            state.store(ui.ctx(), id);
+        }
+        ui.memory_mut(|memory| memory.request_focus(id));
+    }
+}
+
+/// Shows what is known of the text under the pointer: its errors, or the description of the name.
+fn describe(response: &Response, session: &Session, found: &[ShownDiagnostic], at: usize) {
+    if let Some(under) = found.iter().find(|found| found.range.contains(&at)) {
+        let lines = std::iter::once(&under.message).chain(&under.help);
+        let lines: Vec<&str> = lines.map(String::as_str).filter(|line| !line.is_empty()).collect();
+        response.clone().on_hover_text_at_pointer(lines.join("\n"));
+        return;
+    }
+    let answer = session.language.as_ref().filter(|it| it.request.text == *session.text());
+    if let Some(shown) = answer.and_then(|it| hover(&it.analysis, at, &mut |_| None)) {
+        let lines = shown.markdown.lines().filter(|line| !line.starts_with("```"));
+        let text = lines.collect::<Vec<_>>().join("\n");
+        response.clone().on_hover_text_at_pointer(text.trim());
+    }
 }
 
 /// The byte offset of a character.
@@ -84,66 +195,5 @@ fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
             let align = egui::Align2::RIGHT_CENTER;
             ui.painter().text(position, align, number, font.clone(), color);
         }
-    }
-}
-
-/// An underlined range.
-struct Mark {
-    range: Range<usize>,
-    color: Color32,
-}
-
-impl Mark {
-    fn of(found: &ShownDiagnostic, palette: &Palette) -> Self {
-        let color = if found.is_error { palette.error } else { palette.warning };
-        let Range { start, end } = found.range;
-        // An empty range, as at the end of a line, would not be seen.
-        Self { range: start..end.max(start + 1), color }
-    }
-}
-
-/// The text with its colours. Lines are not wrapped.
-fn highlighted(text: &str, marks: &[Mark], palette: &Palette, font: &FontId) -> LayoutJob {
-    let mut job = LayoutJob::default();
-    job.wrap.max_width = f32::INFINITY;
-    let mut ends: Vec<usize> = Vec::new();
-    let tokens = classes(text);
-    ends.extend(tokens.iter().flat_map(|(_, range)| [range.start, range.end]));
-    ends.extend(marks.iter().flat_map(|mark| [mark.range.start, mark.range.end]));
-    ends.extend([0, text.len()]);
-    ends.retain(|end| text.is_char_boundary(*end));
-    ends.sort_unstable();
-    ends.dedup();
-    for pair in ends.windows(2) {
-        let [start, end] = [pair[0], pair[1]];
-        let token = tokens.partition_point(|(_, range)| range.end <= start);
-        let token = tokens.get(token).filter(|(_, range)| range.start <= start);
-        let color = token.map_or(palette.text, |(class, _)| color_of(*class, palette));
-        let mut format = TextFormat::simple(font.clone(), color);
-        if let Some((Class::Color, range)) = token
-            && let Ok(color) = Color32::from_hex(&text[range.clone()])
-        {
-            format.underline = Stroke::new(3.0, color);
-        }
-        if let Some(mark) = marks.iter().find(|mark| mark.range.contains(&start)) {
-            format.underline = Stroke::new(1.5, mark.color);
-        }
-        job.append(&text[start..end], 0.0, format);
-    }
-    job
-}
-
-fn color_of(class: Class, palette: &Palette) -> Color32 {
-    match class {
-        Class::Comment | Class::Docs => palette.weak,
-        Class::Keyword => palette.link,
-        Class::Number | Class::Color => palette.accent,
-        Class::Text => palette.warning,
-        Class::Name
-        | Class::Operator
-        | Class::Open
-        | Class::Close
-        | Class::Punctuation
-        | Class::Unknown => palette.text,
     }
 }

@@ -3,7 +3,8 @@
 use eframe::egui::{RichText, Ui};
 
 use super::action::Action;
-use super::{code_editor, code_numbers, number_buttons, theme};
+use super::code_editor::CodeEditor;
+use super::{code_numbers, number_buttons, theme};
 use crate::session::Session;
 use crate::session::draft::Draft;
 use crate::session::saving::Saved;
@@ -22,7 +23,12 @@ pub enum CodeMode {
 }
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, session: &mut Session, mode: &mut CodeMode, actions: &mut Vec<Action>) {
+pub fn show(
+    ui: &mut Ui,
+    session: &mut Session,
+    (mode, editor): (&mut CodeMode, &mut CodeEditor),
+    actions: &mut Vec<Action>,
+) {
     ui.add_space(4.0);
     let is_small = session.text().len() <= MAX_EDITED_BYTES;
     ui.horizontal_wrapped(|ui| {
@@ -51,7 +57,7 @@ pub fn show(ui: &mut Ui, session: &mut Session, mode: &mut CodeMode, actions: &m
     }
     ui.separator();
     match mode {
-        CodeMode::Edit if is_small => code_editor::show(ui, session),
+        CodeMode::Edit if is_small => editor.show(ui, session),
         CodeMode::Edit | CodeMode::Numbers => code_numbers::show(ui, session),
     }
 }

@@ -15,10 +15,11 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 22] = [
+const ROWS: [(&str, &str); 23] = [
     ("drag", "orbit around the pivot"),
     ("right or middle drag", "pan"),
     ("wheel", "zoom at the pointer"),
+    ("click", "light the code of the shape"),
     ("double-click", "orbit around that point"),
     ("W A S D Q E", "fly; faster with Shift"),
     ("Alt + drag", "look around"),

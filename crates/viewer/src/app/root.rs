@@ -8,6 +8,7 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::canvas::Canvas;
+use super::code_editor::CodeEditor;
 use super::code_panel::CodeMode;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
@@ -38,6 +39,7 @@ pub struct App {
     message: Option<(String, Instant)>,
     panels: OpenPanels,
     code_mode: CodeMode,
+    code_editor: CodeEditor,
     export: ExportDialog,
     unsaved: UnsavedDialog,
     path_dialog: PathDialog,
@@ -75,6 +77,7 @@ impl App {
             message: None,
             panels: OpenPanels::default(),
             code_mode: CodeMode::default(),
+            code_editor: CodeEditor::default(),
             export: ExportDialog::default(),
             unsaved: UnsavedDialog::default(),
             path_dialog: PathDialog::default(),
@@ -149,12 +152,15 @@ impl App {
             let most = (ui.available_width() - MIN_PICTURE).max(220.0);
             let size = (ui.available_width() * 0.48).clamp(270.0, 440.0);
             let panel = egui::Panel::left("code").default_size(size).min_size(220.0).max_size(most);
-            let (session, mode) = (&mut self.session, &mut self.code_mode);
-            panel.show(ui, |ui| code_panel::show(ui, session, mode, &mut actions));
+            let session = &mut self.session;
+            let state = (&mut self.code_mode, &mut self.code_editor);
+            panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
         }
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
-            self.canvas.show(ui, &mut self.session);
+            if let Some(clicked) = self.canvas.show(ui, &mut self.session) {
+                self.code_editor.light(self.session.code_at(clicked), self.session.text());
+            }
             diagnostics_overlay::show(ui, &self.session, &mut self.panels, &mut actions);
         });
         show_drop_hint(&ctx);

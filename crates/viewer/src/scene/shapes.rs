@@ -6,6 +6,7 @@
 //! shape with the greater weight, so the digits rounded to 0 or 1 are that shape's number.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use sdfc::{FrameValues, Scene};
@@ -109,6 +110,8 @@ impl ShapeClassifier {
 #[derive(Debug, Default)]
 pub struct ShapeIndex {
     labels: HashMap<ShapeId, String>,
+    /// Where the scene writes each shape: the name of the file and the range of the call.
+    calls: HashMap<ShapeId, (String, Range<usize>)>,
     leaves: OnceLock<ShapeClassifier>,
     operands: OnceLock<ShapeClassifier>,
 }
@@ -126,13 +129,23 @@ impl ShapeIndex {
         };
         // The first position wins if equal shapes are written several times.
         let labels = scene.sites().iter().rev().map(label).collect();
-        Self { labels, ..Self::default() }
+        let call = |site: &sdfc_lang::Site| {
+            let range = site.span.start as usize..site.span.end as usize;
+            (site.shape, (sources.name(site.span.file).to_owned(), range))
+        };
+        let calls = scene.sites().iter().rev().map(call).collect();
+        Self { labels, calls, ..Self::default() }
     }
 
     /// The name of a shape and its source position; of an unwritten shape, its definition's name.
     pub fn label(&self, scene: &Scene, shape: ShapeId) -> String {
         let definition = || scene.graph().graph.shape(shape).definition.clone();
         self.labels.get(&shape).cloned().unwrap_or_else(definition)
+    }
+
+    /// The name of the file that writes a shape, and the range of the call in it.
+    pub fn call(&self, shape: ShapeId) -> Option<&(String, Range<usize>)> {
+        self.calls.get(&shape)
     }
 
     /// See [`ShapeClassifier::leaves`].

@@ -29,6 +29,10 @@ impl Session {
             self.handle_export_outcome(outcome);
             changed = true;
         }
+        while let Ok(answer) = self.language_answers.try_recv() {
+            self.language = Some(answer);
+            changed = true;
+        }
         changed | self.accuracy.poll()
     }
 

@@ -8,6 +8,7 @@ pub mod orbit_camera;
 pub mod saving;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -22,6 +23,7 @@ use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
 use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
+use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::worker::RenderWorker;
@@ -51,6 +53,11 @@ pub struct Session {
     render_events: Receiver<RenderEvent>,
     export_worker: ExportWorker,
     export_outcomes: Receiver<ExportOutcome>,
+    language_worker: LanguageWorker,
+    language_answers: Receiver<LanguageAnswer>,
+    language_request: Option<LanguageRequest>,
+    /// The last answer of the language service, which may be about an earlier text.
+    pub language: Option<LanguageAnswer>,
     watcher: FileWatcher,
     /// The request that a change on disk repeats, shared with the watcher's thread.
     repeated_build: Arc<Mutex<BuildRequest>>,
@@ -125,6 +132,9 @@ impl Session {
         let (sender, export_outcomes) = channel();
         let wake_window = Arc::clone(&wake);
         let export_worker = ExportWorker::new(sender, move || wake_window())?;
+        let (sender, language_answers) = channel();
+        let wake_window = Arc::clone(&wake);
+        let language_worker = LanguageWorker::new(sender, move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
         let repeated_build = Arc::new(Mutex::new(build.clone()));
         let (requests, repeated) = (compile_worker.requests(), Arc::clone(&repeated_build));
@@ -137,6 +147,10 @@ impl Session {
             render_events,
             export_worker,
             export_outcomes,
+            language_worker,
+            language_answers,
+            language_request: None,
+            language: None,
             watcher,
             repeated_build,
             camera: None,
@@ -304,6 +318,25 @@ impl Session {
         let now = self.comparison_job(false);
         let result = self.accuracy.result.as_ref();
         result.zip(now).is_some_and(|(result, now)| result.job.has_same_picture(&now))
+    }
+
+    /// The range of the text that makes the shape at a position of the picture, given as in
+    /// [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
+    pub fn code_at(&self, position: [f64; 2]) -> Option<Range<usize>> {
+        let picture = self.picture.as_deref()?;
+        let (file, range) = PixelInfo::at(picture, position)?.call?;
+        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
+        (file == own && picture.request.model.source == **self.text()).then_some(range)
+    }
+
+    /// Asks the language service about the text, unless it was asked the same last.
+    pub fn ask_about_text(&mut self, cursor: Option<usize>) {
+        let (path, text) = (self.path().to_owned(), Arc::clone(self.text()));
+        let request = LanguageRequest { path, text, cursor };
+        if self.language_request.as_ref() != Some(&request) {
+            self.language_request = Some(request.clone());
+            self.language_worker.send(request);
+        }
     }
 
     /// The errors and warnings of the text as it is now; none while it is being compiled.
