@@ -6,13 +6,13 @@
 //!         file watcher ─▶ compile worker ─▶ Model (scene, pipeline) ─┐
 //!                                                                   ▼
 //! window ─▶ Session ────────────────────────────────────▶ render worker ─▶ Picture ─▶ window
-//!  input    open scene, camera, param values, time         draws            CPU image
+//!  input    open scene, text, camera, param values, time   draws            CPU image
 //! ```
 //!
 //! The window ([`app`]) only shows a [`session`] and passes input to it. Nothing else depends on
 //! windows, so everything else is tested without one. The [compile](compile::worker),
-//! [render](render::worker) and [accuracy](accuracy::worker) workers are threads that handle the
-//! latest message only ([`latest_channel`]); the [export](export::worker) worker handles every job
+//! [render](render::worker), [language](language::worker) and [accuracy](accuracy::worker) workers
+//! are threads that handle the latest message only ([`latest_channel`]); the [export](export::worker) worker handles every job
 //! in order. The window's thread does nothing slow: it does not read files, compile, call a
 //! driver's shader compiler or draw the picture.
 //!

@@ -54,11 +54,13 @@ impl CodeEditor {
         let lit = self.lit.as_ref().filter(|(_, of)| *of == *session.text());
         let lit = lit.map(|(range, _)| range.clone());
         let font = egui::TextStyle::Monospace.resolve(ui.style());
+        let row = ui.text_style_height(&egui::TextStyle::Monospace).max(1.0);
         let mut layouter = |ui: &Ui, text: &dyn TextBuffer, _: f32| -> Arc<Galley> {
             let job = highlighted(text.as_str(), (&roles, &marks, lit.as_ref()), palette, &font);
             ui.fonts_mut(|fonts| fonts.layout_job(job))
         };
         egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            let height = ui.available_height();
             ui.horizontal_top(|ui| {
                 ui.add_space(GUTTER);
                 let edit = egui::TextEdit::multiline(&mut text)
@@ -66,7 +68,8 @@ impl CodeEditor {
                     .frame(egui::Frame::NONE)
                     .code_editor()
                     .desired_width(f32::INFINITY)
-                    .desired_rows(8)
+                    // So that a click below the text is one behind its end.
+                    .desired_rows((height / row - 1.0).max(8.0) as usize)
                     .layouter(&mut layouter);
                 let output = edit.show(ui);
                 ui.ctx().accesskit_node_builder(id, |node| node.set_label("the scene's text"));

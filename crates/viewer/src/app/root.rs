@@ -279,7 +279,7 @@ impl App {
     fn perform(&mut self, action: Action) {
         let text = match action {
             Action::Message(text) => text,
-            Action::Fix(diagnostic, fix) => return self.session.apply_fix(&diagnostic, &fix),
+            Action::Fix(fix) => return self.session.apply_fix(&fix),
             Action::Copy(text) => match self.copy(&text) {
                 Ok(()) => format!("copied: {text}"),
                 Err(error) => format!("cannot copy: {error}"),

@@ -346,13 +346,10 @@ impl Session {
         self.diagnostics.all.iter().filter(move |found| is_current && found.file == own)
     }
 
-    /// Makes a change that a diagnostic proposes, unless the text has changed since or the
-    /// diagnostic is about another file.
-    pub fn apply_fix(&mut self, diagnostic: &ShownDiagnostic, fix: &ShownFix) {
-        if self.diagnostics_of_text().any(|found| found == diagnostic) {
-            let text = with_replacements(self.text(), &fix.edits);
-            self.edit(|draft| draft.set_text(&text));
-        }
+    /// Makes a change that one of the [diagnostics of the text](Self::diagnostics_of_text) proposes.
+    pub fn apply_fix(&mut self, fix: &ShownFix) {
+        let text = with_replacements(self.text(), &fix.edits);
+        self.edit(|draft| draft.set_text(&text));
     }
 
     /// Starts an automatic comparison once the picture is finished: drawing and proving at the same

@@ -115,8 +115,13 @@ impl Session {
         };
         let mut params = BTreeMap::new();
         if let Some(model) = self.model.as_ref().filter(|_| what != Saved::Numbers) {
-            params = self.param_values.params.clone();
-            after = with_param_defaults(&after, model.declared(), &params)?;
+            let values = &self.param_values.params;
+            match with_param_defaults(&after, model.declared(), values) {
+                Ok(text) => (after, params) = (text, values.clone()),
+                Err(why) if what == Saved::Params => return Err(why),
+                // The settings keep the params; the text must be saved.
+                Err(_) => {}
+            }
         }
         Ok(Edited { before, text, after, params })
     }
