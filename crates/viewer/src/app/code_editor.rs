@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::text_edit::TextEditState;
-use eframe::egui::{self, Event, Galley, Id, Key, Modifiers, Response, TextBuffer, Ui};
+use eframe::egui::{self, Color32, Event, Galley, Id, Key, Modifiers, Response, TextBuffer, Ui};
 use sdfc_ide::{Completion, hover};
+use sdfc_syntax::{Class, classes};
 
 use super::completion_list::CompletionList;
 use super::highlighting::{Mark, highlighted, roles};
@@ -29,6 +30,8 @@ pub struct CodeEditor {
     cursor: Option<usize>,
     /// A range that is lit because its shape was clicked, and the text that it belongs to.
     lit: Option<(Range<usize>, Arc<str>)>,
+    /// The colour that the cursor was in last.
+    color: Option<Range<usize>>,
     /// True until the lit range has been scrolled to.
     scrolls: bool,
 }
@@ -38,6 +41,28 @@ impl CodeEditor {
     pub fn light(&mut self, range: Option<Range<usize>>, text: &Arc<str>) {
         self.scrolls = range.is_some();
         self.lit = range.map(|range| (range, Arc::clone(text)));
+    }
+
+    /// Shows a button with the colour at the cursor, which changes it in the text.
+    pub fn color_button(&mut self, ui: &mut Ui, session: &mut Session) {
+        let mut text = session.text().to_string();
+        let is_color =
+            |range: &Range<usize>| classes(&text).contains(&(Class::Color, range.clone()));
+        match self.cursor {
+            Some(cursor) => self.color = color_around(&text, cursor),
+            None => self.color = self.color.take().filter(is_color),
+        }
+        let Some(range) = self.color.clone() else { return };
+        let Ok(before) = Color32::from_hex(&text[range.clone()]) else { return };
+        let mut srgb = [before.r(), before.g(), before.b()];
+        let button = ui.color_edit_button_srgb(&mut srgb);
+        if button.on_hover_text("Change the colour at the cursor.").changed() {
+            let [red, green, blue] = srgb;
+            let written = format!("#{red:02x}{green:02x}{blue:02x}");
+            self.color = Some(range.start..range.start + written.len());
+            text.replace_range(range, &written);
+            session.edit(|draft| draft.set_text(&text));
+        }
     }
 
     /// Shows the editor. What is typed becomes the text of the session.
@@ -180,6 +205,16 @@ fn describe(response: &Response, session: &Session, found: &[ShownDiagnostic], a
     }
 }
 
+/// The colour `#rgb` or `#rrggbb` that an offset is in or beside.
+fn color_around(text: &str, offset: usize) -> Option<Range<usize>> {
+    let is_under = |(class, range): &(Class, Range<usize>)| {
+        *class == Class::Color && (range.start..=range.end).contains(&offset)
+    };
+    let (_, range) = classes(text).into_iter().find(is_under)?;
+    // A colour with alpha is not changed, because the button has no alpha.
+    matches!(range.len(), 4 | 7).then_some(range)
+}
+
 /// The byte offset of a character.
 fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(at, _)| at)
@@ -198,5 +233,18 @@ fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
             let align = egui::Align2::RIGHT_CENTER;
             ui.painter().text(position, align, number, font.clone(), color);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_colour_at_the_cursor_is_found() {
+        let text = "sphere(1).color(#d94f30)\nbackground(#fff) // #123456\n";
+        let found = |at: &str| color_around(text, text.find(at).unwrap()).map(|it| &text[it]);
+        assert_eq!([found("#d9"), found("f30"), found(")\nb")], [Some("#d94f30"); 3]);
+        assert_eq!([found("fff"), found("sphere"), found("456")], [Some("#fff"), None, None]);
     }
 }

@@ -44,6 +44,9 @@ pub fn show(
         if before == CodeMode::Numbers && *mode == CodeMode::Edit {
             session.write_numbers_into_text();
         }
+        if *mode == CodeMode::Edit && is_small {
+            editor.color_button(ui, session);
+        }
         edited_state(ui, session);
     });
     let changed = session.param_values.changed_numbers() > 0;

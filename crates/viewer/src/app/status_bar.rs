@@ -4,8 +4,9 @@ use eframe::egui::{self, RichText, Ui};
 use sdfc_render::Clock;
 
 use super::theme;
+use crate::render::pacing::PASS_BUDGET_MS;
 use crate::render::picture::Picture;
-use crate::render::worker::PASS_BUDGET_MS;
+
 use crate::scene::model::{BuildTimes, Model};
 use crate::session::Session;
 

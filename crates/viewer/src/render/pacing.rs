@@ -1,7 +1,7 @@
 //! Chooses the resolution of first passes, so that a moving picture keeps up with the hand.
 
-use super::worker::PASS_BUDGET_MS;
-
+/// The longest time of a pass while the camera moves, in milliseconds.
+pub const PASS_BUDGET_MS: f64 = 30.0;
 /// The coarsest pass divides width and height by this.
 const MAX_DIVISOR: u32 = 8;
 /// The divisor of a scene's first pass, when its cost is not known yet.

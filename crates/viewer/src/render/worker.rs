@@ -22,7 +22,7 @@ use sdfc_render::{
 };
 
 use crate::latest_channel::LatestChannel;
-use crate::render::pacing::Pacing;
+use crate::render::pacing::{PASS_BUDGET_MS, Pacing};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::view_painter::{PaintedView, first_stride, paint};
 use crate::scene::field_probe::IsInterrupted;
@@ -31,8 +31,6 @@ use crate::views::input::ViewInput;
 use crate::views::mode::ViewMode;
 use crate::worker_thread::WorkerThread;
 
-/// The longest time of a pass while the camera moves, in milliseconds.
-pub const PASS_BUDGET_MS: f64 = 30.0;
 /// After this long a newer request interrupts a first pass.
 const FIRST_PASS_LIMIT: Duration = Duration::from_millis(300);
 /// Milliseconds per tile; a newer request is noticed between tiles.
