@@ -6,9 +6,9 @@ pub mod draft;
 mod events;
 pub mod orbit_camera;
 pub mod saving;
+mod text_questions;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -17,7 +17,7 @@ use sdfc::{CompileValues, FrameValues, Scene};
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
-use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic, ShownFix};
+use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic};
 use crate::compile::file_watcher::FileWatcher;
 use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
@@ -27,7 +27,7 @@ use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::worker::RenderWorker;
-use crate::scene::document::{Imports, path_of, with_replacements};
+use crate::scene::document::{Imports, path_of};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
@@ -318,38 +318,6 @@ impl Session {
         let now = self.comparison_job(false);
         let result = self.accuracy.result.as_ref();
         result.zip(now).is_some_and(|(result, now)| result.job.has_same_picture(&now))
-    }
-
-    /// The range of the text that makes the shape at a position of the picture, given as in
-    /// [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
-    pub fn code_at(&self, position: [f64; 2]) -> Option<Range<usize>> {
-        let picture = self.picture.as_deref()?;
-        let (file, range) = PixelInfo::at(picture, position)?.call?;
-        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
-        (file == own && picture.request.model.source == **self.text()).then_some(range)
-    }
-
-    /// Asks the language service about the text, unless it was asked the same last.
-    pub fn ask_about_text(&mut self, cursor: Option<usize>) {
-        let (path, text) = (self.path().to_owned(), Arc::clone(self.text()));
-        let request = LanguageRequest { path, text, cursor };
-        if self.language_request.as_ref() != Some(&request) {
-            self.language_request = Some(request.clone());
-            self.language_worker.send(request);
-        }
-    }
-
-    /// The errors and warnings of the text as it is now; none while it is being compiled.
-    pub fn diagnostics_of_text(&self) -> impl Iterator<Item = &ShownDiagnostic> {
-        let is_current = self.diagnosed == *self.text();
-        let own = self.path().file_name().unwrap_or_default().to_string_lossy();
-        self.diagnostics.all.iter().filter(move |found| is_current && found.file == own)
-    }
-
-    /// Makes a change that one of the [diagnostics of the text](Self::diagnostics_of_text) proposes.
-    pub fn apply_fix(&mut self, fix: &ShownFix) {
-        let text = with_replacements(self.text(), &fix.edits);
-        self.edit(|draft| draft.set_text(&text));
     }
 
     /// Starts an automatic comparison once the picture is finished: drawing and proving at the same
