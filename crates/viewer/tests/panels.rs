@@ -471,6 +471,11 @@ fn typed_text_is_kept_when_the_file_changes() {
     fixture.key(Modifiers::COMMAND, Key::S);
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == mine);
+    // The file is followed again.
+    fixture.write(&format!("{mine}// outside\n"));
+    fixture.until(|harness| harness.state().opened().text().ends_with("// outside\n"));
+    fixture.write(&mine);
+    fixture.until(|harness| **harness.state().opened().text() == *mine);
     // Now the file wins.
     fixture.type_at_end("// again\n");
     fixture.write(SCENE);

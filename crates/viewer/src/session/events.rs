@@ -45,10 +45,10 @@ impl Session {
                 self.watch_own_folder();
             }
             CompileEvent::BuildingPipeline => self.building = true,
-            CompileEvent::FileChanged(file) => self.draft.set_file(file),
+            CompileEvent::FileChanged(file) => self.edit(|draft| draft.set_file(file)),
             CompileEvent::Compiled { text, file, diagnostics, folders, draws: _ } => {
                 self.diagnosed = text;
-                file.into_iter().for_each(|file| self.draft.set_file(file));
+                file.into_iter().for_each(|file| self.edit(|draft| draft.set_file(file)));
                 (self.diagnostics, self.building, self.problem) = (diagnostics, false, None);
                 let refused = self.watcher.set_folders(&folders);
                 if let Some(folder) = refused.first() {

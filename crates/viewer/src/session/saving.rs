@@ -138,7 +138,7 @@ impl Session {
             Ok(message) if outcome.is_scene => {
                 self.saving.state = SaveState::Idle;
                 self.messages.push(message);
-                // The text may have been written into the file and then edited in the window.
+                // The text may have been edited since the file was written.
                 if let Some(written) = &self.saving.written {
                     let (text, after) = (Arc::clone(&written.text), Arc::from(&*written.after));
                     self.edit(|draft| draft.set_saved(&text, after));
@@ -166,8 +166,7 @@ impl Session {
             if !lost.is_empty() {
                 let more = if lost.len() > MAX_LISTED { ", …" } else { "" };
                 let listed = lost.iter().take(MAX_LISTED).cloned().collect::<Vec<_>>().join(", ");
-                let text =
-                    format!("the file replaced numbers that you had changed: {listed}{more}");
+                let text = format!("an edit replaced numbers that you had changed: {listed}{more}");
                 self.messages.push(text);
             }
         }
