@@ -54,6 +54,7 @@ impl Fixture {
         std::fs::write(self.folder.path().join("scene.sdf"), text).unwrap();
     }
 
+    #[track_caller]
     fn until(&mut self, holds: impl Fn(&Harness<'static, App>) -> bool) {
         let start = Instant::now();
         while !holds(&self.harness) {

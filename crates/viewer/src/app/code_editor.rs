@@ -110,6 +110,7 @@ impl CodeEditor {
                 let before = self.cursor;
                 self.cursor = cursor.map(|cursor| byte_of(&text, cursor.index.0));
                 if output.response.changed() {
+                    let text = with_line_endings_of(session.text(), text.clone());
                     session.edit(|draft| draft.set_text(&text));
                     self.list.typing = true;
                 } else if self.cursor != before {
@@ -215,6 +216,12 @@ fn color_around(text: &str, offset: usize) -> Option<Range<usize>> {
     matches!(range.len(), 4 | 7).then_some(range)
 }
 
+/// An edited text with the line endings of the text before. The editor inserts `\n`, and lets the
+/// cursor stand between `\r` and `\n`.
+fn with_line_endings_of(before: &str, edited: String) -> String {
+    if before.contains("\r\n") { edited.replace('\r', "").replace('\n', "\r\n") } else { edited }
+}
+
 /// The byte offset of a character.
 fn byte_of(text: &str, character: usize) -> usize {
     text.char_indices().nth(character).map_or(text.len(), |(at, _)| at)
@@ -239,6 +246,13 @@ fn line_numbers(ui: &Ui, galley: &Galley, at: egui::Pos2) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_edited_text_keeps_its_line_endings() {
+        let of = |before, edited: &str| with_line_endings_of(before, edited.to_owned());
+        assert_eq!(of("a\r\nb\r\n", "a\rc\n\nb\r\n"), "ac\r\n\r\nb\r\n");
+        assert_eq!(of("a\nb\n", "a\nc\nb\n"), "a\nc\nb\n");
+    }
 
     #[test]
     fn the_colour_at_the_cursor_is_found() {

@@ -46,13 +46,16 @@ impl Draft {
         self.file = file;
     }
 
-    /// Records that `text` was saved as `file`. If the text was edited since, it is based on that.
-    pub fn set_saved(&mut self, text: &str, file: Arc<str>) {
+    /// Records that `text` was saved as `after`, in place of `before`. If the text was edited since,
+    /// it is based on that. A file that was changed and read since has its newer text.
+    pub fn set_saved(&mut self, text: &str, before: &str, after: &Arc<str>) {
         self.edited.take_if(|[edited, _]| **edited == *text);
         if let Some([_, base]) = &mut self.edited {
-            *base = Arc::clone(&file);
+            *base = Arc::clone(after);
         }
-        self.set_file(file);
+        if *self.file == *before {
+            self.set_file(Arc::clone(after));
+        }
     }
 
     /// Gives up the edited text.
@@ -104,10 +107,13 @@ mod tests {
         assert_eq!((&**draft.text(), &**draft.base(), draft.is_in_conflict()), ("bb", "c", false));
         // Saved, and edited since.
         draft.set_text("bbb");
-        draft.set_saved("bb", "bb".into());
+        draft.set_saved("bb", "c", &"bb".into());
         assert_eq!((&**draft.text(), &**draft.base(), draft.is_edited()), ("bbb", "bb", true));
-        draft.set_saved("bbb", "bbb".into());
+        draft.set_saved("bbb", "bb", &"bbb".into());
         assert_eq!((&**draft.text(), draft.is_edited()), ("bbb", false));
+        // The file was changed again before its saving was reported.
+        draft.set_saved("bb", "c", &"bb".into());
+        assert_eq!(&**draft.text(), "bbb");
         // Undone.
         draft.set_text("d");
         draft.set_text("bbb");

@@ -140,8 +140,9 @@ impl Session {
                 self.messages.push(message);
                 // The text may have been edited since the file was written.
                 if let Some(written) = &self.saving.written {
-                    let (text, after) = (Arc::clone(&written.text), Arc::from(&*written.after));
-                    self.edit(|draft| draft.set_saved(&text, after));
+                    let [text, before] = [&written.text, &written.before].map(Arc::clone);
+                    let after = Arc::from(&*written.after);
+                    self.edit(|draft| draft.set_saved(&text, &before, &after));
                 }
             }
             Ok(message) | Err(message) => self.messages.push(message),
