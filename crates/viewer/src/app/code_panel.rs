@@ -7,7 +7,7 @@ use super::code_editor::CodeEditor;
 use super::{code_numbers, number_buttons, theme};
 use crate::session::Session;
 use crate::session::draft::Draft;
-use crate::session::saving::Saved;
+use crate::session::save_state::Saved;
 
 /// The longest text that can be edited in the window, in bytes. Longer ones are shown as rows.
 const MAX_EDITED_BYTES: usize = 256 << 10;

@@ -7,7 +7,7 @@ use super::action::Action;
 use super::theme;
 use crate::scene::model::Model;
 use crate::session::Session;
-use crate::session::saving::Saved;
+use crate::session::save_state::Saved;
 
 /// Shows the count and the buttons.
 pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec<Action>) {

@@ -10,7 +10,7 @@ use crate::scene::model::Model;
 use crate::scene::number_text::value_text;
 use crate::scene::source_numbers::SourceNumber;
 use crate::session::Session;
-use crate::session::saving::Saved;
+use crate::session::save_state::Saved;
 
 /// The space beside a slider for its number and its reset button, in points.
 const BESIDE_SLIDER: f32 = 96.0;

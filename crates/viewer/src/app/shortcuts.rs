@@ -6,7 +6,7 @@ use super::action::Action;
 use super::help::SIDES;
 use super::open_panels::OpenPanels;
 use crate::session::Session;
-use crate::session::saving::Saved;
+use crate::session::save_state::Saved;
 
 /// Handles the keys that were pressed. While text is being typed, only saving and closing work.
 pub fn handle(

@@ -6,7 +6,7 @@ use eframe::egui::{self, Context, RichText, Ui};
 
 use super::theme;
 use crate::session::Session;
-use crate::session::saving::{SaveState, Saved};
+use crate::session::save_state::{SaveState, Saved};
 
 /// A way to leave the scene.
 #[derive(Clone, Debug, PartialEq, Eq)]

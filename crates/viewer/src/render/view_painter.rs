@@ -14,7 +14,7 @@ const FIRST_PIXELS: u32 = 4096;
 
 /// A view of an image.
 #[derive(Clone, Debug)]
-pub struct PaintedView {
+pub struct ColoredView {
     /// Red, green, blue, alpha of each pixel in sRGB.
     pub rgba: Vec<u8>,
     /// Width and height in pixels.
@@ -52,16 +52,16 @@ pub fn paint(
     mode: ViewMode,
     input: &ViewInput<'_>,
     stride: u32,
-) -> Result<PaintedView, RenderError> {
+) -> Result<ColoredView, RenderError> {
     if stride == 1 {
         let (rgba, legend) = mode.paint(input);
-        return Ok(PaintedView { rgba, size: input.image.size(), legend, stride });
+        return Ok(ColoredView { rgba, size: input.image.size(), legend, stride });
     }
     let [image, colors] =
         [every_nth(input.image, input, stride)?, every_nth(input.colors, input, stride)?];
     let (rgba, legend) =
         mode.paint(&ViewInput { image: &image, colors: &colors, stride, ..*input });
-    Ok(PaintedView { rgba, size: image.size(), legend, stride })
+    Ok(ColoredView { rgba, size: image.size(), legend, stride })
 }
 
 /// Every `stride`-th pixel of every `stride`-th row. The width of a pixel stays that of `image`.

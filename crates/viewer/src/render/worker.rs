@@ -24,7 +24,7 @@ use sdfc_render::{
 use crate::latest_channel::LatestChannel;
 use crate::render::pacing::{PASS_BUDGET_MS, Pacing};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
-use crate::render::view_painter::{PaintedView, first_stride, paint};
+use crate::render::view_painter::{ColoredView, first_stride, paint};
 use crate::scene::field_probe::IsInterrupted;
 use crate::scene::model::Engine;
 use crate::views::input::ViewInput;
@@ -91,7 +91,7 @@ struct DrawnImage {
     samples: u32,
     divisor: u32,
     /// The last picture of the request's view, of all pixels or of some.
-    painted: Option<PaintedView>,
+    colored: Option<ColoredView>,
 }
 
 /// The thread's state between requests.
@@ -136,7 +136,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         if let Some(drawn) = self.drawn.as_mut().filter(|_| same) {
             let before = std::mem::replace(&mut drawn.request, Arc::clone(&request));
             if (before.mode, before.slice) != (request.mode, request.slice) {
-                (drawn.painted, self.shown_scale) = (None, None);
+                (drawn.colored, self.shown_scale) = (None, None);
             }
             self.report_picture(&request, false)?;
         } else {
@@ -180,8 +180,8 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         self.pacing.record(request.model.serial, milliseconds_since(start), pixels);
         let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
         let request = Arc::clone(request);
-        let (samples, painted) = (1, None);
-        let drawn = DrawnImage { request, view, frame, image, sum, samples, divisor, painted };
+        let (samples, colored) = (1, None);
+        let drawn = DrawnImage { request, view, frame, image, sum, samples, divisor, colored };
         let request = Arc::clone(&drawn.request);
         self.drawn = Some(drawn);
         self.report_picture(&request, interruptible)
@@ -244,7 +244,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             let Some(drawn) = &mut self.drawn else { break };
             drawn.sum.add(&frame.image);
             drawn.samples += 1;
-            drawn.painted = None;
+            drawn.colored = None;
             if drawn.samples.is_power_of_two() || !wants_more(drawn) {
                 self.report_picture(request, false)?;
             }
@@ -262,23 +262,23 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
     ) -> Result<(), Stop> {
         let Some(drawn) = &self.drawn else { return Ok(()) };
         let mut stride = first_stride(request.mode, drawn.image.size());
-        if let Some(painted) = &drawn.painted {
-            (self.report)(picture(drawn, painted, self.started));
-            if painted.stride == 1 {
+        if let Some(colored) = &drawn.colored {
+            (self.report)(picture(drawn, colored, self.started));
+            if colored.stride == 1 {
                 return Ok(());
             }
-            stride = painted.stride / 2;
+            stride = colored.stride / 2;
         }
         // A finer image begins where the coarser one was left.
         while stride > 1 && self.shown_scale.is_some_and(|scale| drawn.divisor * stride >= scale) {
             stride /= 2;
         }
-        let mut may_stop = interruptible || drawn.painted.is_some();
+        let mut may_stop = interruptible || drawn.colored.is_some();
         loop {
             let Some(drawn) = &mut self.drawn else { return Ok(()) };
             let start = Instant::now();
             let interrupted = || may_stop && self.requests.is_interrupted();
-            let painted = painted(drawn, stride, &interrupted)?;
+            let colored = colored(drawn, stride, &interrupted)?;
             // An interrupted view has pixels without a value. The shaded one needs no field.
             if request.mode != ViewMode::Shaded && interrupted() {
                 return Err(Stop::Superseded);
@@ -286,9 +286,9 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             let milliseconds = milliseconds_since(start);
             let is_quick = milliseconds * f64::from(stride * stride) < QUICK_VIEW_MS;
             if stride == 1 || !is_quick {
-                (self.report)(picture(drawn, &painted, self.started));
+                (self.report)(picture(drawn, &colored, self.started));
                 self.shown_scale = Some(drawn.divisor * stride);
-                drawn.painted = Some(painted);
+                drawn.colored = Some(colored);
                 may_stop = true;
             }
             let next_milliseconds = milliseconds * 4.0;
@@ -301,11 +301,11 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
 }
 
 /// Applies the request's view to every `stride`-th pixel.
-fn painted(
+fn colored(
     drawn: &DrawnImage,
     stride: u32,
     interrupted: IsInterrupted<'_>,
-) -> Result<PaintedView, Stop> {
+) -> Result<ColoredView, Stop> {
     let mut colors = drawn.sum.clone();
     colors.divide(drawn.samples as f32);
     let request = &drawn.request;
@@ -326,10 +326,10 @@ fn painted(
 }
 
 /// The picture that the window shows.
-fn picture(drawn: &DrawnImage, painted: &PaintedView, started: Instant) -> RenderEvent {
+fn picture(drawn: &DrawnImage, colored: &ColoredView, started: Instant) -> RenderEvent {
     let request = Arc::clone(&drawn.request);
     let has_all_samples = request.mode != ViewMode::Shaded || drawn.samples >= request.samples;
-    let PaintedView { rgba, size, legend, stride } = painted.clone();
+    let ColoredView { rgba, size, legend, stride } = colored.clone();
     RenderEvent::Picture(Box::new(Picture {
         request,
         image: Arc::clone(&drawn.image),

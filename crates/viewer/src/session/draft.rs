@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use super::Session;
-
 /// The text of a scene and of its file.
 #[derive(Clone, Debug, Default)]
 pub struct Draft {
@@ -46,8 +44,8 @@ impl Draft {
         self.file = file;
     }
 
-    /// Records that `text` was saved as `after`, in place of `before`. If the text was edited since,
-    /// it is based on that. A file that was changed and read since has its newer text.
+    /// Records that `text` was saved as `after`, in place of `before`. If the text was edited
+    /// since, it is based on that. A file that was changed and read since has its newer text.
     pub fn set_saved(&mut self, text: &str, before: &str, after: &Arc<str>) {
         self.edited.take_if(|[edited, _]| **edited == *text);
         if let Some([_, base]) = &mut self.edited {
@@ -68,25 +66,6 @@ impl Draft {
         if let Some([_, base]) = &mut self.edited {
             *base = Arc::clone(&self.file);
         }
-    }
-}
-
-impl Session {
-    /// The text of the scene and of its file.
-    pub fn draft(&self) -> &Draft {
-        &self.draft
-    }
-
-    /// The text of the scene: that of the file, or one that was edited in the window.
-    pub fn text(&self) -> &Arc<str> {
-        self.draft.text()
-    }
-
-    /// Changes the text of the scene, in the window or in the file, and compiles it.
-    pub fn edit(&mut self, change: impl FnOnce(&mut Draft)) {
-        change(&mut self.draft);
-        let draft = self.draft.is_edited().then(|| Arc::clone(self.draft.text()));
-        self.update_build(|build| build.draft = draft);
     }
 }
 

@@ -5,8 +5,9 @@ pub mod clock;
 pub mod draft;
 mod events;
 pub mod orbit_camera;
-pub mod saving;
-mod text_questions;
+pub mod save_state;
+mod saving;
+mod text;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -33,7 +34,7 @@ use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
 use crate::session::draft::Draft;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
-use crate::session::saving::Saving;
+use crate::session::save_state::Saving;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 

@@ -8,51 +8,10 @@ use crate::export::exporter::{ExportJob, ExportOutcome};
 use crate::scene::model::Model;
 use crate::scene::param_source::with_param_defaults;
 use crate::scene::rebase::{pair_numbers, rebase_numbers};
+use crate::session::save_state::{Edited, SaveState, Saved, Saving};
 
 /// The most lost numbers that a message lists.
 const MAX_LISTED: usize = 4;
-
-/// Which changed values are saved with the text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Saved {
-    /// The text and the changed numbers.
-    Numbers,
-    /// The text, with the params as their defaults.
-    Params,
-    /// The text with both.
-    All,
-}
-
-/// Whether changed values are being written to the scene's file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum SaveState {
-    /// Nothing is being written, and the last attempt was successful.
-    #[default]
-    Idle,
-    /// The file is being written.
-    Writing,
-    /// The last attempt failed; why.
-    Failed(String),
-}
-
-/// The last attempt to save.
-#[derive(Debug, Default)]
-pub(super) struct Saving {
-    state: SaveState,
-    written: Option<Edited>,
-}
-
-/// The scene's source before and after changed values were written into it.
-#[derive(Debug)]
-struct Edited {
-    /// The text that the file must have.
-    before: Arc<str>,
-    /// The text of the scene in the window, without the changed values.
-    text: Arc<str>,
-    after: String,
-    /// The params that became defaults.
-    params: BTreeMap<String, [f64; 4]>,
-}
 
 impl Session {
     /// Whether changed values are being written to the scene's file.

@@ -1,4 +1,5 @@
-//! What the editor asks about the text: its errors, its words, and the code of a shape.
+//! What the editor does with the text and asks about it: its errors, its words, and the code of a
+//! shape.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,8 +9,26 @@ use crate::compile::diagnostics::{ShownDiagnostic, ShownFix};
 use crate::language::worker::LanguageRequest;
 use crate::render::pixel_info::PixelInfo;
 use crate::scene::document::with_replacements;
+use crate::session::draft::Draft;
 
 impl Session {
+    /// The text of the scene and of its file.
+    pub fn draft(&self) -> &Draft {
+        &self.draft
+    }
+
+    /// The text of the scene: that of the file, or one that was edited in the window.
+    pub fn text(&self) -> &Arc<str> {
+        self.draft.text()
+    }
+
+    /// Changes the text of the scene, in the window or in the file, and compiles it.
+    pub fn edit(&mut self, change: impl FnOnce(&mut Draft)) {
+        change(&mut self.draft);
+        let draft = self.draft.is_edited().then(|| Arc::clone(self.draft.text()));
+        self.update_build(|build| build.draft = draft);
+    }
+
     /// The range of the text that makes the shape at a position of the picture, given as in
     /// [`pixel_info`](Self::pixel_info). `None` if the text is not that of the picture.
     pub fn code_at(&self, position: [f64; 2]) -> Option<Range<usize>> {
@@ -36,7 +55,8 @@ impl Session {
         self.diagnostics.all.iter().filter(move |found| is_current && found.file == own)
     }
 
-    /// Makes a change that one of the [diagnostics of the text](Self::diagnostics_of_text) proposes.
+    /// Makes a change that one of the [diagnostics of the text](Self::diagnostics_of_text)
+    /// proposes.
     pub fn apply_fix(&mut self, fix: &ShownFix) {
         let text = with_replacements(self.text(), &fix.edits);
         self.edit(|draft| draft.set_text(&text));
