@@ -52,7 +52,10 @@ pub fn handle(
         session.clock.toggle();
     }
     if pressed(Key::V) {
-        session.mode = session.mode.next();
+        // A slow frame may have several presses.
+        for _ in 0..ctx.input(|input| input.num_presses(Key::V)) {
+            session.mode = session.mode.next();
+        }
     }
     if pressed(Key::R) {
         session.refine = !session.refine;
