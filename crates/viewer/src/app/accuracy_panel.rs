@@ -91,7 +91,7 @@ fn metrics(ui: &mut Ui, session: &Session, comparison: &ComparisonResult) {
         ],
         [
             depth(
-                "median depth error",
+                "median error",
                 errors.p50,
                 "Median of the depth errors, in pixel widths at the surface.",
             ),
