@@ -51,11 +51,13 @@ const MAY_DEPEND_ON: [(&str, &[&str]); 19] = [
             "diagnostics",
             "files",
             "graph",
+            "ide",
             "lang",
             "march",
             "measure",
             "render",
             "sdfc",
+            "syntax",
         ],
     ),
 ];

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+/// The most edited versions of an example that are kept.
+const MAX_VERSIONS: u32 = 1000;
+
 /// An example scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
@@ -46,6 +49,30 @@ impl Example {
             .map_err(|error| format!("cannot write {}: {error}", path.display()))
     }
 
+    /// Writes the example as it was. The user's version is renamed to `NAME-edited.sdf`, or with a
+    /// number if there is such a file.
+    ///
+    /// # Errors
+    ///
+    /// A file cannot be renamed or written. The message is one line.
+    pub fn restore_in(&self, folder: &Path) -> Result<PathBuf, String> {
+        let path = folder.join(format!("{}.sdf", self.name));
+        let named = |number: u32| {
+            let suffix = if number == 0 { String::new() } else { format!("-{number}") };
+            folder.join(format!("{}-edited{suffix}.sdf", self.name))
+        };
+        if let Some(kept) = (0..MAX_VERSIONS).map(named).find(|kept| !kept.exists()) {
+            std::fs::rename(&path, &kept)
+                .map_err(|error| format!("cannot rename {}: {error}", path.display()))?;
+        } else {
+            let name = self.name;
+            return Err(format!(
+                "not restored: there are {MAX_VERSIONS} edited versions of {name}"
+            ));
+        }
+        self.file_in(folder)
+    }
+
     /// The description: the comment at the start of the source.
     pub fn summary(&self) -> String {
         let comment = self.source.lines().map_while(|line| line.strip_prefix("//"));
@@ -79,5 +106,19 @@ mod tests {
         std::fs::write(&path, "box(1)").unwrap();
         EXAMPLES[0].file_in(&folder.path().join("new")).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");
+    }
+    #[test]
+    fn a_restored_example_keeps_the_edited_version() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = EXAMPLES[0].file_in(folder.path()).unwrap();
+        for edited in ["box(1)", "box(2)"] {
+            std::fs::write(&path, edited).unwrap();
+            assert_eq!(EXAMPLES[0].restore_in(folder.path()).unwrap(), path);
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), EXAMPLES[0].source);
+        }
+        let kept = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+        let name = EXAMPLES[0].name;
+        assert_eq!(kept(&format!("{name}-edited.sdf")), "box(1)");
+        assert_eq!(kept(&format!("{name}-edited-1.sdf")), "box(2)");
     }
 }

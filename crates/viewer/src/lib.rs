@@ -6,15 +6,15 @@
 //!         file watcher ─▶ compile worker ─▶ Model (scene, pipeline) ─┐
 //!                                                                   ▼
 //! window ─▶ Session ────────────────────────────────────▶ render worker ─▶ Picture ─▶ window
-//!  input    open scene, camera, param values, time         draws            CPU image
+//!  input    open scene, text, camera, param values, time   draws            CPU image
 //! ```
 //!
 //! The window ([`app`]) only shows a [`session`] and passes input to it. Nothing else depends on
 //! windows, so everything else is tested without one. The [compile](compile::worker),
-//! [render](render::worker) and [accuracy](accuracy::worker) workers are threads that handle the
-//! latest message only ([`latest_channel`]); the [export](export::worker) worker handles every job
-//! in order. The window's thread does nothing slow: it does not read files, compile, call a
-//! driver's shader compiler or draw the picture.
+//! [render](render::worker), [language](language::worker) and [accuracy](accuracy::worker) workers
+//! are threads that handle the latest message only ([`latest_channel`]); the
+//! [export](export::worker) worker handles every job in order. The window's thread does nothing
+//! slow: it does not read files, compile, call a driver's shader compiler or draw the picture.
 //!
 //! The render worker has its own device and reads each picture back. So the window never waits for
 //! a slow shader, a lost device is reopened while the window stays, and the CPU renderer replaces a
@@ -27,6 +27,7 @@ pub mod app;
 pub mod compile;
 pub mod examples;
 pub mod export;
+pub mod language;
 pub mod latest_channel;
 pub mod render;
 pub mod scene;

@@ -12,7 +12,7 @@ use sdfc_viewer::settings::examples_folder;
 
 const USAGE: &str = "usage: sdfc-view [FILE]\n\n\
     Shows the scene in FILE in a window and follows the file as it is edited.\n\
-    Without FILE it shows an example.";
+    It offers to create FILE if there is none. Without FILE it shows an example.";
 const DEVICE_LOST: &str = "error: the GPU was lost while the window was drawn, as happens when a \
     driver is updated\n\
     help: open the scene again: camera and params are kept";
@@ -49,12 +49,21 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     }
     let path = PathBuf::from(argument);
-    // A missing file is an error only before the window opens; afterwards it may come and go.
-    if let Err(error) = sdfc_files::read(&path) {
+    // The window offers to create a missing scene.
+    if !can_be_created(&path)
+        && let Err(error) = sdfc_files::read(&path)
+    {
         eprintln!("error: {error}");
         return ExitCode::from(2);
     }
     window(&path)
+}
+
+/// True if there is no such file, but the folder of a file with the ending of a scene.
+fn can_be_created(path: &Path) -> bool {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let is_scene = path.extension().is_some_and(|ending| ending == "sdf");
+    is_scene && !path.exists() && folder.unwrap_or(Path::new(".")).is_dir()
 }
 
 #[allow(clippy::print_stderr, reason = "a program prints messages")]

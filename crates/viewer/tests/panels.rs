@@ -8,7 +8,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Context, DroppedFile, Key, ViewportEvent, ViewportId};
+use eframe::egui::{
+    Context, DroppedFile, Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable, by};
 use sdfc_viewer::app::App;
@@ -37,17 +39,22 @@ impl Fixture {
         let settings = Some(folder.path().join("view.json"));
         let mut app = App::new(&Context::default(), &path, settings).unwrap();
         app.session().update_build(|build| build.on_cpu = true);
-        let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
-        let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
-        let mut fixture = Self { harness, folder };
+        let mut fixture = Self::shown(app, folder);
         fixture.until(|harness| harness.state().picture_is_finished());
         fixture
+    }
+
+    fn shown(app: App, folder: tempfile::TempDir) -> Self {
+        let show = |ui: &mut eframe::egui::Ui, app: &mut App| app.show(ui);
+        let harness = Harness::builder().with_size([1000.0, 640.0]).build_ui_state(show, app);
+        Self { harness, folder }
     }
 
     fn write(&self, text: &str) {
         std::fs::write(self.folder.path().join("scene.sdf"), text).unwrap();
     }
 
+    #[track_caller]
     fn until(&mut self, holds: impl Fn(&Harness<'static, App>) -> bool) {
         let start = Instant::now();
         while !holds(&self.harness) {
@@ -65,10 +72,22 @@ impl Fixture {
     fn change_a_number(&mut self) {
         let session = self.harness.state_mut().session();
         let model = session.model.clone().unwrap();
-        let at = SCENE.find("sphere(1)").unwrap() as u32 + 7;
-        let (literal, _) = model.literals().find(|(literal, _)| literal.span.start == at).unwrap();
-        session.param_values.set_literal(literal, 1.25);
+        let at = SCENE.find("sphere(1)").unwrap() + 7;
+        session.param_values.set_number(model.number_at(at).unwrap(), 1.25);
         self.harness.run_steps(2);
+    }
+
+    fn key(&mut self, modifiers: Modifiers, key: Key) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.run_steps(3);
+    }
+
+    /// Types in the editor of the panel "Code".
+    fn type_at_end(&mut self, text: &str) {
+        self.harness.get_by_role(Role::MultilineTextInput).focus();
+        self.harness.run_steps(2);
+        self.harness.get_by_role(Role::MultilineTextInput).type_text(text);
+        self.harness.run_steps(3);
     }
 
     /// Closes the window as a window manager does.
@@ -79,6 +98,17 @@ impl Fixture {
         let viewports = &mut self.harness.input_mut().viewports;
         viewports.entry(ViewportId::ROOT).or_default().events.clear();
         self.harness.run_steps(2);
+    }
+
+    /// Draws some frames; true if the window closes in one of them.
+    fn closes(&mut self) -> bool {
+        let mut closes = false;
+        for _ in 0..5 {
+            self.harness.step();
+            let viewports = &self.harness.output().viewport_output;
+            closes |= viewports[&ViewportId::ROOT].commands.contains(&ViewportCommand::Close);
+        }
+        closes
     }
 
     /// Widgets that can be clicked, dragged or typed into and have no hover text.
@@ -132,9 +162,9 @@ fn errors_are_shown_as_on_the_command_line_and_disappear_when_fixed() {
 }
 
 #[test]
-fn the_code_panel_opens_and_params_can_be_reset() {
+fn the_code_panel_is_open_and_params_can_be_reset() {
     let mut fixture = Fixture::new();
-    fixture.click("Code");
+    fixture.click("Drag numbers");
     assert!(fixture.has("drag a number"));
     let changed = [0.4, 0.0, 0.0, 0.0];
     fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
@@ -149,7 +179,8 @@ fn a_literal_that_a_let_names_has_a_slider() {
     let slider = fixture.harness.get_by_role_and_label(Role::Slider, "k");
     slider.set_value_accesskit(0.6);
     fixture.harness.run_steps(3);
-    fixture.click("Save to file");
+    // In the panels "Code" and "Controls".
+    fixture.harness.get_all_by_label("Save to file").last().unwrap().click();
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap() == "let k = 0.6\nsphere(k)\n");
 }
@@ -157,7 +188,6 @@ fn a_literal_that_a_let_names_has_a_slider() {
 #[test]
 fn changed_numbers_are_saved_to_the_file() {
     let mut fixture = Fixture::new();
-    fixture.click("Code");
     fixture.change_a_number();
     fixture.click("Save to file");
     let text = SCENE.replace("sphere(1) ", "sphere(1.25) ");
@@ -177,6 +207,83 @@ fn a_window_with_changed_numbers_asks_before_it_closes() {
     fixture.click("Save and close");
     let path = fixture.folder.path().join("scene.sdf");
     fixture.until(|_| std::fs::read_to_string(&path).unwrap().contains("sphere(1.25) "));
+}
+
+#[test]
+fn if_saving_fails_the_window_stays_open_and_says_why() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.request_close();
+    // A folder has taken the place of the file.
+    let path = fixture.folder.path().join("scene.sdf");
+    std::fs::remove_file(&path).unwrap();
+    std::fs::create_dir(&path).unwrap();
+    fixture.harness.get_by_label("Save and close").click();
+    assert!(!fixture.closes());
+    // The words of the operating system.
+    let why = std::fs::read_to_string(&path).unwrap_err().to_string();
+    fixture.until(|harness| harness.query_all_by_label_contains(&why).next().is_some());
+    assert!(!fixture.closes() && fixture.has("1 changed number is not saved"));
+    fixture.harness.get_by_label("Close without saving").click();
+    assert!(fixture.closes());
+}
+
+#[test]
+fn changed_numbers_are_kept_when_the_file_is_edited() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    let edited = format!("// A new line.\n{}", SCENE.replace("0.1 in", "0.2 in"));
+    fixture.write(&edited);
+    fixture.until(|harness| {
+        harness.state().opened().model.as_ref().is_some_and(|model| model.source == edited)
+    });
+    let session = fixture.harness.state_mut().session();
+    assert_eq!(session.param_values.changed_numbers(), 1);
+    let expected = edited.replace("sphere(1) ", "sphere(1.25) ");
+    assert_eq!(session.param_values.source_with_values(&edited), expected);
+    // The number itself is edited: the file has the newer one.
+    let edited = edited.replace("sphere(1) ", "sphere(0.75) ");
+    fixture.write(&edited);
+    fixture.until(|harness| {
+        harness.query_all_by_label_contains("had changed: 1 -> 1.25").next().is_some()
+    });
+    assert_eq!(fixture.harness.state_mut().session().param_values.changed_numbers(), 0);
+}
+
+#[test]
+fn opening_another_scene_asks_before_changed_numbers_are_lost() {
+    let mut fixture = Fixture::new();
+    let other = fixture.folder.path().join("other.sdf");
+    std::fs::write(&other, "param rind = 0.5\nsphere(rind)\n").unwrap();
+    let drop = |fixture: &mut Fixture| {
+        fixture.harness.input_mut().dropped_files.push(Arc::new(Dropped(other.clone())));
+        fixture.harness.run_steps(1);
+        fixture.harness.input_mut().dropped_files.clear();
+        fixture.harness.run_steps(2);
+    };
+    fixture.change_a_number();
+    drop(&mut fixture);
+    fixture.click("Cancel");
+    assert!(fixture.harness.state_mut().session().path().ends_with("scene.sdf"));
+    drop(&mut fixture);
+    fixture.click("Save and open");
+    fixture.until(|harness| harness.query_all_by_label("rind").next().is_some());
+    let saved = std::fs::read_to_string(fixture.folder.path().join("scene.sdf")).unwrap();
+    assert!(saved.contains("sphere(1.25) "), "{saved}");
+}
+
+#[test]
+fn params_are_saved_as_defaults() {
+    let mut fixture = Fixture::new();
+    let changed = [0.4, 0.0, 0.0, 0.0];
+    fixture.harness.state_mut().session().param_values.params.insert("wall".to_owned(), changed);
+    fixture.harness.run_steps(2);
+    fixture.click("Save params");
+    let text = SCENE.replace("0.1 in", "0.4 in");
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == text);
+    fixture.until(|harness| harness.state().opened().model.as_ref().unwrap().source == text);
+    assert!(fixture.harness.state_mut().session().param_values.params.is_empty());
 }
 
 #[test]
@@ -222,7 +329,6 @@ const ALL_KINDS: &str = "param width = 0.5 in 0..1\nparam count: int = 2 in 1..5
 #[test]
 fn every_widget_has_a_hover_text() {
     let mut fixture = Fixture::of(ALL_KINDS);
-    fixture.click("Code");
     fixture.click("Export");
     fixture.harness.state_mut().session().mode = ViewMode::Slice;
     let mut without_hover_text = BTreeSet::new();
@@ -248,7 +354,7 @@ fn every_widget_has_a_hover_text() {
 }
 
 #[test]
-fn escape_closes_menus_and_dialogs_before_it_stops_refining() {
+fn escape_closes_menus_and_dialogs_and_nothing_else() {
     let mut fixture = Fixture::new();
     let refines = |fixture: &mut Fixture| fixture.harness.state_mut().session().refine;
     let escape = |fixture: &mut Fixture| {
@@ -265,9 +371,179 @@ fn escape_closes_menus_and_dialogs_before_it_stops_refining() {
     assert!(!fixture.has("1 changed number is not saved") && refines(&mut fixture));
     fixture.click("Export");
     escape(&mut fixture);
-    assert!(refines(&mut fixture));
     escape(&mut fixture);
+    assert!(refines(&mut fixture) && !fixture.has("length"));
+    fixture.harness.key_press(Key::R);
+    fixture.harness.run_steps(3);
     assert!(!refines(&mut fixture));
+    fixture.click("Resume");
+    assert!(refines(&mut fixture));
+}
+
+#[test]
+fn the_code_panel_shows_the_file_with_its_errors() {
+    let mut fixture = Fixture::new();
+    fixture.click("Drag numbers");
+    fixture.write("// new\nlet own_name = spere(1)\n");
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    assert!(fixture.has("let own_name = ") && !fixture.has("How thick"));
+    // The marked word.
+    assert!(fixture.harness.query_by_label("spere").is_some());
+}
+
+#[test]
+fn typing_edits_the_scene_and_ctrl_s_saves_it() {
+    let mut fixture = Fixture::new();
+    let path = fixture.folder.path().join("scene.sdf");
+    let on_disk = || std::fs::read_to_string(&path).unwrap();
+    fixture.type_at_end("box(0.1)\n");
+    let edited = format!("{SCENE}box(0.1)\n");
+    let shows = |text: &str| {
+        let text = text.to_owned();
+        move |harness: &Harness<'_, App>| {
+            harness.state().opened().model.as_ref().is_some_and(|model| model.source == text)
+        }
+    };
+    fixture.until(shows(&edited));
+    assert_eq!(on_disk(), SCENE);
+    fixture.key(Modifiers::COMMAND, Key::Z);
+    fixture.until(shows(SCENE));
+    assert!(!fixture.harness.state().opened().has_unsaved_changes());
+    fixture.key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    fixture.until(shows(&edited));
+    // A changed number is saved with the text.
+    let session = fixture.harness.state_mut().session();
+    let model = session.model.clone().unwrap();
+    session.param_values.set_number(model.number_at(edited.find("40deg").unwrap()).unwrap(), 0.5);
+    let expected = session.current_text();
+    assert_ne!(expected, edited);
+    fixture.key(Modifiers::COMMAND, Key::S);
+    fixture.until(|_| on_disk() == expected);
+    fixture.until(shows(&expected));
+    assert!(!fixture.harness.state().opened().has_unsaved_changes());
+    // The file is followed again.
+    fixture.write(SCENE);
+    fixture.until(shows(SCENE));
+}
+
+#[test]
+fn completions_are_listed_and_inserted() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("sph");
+    fixture.until(|harness| harness.query_by_label("sphere").is_some());
+    fixture.key(Modifiers::NONE, Key::Tab);
+    let text = fixture.harness.state().opened().text().to_string();
+    assert!(text.starts_with(&format!("{SCENE}sphere(")), "{text}");
+    // The first gap is selected: typing replaces it.
+    fixture.harness.get_by_role(Role::MultilineTextInput).type_text("0.25");
+    fixture.harness.run_steps(3);
+    let text = fixture.harness.state().opened().text().to_string();
+    assert!(text.starts_with(&format!("{SCENE}sphere(0.25")), "{text}");
+}
+
+#[test]
+fn a_clicked_shape_leads_to_its_code() {
+    let mut fixture = Fixture::of("box(1).translate(x: 2)\nsphere(1)\n");
+    fixture.until(|harness| {
+        let session = harness.state().opened();
+        let at = |index: u32| [index % 40, index / 40].map(|at| f64::from(at) / 40.0);
+        let found = (0..1600).filter_map(|index| session.code_at(at(index)));
+        let code: BTreeSet<&str> = found.map(|range| &session.text()[range]).collect();
+        code == BTreeSet::from(["box(1)", "sphere(1)"])
+    });
+    assert_eq!(fixture.harness.state().opened().code_at([0.01, 0.01]), None);
+}
+
+#[test]
+fn typed_text_is_kept_when_the_file_changes() {
+    let mut fixture = Fixture::new();
+    fixture.type_at_end("// mine\n");
+    fixture.write(&format!("// theirs\n{SCENE}"));
+    fixture
+        .until(|harness| harness.query_all_by_label_contains("changed outside").next().is_some());
+    let mine = format!("{SCENE}// mine\n");
+    assert_eq!(**fixture.harness.state().opened().text(), *mine);
+    fixture.key(Modifiers::COMMAND, Key::S);
+    assert!(fixture.has("not saved"));
+    fixture.request_close();
+    assert!(fixture.has("The edited text is not saved"));
+    fixture.click("Cancel");
+    fixture.click("Keep this text");
+    fixture.key(Modifiers::COMMAND, Key::S);
+    let path = fixture.folder.path().join("scene.sdf");
+    fixture.until(|_| std::fs::read_to_string(&path).unwrap() == mine);
+    // The file is followed again.
+    fixture.write(&format!("{mine}// outside\n"));
+    fixture.until(|harness| harness.state().opened().text().ends_with("// outside\n"));
+    fixture.write(&mine);
+    fixture.until(|harness| **harness.state().opened().text() == *mine);
+    // Now the file wins.
+    fixture.type_at_end("// again\n");
+    fixture.write(SCENE);
+    fixture.until(|harness| harness.query_by_label("Load the file").is_some());
+    fixture.click("Load the file");
+    assert_eq!(**fixture.harness.state().opened().text(), *SCENE);
+}
+
+#[test]
+fn a_fix_changes_the_text_but_not_the_file() {
+    let mut fixture = Fixture::new();
+    fixture.write("spere(1)\n");
+    fixture.until(|harness| harness.query_by_label("error[E0201]").is_some());
+    let fix = fixture.harness.state().opened().diagnostics.all[0].fixes[0].clone();
+    fixture.click(&fix.title);
+    fixture.until(|harness| harness.state().opened().diagnostics.errors() == 0);
+    assert_eq!(**fixture.harness.state().opened().text(), *"sphere(1)\n");
+    let path = fixture.folder.path().join("scene.sdf");
+    assert_eq!(std::fs::read_to_string(path).unwrap(), "spere(1)\n");
+}
+
+#[test]
+fn errors_can_be_folded_away() {
+    let mut fixture = Fixture::new();
+    fixture.write("spere(1)\nspere(2)\n");
+    fixture.until(|harness| harness.query_all_by_label("error[E0201]").count() == 2);
+    fixture.click("hide 2 errors");
+    assert!(fixture.harness.query_by_label("error[E0201]").is_none());
+    fixture.click("show 2 errors");
+    assert!(fixture.has("error[E0201]"));
+}
+
+#[test]
+fn the_camera_rests_while_a_scene_without_a_camera_is_edited() {
+    let mut fixture = Fixture::of("sphere(1)\n");
+    let pose = |fixture: &Fixture| fixture.harness.state().opened().camera().unwrap().pose();
+    let before = pose(&fixture);
+    fixture.write("sphere(3)\n");
+    fixture.until(|harness| {
+        let session = harness.state().opened();
+        session.model.as_ref().is_some_and(|model| model.source == "sphere(3)\n")
+    });
+    fixture.harness.run_steps(3);
+    assert_eq!(pose(&fixture), before);
+    fixture.click("Fit view");
+    assert!((pose(&fixture).eye - before.eye).length() > 1.0);
+}
+
+#[test]
+fn enter_in_a_size_field_does_not_save_and_an_existing_file_is_not_replaced_at_once() {
+    let mut fixture = Fixture::new();
+    let picture = fixture.folder.path().join("scene.png");
+    std::fs::write(&picture, "mine").unwrap();
+    fixture.click("Export");
+    fixture.harness.get_by_value("1920").click();
+    fixture.harness.run_steps(3);
+    fixture.harness.key_press(Key::Enter);
+    fixture.harness.run_steps(3);
+    assert!(!fixture.has("replace it?"));
+    fixture.harness.get_all_by_label("1").last().unwrap().click();
+    fixture.harness.run_steps(3);
+    fixture.click("Save");
+    assert!(fixture.has("replace it?"));
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(std::fs::read(&picture).unwrap(), b"mine");
+    fixture.click("Replace");
+    fixture.until(|_| image::open(&picture).is_ok_and(|it| it.width() == 1920));
 }
 
 #[test]
@@ -346,8 +622,46 @@ fn a_scene_is_opened_with_its_last_camera_and_params() {
 }
 
 #[test]
-fn stdin_two_files_and_a_missing_file_are_refused() {
-    for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing.sdf"]] {
+fn a_missing_scene_can_be_created() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("new.sdf");
+    let mut app = App::new(&Context::default(), &path, None).unwrap();
+    app.session().update_build(|build| build.on_cpu = true);
+    let mut fixture = Fixture::shown(app, folder);
+    fixture.until(|harness| harness.query_by_label("Create new.sdf").is_some());
+    fixture.click("Create new.sdf");
+    fixture.until(|harness| harness.state().picture_is_finished());
+    assert!(path.is_file());
+}
+
+#[test]
+fn the_scene_is_saved_as_another_file_with_its_changed_numbers() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.click("scene.sdf");
+    fixture.click("Save as…");
+    fixture.click("Save");
+    let copy = fixture.folder.path().join("scene-copy.sdf");
+    fixture.until(|harness| harness.state().opened().path() == copy);
+    let text = std::fs::read_to_string(&copy).unwrap();
+    assert_eq!(text, SCENE.replace("sphere(1) ", "sphere(1.25) "));
+    assert_eq!(std::fs::read_to_string(copy.with_file_name("scene.sdf")).unwrap(), SCENE);
+}
+
+#[test]
+fn a_new_scene_asks_before_changed_numbers_are_lost() {
+    let mut fixture = Fixture::new();
+    fixture.change_a_number();
+    fixture.click("scene.sdf");
+    fixture.click("New…");
+    fixture.click("Create");
+    fixture.click("Open without saving");
+    fixture.until(|harness| harness.state().opened().path().ends_with("new.sdf"));
+}
+
+#[test]
+fn stdin_two_files_and_a_file_in_a_missing_folder_are_refused() {
+    for arguments in [&["-"][..], &["a.sdf", "b.sdf"], &["missing/a.sdf"], &["missing.txt"]] {
         let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_sdfc-view"));
         let output = program.args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");

@@ -1,9 +1,13 @@
 //! Requests of a panel to the window.
 
+use crate::compile::diagnostics::ShownFix;
+
 /// Something that only the window can do.
 pub enum Action {
     /// Copies text to the clipboard.
     Copy(String),
+    /// Makes a change that a diagnostic proposes.
+    Fix(ShownFix),
     /// Shows a message in the status line.
     Message(String),
 }

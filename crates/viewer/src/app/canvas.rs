@@ -35,21 +35,26 @@ pub struct Canvas {
 
 impl Canvas {
     /// Shows the picture in the whole space, handles camera input, and requests the next picture.
-    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) {
+    /// Returns the position that was clicked, as fractions of the picture.
+    pub fn show(&mut self, ui: &mut Ui, session: &mut Session) -> Option<[f64; 2]> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         ui.painter().rect_filled(rect, 0.0, theme::of(ui).ground);
         self.refresh(ui, session);
+        let shown = session.picture.as_ref().map_or(rect, |it| shown_at(rect, it.request.size));
         if let Some(texture) = &self.texture {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+            ui.painter_at(rect).image(texture.id(), shown, whole, Color32::WHITE);
         } else {
             waiting(ui, rect, session);
         }
         if let Some(picture) = session.picture.as_deref().filter(|_| session.show_axes) {
-            axes_overlay::show(ui, rect, picture);
+            axes_overlay::show(ui, shown, picture);
         }
-        let flying = camera_input(ui, &response, rect, session);
-        if zoom_by_wheel(ui, &response, rect, session) {
+        if session.is_view_pending() {
+            pending_view(ui, rect, session);
+        }
+        let flying = camera_input(ui, &response, [rect, shown], session);
+        if zoom_by_wheel(ui, &response, [rect, shown], session) {
             self.last_wheel = Some(Instant::now());
         }
         let recent = self.last_wheel.is_some_and(|last| last.elapsed() < WHEEL_REST);
@@ -66,7 +71,9 @@ impl Canvas {
         if let Some(picture) = &session.picture {
             legend_card::show(ui, rect, &picture.legend);
         }
-        pixel_info(ui, &response, rect, session);
+        pixel_info(ui, &response, [rect, shown], session);
+        let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
+        clicked.map(|at| fractions(shown, at))
     }
 
     /// Uploads a new picture to the window's texture.
@@ -80,8 +87,11 @@ impl Canvas {
         }
         self.shown = session.picture_count;
         let image = color_image(picture);
-        let smooth =
-            if picture.divisor > 1 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
+        let smooth = if picture.divisor * picture.stride > 1 {
+            TextureOptions::LINEAR
+        } else {
+            TextureOptions::NEAREST
+        };
         match &mut self.texture {
             Some(texture) => texture.set(image, smooth),
             none => *none = Some(ui.ctx().load_texture("picture", image, smooth)),
@@ -89,8 +99,29 @@ impl Canvas {
     }
 }
 
+/// Where a picture is shown until there is one of the right size: as high as the space, as the
+/// camera would show it, and never stretched.
+fn shown_at(space: Rect, [width, height]: [u32; 2]) -> Rect {
+    let aspect = width as f32 / height.max(1) as f32;
+    Rect::from_center_size(space.center(), vec2(space.height() * aspect, space.height()))
+}
+
+/// Says which view is being computed and which one is shown.
+fn pending_view(ui: &Ui, rect: Rect, session: &Session) {
+    let Some(picture) = &session.picture else { return };
+    let (next, shown) = (session.mode.name(), picture.request.mode.name());
+    let text = format!("computing {next}…  (this is {shown})");
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let at = rect.center_top() + vec2(0.0, 14.0);
+    let painter = ui.painter_at(rect);
+    let galley = painter.layout_no_wrap(text, font, theme::of(ui).accent);
+    let text_rect = egui::Align2::CENTER_TOP.anchor_size(at, galley.size());
+    painter.rect_filled(text_rect.expand2(vec2(10.0, 5.0)), 6.0, theme::of(ui).card);
+    painter.galley(text_rect.min, galley, theme::of(ui).accent);
+}
+
 fn color_image(picture: &Picture) -> ColorImage {
-    let size = picture.image.size().map(|side| side as usize);
+    let size = picture.rgba_size.map(|side| side as usize);
     // Alpha is 255 everywhere, so premultiplied colours are the same.
     ColorImage::from_rgba_premultiplied(size, &picture.rgba)
 }
@@ -111,7 +142,12 @@ fn waiting(ui: &Ui, rect: Rect, session: &Session) {
 }
 
 /// Moves the camera by mouse and keys. Returns true while it flies.
-fn camera_input(ui: &Ui, response: &Response, rect: Rect, session: &mut Session) -> bool {
+fn camera_input(
+    ui: &Ui,
+    response: &Response,
+    [rect, shown]: [Rect; 2],
+    session: &mut Session,
+) -> bool {
     let height = f64::from(rect.height().max(1.0));
     let delta = response.drag_delta();
     let (right, down) = (f64::from(delta.x) / height, f64::from(delta.y) / height);
@@ -130,7 +166,7 @@ fn camera_input(ui: &Ui, response: &Response, rect: Rect, session: &mut Session)
     }
     if response.double_clicked()
         && let Some(at) = response.interact_pointer_pos()
-        && let Some(info) = session.pixel_info(fractions(rect, at))
+        && let Some(info) = session.pixel_info(fractions(shown, at))
         && info.status == HIT
     {
         session.move_camera(|camera| camera.set_pivot(info.point));
@@ -158,13 +194,26 @@ fn fly(ui: &Ui, session: &mut Session) -> bool {
     true
 }
 
-/// Zooms at the pointer. Returns true if the camera moved.
-fn zoom_by_wheel(ui: &Ui, response: &Response, rect: Rect, session: &mut Session) -> bool {
+/// Zooms at the surface under the pointer; beside the shapes, at the depth of the pivot. Returns
+/// true if the camera moved.
+fn zoom_by_wheel(
+    ui: &Ui,
+    response: &Response,
+    [rect, shown]: [Rect; 2],
+    session: &mut Session,
+) -> bool {
     let Some(at) = response.hover_pos() else { return false };
     let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
     let factor = (f64::from(scroll) * ZOOM_PER_POINT).exp() / f64::from(zoom);
     if factor == 1.0 {
         return false;
+    }
+    if shown.contains(at)
+        && let Some(info) = session.pixel_info(fractions(shown, at))
+        && info.status == HIT
+    {
+        session.move_camera(|camera| camera.zoom_at(info.point, factor));
+        return true;
     }
     let half = f64::from(rect.height().max(1.0)) / 2.0;
     let from_middle = at - rect.center();
@@ -180,9 +229,9 @@ fn fractions(rect: Rect, at: Pos2) -> [f64; 2] {
 }
 
 /// Shows point, normal, depth and field of the pixel under the pointer, in the lower left corner.
-fn pixel_info(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
-    let pointer = response.hover_pos();
-    let info = pointer.and_then(|at| session.pixel_info(fractions(rect, at)));
+fn pixel_info(ui: &mut Ui, response: &Response, [rect, shown]: [Rect; 2], session: &Session) {
+    let pointer = response.hover_pos().filter(|at| shown.contains(*at));
+    let info = pointer.and_then(|at| session.pixel_info(fractions(shown, at)));
     let Some(info) = info else { return };
     let lines = lines(ui, &info);
     let area =
@@ -190,11 +239,12 @@ fn pixel_info(ui: &mut Ui, response: &Response, rect: Rect, session: &Session) {
     let area =
         area.pivot(egui::Align2::LEFT_BOTTOM).fixed_pos(rect.left_bottom() + vec2(10.0, -10.0));
     area.show(ui.ctx(), |ui| {
+        ui.set_max_width(rect.width() - 20.0);
         card(ui).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
             for (line, color) in lines {
                 let text = RichText::new(line).monospace().size(11.5).color(color);
-                ui.add(egui::Label::new(text).extend());
+                ui.add(egui::Label::new(text).truncate());
             }
         });
     });
@@ -227,4 +277,17 @@ fn lines(ui: &Ui, info: &PixelInfo) -> Vec<(String, Color32)> {
         format!("depth {:.4}{distance}   {} evaluation{plural}", info.depth, info.evaluations);
     lines.push((text, theme::of(ui).weak));
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_another_size_is_not_stretched() {
+        let space = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 600.0));
+        let shown = shown_at(space, [900, 600]);
+        assert_eq!((shown.size(), shown.center()), (vec2(900.0, 600.0), space.center()));
+        assert_eq!(shown_at(space, [800, 1200]), space);
+    }
 }

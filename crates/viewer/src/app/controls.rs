@@ -159,7 +159,7 @@ fn drawing(ui: &mut Ui, session: &mut Session) {
     let mut live = session.build().live_literals;
     let text = "A changed number shows without compiling a new shader, and numbers in the panel \
                 “Code” can be dragged. Off: numbers are constants, and the shader is faster.";
-    if ui.checkbox(&mut live, "live literals").on_hover_text(text).changed() {
+    if ui.checkbox(&mut live, "adjustable numbers").on_hover_text(text).changed() {
         session.update_build(|build| build.live_literals = live);
     }
     let mut on_cpu = session.build().on_cpu;

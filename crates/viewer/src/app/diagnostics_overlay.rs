@@ -4,14 +4,17 @@ use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{self, Color32, FontId, RichText, Ui, vec2};
 
 use super::action::Action;
-
 use super::external_editor;
+use super::open_panels::OpenPanels;
 use super::theme::{self, card};
 use crate::compile::diagnostics::ShownDiagnostic;
 use crate::session::Session;
 
-/// Shows errors in the upper left corner, and warnings if `warnings` is true.
-pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, actions: &mut Vec<Action>) {
+/// The fraction of the picture's height that errors and warnings may cover.
+const MAX_COVERED: f32 = 0.4;
+
+/// Shows errors in the upper left corner unless they are folded, and warnings if they are unfolded.
+pub fn show(ui: &mut Ui, session: &Session, panels: &mut OpenPanels, actions: &mut Vec<Action>) {
     let diagnostics = &session.diagnostics;
     if diagnostics.all.is_empty() {
         return;
@@ -21,31 +24,38 @@ pub fn show(ui: &mut Ui, session: &Session, warnings: &mut bool, actions: &mut V
     let area = egui::Area::new(ui.scope_id().with("diagnostics")).order(egui::Order::Middle);
     area.fixed_pos(rect.left_top() + vec2(10.0, 10.0)).show(ui.ctx(), |ui| {
         ui.set_max_width((rect.width() - 20.0).clamp(120.0, 620.0));
-        let warning_count = diagnostics.all.len() - errors;
-        if errors > 0 || *warnings {
-            let shown = |it: &&ShownDiagnostic| it.is_error || *warnings;
-            let scroll = egui::ScrollArea::vertical()
-                .max_height(rect.height() * 0.7)
-                .min_scrolled_height(rect.height() * 0.7);
-            scroll.show(ui, |ui| {
-                for diagnostic in diagnostics.all.iter().filter(shown) {
-                    card_of(ui, session, diagnostic, actions);
-                }
-            });
-        }
-        if warning_count > 0 {
-            let text = match warning_count {
-                1 => "1 warning".to_owned(),
-                count => format!("{count} warnings"),
-            };
-            let button =
-                egui::Button::new(RichText::new(text).small().color(theme::of(ui).warning))
-                    .fill(theme::of(ui).card);
-            if ui.add(button).on_hover_text("Show or hide the warnings.").clicked() {
-                *warnings = !*warnings;
+        ui.horizontal(|ui| {
+            let palette = theme::of(ui);
+            let warnings = diagnostics.all.len() - errors;
+            fold_button(ui, "error", errors, palette.error, &mut panels.errors);
+            fold_button(ui, "warning", warnings, palette.warning, &mut panels.warnings);
+        });
+        let shown = |it: &&ShownDiagnostic| match it.is_error {
+            true => panels.errors,
+            false => panels.warnings,
+        };
+        let height = (rect.height() * MAX_COVERED).max(60.0);
+        let scroll = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        scroll.show(ui, |ui| {
+            for diagnostic in diagnostics.all.iter().filter(shown) {
+                card_of(ui, session, diagnostic, actions);
             }
-        }
+        });
     });
+}
+
+/// A button with the number of errors or warnings, which shows or hides them.
+fn fold_button(ui: &mut Ui, what: &str, count: usize, color: Color32, open: &mut bool) {
+    if count == 0 {
+        return;
+    }
+    let plural = if count == 1 { "" } else { "s" };
+    let sign = if *open { "hide" } else { "show" };
+    let text = RichText::new(format!("{sign} {count} {what}{plural}")).small().color(color);
+    let button = egui::Button::new(text).fill(theme::of(ui).card);
+    if ui.add(button).on_hover_text(format!("Show or hide the {what}{plural}.")).clicked() {
+        *open = !*open;
+    }
 }
 
 /// A card with a diagnostic, its source line and its help.
@@ -68,6 +78,13 @@ fn card_of(
         ui.label(source_line(ui, diagnostic, color));
         for help in &diagnostic.help {
             ui.label(RichText::new(help).color(theme::of(ui).weak));
+        }
+        let is_current = session.diagnostics_of_text().any(|found| found == diagnostic);
+        for fix in diagnostic.fixes.iter().filter(|_| is_current) {
+            let button = ui.small_button(&fix.title);
+            if button.on_hover_text("Make this change in the text.").clicked() {
+                actions.push(Action::Fix(fix.clone()));
+            }
         }
     });
 }

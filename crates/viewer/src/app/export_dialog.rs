@@ -40,6 +40,13 @@ impl ExportKind {
     ];
 }
 
+/// Pixels and samples of an exported picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct PictureSize {
+    size: [u32; 2],
+    samples: u32,
+}
+
 /// The dialog, with the last choices.
 #[derive(Clone, Debug)]
 pub struct ExportDialog {
@@ -48,9 +55,14 @@ pub struct ExportDialog {
     path: String,
     /// The scene that the file name was proposed for.
     scene: PathBuf,
-    size: [u32; 2],
-    samples: u32,
+    picture: PictureSize,
+    /// Smaller, because an animation has many pictures.
+    animation: PictureSize,
     seconds: f64,
+    /// An existing file that the user was asked about and that may be replaced if asked again.
+    replaces: Option<PathBuf>,
+    /// True until the file's name has the keyboard.
+    was_opened: bool,
     target: Target,
     emit: Emit,
     stage: Stage,
@@ -64,9 +76,11 @@ impl Default for ExportDialog {
             kind: ExportKind::Picture,
             path: String::new(),
             scene: PathBuf::new(),
-            size: [1920, 1080],
-            samples: 16,
-            seconds: 4.0,
+            picture: PictureSize { size: [1920, 1080], samples: 16 },
+            animation: PictureSize { size: [640, 360], samples: 4 },
+            seconds: 0.0,
+            replaces: None,
+            was_opened: true,
             target: Target::Wgsl,
             emit: Emit::Field,
             stage: Stage::Compute,
@@ -84,7 +98,9 @@ impl ExportDialog {
         if *open && self.scene != session.path() {
             self.scene = session.path().to_owned();
             self.path = self.proposed();
+            self.seconds = session.clock.end;
         }
+        self.was_opened |= !*open;
         let mut stays_open = *open;
         let window =
             egui::Window::new("Export").open(&mut stays_open).resizable(false).collapsible(false);
@@ -103,9 +119,9 @@ impl ExportDialog {
         });
         ui.separator();
         match self.kind {
-            ExportKind::Picture => self.picture(ui),
+            ExportKind::Picture => picture_size(ui, &mut self.picture),
             ExportKind::Animation => {
-                self.picture(ui);
+                picture_size(ui, &mut self.animation);
                 let drag = number_drag(&mut self.seconds).range(0.04..=600.0).speed(0.05);
                 labelled(ui, "length", |ui| {
                     ui.add(drag.suffix(" s"))
@@ -115,52 +131,40 @@ impl ExportDialog {
             ExportKind::Shader => self.shader(ui),
             ExportKind::Screenshot => {}
         }
+        let mut entered = false;
         labelled(ui, "file", |ui| {
             let edit = egui::TextEdit::singleline(&mut self.path).desired_width(f32::INFINITY);
-            ui.add(edit).on_hover_text(&self.path);
+            let edit = ui.add(edit).on_hover_text(&self.path);
+            if std::mem::take(&mut self.was_opened) {
+                edit.request_focus();
+            }
+            // Enter in a field for a number ends typing the number and does not save.
+            entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         });
         let path = PathBuf::from(&self.path);
         let problem = self.problem(&path, session);
         ui.horizontal(|ui| {
             let ready = problem.is_none() && session.model.is_some();
-            let button = ui.add_enabled(ready, egui::Button::new("Save"));
+            let asks = self.replaces.as_ref() == Some(&path);
+            let text = if asks { "Replace" } else { "Save" };
+            let button = ui.add_enabled(ready, egui::Button::new(text));
             let button = button.on_hover_text("Write the file in the background (Enter).");
-            let entered = ready && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            if button.clicked() || entered {
-                self.save(ui.ctx(), path.clone(), session, open);
-            }
-            let (text, color) = match problem {
-                Some(problem) => (problem, theme::of(ui).warning),
-                None if path.exists() => {
-                    ("replaces the existing file".to_owned(), theme::of(ui).warning)
+            if button.clicked() || entered && ready {
+                if path.exists() && !asks {
+                    self.replaces = Some(path.clone());
+                } else {
+                    self.replaces = None;
+                    self.save(ui.ctx(), path.clone(), session, open);
                 }
-                None => (String::new(), theme::of(ui).weak),
+            }
+            let text = match problem {
+                Some(problem) => problem,
+                None if self.replaces.as_ref() == Some(&path) => {
+                    "the file exists: replace it?".to_owned()
+                }
+                None => String::new(),
             };
-            ui.label(RichText::new(text).small().color(color));
-        });
-    }
-
-    fn picture(&mut self, ui: &mut Ui) {
-        labelled(ui, "size", |ui| {
-            let [width, height] = &mut self.size;
-            ui.add(egui::DragValue::new(width).range(1..=MAX_SIDE).speed(4))
-                .on_hover_text("Width in pixels.");
-            ui.label("×");
-            ui.add(egui::DragValue::new(height).range(1..=MAX_SIDE).speed(4))
-                .on_hover_text("Height in pixels.");
-            for (name, size) in [("HD", [1920, 1080]), ("4K", [3840, 2160]), ("square", [2048; 2])]
-            {
-                let text = format!("{} × {} pixels.", size[0], size[1]);
-                if ui.small_button(name).on_hover_text(text).clicked() {
-                    self.size = size;
-                }
-            }
-        });
-        labelled(ui, "samples", |ui| {
-            for count in [1, 4, 16, 64] {
-                ui.selectable_value(&mut self.samples, count, count.to_string())
-                    .on_hover_text("Rays averaged in each pixel; more is smoother and slower.");
-            }
+            ui.label(RichText::new(text).small().color(theme::of(ui).warning));
         });
     }
 
@@ -258,7 +262,7 @@ impl ExportDialog {
             ExportKind::Animation => session.frames(model, self.seconds, HUNDREDTHS),
             ExportKind::Shader => {
                 let (scene, source) =
-                    (self.scene.clone(), session.param_values.source_with_values(model));
+                    (self.scene.clone(), session.param_values.source_with_values(&model.source));
                 let (target, emit, stage) = (self.target, self.emit, self.stage);
                 let method = session.build().method;
                 let options =
@@ -270,13 +274,17 @@ impl ExportDialog {
                 return ctx.request_repaint();
             }
         };
+        let PictureSize { size, samples } = match self.kind {
+            ExportKind::Animation => self.animation,
+            ExportKind::Picture | ExportKind::Shader | ExportKind::Screenshot => self.picture,
+        };
         let options = PictureOptions::new()
-            .size(self.size)
+            .size(size)
             .method(session.build().method)
             .backend(if session.build().on_cpu { Backend::Cpu } else { Backend::Auto })
             .pose(session.manual_pose())
             .tolerance(session.tolerance)
-            .samples(Some(self.samples));
+            .samples(Some(samples));
         let (model, options) = (std::sync::Arc::clone(model), Box::new(options));
         let job = ExportJob::Picture { model, path, options, frames, hundredths: HUNDREDTHS };
         session.exports().send(job);
@@ -290,6 +298,29 @@ fn take_screenshot(ctx: &Context, path: PathBuf, session: &Session) {
         let size = image.size.map(|side| side as u32);
         let rgba = image.as_raw().to_vec();
         send(ExportJob::Screenshot { path, size, rgba });
+    });
+}
+
+fn picture_size(ui: &mut Ui, picture: &mut PictureSize) {
+    labelled(ui, "size", |ui| {
+        let [width, height] = &mut picture.size;
+        ui.add(egui::DragValue::new(width).range(1..=MAX_SIDE).speed(4))
+            .on_hover_text("Width in pixels.");
+        ui.label("×");
+        ui.add(egui::DragValue::new(height).range(1..=MAX_SIDE).speed(4))
+            .on_hover_text("Height in pixels.");
+        for (name, size) in [("HD", [1920, 1080]), ("4K", [3840, 2160]), ("square", [2048; 2])] {
+            let text = format!("{} × {} pixels.", size[0], size[1]);
+            if ui.small_button(name).on_hover_text(text).clicked() {
+                picture.size = size;
+            }
+        }
+    });
+    labelled(ui, "samples", |ui| {
+        for count in [1, 4, 16, 64] {
+            ui.selectable_value(&mut picture.samples, count, count.to_string())
+                .on_hover_text("Samples per pixel; more is smoother and slower.");
+        }
     });
 }
 

@@ -15,10 +15,11 @@ pub const SIDES: [(Key, Side); 6] = [
     (Key::Num8, Side::Bottom),
 ];
 
-const ROWS: [(&str, &str); 20] = [
+const ROWS: [(&str, &str); 23] = [
     ("drag", "orbit around the pivot"),
     ("right or middle drag", "pan"),
     ("wheel", "zoom at the pointer"),
+    ("click", "light the code of the shape"),
     ("double-click", "orbit around that point"),
     ("W A S D Q E", "fly; faster with Shift"),
     ("Alt + drag", "look around"),
@@ -30,9 +31,11 @@ const ROWS: [(&str, &str); 20] = [
     ("C", "copy the camera to paste into the scene"),
     ("V", "next view"),
     ("Space", "play or pause the time"),
-    ("Ctrl + S", "export a picture, an animation, a shader"),
+    ("Ctrl + S", "save changed values to the scene's file"),
+    ("Ctrl + E", "export a picture, an animation, a shader"),
     ("K, T", "show the panel “Controls”, “Code”"),
-    ("Esc", "stop or resume refining the picture"),
+    ("R", "pause or resume refining the picture"),
+    ("Esc", "close a menu or a dialog"),
     ("drop a file", "open that scene"),
     ("?, F1", "show this list"),
     ("Ctrl + Q", "close the window"),
@@ -40,7 +43,11 @@ const ROWS: [(&str, &str); 20] = [
 
 /// Shows the list if it is open.
 pub fn show(ctx: &Context, open: &mut bool) {
-    let window = egui::Window::new("Keys and mouse").open(open).resizable(false).collapsible(false);
+    let window = egui::Window::new("Keys and mouse")
+        .open(open)
+        .resizable(false)
+        .collapsible(false)
+        .vscroll(true);
     window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(ctx, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 6.0]).show(ui, |ui| {
             for (key, what) in ROWS {

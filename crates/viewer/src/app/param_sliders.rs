@@ -2,14 +2,15 @@
 
 use eframe::egui::{self, Response, RichText, SliderClamping, Ui};
 use sdfc_graph::{Param, ParamKind};
-use sdfc_lang::live_literals::LiveLiteral;
 
 use super::action::Action;
 use super::number_widget::number_drag;
-use super::{literal_buttons, theme};
+use super::{number_buttons, theme};
 use crate::scene::model::Model;
 use crate::scene::number_text::value_text;
+use crate::scene::source_numbers::SourceNumber;
 use crate::session::Session;
+use crate::session::save_state::Saved;
 
 /// The space beside a slider for its number and its reset button, in points.
 const BESIDE_SLIDER: f32 = 96.0;
@@ -17,7 +18,8 @@ const BESIDE_SLIDER: f32 = 96.0;
 /// Shows the section "Params" of the panel.
 pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec<Action>) {
     let is_empty = model.declared().is_empty();
-    if is_empty && model.named().next().is_none() {
+    let mut named_numbers = model.numbers.iter().filter(|number| number.name.is_some()).peekable();
+    if is_empty && named_numbers.peek().is_none() {
         let text = "The scene has none. A line `param r = 0.5 in 0..1` or `let r = 0.5` in it adds \
                     a slider here. In the panel “Code” every number can be dragged.";
         ui.label(RichText::new(text).small().color(theme::of(ui).weak));
@@ -26,12 +28,12 @@ pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
         declared(ui, session, model, actions);
     }
     let mut is_changed = false;
-    for (name, literal, param) in model.named() {
-        named(ui, session, name, literal, param);
-        is_changed |= session.param_values.literal(literal) != literal.value;
+    for number in named_numbers {
+        named(ui, session, number);
+        is_changed |= session.param_values.number(number) != number.value;
     }
     if is_changed {
-        literal_buttons::show(ui, session, model, actions);
+        number_buttons::show(ui, session, model, actions);
     }
 }
 
@@ -50,13 +52,17 @@ fn declared(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
             session.param_values.params.insert(param.name.clone(), value);
         }
     }
-    ui.horizontal(|ui| {
-        let reset = ui.add_enabled(
-            !session.param_values.params.is_empty(),
-            egui::Button::new("Reset params"),
-        );
+    ui.horizontal_wrapped(|ui| {
+        let is_changed = !session.param_values.params.is_empty();
+        let unchanged = "No param has been changed.";
+        let save = ui.add_enabled(is_changed, egui::Button::new("Save params"));
+        let save = save.on_hover_text("Write the values to the scene's file, as the defaults.");
+        if save.on_disabled_hover_text(unchanged).clicked() {
+            session.save_to_file(Saved::Params);
+        }
+        let reset = ui.add_enabled(is_changed, egui::Button::new("Reset params"));
         let reset = reset.on_hover_text("Reset all params to their defaults.");
-        if reset.on_disabled_hover_text("No param has been changed.").clicked() {
+        if reset.on_disabled_hover_text(unchanged).clicked() {
             session.param_values.params.clear();
         }
         let copy = ui.button("Copy values");
@@ -67,28 +73,27 @@ fn declared(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
     });
 }
 
-/// A slider for a live literal that a `let` names.
-fn named(ui: &mut Ui, session: &mut Session, name: &str, literal: &LiveLiteral, param: &Param) {
-    let is_angle = param.kind == ParamKind::Angle;
-    let unit = if is_angle { 1f64.to_degrees() } else { 1.0 };
-    let before = session.param_values.literal(literal);
+/// A slider for a number that a `let` names.
+fn named(ui: &mut Ui, session: &mut Session, number: &SourceNumber) {
+    let unit = if number.is_angle { 1f64.to_degrees() } else { 1.0 };
+    let before = session.param_values.number(number);
     let mut value = before * unit;
-    let text = &param.summary;
+    let (name, text) = (number.name.as_deref().unwrap_or_default(), &number.text);
     let hint = format!(
         "`let {name} = {text}` in the scene. Drag the number to go beyond the slider. For a slider \
          with other ends, write `param {name} = {text} in LOW..HIGH` instead."
     );
-    let default = (before != literal.value).then(|| text.clone());
-    let limits = param.range.map(|ends| ends.map(|end| end * unit));
-    let ends = default_ends(literal.value * unit);
-    let suffix = if is_angle { "°" } else { "" };
+    let default = (before != number.value).then(|| text.clone());
+    let limits = number.range.map(|ends| ends.map(|end| end * unit));
+    let ends = default_ends(number.value * unit);
+    let suffix = if number.is_angle { "°" } else { "" };
     let widget = |ui: &mut Ui, label: RowLabel<'_>| {
         slider(ui, &mut value, [ends, limits], suffix, label);
     };
     if row(ui, name, &hint, default, widget) {
-        session.param_values.set_literal(literal, literal.value);
+        session.param_values.set_number(number, number.value);
     } else if value != before * unit {
-        session.param_values.set_literal(literal, value / unit);
+        session.param_values.set_number(number, value / unit);
     }
 }
 

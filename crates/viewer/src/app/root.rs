@@ -8,19 +8,25 @@ use eframe::egui::{self, Context, Ui};
 
 use super::action::Action;
 use super::canvas::Canvas;
-use super::close_dialog::CloseDialog;
+use super::code_editor::CodeEditor;
+use super::code_panel::CodeMode;
 use super::export_dialog::ExportDialog;
 use super::monitor::Monitor;
 use super::open_panels::OpenPanels;
+use super::path_dialog::{Chosen, NEW_SCENE, PathDialog};
+use super::unsaved_dialog::{Exit, UnsavedDialog};
 use super::{
-    code_panel, controls, diagnostics_overlay, help, scene_menu, shortcuts, status_bar, theme,
-    toolbar,
+    code_panel, controls, diagnostics_overlay, help, missing_file, path_dialog, scene_menu,
+    shortcuts, status_bar, theme, toolbar,
 };
 use crate::session::Session;
 use crate::settings::Settings;
 
 /// The time that a message stays in the status line.
 const MESSAGE_TIME: Duration = Duration::from_secs(4);
+
+/// The panels leave this width in points for the picture, unless the window is narrower.
+const MIN_PICTURE: f32 = 240.0;
 
 /// The application, which can move from one window to another.
 pub struct App {
@@ -32,8 +38,13 @@ pub struct App {
     clipboard: Option<arboard::Clipboard>,
     message: Option<(String, Instant)>,
     panels: OpenPanels,
+    code_mode: CodeMode,
+    code_editor: CodeEditor,
     export: ExportDialog,
-    close_dialog: CloseDialog,
+    unsaved: UnsavedDialog,
+    path_dialog: PathDialog,
+    /// True once the user has confirmed that the window closes.
+    may_close: bool,
     settings: Settings,
     settings_path: Option<PathBuf>,
     last_frame: Instant,
@@ -65,8 +76,12 @@ impl App {
             clipboard: None,
             message: None,
             panels: OpenPanels::default(),
+            code_mode: CodeMode::default(),
+            code_editor: CodeEditor::default(),
             export: ExportDialog::default(),
-            close_dialog: CloseDialog::default(),
+            unsaved: UnsavedDialog::default(),
+            path_dialog: PathDialog::default(),
+            may_close: false,
             settings,
             settings_path,
             last_frame: Instant::now(),
@@ -87,6 +102,11 @@ impl App {
     pub(super) fn close(&mut self) {
         let ctx = current_context(&self.context);
         self.store_settings(&ctx);
+    }
+
+    /// The open scene, to look at.
+    pub fn opened(&self) -> &Session {
+        &self.session
     }
 
     /// The open scene.
@@ -113,32 +133,49 @@ impl App {
         let (session, panels, settings) = (&mut self.session, &mut self.panels, &mut self.settings);
         let chosen = bar.show(ui, |ui| toolbar::show(ui, session, panels, settings)).inner;
         match chosen {
-            Some(scene_menu::Choice::Open(path)) => self.open(&ctx, path),
+            Some(scene_menu::Choice::Open(path)) => self.leave(&ctx, Exit::Open(path)),
+            Some(scene_menu::Choice::Ask(purpose)) => self.path_dialog.open(purpose, &self.session),
             Some(scene_menu::Choice::Failed(why)) => actions.push(Action::Message(why)),
             None => {}
         }
         let message = self.message.as_ref().map(|(text, _)| text.as_str());
         let line = egui::Panel::bottom("status").frame(bar_frame(ui));
         line.show(ui, |ui| status_bar::show(ui, &mut self.session, message));
+        self.panels.keep_room_for_picture(ui.available_width());
+        let most = (ui.available_width() - MIN_PICTURE).max(220.0);
         if self.panels.controls {
-            let panel = egui::Panel::right("controls").default_size(290.0).min_size(220.0);
+            let panel =
+                egui::Panel::right("controls").default_size(290.0).min_size(220.0).max_size(most);
             panel.show(ui, |ui| controls::show(ui, &mut self.session, &mut actions));
         }
         if self.panels.code {
-            let size = (ui.available_width() * 0.42).clamp(270.0, 400.0);
-            let panel = egui::Panel::left("code").default_size(size).min_size(220.0);
-            panel.show(ui, |ui| code_panel::show(ui, &mut self.session, &mut actions));
+            let most = (ui.available_width() - MIN_PICTURE).max(220.0);
+            let size = (ui.available_width() * 0.48).clamp(270.0, 440.0);
+            let panel = egui::Panel::left("code").default_size(size).min_size(220.0).max_size(most);
+            let session = &mut self.session;
+            let state = (&mut self.code_mode, &mut self.code_editor);
+            panel.show(ui, |ui| code_panel::show(ui, session, state, &mut actions));
         }
         let center = egui::CentralPanel::no_frame();
         center.show(ui, |ui| {
-            self.canvas.show(ui, &mut self.session);
-            let warnings = &mut self.panels.warnings;
-            diagnostics_overlay::show(ui, &self.session, warnings, &mut actions);
+            if let Some(clicked) = self.canvas.show(ui, &mut self.session) {
+                self.code_editor.light(self.session.code_at(clicked), self.session.text());
+            }
+            diagnostics_overlay::show(ui, &self.session, &mut self.panels, &mut actions);
         });
         show_drop_hint(&ctx);
         help::show(&ctx, &mut self.panels.help);
         self.export.show(&ctx, &self.session, &mut self.panels.export);
-        self.close_dialog.show(&ctx, &self.session);
+        if let Some(path) = missing_file::show(&ctx, &self.session) {
+            self.create(&ctx, &path);
+        }
+        if let Some(exit) = self.path_dialog.show(&ctx, &self.session) {
+            self.leave_for(&ctx, exit);
+        }
+        self.ask_before_closing(&ctx);
+        if let Some(exit) = self.unsaved.show(&ctx, &mut self.session) {
+            self.perform_exit(&ctx, exit);
+        }
         actions.into_iter().for_each(|action| self.perform(action));
         if let Some((_, since)) = &self.message {
             if since.elapsed() < MESSAGE_TIME {
@@ -172,7 +209,49 @@ impl App {
     fn open_dropped_file(&mut self, ctx: &Context) {
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         if let Some(path) = dropped.first().map(|file| file.path()) {
-            self.open(ctx, path.to_owned());
+            self.leave(ctx, Exit::Open(path.to_owned()));
+        }
+    }
+
+    /// Leaves the scene, or asks first if changed numbers would be lost.
+    fn leave(&mut self, ctx: &Context, exit: Exit) {
+        if let Some(exit) = self.unsaved.request(exit, &self.session) {
+            self.perform_exit(ctx, exit);
+        }
+    }
+
+    /// Opens a file that was chosen in the dialog for paths.
+    fn leave_for(&mut self, ctx: &Context, chosen: Chosen) {
+        match chosen {
+            Chosen::Open(path) => self.leave(ctx, Exit::Open(path)),
+            // The changed numbers are in the new file.
+            Chosen::SavedAs(path) => self.open(ctx, path),
+        }
+    }
+
+    /// Creates the missing file of the scene, which the file watcher then notices.
+    fn create(&mut self, ctx: &Context, path: &Path) {
+        match path_dialog::create(path, NEW_SCENE) {
+            Ok(()) => self.open(ctx, path.to_owned()),
+            Err(why) => self.message = Some((why, Instant::now())),
+        }
+    }
+
+    fn ask_before_closing(&mut self, ctx: &Context) {
+        let closing = ctx.input(|input| input.viewport().close_requested());
+        if closing && !self.may_close && self.unsaved.request(Exit::Close, &self.session).is_none()
+        {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+        }
+    }
+
+    fn perform_exit(&mut self, ctx: &Context, exit: Exit) {
+        match exit {
+            Exit::Close => {
+                self.may_close = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            Exit::Open(path) => self.open(ctx, path),
         }
     }
 
@@ -200,6 +279,7 @@ impl App {
     fn perform(&mut self, action: Action) {
         let text = match action {
             Action::Message(text) => text,
+            Action::Fix(fix) => return self.session.apply_fix(&fix),
             Action::Copy(text) => match self.copy(&text) {
                 Ok(()) => format!("copied: {text}"),
                 Err(error) => format!("cannot copy: {error}"),

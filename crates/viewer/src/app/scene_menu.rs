@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use eframe::egui::{self, RichText, Ui};
 
+use super::path_dialog::Purpose;
 use super::theme;
-use crate::examples::EXAMPLES;
+use crate::examples::{EXAMPLES, Example};
+use crate::session::Session;
 use crate::settings::{Settings, examples_folder};
 
 /// The most scenes of the same folder that are listed.
@@ -17,16 +19,35 @@ const MAX_RECENT: usize = 15;
 pub enum Choice {
     /// Open this scene.
     Open(PathBuf),
-    /// An example could not be copied; why.
+    /// Ask for a path.
+    Ask(Purpose),
+    /// An example could not be written; why.
     Failed(String),
 }
 
 /// Shows the scene's name as a button that opens the menu.
-pub fn show(ui: &mut Ui, path: &Path, settings: &mut Settings) -> Option<Choice> {
+pub fn show(ui: &mut Ui, session: &Session, settings: &mut Settings) -> Option<Choice> {
+    let path = session.path();
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut choice = None;
     let menu = ui.menu_button(RichText::new(name).strong(), |ui| {
         ui.set_min_width(180.0);
+        for (purpose, text, help) in [
+            (Purpose::New, "New…", "Create a scene."),
+            (Purpose::Open, "Open…", "Open a scene by its path."),
+            (
+                Purpose::SaveAs,
+                "Save as…",
+                "Write the scene with its changed numbers to a new file.",
+            ),
+        ] {
+            if ui.button(text).on_hover_text(help).clicked() {
+                choice = Some(Choice::Ask(purpose));
+                ui.close();
+            }
+        }
+        ui.separator();
+        restore_example(ui, session, &mut choice);
         let menu = ui.menu_button("Examples", |ui| examples(ui, &mut choice));
         menu.response.on_hover_text(
             "Example scenes, each about one feature. Opening one copies it to a file of yours.",
@@ -42,9 +63,25 @@ pub fn show(ui: &mut Ui, path: &Path, settings: &mut Settings) -> Option<Choice>
             theme::set_light(ui.ctx(), settings.light);
         }
     });
-    let text = format!("{}\n\nOpens examples and other scenes.", path.display());
+    let text = format!("{}\n\nOpens and creates scenes.", path.display());
     menu.response.on_hover_text(text);
     choice
+}
+
+/// Shows a button that restores the open example, if it was edited.
+fn restore_example(ui: &mut Ui, session: &Session, choice: &mut Option<Choice>) {
+    let folder = examples_folder().filter(|folder| session.path().parent() == Some(folder));
+    let is_open = |example: &&Example| session.path().file_stem() == Some(example.name.as_ref());
+    let Some((folder, example)) = folder.zip(EXAMPLES.iter().find(is_open)) else { return };
+    let edited = **session.text() != *example.source;
+    let button = ui.add_enabled(edited, egui::Button::new("Restore example"));
+    let text = "Open the example as it was. Your version is kept in a file beside it.";
+    let button = button.on_hover_text(text);
+    if button.on_disabled_hover_text("The example has not been edited.").clicked() {
+        let restored = example.restore_in(&folder);
+        *choice = Some(restored.map_or_else(Choice::Failed, Choice::Open));
+        ui.close();
+    }
 }
 
 fn examples(ui: &mut Ui, choice: &mut Option<Choice>) {

@@ -6,14 +6,21 @@ use super::action::Action;
 use super::help::SIDES;
 use super::open_panels::OpenPanels;
 use crate::session::Session;
+use crate::session::save_state::Saved;
 
-/// Handles the keys that were pressed, unless text is being typed.
+/// Handles the keys that were pressed. While text is being typed, only saving and closing work.
 pub fn handle(
     ctx: &Context,
     session: &mut Session,
     panels: &mut OpenPanels,
     actions: &mut Vec<Action>,
 ) {
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
+        session.save_to_file(Saved::All);
+    }
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+    }
     if ctx.text_edit_focused() {
         return;
     }
@@ -45,13 +52,16 @@ pub fn handle(
         session.clock.toggle();
     }
     if pressed(Key::V) {
-        session.mode = session.mode.next();
+        // A slow frame may have several presses.
+        for _ in 0..ctx.input(|input| input.num_presses(Key::V)) {
+            session.mode = session.mode.next();
+        }
     }
-    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::S)) {
+    if pressed(Key::R) {
+        session.refine = !session.refine;
+    }
+    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::E)) {
         panels.export = !panels.export;
-    }
-    if ctx.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, Key::Q)) {
-        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
     if pressed(Key::K) {
         panels.controls = !panels.controls;
@@ -66,10 +76,6 @@ pub fn handle(
     let egui_closes =
         egui::Popup::is_any_open(ctx) || ctx.memory(|memory| memory.top_modal_layer().is_some());
     if pressed(Key::Escape) && !egui_closes {
-        if panels.help || panels.export {
-            (panels.help, panels.export) = (false, false);
-        } else {
-            session.refine = !session.refine;
-        }
+        (panels.help, panels.export) = (false, false);
     }
 }

@@ -4,17 +4,22 @@ use eframe::egui::{self, RichText, Ui};
 use sdfc_render::Clock;
 
 use super::theme;
+use crate::render::pacing::PASS_BUDGET_MS;
 use crate::render::picture::Picture;
-use crate::render::worker::PASS_BUDGET_MS;
+
 use crate::scene::model::{BuildTimes, Model};
 use crate::session::Session;
+
+/// Below this width in points the size of the picture and the evaluations are left out.
+const WIDE: f32 = 760.0;
 
 /// Shows the line. A message takes precedence over a problem, and that over the GPU's name.
 pub fn show(ui: &mut Ui, session: &mut Session, message: Option<&str>) {
     ui.horizontal(|ui| {
         if let Some(picture) = session.picture.as_deref() {
-            metrics(ui, session, picture);
+            metrics(ui, picture);
         }
+        refinement(ui, session);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             export_progress(ui, session);
             let problem = session.problem.as_ref().or(session.render_error.as_ref());
@@ -43,13 +48,16 @@ fn export_progress(ui: &mut Ui, session: &Session) {
     ui.add(bar).on_hover_text("Drawing a picture to export.");
 }
 
-fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
+fn metrics(ui: &mut Ui, picture: &Picture) {
     let color = theme::of(ui).weak;
     let weak = |text: String| RichText::new(text).small().color(color);
     let model = &picture.request.model;
     ui.label(weak(model.method.to_string())).on_hover_text("The ray method.");
+    let wide = ui.available_width() >= WIDE;
     let [width, height] = picture.request.size;
-    ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
+    if wide {
+        ui.label(weak(format!("{width} × {height}"))).on_hover_text("Width and height in pixels.");
+    }
     let clock = match picture.clock {
         Clock::Gpu => "by the GPU's clock",
         Clock::Wall => "by the CPU's clock, with the transfer of the picture",
@@ -72,7 +80,10 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
         picture.counts.capped,
         picture.counts.nan
     );
-    ui.label(weak(format!("{:.1} evaluations per pixel", evaluations.mean))).on_hover_text(text);
+    if wide {
+        let shown = weak(format!("{:.1} evaluations per pixel", evaluations.mean));
+        ui.label(shown).on_hover_text(text);
+    }
     if picture.counts.capped > 0 {
         let text = format!("{} out of steps", picture.counts.capped);
         ui.label(RichText::new(text).small().color(theme::of(ui).warning)).on_hover_text(
@@ -87,16 +98,29 @@ fn metrics(ui: &mut Ui, session: &Session, picture: &Picture) {
              Thin parts may be missing there.",
         );
     }
-    refinement(ui, session, picture);
 }
 
-/// The resolution or the samples of the picture, if it is not finished.
-fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
-    let text = if picture.divisor > 1 {
+/// The resolution or the samples of the picture, if it is not finished, and a button that pauses
+/// refining.
+fn refinement(ui: &mut Ui, session: &mut Session) {
+    let Some(picture) = session.picture.as_deref() else { return };
+    if !session.refine || !picture.finished && !picture.request.moving {
+        let (text, help) = match session.refine {
+            true => ("Pause", "Stop refining the picture (R)."),
+            false => ("Resume", "Refine the picture to full resolution (R)."),
+        };
+        if ui.small_button(text).on_hover_text(help).clicked() {
+            session.refine = !session.refine;
+        }
+    }
+    let text = if picture.stride > 1 {
+        let scale = picture.divisor * picture.stride;
+        format!("computing {}: 1/{scale} resolution", picture.request.mode.name())
+    } else if picture.divisor > 1 {
         let more = match (session.refine, picture.request.moving) {
-            (false, _) => ", not refined: Esc resumes",
+            (false, _) => ", refining is paused",
             (true, true) => "",
-            (true, false) => ", refining: Esc stops",
+            (true, false) => ", refining",
         };
         let full = picture.milliseconds * f64::from(picture.divisor * picture.divisor);
         let why = if full > PASS_BUDGET_MS { "slow scene: " } else { "" };
@@ -107,7 +131,7 @@ fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
         return;
     };
     let help = "A slow scene is drawn at a lower resolution while something moves, and refined \
-                when it rests. Esc stops and resumes refining.";
+                when it rests. R pauses and resumes refining.";
     ui.label(RichText::new(text).small().color(theme::of(ui).accent)).on_hover_text(help);
 }
 
@@ -115,7 +139,8 @@ fn refinement(ui: &mut Ui, session: &Session, picture: &Picture) {
 fn device(ui: &mut Ui, model: &Model) {
     let name = model.gpu_name().unwrap_or("CPU");
     let text = RichText::new(name).small().color(theme::of(ui).weak);
-    ui.label(text).on_hover_text(build_summary(model.build_times, model.pipelines));
+    let label = ui.add(egui::Label::new(text).truncate());
+    label.on_hover_text(build_summary(model.build_times, model.pipelines));
     if let Some(why) = &model.note {
         truncated(ui, why, theme::of(ui).warning);
     }

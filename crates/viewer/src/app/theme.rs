@@ -30,6 +30,8 @@ pub struct Palette {
     pub chosen: Color32,
     /// Links.
     pub link: Color32,
+    /// Functions, shapes and settings in the source.
+    pub call: Color32,
     /// Errors.
     pub error: Color32,
     /// Warnings.
@@ -52,6 +54,7 @@ const DARK: Palette = Palette {
     accent: Color32::from_rgb(232, 150, 76),
     chosen: Color32::from_rgb(110, 72, 38),
     link: Color32::from_rgb(122, 176, 232),
+    call: Color32::from_rgb(140, 200, 160),
     error: Color32::from_rgb(240, 98, 92),
     warning: Color32::from_rgb(233, 185, 73),
 };
@@ -72,6 +75,7 @@ const LIGHT: Palette = Palette {
     accent: Color32::from_rgb(176, 88, 10),
     chosen: Color32::from_rgb(255, 213, 170),
     link: Color32::from_rgb(22, 94, 170),
+    call: Color32::from_rgb(24, 112, 66),
     error: Color32::from_rgb(194, 40, 36),
     warning: Color32::from_rgb(150, 98, 0),
 };

@@ -13,6 +13,8 @@ use crate::views::mode::ViewMode;
 
 /// Below this width in points the names of view, method and tolerance are left out.
 const WIDE: f32 = 900.0;
+/// Below this width the tolerance is left out too.
+const NARROW: f32 = 600.0;
 
 /// Shows the bar; returns the choice of the scene menu.
 pub fn show(
@@ -21,24 +23,35 @@ pub fn show(
     panels: &mut OpenPanels,
     settings: &mut Settings,
 ) -> Option<Choice> {
-    let wide = ui.available_width() >= WIDE;
-    let row = ui.horizontal(|ui| {
-        let choice = scene_menu::show(ui, session.path(), settings);
-        compile_state(ui, session);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.toggle_value(&mut panels.help, "?").on_hover_text("Keys and mouse (? or F1).");
-            ui.toggle_value(&mut panels.controls, "Controls")
-                .on_hover_text("Params, time, camera, accuracy, drawing (K).");
-            ui.toggle_value(&mut panels.code, "Code")
-                .on_hover_text("The scene's source, in which numbers can be dragged (T).");
-            ui.toggle_value(&mut panels.export, "Export")
-                .on_hover_text("Save a picture, an animation, a shader or a screenshot (Ctrl+S).");
+    let width = ui.available_width();
+    let (wide, narrow) = (width >= WIDE, width < NARROW);
+    // From the right, so that the rest of the row is left for the scene's name.
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let row = ui.allocate_ui_with_layout(size, layout, |ui| {
+        if narrow {
+            ui.spacing_mut().item_spacing.x = 3.0;
+        }
+        ui.toggle_value(&mut panels.help, "?").on_hover_text("Keys and mouse (? or F1).");
+        ui.toggle_value(&mut panels.controls, "Controls")
+            .on_hover_text("Params, time, camera, accuracy, drawing (K).");
+        ui.toggle_value(&mut panels.code, "Code").on_hover_text("The scene's source (T).");
+        ui.toggle_value(&mut panels.export, "Export")
+            .on_hover_text("Save a picture, an animation, a shader or a screenshot (Ctrl+E).");
+        if !narrow {
             ui.separator();
             tolerance(ui, session, wide);
-            methods(ui, session, wide);
-            views(ui, session, wide);
-        });
-        choice
+        }
+        ui.spacing_mut().combo_width = if narrow { 50.0 } else { 100.0 };
+        methods(ui, session, wide);
+        views(ui, session, wide);
+        let rest = egui::Layout::left_to_right(egui::Align::Center);
+        ui.with_layout(rest, |ui| {
+            let choice = scene_menu::show(ui, session, settings);
+            compile_state(ui, session);
+            choice
+        })
+        .inner
     });
     row.inner
 }
@@ -72,10 +85,11 @@ fn compile_state(ui: &mut Ui, session: &Session) {
     if errors > 0 {
         let text = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
         let shown = if session.model.is_some() { ", showing the last good scene" } else { "" };
-        ui.label(RichText::new(format!("{text}{shown}")).small().color(theme::of(ui).error));
+        let text = RichText::new(format!("{text}{shown}")).small().color(theme::of(ui).error);
+        ui.add(egui::Label::new(text).truncate());
     } else if session.building {
         let text = RichText::new("compiling the shader…").small();
-        ui.label(text.color(theme::of(ui).accent));
+        ui.add(egui::Label::new(text.color(theme::of(ui).accent)).truncate());
     }
 }
 
@@ -86,6 +100,7 @@ fn named(name: &str, value: &str, wide: bool) -> String {
 
 fn views(ui: &mut Ui, session: &mut Session, wide: bool) {
     let text = named("View", session.mode.name(), wide);
+    let text = if session.is_view_pending() { format!("{text}, computing…") } else { text };
     let combo = egui::ComboBox::from_id_salt("view").selected_text(text);
     let combo = combo.height(400.0).show_ui(ui, |ui| {
         for mode in ViewMode::ALL {

@@ -22,6 +22,7 @@ use crate::scene::document::{Document, Imports};
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::model::{BuildTimes, Model, is_animated};
 use crate::scene::shapes::ShapeIndex;
+use crate::scene::source_numbers::source_numbers;
 
 /// A scene with at most this many nodes is never rerolled, so that its numbers stay live, even if
 /// loops would draw faster. See `docs/scale.md`.
@@ -66,6 +67,8 @@ pub struct ModelBuilder<R> {
     requests: Arc<LatestChannel<BuildRequest>>,
     report: R,
     last_read: Option<LastRead>,
+    /// The text of the file when it was read last.
+    last_file: Option<Arc<str>>,
     /// The scene that is shown, and the request that it was built for.
     shown: Option<(BuildRequest, SceneContent)>,
     engines: Engines,
@@ -86,6 +89,7 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
             requests,
             report,
             last_read: None,
+            last_file: None,
             shown: None,
             engines: Engines::default(),
             device_generation: 0,
@@ -120,17 +124,28 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
     /// Builds the file as it is now. Returns false if it gives no model.
     fn build_from_file(&mut self, request: &BuildRequest) -> bool {
         let read_at = Instant::now();
-        let document = match Document::read(&request.path) {
-            Ok(document) => document,
-            Err(error) => {
+        let (document, file) = match (Document::read(&request.path), &request.draft) {
+            (Ok(document), None) => {
+                let file = Arc::from(document.source.as_str());
+                (document, Some(file))
+            }
+            (read, Some(draft)) => {
+                let file = read.ok().map(|document| Arc::from(document.source));
+                (Document::draft(&request.path, draft), file)
+            }
+            (Err(error), None) => {
                 self.last_read = None;
                 (self.report)(CompileEvent::Unreadable(error.to_string()));
                 return false;
             }
         };
+        let has_changed = std::mem::replace(&mut self.last_file, file.clone()) != file;
         let same_scene =
             self.last_read.as_ref().is_some_and(|last| last.gives_same_scene(request, &document));
         if same_scene && self.last_read.as_ref().is_some_and(|last| last.request == *request) {
+            if let Some(file) = file.filter(|_| has_changed) {
+                (self.report)(CompileEvent::FileChanged(file));
+            }
             return true;
         }
         self.last_content_id += u64::from(!same_scene);
@@ -144,7 +159,8 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         self.last_read =
             Some(LastRead { request: request.clone(), source: document.source.clone(), imports });
         let draws = scene.as_ref().is_some_and(Scene::draws);
-        (self.report)(CompileEvent::Compiled { diagnostics, folders, draws });
+        let text = document.source.as_str().into();
+        (self.report)(CompileEvent::Compiled { text, file, diagnostics, folders, draws });
         match scene {
             None => false,
             Some(_) if !draws => {
@@ -295,10 +311,14 @@ impl<R: FnMut(CompileEvent)> ModelBuilder<R> {
         let SceneContent { scene, source, shapes, field, animated, read_at, id, .. } =
             content.clone();
         let PreparedEngine { engine, method, method_program, note } = prepared;
+        let literals = scene.live_literals().iter();
+        let literals = literals.filter_map(|it| Some((it, scene.params().get(it.param)?)));
+        let numbers = source_numbers(&source, literals);
         Model {
             parallel: is_parallel(request, &scene),
             scene,
             source,
+            numbers,
             engine,
             method,
             method_program,

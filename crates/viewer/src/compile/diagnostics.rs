@@ -2,7 +2,7 @@
 //! positions to click.
 
 use sdfc::{Diagnostic, Diagnostics, Sources};
-use sdfc_diagnostics::locate;
+use sdfc_diagnostics::{Fix, Span, locate};
 
 use crate::scene::document::source_line;
 
@@ -26,6 +26,10 @@ pub struct ShownDiagnostic {
     pub file: String,
     /// Line and column, from 1.
     pub position: [u32; 2],
+    /// The marked range of the file, in bytes.
+    pub range: std::ops::Range<usize>,
+    /// Changes of the file that an editor can make.
+    pub fixes: Vec<ShownFix>,
     /// The source line.
     pub line: String,
     /// The marked range of that line, in characters from 0.
@@ -34,6 +38,15 @@ pub struct ShownDiagnostic {
     pub label: String,
     /// Notes, then suggestions.
     pub help: Vec<String>,
+}
+
+/// A change of the file that a diagnostic proposes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownFix {
+    /// What the change does.
+    pub title: String,
+    /// Ranges of the file with the text that replaces each of them.
+    pub edits: Vec<(Span, String)>,
 }
 
 impl SceneDiagnostics {
@@ -75,6 +88,8 @@ impl ShownDiagnostic {
             message: located.message,
             file: located.file,
             position: [located.start.line, located.start.column],
+            range: found.span.start as usize..found.span.end as usize,
+            fixes: found.fixes.iter().filter_map(|fix| ShownFix::new(fix, found)).collect(),
             line,
             marked: from..to.max(from),
             label: found.label.clone(),
@@ -86,6 +101,14 @@ impl ShownDiagnostic {
     pub fn location(&self) -> String {
         let [line, column] = self.position;
         format!("{}:{line}:{column}", self.file)
+    }
+}
+
+impl ShownFix {
+    /// `None` if the fix changes another file than that of the diagnostic.
+    fn new(fix: &Fix, found: &Diagnostic) -> Option<Self> {
+        let is_own = fix.edits.iter().all(|(span, _)| span.file == found.span.file);
+        is_own.then(|| Self { title: fix.title.clone(), edits: fix.edits.clone() })
     }
 }
 

@@ -14,6 +14,8 @@ use crate::scene::model::Model;
 pub struct BuildRequest {
     /// The scene's file.
     pub path: PathBuf,
+    /// The text that is compiled in place of the file's, if it was edited in the window.
+    pub draft: Option<Arc<str>>,
     /// The ray method; `None` takes the scene's.
     pub method: Option<sdfc::Method>,
     /// True if the scene's numbers become live literals, which change without a recompile.
@@ -33,6 +35,7 @@ impl BuildRequest {
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self {
             path: path.into(),
+            draft: None,
             method: None,
             live_literals: true,
             values: CompileValues::new(),
@@ -48,8 +51,14 @@ impl BuildRequest {
 pub enum CompileEvent {
     /// The file cannot be read; why.
     Unreadable(String),
+    /// The file has another text, but a draft is compiled in place of it.
+    FileChanged(Arc<str>),
     /// The source was compiled, with or without errors.
     Compiled {
+        /// The text that was compiled.
+        text: Arc<str>,
+        /// The text of the file as it was read; `None` if there is a draft and no file.
+        file: Option<Arc<str>>,
         /// Errors and warnings.
         diagnostics: SceneDiagnostics,
         /// The folders to watch: a change in one of them can change the scene.

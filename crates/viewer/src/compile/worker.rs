@@ -150,8 +150,8 @@ mod tests {
             std::fs::write(&path, &text).unwrap();
             worker.send(on_cpu(&path));
             let model = ready_model(&events);
-            let lines: Vec<usize> = (model.literals())
-                .map(|(literal, _)| text[..literal.span.start as usize].lines().count())
+            let lines: Vec<usize> = (model.numbers.iter())
+                .map(|number| text[..number.span.start as usize].lines().count())
                 .collect();
             assert_eq!(lines.len(), sdfc_lang::live_literals::MAX_LIVE_LITERALS);
             lines.into_iter().fold([usize::MAX, 0], |[lo, hi], at| [lo.min(at), hi.max(at)])
@@ -223,6 +223,7 @@ mod tests {
                 CompileEvent::Failed(why) => panic!("{why}"),
                 CompileEvent::Ready(_)
                 | CompileEvent::Compiled { .. }
+                | CompileEvent::FileChanged(_)
                 | CompileEvent::BuildingPipeline
                 | CompileEvent::Unreadable(_)
                 | CompileEvent::Empty => {}

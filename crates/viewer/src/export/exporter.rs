@@ -14,7 +14,7 @@ use crate::scene::model::Model;
 /// A file to write.
 #[derive(Debug)]
 pub enum ExportJob {
-    /// The scene's own file, unless it has changed on disk.
+    /// The scene's own file, unless it has another text on disk.
     SaveScene {
         /// The file.
         path: PathBuf,
@@ -58,8 +58,14 @@ pub enum ExportJob {
     },
 }
 
-/// A message for the status line, of success or failure.
-pub type ExportOutcome = Result<String, String>;
+/// The outcome of a job.
+#[derive(Debug)]
+pub struct ExportOutcome {
+    /// True if the job was to save the scene's own file.
+    pub is_scene: bool,
+    /// A message for the status line, of success or failure.
+    pub result: Result<String, String>,
+}
 
 /// The state of the current job, shared between threads.
 #[derive(Debug, Default)]
@@ -86,16 +92,19 @@ pub struct Exporter {
 
 impl Exporter {
     /// Writes a file, completely or not at all.
-    ///
-    /// # Errors
-    ///
-    /// A message for the user.
     pub fn run(&self, job: ExportJob) -> ExportOutcome {
+        let is_scene = matches!(job, ExportJob::SaveScene { .. });
+        ExportOutcome { is_scene, result: self.write_file(job) }
+    }
+
+    fn write_file(&self, job: ExportJob) -> Result<String, String> {
         match job {
             ExportJob::SaveScene { path, before, after } => {
-                let document = Document::read(&path).map_err(|error| error.to_string())?;
-                if document.source != before {
-                    return Err("not saved: the file has changed on disk".to_owned());
+                if path.exists() {
+                    let document = Document::read(&path).map_err(|error| error.to_string())?;
+                    if document.source != before {
+                        return Err("not saved: the file has changed on disk".to_owned());
+                    }
                 }
                 write(&path, after.as_bytes())
             }
@@ -174,7 +183,7 @@ fn png([width, height]: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, String> {
     Ok(file)
 }
 
-fn write(path: &Path, bytes: &[u8]) -> ExportOutcome {
+fn write(path: &Path, bytes: &[u8]) -> Result<String, String> {
     sdfc_files::write(path, bytes).map_err(|error| cannot_write(path, &error))?;
     Ok(format!("saved {}", path.display()))
 }
@@ -199,10 +208,13 @@ mod tests {
         std::fs::write(&path, "box(1)").unwrap();
         let save = |before: &str| {
             let (before, after) = (before.to_owned(), "box(2)".to_owned());
-            exporter().run(ExportJob::SaveScene { path: path.clone(), before, after })
+            exporter().run(ExportJob::SaveScene { path: path.clone(), before, after }).result
         };
         assert!(save("box(3)").is_err());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(1)");
+        assert!(save("box(1)").is_ok());
+        // A deleted file is written again.
+        std::fs::remove_file(&path).unwrap();
         assert!(save("box(1)").is_ok());
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "box(2)");
     }
@@ -218,22 +230,22 @@ mod tests {
             let (model, path, options) = (Arc::clone(&model), in_folder(name), Box::new(options));
             ExportJob::Picture { model, path, options, frames, hundredths: 4 }
         };
-        exporter().run(picture("a.png", 1)).unwrap();
+        exporter().run(picture("a.png", 1)).result.unwrap();
         assert_eq!(image::open(in_folder("a.png")).unwrap().width(), 24);
-        exporter().run(picture("a.gif", 3)).unwrap();
+        exporter().run(picture("a.gif", 3)).result.unwrap();
         assert!(std::fs::read(in_folder("a.gif")).unwrap().starts_with(b"GIF89a"));
-        assert!(exporter().run(picture("b.png", 3)).unwrap_err().contains(".gif"));
+        assert!(exporter().run(picture("b.png", 3)).result.unwrap_err().contains(".gif"));
         let cancelled = exporter();
         lock(&cancelled.state).cancelled = true;
-        assert!(cancelled.run(picture("c.png", 1)).is_err());
+        assert!(cancelled.run(picture("c.png", 1)).result.is_err());
         assert!(!in_folder("c.png").exists());
         let (scene, path) = (in_folder("a.sdf"), in_folder("a.wgsl"));
         let (source, options) = (model.source.clone(), ShaderOptions::default());
-        exporter().run(ExportJob::Shader { scene, source, path, options }).unwrap();
+        exporter().run(ExportJob::Shader { scene, source, path, options }).result.unwrap();
         let shader = std::fs::read_to_string(in_folder("a.wgsl")).unwrap();
         assert!(shader.contains("fn sdf_distance"));
         let (path, rgba) = (in_folder("w.png"), vec![9; 4 * 6]);
-        exporter().run(ExportJob::Screenshot { path, size: [3, 2], rgba }).unwrap();
+        exporter().run(ExportJob::Screenshot { path, size: [3, 2], rgba }).result.unwrap();
         assert_eq!(image::open(in_folder("w.png")).unwrap().height(), 2);
     }
 }

@@ -1,5 +1,7 @@
 //! The thread that draws the picture, and information about single pixels.
 
+pub mod pacing;
 pub mod picture;
 pub mod pixel_info;
+pub mod view_painter;
 pub mod worker;

@@ -65,10 +65,14 @@ pub struct Picture {
     pub view: View,
     /// Red, green, blue, alpha of each pixel in sRGB.
     pub rgba: Vec<u8>,
+    /// Width and height of `rgba`. While a slow view is being computed, it is smaller than `image`.
+    pub rgba_size: [u32; 2],
     /// The meaning of the colours.
     pub legend: Legend,
-    /// The requested width and height are divided by this.
+    /// The requested width and height are divided by this in `image`.
     pub divisor: u32,
+    /// Width and height of `image` are divided by this in `rgba`.
+    pub stride: u32,
     /// Samples per pixel.
     pub samples: u32,
     /// True if no finer picture follows.

@@ -1,5 +1,7 @@
 //! Information about one pixel of a picture.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use sdfc_render::{HIT, is_unproven};
 
@@ -24,6 +26,8 @@ pub struct PixelInfo {
     pub evaluations: u32,
     /// The name and source position of the shape that was hit, once the classifier is built.
     pub shape: Option<String>,
+    /// The name of the file that writes that shape, and the range of the call in it.
+    pub call: Option<(String, Range<usize>)>,
 }
 
 impl PixelInfo {
@@ -43,8 +47,8 @@ impl PixelInfo {
         let gradient = field.map(|field| DVec3::from(field.partials));
         let (shapes, scene) = (&request.model.shapes, &request.model.scene);
         let shape = shapes.known_leaves().filter(|_| pixel.status == HIT).and_then(|leaves| {
-            let index = leaves.at(&request.frame, &[Some(point.to_array())]).pop()??;
-            Some(shapes.label(scene, *leaves.shapes().get(index)?))
+            let index = leaves.at(&request.frame, &[Some(point.to_array())], &|| false).pop()??;
+            leaves.shapes().get(index).copied()
         });
         Some(Self {
             status: pixel.status,
@@ -54,7 +58,8 @@ impl PixelInfo {
             distance: field.map(|field| field.value),
             normal: gradient.and_then(DVec3::try_normalize).filter(|_| pixel.status == HIT),
             evaluations: pixel.evaluations,
-            shape,
+            call: shape.and_then(|shape| shapes.call(shape).cloned()),
+            shape: shape.map(|shape| shapes.label(scene, shape)),
         })
     }
 }

@@ -5,6 +5,9 @@
 //! samples per pixel. A newer request interrupts a finer pass at its next tile. It does not
 //! interrupt the first pass, or a camera that never rests would never be seen to move, unless that
 //! pass takes longer than `FIRST_PASS_LIMIT`.
+//!
+//! A view that is slow to compute is shown for few pixels first, then for more of them. A newer
+//! request interrupts that too.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,23 +22,22 @@ use sdfc_render::{
 };
 
 use crate::latest_channel::LatestChannel;
+use crate::render::pacing::{PASS_BUDGET_MS, Pacing};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
+use crate::render::view_painter::{ColoredView, first_stride, paint};
+use crate::scene::field_probe::IsInterrupted;
 use crate::scene::model::Engine;
 use crate::views::input::ViewInput;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 use crate::worker_thread::WorkerThread;
 
-/// The longest time of a pass while the camera moves, in milliseconds.
-pub const PASS_BUDGET_MS: f64 = 30.0;
 /// After this long a newer request interrupts a first pass.
 const FIRST_PASS_LIMIT: Duration = Duration::from_millis(300);
 /// Milliseconds per tile; a newer request is noticed between tiles.
 const TILE_MS: f64 = 16.0;
-/// The coarsest pass divides width and height by this.
-const MAX_DIVISOR: u32 = 8;
-/// The divisor of a scene's first pass, when its cost is not known yet.
-const FIRST_DIVISOR: u32 = 4;
+/// A view that is computed for all pixels within this time, in milliseconds, is shown at once.
+const QUICK_VIEW_MS: f64 = 60.0;
 /// The longest time spent on more samples per pixel, in milliseconds. Edges are smooth long before.
 const SAMPLING_LIMIT_MS: f64 = 20_000.0;
 
@@ -89,6 +91,8 @@ struct DrawnImage {
     sum: Image,
     samples: u32,
     divisor: u32,
+    /// The last picture of the request's view, of all pixels or of some.
+    colored: Option<ColoredView>,
 }
 
 /// The thread's state between requests.
@@ -96,14 +100,16 @@ struct RenderState<R> {
     requests: Arc<LatestChannel<RenderRequest>>,
     report: R,
     drawn: Option<DrawnImage>,
-    /// The serial of a model and its milliseconds per pixel.
-    cost: Option<(u64, f64)>,
+    pacing: Pacing,
+    /// The pixels of the window per pixel of the last picture with the request's rays and view.
+    shown_scale: Option<u32>,
     started: Instant,
 }
 
 impl<R: FnMut(RenderEvent)> RenderState<R> {
     fn new(requests: Arc<LatestChannel<RenderRequest>>, report: R) -> Self {
-        Self { requests, report, drawn: None, cost: None, started: Instant::now() }
+        let (pacing, started) = (Pacing::default(), Instant::now());
+        Self { requests, report, drawn: None, pacing, shown_scale: None, started }
     }
 
     /// Handles a request. A panic in a driver is reported and does not end the thread.
@@ -129,11 +135,15 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
     fn draw(&mut self, request: Arc<RenderRequest>) -> Result<(), Stop> {
         let same = self.drawn.as_ref().is_some_and(|drawn| drawn.request.has_same_rays(&request));
         if let Some(drawn) = self.drawn.as_mut().filter(|_| same) {
-            drawn.request = Arc::clone(&request);
-            self.report_picture(&request);
+            let before = std::mem::replace(&mut drawn.request, Arc::clone(&request));
+            if (before.mode, before.slice) != (request.mode, request.slice) {
+                (drawn.colored, self.shown_scale) = (None, None);
+            }
+            self.report_picture(&request, false)?;
         } else {
-            self.drawn = None;
-            let first = self.first_divisor(&request);
+            (self.drawn, self.shown_scale) = (None, None);
+            let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
+            let first = self.pacing.first_divisor(request.model.serial, pixels);
             self.pass(&request, first, false)?;
         }
         if request.moving {
@@ -149,19 +159,6 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
         // Built here because hovering needs it and must not wait for it.
         request.model.shapes.leaves(&request.model.scene);
         Ok(())
-    }
-
-    /// The divisor at which a first pass should stay within the budget.
-    fn first_divisor(&self, request: &RenderRequest) -> u32 {
-        let pixels = f64::from(request.size[0]) * f64::from(request.size[1]);
-        let cost = self.cost.filter(|(serial, _)| *serial == request.model.serial);
-        let Some((_, cost)) = cost else { return FIRST_DIVISOR };
-        let mut divisor = 1;
-        while divisor < MAX_DIVISOR && cost * pixels / f64::from(divisor * divisor) > PASS_BUDGET_MS
-        {
-            divisor *= 2;
-        }
-        divisor
     }
 
     /// Draws at a fraction of the resolution and reports the picture.
@@ -180,15 +177,15 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             .map_err(|error| Stop::Error(error.into()))?
             .with_scaled_parameter(model.method_parameter(), request.tolerance);
         let frame = self.frame(request, &view, interruptible)?;
+        let pixels = f64::from(size[0]) * f64::from(size[1]);
+        self.pacing.record(request.model.serial, milliseconds_since(start), pixels);
         let (sum, image) = (frame.image.clone(), Arc::new(frame.image.clone()));
         let request = Arc::clone(request);
-        let drawn = DrawnImage { request, view, frame, image, sum, samples: 1, divisor };
+        let (samples, colored) = (1, None);
+        let drawn = DrawnImage { request, view, frame, image, sum, samples, divisor, colored };
         let request = Arc::clone(&drawn.request);
         self.drawn = Some(drawn);
-        self.report_picture(&request);
-        let pixels = f64::from(size[0]) * f64::from(size[1]);
-        self.cost = Some((request.model.serial, milliseconds_since(start) / pixels));
-        Ok(())
+        self.report_picture(&request, interruptible)
     }
 
     /// Draws one ray per pixel.
@@ -225,7 +222,7 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
                 return Stop::Error(error.into());
             }
             // The tiles so far tell the cost, so that the next first pass is coarse enough.
-            self.cost = Some((model.serial, milliseconds_since(start) / f64::max(reached, 1.0)));
+            self.pacing.record(model.serial, milliseconds_since(start), reached);
             Stop::Superseded
         })
     }
@@ -249,49 +246,173 @@ impl<R: FnMut(RenderEvent)> RenderState<R> {
             let Some(drawn) = &mut self.drawn else { break };
             drawn.sum.add(&frame.image);
             drawn.samples += 1;
+            drawn.colored = None;
             if drawn.samples.is_power_of_two() || !wants_more(drawn) {
-                self.report_picture(request);
+                self.report_picture(request, false)?;
             }
         }
         Ok(())
     }
 
-    /// Applies the view and reports the picture.
-    fn report_picture(&mut self, request: &Arc<RenderRequest>) {
-        let Some(drawn) = &self.drawn else { return };
-        let mut colors = drawn.sum.clone();
-        colors.divide(drawn.samples as f32);
-        let input = ViewInput {
-            colors: &colors,
-            image: &drawn.image,
-            view: &drawn.view,
-            field: &request.model.field,
-            scene: &request.model.scene,
-            shapes: &request.model.shapes,
-            frame: &request.frame,
-            slice: match request.model.scene.is_planar() {
-                true => SlicePlane { axis: 2, offset: 0.0, ..request.slice },
-                false => request.slice,
-            },
-            origin: request.model.scene.drawn().origin,
+    /// Applies the view to few pixels, then to more, and reports each picture. While something
+    /// moves, that ends when the next picture would take longer than a pass may. A newer request
+    /// interrupts every picture after the first one, and that one too if it is `interruptible`.
+    fn report_picture(
+        &mut self,
+        request: &Arc<RenderRequest>,
+        interruptible: bool,
+    ) -> Result<(), Stop> {
+        let Some(drawn) = &self.drawn else { return Ok(()) };
+        let mut stride = first_stride(request.mode, drawn.image.size());
+        if let Some(colored) = &drawn.colored {
+            (self.report)(picture(drawn, colored, self.started));
+            if colored.stride == 1 {
+                return Ok(());
+            }
+            stride = colored.stride / 2;
+        }
+        // A finer image begins where the coarser one was left.
+        while stride > 1 && self.shown_scale.is_some_and(|scale| drawn.divisor * stride >= scale) {
+            stride /= 2;
+        }
+        let mut may_stop = interruptible || drawn.colored.is_some();
+        loop {
+            let Some(drawn) = &mut self.drawn else { return Ok(()) };
+            let start = Instant::now();
+            let interrupted = || may_stop && self.requests.is_interrupted();
+            let colored = colored(drawn, stride, &interrupted)?;
+            // An interrupted view has pixels without a value. The shaded one needs no field.
+            if request.mode != ViewMode::Shaded && interrupted() {
+                return Err(Stop::Superseded);
+            }
+            let milliseconds = milliseconds_since(start);
+            let is_quick = milliseconds * f64::from(stride * stride) < QUICK_VIEW_MS;
+            if stride == 1 || !is_quick {
+                (self.report)(picture(drawn, &colored, self.started));
+                self.shown_scale = Some(drawn.divisor * stride);
+                drawn.colored = Some(colored);
+                may_stop = true;
+            }
+            let next_milliseconds = milliseconds * 4.0;
+            if stride == 1 || !is_quick && request.moving && next_milliseconds > PASS_BUDGET_MS {
+                return Ok(());
+            }
+            stride = if is_quick { 1 } else { stride / 2 };
+        }
+    }
+}
+
+/// Applies the request's view to every `stride`-th pixel.
+fn colored(
+    drawn: &DrawnImage,
+    stride: u32,
+    interrupted: IsInterrupted<'_>,
+) -> Result<ColoredView, Stop> {
+    let mut colors = drawn.sum.clone();
+    colors.divide(drawn.samples as f32);
+    let request = &drawn.request;
+    let input = ViewInput {
+        colors: &colors,
+        image: &drawn.image,
+        view: &drawn.view,
+        field: &request.model.field,
+        scene: &request.model.scene,
+        shapes: &request.model.shapes,
+        frame: &request.frame,
+        slice: match request.model.scene.is_planar() {
+            true => SlicePlane { axis: 2, offset: 0.0, ..request.slice },
+            false => request.slice,
+        },
+        origin: request.model.scene.drawn().origin,
+        stride: 1,
+        interrupted,
+    };
+    paint(request.mode, &input, stride).map_err(|error| Stop::Error(error.into()))
+}
+
+/// The picture that the window shows.
+fn picture(drawn: &DrawnImage, colored: &ColoredView, started: Instant) -> RenderEvent {
+    let request = Arc::clone(&drawn.request);
+    let has_all_samples = request.mode != ViewMode::Shaded || drawn.samples >= request.samples;
+    let ColoredView { rgba, size, legend, stride } = colored.clone();
+    RenderEvent::Picture(Box::new(Picture {
+        request,
+        image: Arc::clone(&drawn.image),
+        view: drawn.view.clone(),
+        rgba,
+        rgba_size: size,
+        legend,
+        divisor: drawn.divisor,
+        stride,
+        samples: drawn.samples,
+        finished: drawn.divisor == 1 && stride == 1 && has_all_samples,
+        milliseconds: drawn.frame.milliseconds,
+        clock: drawn.frame.clock,
+        latency: milliseconds_since(started),
+        evaluations: EvaluationCounts::of(&drawn.image),
+        counts: drawn.image.counts(),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::{TIMEOUT, model};
+
+    /// A field that takes long to evaluate.
+    fn slow_scene() -> String {
+        let ball = |index: u32| {
+            let [x, y] = [index % 20, index / 20].map(|at| f64::from(at) * 0.21 - 2.0);
+            format!("sphere(0.1{index:03}).translate([{x}, {y}, 0.0{index}])")
         };
-        let (rgba, legend) = request.mode.paint(&input);
-        let has_all_samples = request.mode != ViewMode::Shaded || drawn.samples >= request.samples;
-        let picture = Picture {
-            request: Arc::clone(request),
-            image: Arc::clone(&drawn.image),
-            view: drawn.view.clone(),
-            rgba,
-            legend,
-            divisor: drawn.divisor,
-            samples: drawn.samples,
-            finished: drawn.divisor == 1 && has_all_samples,
-            milliseconds: drawn.frame.milliseconds,
-            clock: drawn.frame.clock,
-            latency: milliseconds_since(self.started),
-            evaluations: EvaluationCounts::of(&drawn.image),
-            counts: drawn.image.counts(),
+        let balls: Vec<String> = (0..400).map(ball).collect();
+        let camera = "camera(eye: [0, 0, 7], target: [0, 0, 0], fov: 40deg)";
+        format!("union({}, blend: smooth(0.05))\n{camera}\n", balls.join(",\n"))
+    }
+
+    #[test]
+    fn a_slow_view_is_shown_coarsely_first_and_interrupted_by_the_next_one() {
+        let model = model(&slow_scene());
+        let frame = model.defaults();
+        let request = RenderRequest {
+            pose: model.scene.pose(&frame, 1.5).unwrap(),
+            frame,
+            size: [480, 320],
+            mode: ViewMode::Shaded,
+            slice: Default::default(),
+            moving: true,
+            refine: true,
+            samples: 1,
+            tolerance: 1.0,
+            model,
         };
-        (self.report)(RenderEvent::Picture(Box::new(picture)));
+        let (sender, events) = std::sync::mpsc::channel();
+        let worker = RenderWorker::new(sender, || {}).unwrap();
+        let next = || match events.recv_timeout(TIMEOUT).unwrap() {
+            RenderEvent::Picture(picture) => picture,
+            RenderEvent::Failed { message, .. } => panic!("{message}"),
+        };
+        worker.send(request.clone());
+        assert_eq!((next().stride, next_is_none(&events)), (1, true));
+        // The same rays: nothing is drawn again, few pixels are computed.
+        worker.send(RenderRequest { mode: ViewMode::Normals, ..request.clone() });
+        let coarse = next();
+        assert_eq!((coarse.request.mode, coarse.stride > 1), (ViewMode::Normals, true));
+        let [width, height] = coarse.rgba_size;
+        assert_eq!(coarse.rgba.len(), (4 * width * height) as usize);
+        // At rest more pixels follow, until another view is wanted.
+        let normals = RenderRequest { mode: ViewMode::Normals, moving: false, ..request.clone() };
+        worker.send(normals);
+        let finer = std::iter::repeat_with(next).find(|it| it.stride < coarse.stride).unwrap();
+        worker.send(RenderRequest { mode: ViewMode::GradientLength, ..request });
+        let other = std::iter::repeat_with(next).find(|it| {
+            assert!(!it.finished, "the view of {:?} was finished first", it.request.mode);
+            it.request.mode == ViewMode::GradientLength
+        });
+        assert_eq!(other.unwrap().divisor, finer.divisor);
+    }
+
+    fn next_is_none(events: &std::sync::mpsc::Receiver<RenderEvent>) -> bool {
+        events.recv_timeout(Duration::from_millis(100)).is_err()
     }
 }

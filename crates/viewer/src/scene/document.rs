@@ -27,9 +27,13 @@ impl Document {
     ///
     /// Those of [`sdfc_files::read`].
     pub fn read(path: &Path) -> Result<Self, ReadError> {
-        let input = sdfc_files::read(path)?;
-        let name = path.file_name().map_or(input.name, |name| name.to_string_lossy().into_owned());
-        Ok(Self { path: path.to_owned(), name, source: input.text })
+        Ok(Self::draft(path, &sdfc_files::read(path)?.text))
+    }
+
+    /// The scene's file with another text.
+    pub fn draft(path: &Path, text: &str) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        Self { path: path.to_owned(), name, source: text.to_owned() }
     }
 }
 

@@ -4,6 +4,11 @@ use sdfc::FrameValues;
 use sdfc_graph::Program;
 use sdfc_graph::eval::{Dual, Tape};
 
+/// A function that returns true when the result of a long computation is no longer needed.
+pub type IsInterrupted<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// The number of points between two questions whether the computation is interrupted.
+const POINTS_PER_QUESTION: usize = 64;
 /// The fewest points for which another thread is started.
 const MIN_POINTS_PER_THREAD: usize = 2048;
 
@@ -28,9 +33,14 @@ impl FieldProbe {
     }
 
     /// The distances and gradients at points, computed on all cores. `None` stays `None`.
-    pub fn at_all(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<Dual>> {
+    pub fn at_all(
+        &self,
+        frame: &FrameValues,
+        points: &[Option<[f64; 3]>],
+        interrupted: IsInterrupted<'_>,
+    ) -> Vec<Option<Dual>> {
         let Some(tape) = &self.tape else { return vec![None; points.len()] };
-        in_parallel(points, || {
+        in_parallel(points, interrupted, || {
             let mut field = tape.prepare::<Dual>(frame);
             move |point: &Option<[f64; 3]>| point.map(|point| field.scalar(Dual::point(point)))
         })
@@ -38,9 +48,10 @@ impl FieldProbe {
 }
 
 /// Maps points to values on all cores. `function` is called once per thread and returns that
-/// thread's map.
+/// thread's map. If the computation is interrupted, the rest are default values.
 pub fn in_parallel<P: Sync, T: Default + Clone + Send, F: FnMut(&P) -> T>(
     points: &[P],
+    interrupted: IsInterrupted<'_>,
     function: impl Fn() -> F + Sync,
 ) -> Vec<T> {
     let mut out = vec![T::default(); points.len()];
@@ -51,7 +62,13 @@ pub fn in_parallel<P: Sync, T: Default + Clone + Send, F: FnMut(&P) -> T>(
             let function = &function;
             scope.spawn(move || {
                 let mut map = function();
-                out.iter_mut().zip(points).for_each(|(out, point)| *out = map(point));
+                let parts = out.chunks_mut(POINTS_PER_QUESTION);
+                for (out, points) in parts.zip(points.chunks(POINTS_PER_QUESTION)) {
+                    if interrupted() {
+                        return;
+                    }
+                    out.iter_mut().zip(points).for_each(|(out, point)| *out = map(point));
+                }
             });
         }
     });
@@ -68,10 +85,20 @@ mod tests {
         let probe = FieldProbe::new(scene.program());
         let frame = FrameValues::defaults(scene.params());
         let points = [Some([2.0, 0.0, 0.0]), None, Some([0.0, 0.0, -0.25])];
-        let [Some(outside), None, Some(inside)] = probe.at_all(&frame, &points)[..] else {
+        let [Some(outside), None, Some(inside)] = probe.at_all(&frame, &points, &|| false)[..]
+        else {
             panic!("two of three points are there")
         };
         assert_eq!((outside.value, outside.partials), (1.5, [1.0, 0.0, 0.0]));
         assert_eq!((inside.value, inside.partials), (-0.25, [0.0, 0.0, -1.0]));
+    }
+    #[test]
+    fn an_interrupted_computation_ends_early() {
+        let points = vec![(); 10 * POINTS_PER_QUESTION];
+        let done = std::sync::atomic::AtomicUsize::new(0);
+        let count = |_: &()| done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let interrupted = || done.load(std::sync::atomic::Ordering::Relaxed) > 0;
+        in_parallel(&points, &interrupted, || count);
+        assert_eq!(done.into_inner(), POINTS_PER_QUESTION);
     }
 }

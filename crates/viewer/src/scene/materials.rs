@@ -5,7 +5,7 @@ use sdfc_graph::eval::Tape;
 use sdfc_graph::{MaterialField, Program};
 use sdfc_render::linear_to_srgb8;
 
-use crate::scene::field_probe::in_parallel;
+use crate::scene::field_probe::{IsInterrupted, in_parallel};
 
 /// A material, rounded so that equal values look equal: colours to 8-bit sRGB, the rest to
 /// hundredths.
@@ -69,13 +69,18 @@ impl Materials {
     }
 
     /// The materials at points, computed on all cores. `None` stays `None`.
-    pub fn at(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<Material>> {
+    pub fn at(
+        &self,
+        frame: &FrameValues,
+        points: &[Option<[f64; 3]>],
+        interrupted: IsInterrupted<'_>,
+    ) -> Vec<Option<Material>> {
         let Some(tape) = &self.tape else {
             let default =
                 Material::from_fields(&MaterialField::ALL.map(MaterialField::default_value));
             return points.iter().map(|point| point.map(|_| default)).collect();
         };
-        in_parallel(points, || {
+        in_parallel(points, interrupted, || {
             let mut fields = tape.prepare::<f64>(frame);
             move |point: &Option<[f64; 3]>| {
                 point.map(|point| Material::from_fields(fields.eval(point)))
@@ -91,7 +96,7 @@ mod tests {
     fn at(text: &str, point: [f64; 3]) -> Material {
         let scene = sdfc::Compiler::new().compile("a", text).unwrap();
         let frame = FrameValues::defaults(scene.params());
-        Materials::new(scene.program()).at(&frame, &[Some(point)])[0].unwrap()
+        Materials::new(scene.program()).at(&frame, &[Some(point)], &|| false)[0].unwrap()
     }
 
     #[test]

@@ -6,5 +6,8 @@ pub mod field_probe;
 pub mod materials;
 pub mod model;
 pub mod number_text;
+pub mod param_source;
 pub mod param_values;
+pub mod rebase;
 pub mod shapes;
+pub mod source_numbers;

@@ -1,17 +1,16 @@
 //! A compiled scene together with the pipeline or CPU renderer that draws it.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
 use sdfc::{FrameValues, Method, Scene};
 use sdfc_graph::{FrameInput, Node, Param, Program, reachable};
-use sdfc_lang::live_literals::LiveLiteral;
 use sdfc_march::MethodParameter;
 use sdfc_render::{CpuScene, Pipeline};
 
 use crate::scene::field_probe::FieldProbe;
 use crate::scene::shapes::ShapeIndex;
+use crate::scene::source_numbers::SourceNumber;
 
 /// The pipeline or CPU renderer that draws a scene.
 #[derive(Clone, Debug)]
@@ -42,6 +41,8 @@ pub struct Model {
     pub scene: Arc<Scene>,
     /// Its source.
     pub source: String,
+    /// The numbers of its source that can change, in the order of their positions.
+    pub numbers: Vec<SourceNumber>,
     /// The pipeline or CPU renderer that draws it.
     pub engine: Engine,
     /// The ray method that is used.
@@ -80,21 +81,11 @@ impl Model {
         self.scene.params().get(..count).unwrap_or_default()
     }
 
-    /// The live literals of its source, each with the param that it became.
-    pub fn literals(&self) -> impl Iterator<Item = (&LiveLiteral, &Param)> {
-        let params = self.scene.params();
-        self.scene
-            .live_literals()
-            .iter()
-            .filter_map(|literal| Some((literal, params.get(literal.param)?)))
-    }
-
-    /// The live literals named by a line `let name = literal`, with that name.
-    pub fn named(&self) -> impl Iterator<Item = (&str, &LiveLiteral, &Param)> {
-        self.literals().filter_map(|(literal, param)| {
-            let (start, end) = (literal.span.start as usize, literal.span.end as usize);
-            Some((let_name(&self.source, start..end)?, literal, param))
-        })
+    /// The number whose literal, without its sign, starts at a byte of the source.
+    pub fn number_at(&self, start: usize) -> Option<&SourceNumber> {
+        let start = u32::try_from(start).ok()?;
+        let index = self.numbers.binary_search_by_key(&start, |number| number.span.start).ok()?;
+        self.numbers.get(index)
     }
 
     /// The program that the engine was made from.
@@ -121,16 +112,6 @@ impl Model {
     }
 }
 
-/// The name in a line `let name = value`, which may end with a comment; `None` for other lines.
-/// `value` is the byte range of the value in the source.
-fn let_name(source: &str, value: Range<usize>) -> Option<&str> {
-    let (before, after) = (source.get(..value.start)?, source.get(value.end..)?);
-    let (line, rest) = (before.rsplit('\n').next()?, after.lines().next().unwrap_or_default());
-    let name = line.trim_start_matches('\u{feff}').strip_prefix("let ")?.trim_end();
-    let ends = rest.trim().is_empty() || rest.trim_start().starts_with("//");
-    name.strip_suffix('=').map(str::trim).filter(|_| ends)
-}
-
 /// Returns true if anything evaluated per frame reads `time` or `frame`.
 pub fn is_animated(scene: &Scene) -> bool {
     let program = scene.program();
@@ -138,22 +119,4 @@ pub fn is_animated(scene: &Scene) -> bool {
     roots.extend(program.settings.nodes());
     let is_time = |node| matches!(node, Node::Frame(FrameInput::Time | FrameInput::Frame, _));
     reachable(&program.graph, &roots).into_iter().any(|id| is_time(program.graph.node(id)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_literal_has_a_name_if_it_is_the_whole_value_of_a_let() {
-        let name = |text: &str| {
-            let at = text.find("0.4").unwrap();
-            let_name(text, at..at + 3).map(str::to_owned)
-        };
-        let named = ["let k = 0.4", "\u{feff}let k = 0.4\r\nsphere(k)\n", "a()\nlet  k=0.4 // k"];
-        named.iter().for_each(|text| assert_eq!(name(text).as_deref(), Some("k"), "{text}"));
-        let unnamed =
-            ["let k = 0.4 + 1", "let k = -0.4", "sphere(0.4)", "  let k = 0.4", "outlet = 0.4"];
-        unnamed.iter().for_each(|text| assert_eq!(name(text), None, "{text}"));
-    }
 }

@@ -1,23 +1,22 @@
-//! The values that the user has set for params and live literals, and the source that keeps them.
+//! The values that the user has set for params and numbers, and the source that keeps them.
 
 use std::collections::BTreeMap;
 
 use sdfc::FrameValues;
 use sdfc_diagnostics::Span;
-use sdfc_graph::Param;
-use sdfc_lang::live_literals::LiveLiteral;
 
 use crate::scene::document::with_replacements;
 use crate::scene::model::Model;
-use crate::scene::number_text::{angle_text, number_text, value_text};
+use crate::scene::number_text::value_text;
+use crate::scene::source_numbers::SourceNumber;
 
 /// The changed values; everything else has the value that the scene gives it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParamValues {
     /// Changed params by name. They are kept when the source is edited.
     pub params: BTreeMap<String, [f64; 4]>,
-    /// Changed literals by position, valid for one source only.
-    literals: BTreeMap<Span, f64>,
+    /// Changed numbers by the position of their literal in the source of the model.
+    numbers: BTreeMap<usize, (SourceNumber, f64)>,
 }
 
 impl ParamValues {
@@ -31,50 +30,84 @@ impl ParamValues {
                 *lanes = *changed;
             }
         }
-        for (literal, param) in model.literals() {
-            let changed = self.literals.get(&literal.span).map(|value| [*value, 0.0, 0.0, 0.0]);
-            if let (Some(changed), Some(lanes)) = (
-                changed.filter(|changed| param.accepts(*changed)),
-                values.params.get_mut(literal.param),
-            ) {
+        for (start, (_, value)) in &self.numbers {
+            let Some(number) = model.number_at(*start) else { continue };
+            let (index, value) = number.param_value(*value);
+            let changed = [value, 0.0, 0.0, 0.0];
+            if let (Some(param), Some(lanes)) =
+                (model.scene.params().get(index), values.params.get_mut(index))
+                && param.accepts(changed)
+            {
                 *lanes = changed;
             }
         }
         values
     }
 
-    /// Sets a live literal. Setting the value that the source has removes the change.
-    pub fn set_literal(&mut self, literal: &LiveLiteral, value: f64) {
-        if value == literal.value {
-            self.literals.remove(&literal.span);
+    /// Sets a number of the source. Setting the value that the source has removes the change.
+    pub fn set_number(&mut self, number: &SourceNumber, value: f64) {
+        let start = number.span.start as usize;
+        if value == number.value {
+            self.numbers.remove(&start);
         } else if value.is_finite() {
-            self.literals.insert(literal.span, value);
+            self.numbers.insert(start, (number.clone(), value));
         }
     }
 
-    /// The current value of a live literal.
-    pub fn literal(&self, literal: &LiveLiteral) -> f64 {
-        self.literals.get(&literal.span).copied().unwrap_or(literal.value)
+    /// The current value of a number of the source.
+    pub fn number(&self, number: &SourceNumber) -> f64 {
+        self.numbers.get(&(number.span.start as usize)).map_or(number.value, |(_, value)| *value)
     }
 
-    /// The number of changed live literals.
-    pub fn changed_literals(&self) -> usize {
-        self.literals.len()
+    /// How many numbers of the source have been changed.
+    pub fn changed_numbers(&self) -> usize {
+        self.numbers.len()
     }
 
-    /// Removes all changes of live literals, whose positions are valid for one source only.
-    pub fn reset_literals(&mut self) {
-        self.literals.clear();
+    /// Gives all numbers the values that the source has.
+    pub fn reset_numbers(&mut self) {
+        self.numbers.clear();
     }
 
-    /// The source with the changed literals in it.
-    pub fn source_with_values(&self, model: &Model) -> String {
-        let edit = |(literal, _): (&LiveLiteral, &Param)| {
-            let value = *self.literals.get(&literal.span)?;
-            Some((literal.span, literal_text(model, literal, value)))
+    /// Moves the changed numbers to the next version of the source. `positions` maps the start of
+    /// a literal to its start in the new source. Returns the numbers that the new source no longer
+    /// has and whose values are therefore lost, each as "old text -> new text".
+    pub fn rebase(&mut self, model: &Model, positions: &BTreeMap<usize, usize>) -> Vec<String> {
+        let mut lost = Vec::new();
+        for (start, (number, value)) in std::mem::take(&mut self.numbers) {
+            let Some(new_start) = positions.get(&start) else {
+                lost.push(format!("{} -> {}", number.text, number.text_of(value)));
+                continue;
+            };
+            // A number that is not live in the new model is kept, to be saved.
+            let moved = model.number_at(*new_start).cloned();
+            let moved = moved.unwrap_or_else(|| number.moved_to(*new_start));
+            if value != moved.value && moved.text_of(value) != moved.text {
+                self.numbers.insert(*new_start, (moved, value));
+            }
+        }
+        lost
+    }
+
+    /// The changed numbers in the source of the model, moved to another version of it. Numbers that
+    /// it no longer has are left out.
+    pub fn moved(&self, positions: &BTreeMap<usize, usize>) -> Self {
+        let moved = |(start, (number, value)): (&usize, &(SourceNumber, f64))| {
+            let start = *positions.get(start)?;
+            Some((start, (number.moved_to(start), *value)))
         };
-        let edits: Vec<(Span, String)> = model.literals().filter_map(edit).collect();
-        with_replacements(&model.source, &edits)
+        let numbers = self.numbers.iter().filter_map(moved).collect();
+        Self { params: self.params.clone(), numbers }
+    }
+
+    /// The source with the changed numbers in it.
+    pub fn source_with_values(&self, source: &str) -> String {
+        let edit = |(number, value): &(SourceNumber, f64)| {
+            let [start, end] = [number.written.start, number.written.end].map(|at| at as u32);
+            (Span::new(number.span.file, start, end), number.text_of(*value))
+        };
+        let edits: Vec<(Span, String)> = self.numbers.values().map(edit).collect();
+        with_replacements(source, &edits)
     }
 
     /// The params' values as arguments of `sdfc render`.
@@ -90,17 +123,10 @@ impl ParamValues {
     }
 }
 
-/// A number as it replaces a literal, in the literal's unit.
-fn literal_text(model: &Model, literal: &LiveLiteral, value: f64) -> String {
-    let span = literal.span.start as usize..literal.span.end as usize;
-    let written = model.source.get(span).unwrap_or_default();
-    let unit = written.trim_start_matches(|c: char| c.is_ascii_digit() || ".eE_+-".contains(c));
-    if unit.is_empty() { number_text(value) } else { angle_text(value, unit) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::rebase::{pair_numbers, rebase_numbers};
     use crate::test_support::model;
 
     const TEXT: &str = "param r = 0.5 in 0.1..2\nparam lid = true\nparam wood = #8a5a34\n\
@@ -118,21 +144,18 @@ mod tests {
     }
 
     #[test]
-    fn changed_literals_are_written_in_place_and_in_their_unit() {
+    fn changed_numbers_are_written_in_place_and_in_their_unit() {
         let model = model(TEXT);
         let mut values = ParamValues::default();
-        let literal = |at: &str| {
-            let start = TEXT.find(at).unwrap() as u32;
-            model.literals().find(|(literal, _)| literal.span.start == start).unwrap().0.clone()
-        };
-        values.set_literal(&literal("1.5"), -0.25);
-        values.set_literal(&literal("30deg"), 45f64.to_radians());
+        let number = |at: &str| model.number_at(TEXT.find(at).unwrap()).unwrap().clone();
+        values.set_number(&number("1.5"), -0.25);
+        values.set_number(&number("30deg"), 45f64.to_radians());
         let frame = values.frame(&model, 0.0, 0.0);
         assert!(frame.params.iter().any(|lanes| lanes[0] == -0.25));
-        let text = values.source_with_values(&model);
+        let text = values.source_with_values(TEXT);
         assert!(text.ends_with("translate(x: -0.25).rotate(y: 45deg)\n"), "{text}");
-        values.set_literal(&literal("1.5"), 1.5);
-        assert_eq!(values.changed_literals(), 1);
+        values.set_number(&number("1.5"), 1.5);
+        assert_eq!(values.changed_numbers(), 1);
     }
 
     #[test]
@@ -151,20 +174,18 @@ mod tests {
     }
 
     #[test]
-    fn written_literals_parse_to_the_same_values() {
+    fn written_numbers_parse_to_the_same_values() {
         let sources =
             ["sphere(0.5)\n", "sphere(1).rotate(y: 0.5deg)\n", "sphere(1).rotate(y: 0.5turn)\n"];
         for text in sources {
-            let at = text.find("0.5").unwrap() as u32;
-            let literal = |model: &Model| {
-                model.literals().find(|(literal, _)| literal.span.start == at).unwrap().0.clone()
-            };
+            let at = text.find("0.5").unwrap();
+            let number = |model: &Model| model.number_at(at).unwrap().clone();
             let model_before = model(text);
             for value in [0.1 + 0.2, 1e-7, 1.0 / 3.0, 12_345.678_9, 0.123_456_789_012_345_6] {
                 let mut values = ParamValues::default();
-                values.set_literal(&literal(&model_before), value);
-                let written = values.source_with_values(&model_before);
-                let back = literal(&model(&written)).value;
+                values.set_number(&number(&model_before), value);
+                let written = values.source_with_values(text);
+                let back = number(&model(&written)).value;
                 let digits = f64::EPSILON * value;
                 assert!((back - value).abs() <= digits, "{written}: {back} is not {value}");
                 assert!(
@@ -173,5 +194,25 @@ mod tests {
                 );
             }
         }
+    }
+    #[test]
+    fn changed_numbers_follow_their_literals_through_edits() {
+        let before = model("sphere(1.5).translate(x: -2)\nbox(3)\n");
+        let mut values = ParamValues::default();
+        for (number, value) in before.numbers.iter().zip([1.25, 4.0, 3.5]) {
+            values.set_number(number, value);
+        }
+        // The first number is edited, the others move.
+        let text = "let a = 0\nsphere(1.75).translate(x: -2)\nbox(3)\n";
+        let after = model(text);
+        let lost = values.rebase(&after, &rebase_numbers(&before.source, text));
+        assert_eq!(lost, ["1.5 -> 1.25"]);
+        let expected = "let a = 0\nsphere(1.75).translate(x: 4)\nbox(3.5)\n";
+        assert_eq!(values.source_with_values(text), expected);
+        assert!(values.frame(&after, 0.0, 0.0).params.iter().any(|lanes| lanes[0] == -4.0));
+        // Once they are in the file, no number is changed.
+        let saved = model(expected);
+        let lost = values.rebase(&saved, &pair_numbers(text, expected));
+        assert_eq!((lost.len(), values.changed_numbers()), (0, 0));
     }
 }

@@ -6,6 +6,7 @@
 //! shape with the greater weight, so the digits rounded to 0 or 1 are that shape's number.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use sdfc::{FrameValues, Scene};
@@ -13,7 +14,7 @@ use sdfc_diagnostics::Sources;
 use sdfc_graph::eval::Tape;
 use sdfc_graph::{Expander, Graph, MaterialField, MaterialRule, NodeId, ShapeId};
 
-use crate::scene::field_probe::in_parallel;
+use crate::scene::field_probe::{IsInterrupted, in_parallel};
 
 /// The number of digits that one material holds: the lanes of all its fields except coverage, which
 /// is 1.
@@ -84,10 +85,15 @@ impl ShapeClassifier {
     }
 
     /// For each point, relative to the program's origin, the index of its shape in the list.
-    pub fn at(&self, frame: &FrameValues, points: &[Option<[f64; 3]>]) -> Vec<Option<usize>> {
+    pub fn at(
+        &self,
+        frame: &FrameValues,
+        points: &[Option<[f64; 3]>],
+        interrupted: IsInterrupted<'_>,
+    ) -> Vec<Option<usize>> {
         let mut numbers = vec![0; points.len()];
         for (pass, tape) in self.passes.iter().enumerate() {
-            let digits = in_parallel(points, || {
+            let digits = in_parallel(points, interrupted, || {
                 let mut fields = tape.prepare::<f64>(frame);
                 move |point: &Option<[f64; 3]>| point.map_or(0, |point| number(fields.eval(point)))
             });
@@ -104,6 +110,8 @@ impl ShapeClassifier {
 #[derive(Debug, Default)]
 pub struct ShapeIndex {
     labels: HashMap<ShapeId, String>,
+    /// Where the scene writes each shape: the name of the file and the range of the call.
+    calls: HashMap<ShapeId, (String, Range<usize>)>,
     leaves: OnceLock<ShapeClassifier>,
     operands: OnceLock<ShapeClassifier>,
 }
@@ -121,13 +129,23 @@ impl ShapeIndex {
         };
         // The first position wins if equal shapes are written several times.
         let labels = scene.sites().iter().rev().map(label).collect();
-        Self { labels, ..Self::default() }
+        let call = |site: &sdfc_lang::Site| {
+            let range = site.span.start as usize..site.span.end as usize;
+            (site.shape, (sources.name(site.span.file).to_owned(), range))
+        };
+        let calls = scene.sites().iter().rev().map(call).collect();
+        Self { labels, calls, ..Self::default() }
     }
 
     /// The name of a shape and its source position; of an unwritten shape, its definition's name.
     pub fn label(&self, scene: &Scene, shape: ShapeId) -> String {
         let definition = || scene.graph().graph.shape(shape).definition.clone();
         self.labels.get(&shape).cloned().unwrap_or_else(definition)
+    }
+
+    /// The name of the file that writes a shape, and the range of the call in it.
+    pub fn call(&self, shape: ShapeId) -> Option<&(String, Range<usize>)> {
+        self.calls.get(&shape)
     }
 
     /// See [`ShapeClassifier::leaves`].
@@ -219,7 +237,7 @@ mod tests {
         let scene = sdfc::Compiler::new().compile("a", text).unwrap();
         let frame = FrameValues::defaults(scene.params());
         let classifier = ShapeClassifier::leaves(&scene);
-        let index = classifier.at(&frame, &[None, Some(point)])[1]?;
+        let index = classifier.at(&frame, &[None, Some(point)], &|| false)[1]?;
         Some(scene.graph().graph.shape(classifier.shapes()[index]).definition.clone())
     }
 
@@ -247,7 +265,8 @@ mod tests {
         let classifier = ShapeClassifier::operands(&scene);
         assert_eq!((classifier.passes.len(), classifier.shapes().len()), (2, 600));
         let points: Vec<_> = (0..600).map(|x| Some([f64::from(x), 0.0, 0.0])).collect();
-        let mut found: Vec<_> = classifier.at(&frame, &points).into_iter().flatten().collect();
+        let mut found: Vec<_> =
+            classifier.at(&frame, &points, &|| false).into_iter().flatten().collect();
         found.sort_unstable();
         found.dedup();
         assert_eq!(found.len(), 600);

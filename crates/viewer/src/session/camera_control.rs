@@ -1,5 +1,7 @@
 //! The camera of a session: the scene's own until it is moved by hand.
 
+use std::sync::Arc;
+
 use sdfc_render::Pose;
 
 use super::Session;
@@ -24,9 +26,9 @@ impl Session {
         }
     }
 
-    /// Resets the camera to the scene's own.
+    /// Resets the camera to the scene's own; without one, to a camera that sees the whole scene.
     pub fn reset_camera(&mut self) {
-        self.follows_scene = true;
+        (self.follows_scene, self.fitted) = (true, None);
         self.follow_scene_camera();
     }
 
@@ -48,11 +50,20 @@ impl Session {
         self.camera.filter(|_| !self.follows_scene).map(|camera| camera.pose())
     }
 
-    /// The camera that the scene states, or one that sees all of it.
-    fn scene_pose(&self) -> Option<Pose> {
-        let model = self.model.as_ref()?;
-        let values = self.values(model);
-        model.scene.pose(&values, self.aspect()).ok()
+    /// The camera that the scene states, or one that sees all of the scene as it was when the
+    /// camera was last reset. So the camera rests while a scene without a camera is edited, and an
+    /// edit that makes a part larger looks like that.
+    fn scene_pose(&mut self) -> Option<Pose> {
+        let model = Arc::clone(self.model.as_ref()?);
+        let values = self.values(&model);
+        if model.scene.program().settings.camera.is_some() {
+            self.fitted = None;
+            return model.scene.pose(&values, self.aspect()).ok();
+        }
+        let aspect = self.aspect();
+        let now = || (Arc::clone(&model.scene), values);
+        let (scene, values) = self.fitted.get_or_insert_with(now);
+        scene.pose(values, aspect).ok()
     }
 
     /// Updates the camera from the scene unless it was moved by hand.

@@ -26,7 +26,11 @@ impl Session {
             changed = true;
         }
         while let Ok(outcome) = self.export_outcomes.try_recv() {
-            self.messages.push(outcome.unwrap_or_else(|why| why));
+            self.handle_export_outcome(outcome);
+            changed = true;
+        }
+        while let Ok(answer) = self.language_answers.try_recv() {
+            self.language = Some(answer);
             changed = true;
         }
         changed | self.accuracy.poll()
@@ -41,7 +45,10 @@ impl Session {
                 self.watch_own_folder();
             }
             CompileEvent::BuildingPipeline => self.building = true,
-            CompileEvent::Compiled { diagnostics, folders, draws: _ } => {
+            CompileEvent::FileChanged(file) => self.edit(|draft| draft.set_file(file)),
+            CompileEvent::Compiled { text, file, diagnostics, folders, draws: _ } => {
+                self.diagnosed = text;
+                file.into_iter().for_each(|file| self.edit(|draft| draft.set_file(file)));
                 (self.diagnostics, self.building, self.problem) = (diagnostics, false, None);
                 let refused = self.watcher.set_folders(&folders);
                 if let Some(folder) = refused.first() {
@@ -60,10 +67,7 @@ impl Session {
 
     fn set_model(&mut self, model: Arc<Model>) {
         self.building = false;
-        let same_source = self.model.as_ref().is_some_and(|old| old.source == model.source);
-        if !same_source {
-            self.param_values.reset_literals();
-        }
+        self.carry_values_over(&model);
         let is_edit = self.model.is_some();
         let before = self.stated_camera();
         self.model = Some(model);

@@ -2,15 +2,19 @@
 
 mod camera_control;
 pub mod clock;
+pub mod draft;
 mod events;
 pub mod orbit_camera;
+pub mod save_state;
+mod saving;
+mod text;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use sdfc::{CompileValues, FrameValues};
+use sdfc::{CompileValues, FrameValues, Scene};
 
 use crate::accuracy::checks::AccuracyChecks;
 use crate::accuracy::comparison::ComparisonJob;
@@ -18,8 +22,9 @@ use crate::compile::diagnostics::{SceneDiagnostics, ShownDiagnostic};
 use crate::compile::file_watcher::FileWatcher;
 use crate::compile::request::{BuildRequest, CompileEvent};
 use crate::compile::worker::CompileWorker;
-use crate::export::exporter::{ExportJob, ExportOutcome};
+use crate::export::exporter::ExportOutcome;
 use crate::export::worker::ExportWorker;
+use crate::language::worker::{LanguageAnswer, LanguageRequest, LanguageWorker};
 use crate::render::picture::{Picture, RenderEvent, RenderRequest};
 use crate::render::pixel_info::PixelInfo;
 use crate::render::worker::RenderWorker;
@@ -27,7 +32,9 @@ use crate::scene::document::{Imports, path_of};
 use crate::scene::model::Model;
 use crate::scene::param_values::ParamValues;
 use crate::session::clock::Clock;
+use crate::session::draft::Draft;
 use crate::session::orbit_camera::{CameraState, OrbitCamera};
+use crate::session::save_state::Saving;
 use crate::views::mode::ViewMode;
 use crate::views::slice_plane::SlicePlane;
 
@@ -47,6 +54,11 @@ pub struct Session {
     render_events: Receiver<RenderEvent>,
     export_worker: ExportWorker,
     export_outcomes: Receiver<ExportOutcome>,
+    language_worker: LanguageWorker,
+    language_answers: Receiver<LanguageAnswer>,
+    language_request: Option<LanguageRequest>,
+    /// The last answer of the language service, which may be about an earlier text.
+    pub language: Option<LanguageAnswer>,
     watcher: FileWatcher,
     /// The request that a change on disk repeats, shared with the watcher's thread.
     repeated_build: Arc<Mutex<BuildRequest>>,
@@ -54,7 +66,9 @@ pub struct Session {
     camera: Option<OrbitCamera>,
     /// True while the camera is the scene's own and has not been moved by hand.
     follows_scene: bool,
-    /// The changed params and literals.
+    /// The scene and its values that the camera of a scene without a camera was fitted to.
+    fitted: Option<(Arc<Scene>, FrameValues)>,
+    /// The changed params and numbers.
     pub param_values: ParamValues,
     /// The scene's time.
     pub clock: Clock,
@@ -72,8 +86,14 @@ pub struct Session {
     pub refine: bool,
     /// The last good scene.
     pub model: Option<Arc<Model>>,
-    /// Errors and warnings of the scene's file as it is now.
+    /// The text of the scene: that of the file, or one that was edited in the window.
+    draft: Draft,
+    /// Whether the changed values are being written to the file.
+    saving: Saving,
+    /// Errors and warnings of the text that was compiled last.
     pub diagnostics: SceneDiagnostics,
+    /// That text.
+    diagnosed: Arc<str>,
     /// Why there is no newer model, apart from diagnostics.
     pub problem: Option<String>,
     /// Why the last picture could not be drawn.
@@ -113,6 +133,9 @@ impl Session {
         let (sender, export_outcomes) = channel();
         let wake_window = Arc::clone(&wake);
         let export_worker = ExportWorker::new(sender, move || wake_window())?;
+        let (sender, language_answers) = channel();
+        let wake_window = Arc::clone(&wake);
+        let language_worker = LanguageWorker::new(sender, move || wake_window())?;
         let accuracy = AccuracyChecks::new(move || wake())?;
         let repeated_build = Arc::new(Mutex::new(build.clone()));
         let (requests, repeated) = (compile_worker.requests(), Arc::clone(&repeated_build));
@@ -125,10 +148,15 @@ impl Session {
             render_events,
             export_worker,
             export_outcomes,
+            language_worker,
+            language_answers,
+            language_request: None,
+            language: None,
             watcher,
             repeated_build,
             camera: None,
             follows_scene: true,
+            fitted: None,
             param_values: ParamValues::default(),
             clock: Clock::default(),
             mode: ViewMode::default(),
@@ -138,7 +166,10 @@ impl Session {
             tolerance: 1.0,
             refine: true,
             model: None,
+            draft: Draft::default(),
+            saving: Saving::default(),
             diagnostics: SceneDiagnostics::default(),
+            diagnosed: Arc::default(),
             problem: None,
             render_error: None,
             building: false,
@@ -179,6 +210,7 @@ impl Session {
     pub fn open_other(&mut self, path: PathBuf) {
         self.build = BuildRequest {
             path,
+            draft: None,
             method: None,
             parallel: None,
             values: CompileValues::new(),
@@ -188,7 +220,8 @@ impl Session {
         (self.param_values, self.clock) = (ParamValues::default(), Clock::default());
         (self.diagnostics, self.problem, self.render_error) =
             (SceneDiagnostics::default(), None, None);
-        (self.follows_scene, self.tolerance) = (true, 1.0);
+        (self.draft, self.saving) = (Draft::default(), Saving::default());
+        (self.follows_scene, self.fitted, self.tolerance) = (true, None, 1.0);
         self.accuracy.reset();
         self.watch_own_folder();
         self.request_build();
@@ -265,6 +298,11 @@ impl Session {
         }
     }
 
+    /// Returns true until the chosen view of the picture is there, if only for some of its pixels.
+    pub fn is_view_pending(&self) -> bool {
+        self.picture.as_ref().is_some_and(|picture| picture.request.mode != self.mode)
+    }
+
     /// The last request as a comparison job; `None` for a planar picture, which has no rays.
     fn comparison_job(&self, all_methods: bool) -> Option<ComparisonJob> {
         let RenderRequest { model, frame, pose, size, tolerance, .. } =
@@ -325,16 +363,6 @@ impl Session {
     /// The path of the file that a diagnostic is about, absolute if the scene's path is.
     pub fn path_of(&self, diagnostic: &ShownDiagnostic) -> PathBuf {
         path_of(&self.build.path, &diagnostic.file)
-    }
-
-    /// Saves the changed literals to the scene's file, unless the file has changed on disk. The
-    /// outcome is reported later as a [message](Self::messages).
-    pub fn save_literals(&self) {
-        let Some(model) = &self.model else { return };
-        let before = model.source.clone();
-        let after = self.param_values.source_with_values(model);
-        let path = self.path().to_owned();
-        self.export_worker.send(ExportJob::SaveScene { path, before, after });
     }
 
     fn watch_own_folder(&mut self) {

@@ -187,6 +187,26 @@ impl OrbitCamera {
         }
     }
 
+    /// Multiplies the distance to a point by `factor`, which zooms in below 1. The point keeps its
+    /// position in the picture, and the camera never passes it.
+    pub fn zoom_at(&mut self, point: DVec3, factor: f64) {
+        let in_front = (point - self.eye).dot(self.forward);
+        if !factor.is_finite() || factor <= 0.0 || !point.is_finite() || in_front <= 0.0 {
+            return;
+        }
+        let distance = if self.parallel { self.half_height } else { in_front };
+        let factor = factor.clamp(DISTANCE_RANGE[0] / distance, DISTANCE_RANGE[1] / distance);
+        if self.parallel {
+            let [x, y, _] = self.pose().basis();
+            let aside = point - self.eye;
+            self.half_height *= factor;
+            self.shift((x * aside.dot(x) + y * aside.dot(y)) * (1.0 - factor));
+        } else {
+            self.eye = point + (self.eye - point) * factor;
+            self.pivot = point + (self.pivot - point) * factor;
+        }
+    }
+
     /// Flies right, up and forward, in distances to the pivot.
     pub fn fly(&mut self, by: DVec3) {
         let [x, y, z] = self.pose().basis();
@@ -418,6 +438,27 @@ mod tests {
             camera.dolly(f64::NAN, [0.0, 0.0]);
             camera.dolly(1e-300, [1.0, 1.0]);
             assert!(camera.pose().eye.is_finite() && camera.pose().half_height > 0.0);
+        }
+    }
+
+    #[test]
+    fn zooming_at_a_point_never_passes_it() {
+        for parallel in [false, true] {
+            let mut camera = camera();
+            camera.set_parallel(parallel);
+            // In front of the pivot, so that zooming at the pivot's depth would pass it.
+            let point = camera.pose().eye + camera.forward * 2.0 + DVec3::new(0.2, 0.1, 0.0);
+            let before = project(&camera, point);
+            for _ in 0..100 {
+                camera.zoom_at(point, 0.8);
+                assert!((point - camera.pose().eye).dot(camera.forward) > 0.0);
+            }
+            let after = project(&camera, point);
+            assert!((after[0] - before[0]).abs() < 1e-6 && (after[1] - before[1]).abs() < 1e-6);
+            let at = camera.pose();
+            camera.zoom_at(at.eye - camera.forward, 0.5);
+            camera.zoom_at(point, f64::NAN);
+            assert_eq!(camera.pose(), at);
         }
     }
 

@@ -23,7 +23,7 @@ const LABELS: [&str; 4] =
 
 fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
     let classifier = input.shapes.operands(input.scene);
-    let parts = classifier.at(input.frame, &input.hits());
+    let parts = classifier.at(input.frame, &input.hits(), input.interrupted);
     let quality = |part: &ShapeId| DistanceQuality::of(input.scene, *part) as usize;
     let qualities: Vec<usize> = classifier.shapes().iter().map(quality).collect();
     let numbers: Vec<_> = parts.iter().map(|part| part.map(|part| qualities[part])).collect();

@@ -8,7 +8,7 @@ use sdfc_graph::eval::Dual;
 use sdfc_march::PixelBlock;
 use sdfc_render::{HIT, Image, View};
 
-use crate::scene::field_probe::FieldProbe;
+use crate::scene::field_probe::{FieldProbe, IsInterrupted};
 use crate::scene::shapes::ShapeIndex;
 use crate::views::colors::{BACKGROUND, to_srgb};
 use crate::views::legend::{Legend, mix};
@@ -18,13 +18,14 @@ use crate::views::slice_plane::SlicePlane;
 const MAX_KEYS: usize = 12;
 
 /// The input of a view: a rendered image, and the scene that it shows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct ViewInput<'a> {
     /// Linear colours, averaged over the samples of each pixel.
     pub colors: &'a Image,
     /// Depth, status and evaluation count of the one ray through the middle of each pixel.
     pub image: &'a Image,
-    /// The rays of `image`.
+    /// The rays of the rendered image. `image` has every `stride`-th pixel of every `stride`-th row
+    /// of it.
     pub view: &'a View,
     /// The field in f64, at points relative to `origin`.
     pub field: &'a FieldProbe,
@@ -38,6 +39,10 @@ pub struct ViewInput<'a> {
     pub slice: SlicePlane,
     /// The point of the scene that rays and the field are relative to.
     pub origin: [f64; 3],
+    /// See `view`.
+    pub stride: u32,
+    /// Returns true when the result is no longer needed; the rest of it may be anything.
+    pub interrupted: IsInterrupted<'a>,
 }
 
 impl ViewInput<'_> {
@@ -54,7 +59,9 @@ impl ViewInput<'_> {
     /// The origin and unit direction of the ray through a pixel.
     pub fn ray(&self, index: usize) -> [DVec3; 2] {
         let columns = self.image.size()[0].max(1) as usize;
-        self.view.ray((index % columns) as u32, (index / columns) as u32)
+        let position = [index % columns, index / columns].map(|at| at as u32);
+        let [x, y] = rendered_position(position, self.stride, self.view.size);
+        self.view.ray(x, y)
     }
 
     /// For each pixel the point that its ray hit; `None` for the background.
@@ -69,7 +76,7 @@ impl ViewInput<'_> {
 
     /// For each pixel the field's value and gradient at its hit; `None` for the background.
     pub fn field_at_hits(&self) -> Vec<Option<Dual>> {
-        self.field.at_all(self.frame, &self.hits())
+        self.field.at_all(self.frame, &self.hits(), self.interrupted)
     }
 
     /// Colours every pixel by its number, with the brightness of the shaded picture.
@@ -104,4 +111,13 @@ impl ViewInput<'_> {
         most.truncate(MAX_KEYS);
         Legend::Keys(most.into_iter().map(|(number, _)| (color(number), label(number))).collect())
     }
+}
+
+/// The column and row in a rendered image of `size` of a pixel of the reduced image.
+pub fn rendered_position(reduced: [u32; 2], stride: u32, size: [u32; 2]) -> [u32; 2] {
+    let position = |axis: usize| {
+        let middle = reduced[axis] * stride + stride / 2;
+        middle.min(size[axis].saturating_sub(1))
+    };
+    [position(0), position(1)]
 }

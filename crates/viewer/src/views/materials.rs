@@ -19,7 +19,8 @@ pub const VIEW: View = View {
 };
 
 fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
-    let found = Materials::new(input.scene.drawn()).at(input.frame, &input.hits());
+    let materials = Materials::new(input.scene.drawn());
+    let found = materials.at(input.frame, &input.hits(), input.interrupted);
     let kinds: BTreeSet<Material> = found.iter().flatten().copied().collect();
     let kinds: Vec<Material> = kinds.into_iter().collect();
     let numbers: Vec<Option<usize>> =

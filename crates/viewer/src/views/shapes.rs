@@ -14,7 +14,7 @@ pub const VIEW: View = View {
 
 fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
     let classifier = input.shapes.leaves(input.scene);
-    let numbers = classifier.at(input.frame, &input.hits());
+    let numbers = classifier.at(input.frame, &input.hits(), input.interrupted);
     let label = |number: usize| input.shapes.label(input.scene, classifier.shapes()[number]);
     let legend = input.legend_of_numbers(&numbers, color, label);
     (input.color_by_number(&numbers, color), legend)

@@ -32,7 +32,7 @@ fn paint(input: &ViewInput<'_>) -> (Vec<u8>, Legend) {
     };
     let hits: Vec<_> = input.image.pixels().iter().enumerate().map(point).collect();
     let points: Vec<_> = hits.iter().map(|hit| hit.map(|(point, _)| point)).collect();
-    let fields = input.field.at_all(input.frame, &points);
+    let fields = input.field.at_all(input.frame, &points, input.interrupted);
     let color = |index: usize, shaded: &PixelBlock| match (fields[index], hits[index]) {
         (Some(field), Some((_, t))) => {
             let width = f64::from(input.image.pixel_width(t as f32));

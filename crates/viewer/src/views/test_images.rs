@@ -50,6 +50,8 @@ pub fn view_of(
         frame: &frame,
         slice: SlicePlane::default(),
         origin: program.origin,
+        stride: 1,
+        interrupted: &|| false,
     };
     let (bytes, legend) = mode.paint(&input);
     (bytes.chunks_exact(4).map(|it| [it[0], it[1], it[2]]).collect(), legend)

@@ -156,6 +156,8 @@ impl<'a> Window<'a> {
         let viewer = program.stderr(Stdio::piped()).spawn()?;
         let window = Self { viewer, display };
         window.arrange(title)?;
+        // Closes the panel "Code", so that the picture is as large as the tests expect.
+        window.input(&["key", "t"])?;
         Ok(window)
     }
 

@@ -148,7 +148,7 @@ fn example(display: Display) -> Result<(), Failed> {
     window.keep(&shown, "example")?;
     let folder = scene.own().join("sdfc/examples");
     expect(folder.join("params.sdf").is_file(), "the example was not copied")?;
-    window.input(&["key", "ctrl+s"])?;
+    window.input(&["key", "ctrl+e"])?;
     let dialog = window.settled(|picture| differ(picture, &shown, PICTURE) > 5000)?;
     window.keep(&dialog, "save")?;
     window.input(&["key", "Return"])?;

@@ -1,4 +1,4 @@
-//! How many live literals have been changed, and buttons to save, copy or reset them.
+//! How many numbers of the source have been changed, and buttons to save, copy or reset them.
 
 use eframe::egui::{self, RichText, Ui};
 use sdfc_lang::live_literals::MAX_LIVE_LITERALS;
@@ -7,13 +7,14 @@ use super::action::Action;
 use super::theme;
 use crate::scene::model::Model;
 use crate::session::Session;
+use crate::session::save_state::Saved;
 
 /// Shows the count and the buttons.
 pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec<Action>) {
-    let changed = session.param_values.changed_literals();
+    let changed = session.param_values.changed_numbers();
     ui.horizontal_wrapped(|ui| {
         let text = match changed {
-            0 if model.literals().next().is_none() => "no number can be dragged".to_owned(),
+            0 if model.numbers.is_empty() => "no number can be dragged".to_owned(),
             0 if model.scene.live_literals().len() == MAX_LIVE_LITERALS => {
                 format!("{MAX_LIVE_LITERALS} numbers can be dragged")
             }
@@ -34,13 +35,13 @@ pub fn show(ui: &mut Ui, session: &mut Session, model: &Model, actions: &mut Vec
             button.on_disabled_hover_text("No number has been changed.").clicked()
         };
         if button(ui, "Save to file", "Write the changed numbers to the scene's file.") {
-            session.save_literals();
+            session.save_to_file(Saved::Numbers);
         }
         if button(ui, "Copy", "Copy the source with the changed numbers.") {
-            actions.push(Action::Copy(session.param_values.source_with_values(model)));
+            actions.push(Action::Copy(session.param_values.source_with_values(&model.source)));
         }
         if button(ui, "Reset", "Reset all numbers to the values in the file.") {
-            session.param_values.reset_literals();
+            session.param_values.reset_numbers();
         }
     });
 }
