@@ -14,13 +14,15 @@ const DRAFT = "sdfc-draft";
 const THEME = "sdfc-theme";
 /// After this many milliseconds of drawing the page offers to stop it.
 const SLOW = 500;
+const ANY_TARGET = { target: "wgsl", emit: "render", stage: "fragment" };
 
 const compiler = new CompilerClient();
 const times = {};
 let editor;
+/// What the compiler writes for the backend that the drawing worker has opened.
 let target = null;
 let opened;
-const isOpen = new Promise((resolve) => (opened = resolve));
+let isOpen;
 
 const makeWorker = () => new Worker(new URL("draw.worker.js", import.meta.url), { type: "module" });
 const stage = new Stage(
@@ -31,6 +33,7 @@ const stage = new Stage(
       times.name = message.name;
       opened();
     },
+    fixedChanged: () => compile(),
     built({ milliseconds }) {
       times.built = milliseconds;
       tell();
@@ -53,6 +56,7 @@ const stage = new Stage(
     refused: ({ reason }) => failed(`The browser refused the shader: ${reason}`),
     lost({ reason }) {
       stage.picture.stop();
+      opened();
       failed(`The GPU was lost, or there is none: ${reason}`);
     },
   },
@@ -120,11 +124,18 @@ async function compile() {
   isCompiling = false;
 }
 
+/// Starts the worker that draws. `isOpen` waits until it has a backend, or has found none.
+function startDrawing() {
+  isOpen = new Promise((resolve) => (opened = resolve));
+  stage.picture.start();
+}
+
 async function compileOnce() {
-  if (!stage.picture.isRunning) stage.picture.start();
+  if (!stage.picture.isRunning) startDrawing();
   await isOpen;
   const source = editor.text();
-  const options = { ...target, name: "scene.sdf" };
+  // Without a backend the scene is compiled for its errors.
+  const options = { ...(target ?? ANY_TARGET), name: "scene.sdf", values: stage.values };
   const { text, reflection, diagnostics, milliseconds } = await compiler.compile(source, options);
   times.compiled = milliseconds;
   // Positions in an old text would be wrong.
@@ -264,7 +275,7 @@ function connectExport() {
       status(error.message);
     }
   });
-  const shader = () => exported(compiler, editor.text(), { target: find("target").value, emit: find("part").value });
+  const shader = () => exported(compiler, shared(), { target: find("target").value, emit: find("part").value });
   on("save-shader", async () => {
     const { content, name } = await shader();
     save(content, name);
@@ -277,15 +288,14 @@ function connectExport() {
   });
   on("save-png", () => new Promise((done) => find("picture").toBlob((blob) => done(save(blob, "scene.png")))));
   on("save-page", async () => {
-    const { source, ...state } = shared();
-    save(await standalone(compiler, source, state), "scene.html", "text/html");
+    save(await standalone(compiler, shared()), "scene.html", "text/html");
   });
   on("save-scene", async () => save(editor.text(), "scene.sdf"));
 }
 
 async function main() {
   connect();
-  stage.picture.start();
+  startDrawing();
   const { source, ...state } = await startScene();
   editor = makeEditor(find("editor"), source, () => {
     localStorage.setItem(DRAFT, editor.text());
