@@ -33,6 +33,11 @@ export class CompilerClient {
     this.#start();
   }
 
+  /// Ends all compilations, with an error.
+  cancel() {
+    if (this.#waiting.size > 0) this.#restart("the compilation was ended");
+  }
+
   /// Compiles a scene; see crates/web/npm/index.d.ts.
   compile(source, options) {
     const id = ++this.#last;

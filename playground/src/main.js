@@ -14,6 +14,8 @@ const DRAFT = "sdfc-draft";
 const THEME = "sdfc-theme";
 /// After this many milliseconds of drawing the page offers to stop it.
 const SLOW = 500;
+/// A compilation that has taken more milliseconds than this is ended by the next edit.
+const LONG = 1500;
 const ANY_TARGET = { target: "wgsl", emit: "render", stage: "fragment" };
 
 const compiler = new CompilerClient();
@@ -49,7 +51,7 @@ const stage = new Stage(
       times.drawn = milliseconds;
       if (!stage.clock.isPlaying && !(isWhole && isLast && !moves)) return;
       setBusy(false);
-      notice(null);
+      notice(complaint);
       setState(find("problems").querySelector(".error") ? "errors" : "drawn");
       tell();
     },
@@ -81,9 +83,18 @@ function tell() {
   say(parts.join(" · "));
 }
 
+/// What is wrong with the link or the example that was opened. It stays until the next edit.
+let complaint = null;
+
 function notice(text) {
   find("notice").hidden = text === null;
   find("notice").firstElementChild.textContent = text ?? "";
+  find("again").textContent = text === complaint ? "Close" : "Draw again";
+}
+
+function complain(error) {
+  complaint = error.message;
+  notice(complaint);
 }
 
 function failed(text) {
@@ -106,19 +117,23 @@ function setBusy(busy) {
 // Edits are compiled one after the other. Of the edits that wait, only the last is compiled.
 let isCompiling = false;
 let isOutdated = false;
+let started = 0;
 async function compile() {
   setState("busy");
   if (isCompiling) {
     isOutdated = true;
+    // A long compilation is ended. A short one is not: while someone types, nothing would be shown.
+    if (performance.now() - started > LONG) compiler.cancel();
     return;
   }
   isCompiling = true;
   do {
     isOutdated = false;
+    started = performance.now();
     try {
       await compileOnce();
     } catch (error) {
-      failed(error.message);
+      if (!isOutdated) failed(error.message);
     }
   } while (isOutdated);
   isCompiling = false;
@@ -185,7 +200,7 @@ async function startScene() {
     if (shared) return shared;
     if (query.has("example")) return { source: await exampleSource(query.get("example")) };
   } catch (error) {
-    notice(error.message);
+    complain(error);
   }
   const draft = localStorage.getItem(DRAFT);
   return { source: draft ?? (await exampleSource(FIRST)) };
@@ -198,8 +213,10 @@ const shared = () => {
 
 function connect() {
   find("again").addEventListener("click", () => {
+    const draws = complaint === null;
+    complaint = null;
     notice(null);
-    compile();
+    if (draws) compile();
   });
   find("stop").addEventListener("click", () => {
     stage.picture.stop();
@@ -228,7 +245,7 @@ function connect() {
       const found = await fromFragment(location.hash);
       if (found) open(found);
     } catch (error) {
-      notice(error.message);
+      complain(error);
     }
   });
 }
@@ -298,6 +315,7 @@ async function main() {
   startDrawing();
   const { source, ...state } = await startScene();
   editor = makeEditor(find("editor"), source, () => {
+    complaint = null;
     localStorage.setItem(DRAFT, editor.text());
     compile();
   });

@@ -70,6 +70,8 @@ fn main() {
         }
     }
     add("the_playground_shares_by_link".to_owned(), Box::new(playground::shares_by_link));
+    let name = "the_playground_survives_a_long_compilation".to_owned();
+    add(name, Box::new(playground::survives_a_long_compilation));
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
     // A static is not dropped, so the browser would keep running.
     drop(SESSION.lock().unwrap_or_else(PoisonError::into_inner).take());

@@ -28,10 +28,16 @@ param n: int = 2 in 1..5
 param tint = #2f7f86
 camera(eye: [3, 2, 7])
 union(for i in 0..n: sphere(r).translate(x: 1.5 * i - 2)).color(tint)";
-/// A million iterations for each evaluation of the field.
+/// The compiler tries some rays of this scene, with a million iterations at each of their points.
 const HOSTILE: &str = "camera(eye: [3, 2, 4])
-solid slow() = length(p) - 1 +
-  iterate(1000, 0, fn(a) = iterate(1000, a, fn(b) = b * 0.5 + sin(b + p.x) * 0.001))
+solid slow(k: number) = length(p) - 1 +
+  iterate(256, 0, fn(a) = iterate(256, a, fn(b) = b * 0.5 + sin(b + k * p.x) * 0.001))
+union(for i in 0..16: slow(i + 1).translate(x: i / 10))";
+/// The most iterations of one loop, for each evaluation of the field. It compiles at once, because
+/// the clause needs no trial.
+const SLOW: &str = "camera(eye: [3, 2, 4])
+solid slow() lipschitz 2 = length(p) - 1 +
+  iterate(256, 0, fn(a) = iterate(256, a, fn(b) = b * 0.5 + sin(b + p.x) * 0.001))
 slow()";
 
 /// A check of the page with one backend, `webgpu` or `webgl2`.
@@ -105,7 +111,7 @@ impl<'c> Page<'c> {
     }
 
     fn expect_state(&mut self, state: &str) -> Result<(), Failed> {
-        let found = self.chromium.evaluate(SETTLED)?;
+        let found = self.chromium.apply(SETTLED, &(state == "busy").into())?;
         if found == state {
             return Ok(());
         }
@@ -116,11 +122,7 @@ impl<'c> Page<'c> {
 
     /// Replaces the text of the editor as a visitor does: by the keyboard.
     pub fn write(&mut self, text: &str, state: &str) -> Result<(), Failed> {
-        self.after(state, |chromium| {
-            chromium.click(".cm-content", [0.5, 0.5])?;
-            chromium.select_all()?;
-            chromium.insert(text)
-        })
+        self.after(state, |chromium| replace_text(chromium, text))
     }
 
     /// The pixels of the canvas, with its size.
@@ -161,12 +163,18 @@ impl<'c> Page<'c> {
     }
 }
 
+fn replace_text(chromium: &mut Chromium, text: &str) -> Result<(), Failed> {
+    chromium.click(".cm-content", [0.5, 0.5])?;
+    chromium.select_all()?;
+    chromium.insert(text)
+}
+
 /// Waits until the page is neither at work nor waiting for the answer to an action.
-const SETTLED: &str = "new Promise(done => {
+const SETTLED: &str = "isFinalBusy => new Promise(done => {
     const look = () => {
-        const state = document.body?.dataset.state;
-        if (!state || state === 'busy' || state === 'waiting') return setTimeout(look, 20);
-        done(state);
+        const state = document.body?.dataset.state ?? 'waiting';
+        if (state === 'waiting' || (state === 'busy' && !isFinalBusy)) setTimeout(look, 20);
+        else done(state);
     };
     look();
 })";
@@ -298,11 +306,29 @@ pub fn survives_a_lost_gpu(session: &mut Session, backend: &str) -> Result<(), F
     let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
     page.write(BALL, "drawn")?;
     let before = page.picture()?;
+    page.chromium.evaluate(KEPT)?;
     page.after("failed", Chromium::crash_gpu)?;
+    page.chromium.evaluate(RESTORED)?;
     keeps(&mut page, &before, "The GPU was lost")?;
     page.after("drawn", |chromium| chromium.click("#again", [0.5, 0.5]))?;
     page.expect_picture(&compiled(BALL)?, None, "the picture of another GPU")
 }
+
+/// Waits until the page has a copy of the picture.
+const KEPT: &str = "new Promise(done => {
+    const look = () =>
+        'kept' in document.querySelector('#picture').dataset ? done(true) : setTimeout(look, 20);
+    look();
+    document.querySelector('#picture').addEventListener('contextrestored', () => {
+        window.restored = true;
+    });
+})";
+
+/// Waits until the browser has given the canvas its content again.
+const RESTORED: &str = "new Promise(done => {
+    const look = () => window.restored ? done(true) : setTimeout(look, 20);
+    look();
+})";
 
 /// A shader that the browser refuses is reported. The last picture stays until the next edit.
 pub fn survives_a_refused_shader(session: &mut Session, backend: &str) -> Result<(), Failed> {
@@ -333,7 +359,9 @@ fn keeps(page: &mut Page, before: &([u32; 2], Pixels), expected: &str) -> Result
     if !notice.as_str().is_some_and(|notice| notice.starts_with(expected)) {
         return Err(format!("the notice is {notice}").into());
     }
-    if page.picture()? != *before {
+    let after = page.picture()?;
+    if after != *before {
+        for (name, (size, pixels)) in [("before", before), ("after", &after)] { image::save_buffer(format!("/tmp/site-{name}.png"), pixels.as_flattened(), size[0], size[1], image::ColorType::Rgb8)?; }
         return Err("the last picture is gone".into());
     }
     Ok(())
@@ -345,10 +373,10 @@ pub fn survives_a_slow_scene(session: &mut Session, backend: &str) -> Result<(),
     page.write(BALL, "drawn")?;
     let before = page.picture()?;
     page.after("stopped", |chromium| {
-        chromium.click(".cm-content", [0.5, 0.5])?;
-        chromium.select_all()?;
-        chromium.insert(HOSTILE)?;
-        chromium.evaluate(SHOWN_STOP)?;
+        replace_text(chromium, SLOW)?;
+        if chromium.evaluate(OFFERS_STOP)? != true {
+            return Err("the page does not offer to stop".into());
+        }
         chromium.click("#stop", [0.5, 0.5])
     })?;
     keeps(&mut page, &before, "Drawing was stopped")?;
@@ -356,9 +384,28 @@ pub fn survives_a_slow_scene(session: &mut Session, backend: &str) -> Result<(),
     page.expect_picture(&compiled(SPELT)?, None, "the next scene")
 }
 
-/// Waits for the button that stops the drawing.
-const SHOWN_STOP: &str = "new Promise(done => {
-    const look = () => document.querySelector('#stop').hidden ? setTimeout(look, 20) : done(true);
+/// While a scene is compiled that takes very long, the page answers, and the next edit ends the
+/// compilation.
+pub fn survives_a_long_compilation(session: &mut Session) -> Result<(), Failed> {
+    let mut page = Page::open(&mut session.chromium, "")?;
+    page.write(BALL, "drawn")?;
+    let before = page.picture()?;
+    page.after("busy", |chromium| replace_text(chromium, HOSTILE))?;
+    if page.picture()? != before {
+        return Err("the last picture is gone".into());
+    }
+    page.write(SPELT, "drawn")?;
+    page.expect_picture(&compiled(SPELT)?, None, "the next scene")?;
+    page.expect_no_complaint()
+}
+
+/// Waits for the button that stops the drawing, or for the end of the drawing.
+const OFFERS_STOP: &str = "new Promise(done => {
+    const look = () => {
+        if (!document.querySelector('#stop').hidden) return done(true);
+        if (!['waiting', 'busy'].includes(document.body.dataset.state)) return done(false);
+        setTimeout(look, 20);
+    };
     look();
 })";
 
