@@ -89,7 +89,7 @@ let complaint = null;
 function notice(text) {
   find("notice").hidden = text === null;
   find("notice").firstElementChild.textContent = text ?? "";
-  find("again").textContent = text === complaint ? "Close" : "Draw again";
+  find("again").textContent = complaint !== null && text === complaint ? "Close" : "Draw again";
 }
 
 function complain(error) {

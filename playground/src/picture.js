@@ -11,8 +11,8 @@ export class Picture {
   #id = 0;
   #turn = 0;
   #makeWorker;
-  /// True if the last scene could not be drawn.
-  isRefused = false;
+  /// True if the worker has the last scene and has not refused it.
+  hasProgram = false;
   /// The last still picture as a file. The canvas loses its content with the GPU.
   #kept = null;
   #places = 0;
@@ -38,6 +38,7 @@ export class Picture {
   stop() {
     this.#worker?.terminate();
     this.#worker = null;
+    this.hasProgram = false;
   }
 
   get isRunning() {
@@ -46,14 +47,14 @@ export class Picture {
 
   /// Replaces the scene and draws its first frame.
   show(text, reflection, frame) {
-    this.isRefused = false;
+    this.hasProgram = this.isRunning;
     this.#worker?.postMessage({ type: "scene", id: ++this.#id, text, reflection });
     this.draw(frame);
   }
 
   /// Draws a frame of the scene. A slow frame that is being drawn ends after its coarse picture.
   draw(frame) {
-    if (!this.#worker || this.isRefused) return;
+    if (!this.hasProgram) return;
     this.#events.asked?.();
     this.#worker.postMessage({ type: "frame", id: this.#id, turn: ++this.#turn, ...frame });
   }
@@ -62,7 +63,7 @@ export class Picture {
     const { type, id } = message;
     if (type === "tiles") return this.#place(message);
     if (id !== undefined && id !== this.#id) return;
-    if (type === "refused") this.isRefused = true;
+    if (type === "refused") this.hasProgram = false;
     const isLast = message.turn === this.#turn;
     if (type === "done" && message.isWhole && isLast && !message.moves) this.#keep();
     const name = { done: "drawn", unavailable: "lost" }[type] ?? type;

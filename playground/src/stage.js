@@ -68,7 +68,7 @@ export class Stage {
     const moves = uses(reflection);
     const began = moves && !(this.#scene && uses(this.#scene.reflection));
     const next = { text, reflection };
-    const isSame = this.#scene && isSameProgram(this.#scene, next) && this.picture.isRunning && !this.picture.isRefused;
+    const isSame = this.#scene && isSameProgram(this.#scene, next) && this.picture.hasProgram;
     this.#scene = next;
     this.#isParallel = /\bcamera\s*\([^()]*\bheight\s*:/.test(source.replace(/\/\/.*/g, ""));
     const rows = inputRows(reflection).filter(({ isFixed }) => !isFixed || this.#events.fixedChanged);

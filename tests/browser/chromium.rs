@@ -46,7 +46,7 @@ const QUIET: [&str; 10] = [
 /// The text on stderr before the address of the DevTools socket.
 const LISTENING: &str = "DevTools listening on ";
 /// The longest wait for an answer. Shaders are compiled for the CPU, one after the other.
-const TIMEOUT: Duration = Duration::from_secs(240);
+const TIMEOUT: Duration = Duration::from_secs(45);
 
 fn program() -> Option<String> {
     let named = std::env::var(PROGRAM).ok();

@@ -307,10 +307,20 @@ pub fn survives_a_lost_gpu(session: &mut Session, backend: &str) -> Result<(), F
     page.write(BALL, "drawn")?;
     let before = page.picture()?;
     page.chromium.evaluate(KEPT)?;
+      page.chromium.evaluate("window.L = []; window.Worker = class extends Worker { constructor(...a) { super(...a); L.push('new ' + a[0]); this.addEventListener('message', e => L.push((e.data.type ?? 'compiled') + ' ' + (e.data.reason ?? ''))); this.addEventListener('error', e => L.push('error')) } postMessage(m, ...r) { L.push('> ' + (m.type ?? 'compile')); super.postMessage(m, ...r) } }; 0")?;
     page.after("failed", Chromium::crash_gpu)?;
-    page.chromium.evaluate(RESTORED)?;
+    for _ in 0..6 {
+      let v = page.chromium.evaluate("new Promise(d => setTimeout(() => { const c = document.querySelector('#picture'); const x = c.getContext('2d'); d([x.isContextLost(), 'kept' in c.dataset, window.restored, c.toDataURL().length, JSON.stringify(x.getContextAttributes())]) }, 700))")?;
+      println!("{v}");
+    }
     keeps(&mut page, &before, "The GPU was lost")?;
-    page.after("drawn", |chromium| chromium.click("#again", [0.5, 0.5]))?;
+      let v = page.chromium.evaluate("new Promise(d => { requestAnimationFrame(() => d('frame')); setTimeout(() => d('no frame'), 3000) })")?;
+      println!("{v}");
+      page.chromium.evaluate("document.querySelector('#again').click()")?;
+    for _ in 0..6 {
+      let v = page.chromium.evaluate("new Promise(d => setTimeout(() => d([document.body.dataset.state, document.querySelector('#status').textContent,document.querySelector('#notice').innerText, L ]), 700))")?;
+      println!("{v}");
+    }
     page.expect_picture(&compiled(BALL)?, None, "the picture of another GPU")
 }
 
