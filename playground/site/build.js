@@ -1,5 +1,5 @@
 // Builds the site from `docs` into `target/site`, with the playground in it. Fails if a link leads
-// nowhere. Run it with `npm run site`.
+// nowhere or a page shows something from elsewhere. Run it with `npm run site`.
 
 import { execFileSync } from "node:child_process";
 import { cp, mkdir, readFile, rm, writeFile } from "node:fs/promises";
@@ -35,7 +35,7 @@ const read = reader(links, compiler);
 for (const page of pages) await read(page);
 links.check();
 if (links.dead.length > 0) {
-  console.error(`${links.dead.length} links lead nowhere:\n${links.dead.join("\n")}`);
+  console.error(`${links.dead.length} links are wrong:\n${links.dead.join("\n")}`);
   process.exit(1);
 }
 

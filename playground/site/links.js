@@ -32,10 +32,13 @@ export class Links {
     return path.replace(/^docs\//, "");
   }
 
-  /// Returns the address on the site of what a page links to.
-  resolve(page, href) {
+  /// Returns the address on the site of what a page links to, or shows.
+  resolve(page, href, isShown) {
     this.count += 1;
-    if (/^[a-z]+:/.test(href)) return href;
+    if (/^[a-z]+:/.test(href)) {
+      if (isShown) this.dead.push(`${page.path}: ${href} would be fetched from elsewhere`);
+      return href;
+    }
     const [rest, anchor] = href.split("#");
     const path = rest === "" ? page.path : posix.join(posix.dirname(page.path), decodeURI(rest));
     const target = this.#pages.get(path) ?? this.#pages.get(posix.join(path, "README.md"));

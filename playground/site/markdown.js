@@ -22,7 +22,7 @@ export function reader(links, compiler) {
     addAnchors(tokens, env.page);
     for (const token of inline(tokens)) {
       for (const name of ["href", "src"]) {
-        if (token.attrGet(name) !== null) token.attrSet(name, links.resolve(env.page, token.attrGet(name)));
+        if (token.attrGet(name) !== null) token.attrSet(name, links.resolve(env.page, token.attrGet(name), name === "src"));
       }
       if (token.type.startsWith("html")) token.content = rewrite(token.content, links, env.page);
     }
@@ -111,7 +111,7 @@ function unused(name, taken) {
 
 /// Resolves the links in HTML.
 function rewrite(text, links, page) {
-  return text.replace(/ (href|src)="([^"]*)"/g, (_, name, value) => ` ${name}="${links.resolve(page, value)}"`);
+  return text.replace(/ (href|src)="([^"]*)"/g, (_, name, value) => ` ${name}="${links.resolve(page, value, name === "src")}"`);
 }
 
 /// Returns the text of a scene with colours, as HTML.

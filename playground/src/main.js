@@ -66,8 +66,11 @@ const stage = new Stage(
   query.get("backend"),
 );
 
+/// The state is in the page and, with the time when it began, among the marks of the browser.
 function setState(state) {
   document.body.dataset.state = state;
+  performance.clearMarks(state);
+  performance.mark(state);
 }
 
 function say(text) {

@@ -83,23 +83,26 @@ export class Picture {
     this.#events.progress(part);
   }
 
+  /// Keeps the picture outside the GPU. `data-kept` says that it is kept; tests wait for it.
   #keep() {
     const places = this.#places;
     this.#canvas.toBlob((file) => {
+      if (places !== this.#places) return;
       this.#kept = file;
-      // Tests wait for this.
-      if (places === this.#places) this.#canvas.dataset.kept = "";
+      this.#canvas.dataset.kept = "";
     });
   }
 
   async #restore() {
-    const places = this.#places;
+    delete this.#canvas.dataset.kept;
     if (!this.#kept) return;
+    const places = this.#places;
     const bitmap = await createImageBitmap(this.#kept);
     const { width, height } = this.#canvas;
     // What was drawn meanwhile is newer.
-    if (places === this.#places) this.#context.drawImage(bitmap, 0, 0, width, height);
-    bitmap.close();
+    if (places !== this.#places) return;
+    this.#context.drawImage(bitmap, 0, 0, width, height);
+    this.#canvas.dataset.kept = "";
   }
 
   /// Gives the canvas another size and keeps its picture.

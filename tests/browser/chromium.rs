@@ -46,7 +46,7 @@ const QUIET: [&str; 10] = [
 /// The text on stderr before the address of the DevTools socket.
 const LISTENING: &str = "DevTools listening on ";
 /// The longest wait for an answer. Shaders are compiled for the CPU, one after the other.
-const TIMEOUT: Duration = Duration::from_secs(45);
+const TIMEOUT: Duration = Duration::from_secs(240);
 
 fn program() -> Option<String> {
     let named = std::env::var(PROGRAM).ok();
@@ -220,10 +220,18 @@ impl Chromium {
 
     /// Selects the whole text of the focused element.
     pub fn select_all(&mut self) -> Result<(), Failed> {
+        self.key(json!({ "key": "a", "code": "KeyA", "windowsVirtualKeyCode": 65, "modifiers": 2 }))
+    }
+
+    /// Presses a key that has a name and a number.
+    pub fn press(&mut self, name: &str, number: u32) -> Result<(), Failed> {
+        self.key(json!({ "key": name, "code": name, "windowsVirtualKeyCode": number }))
+    }
+
+    fn key(&mut self, mut params: Value) -> Result<(), Failed> {
         for kind in ["rawKeyDown", "keyUp"] {
-            let mut params = json!({ "type": kind, "key": "a", "code": "KeyA", "modifiers": 2 });
-            params["windowsVirtualKeyCode"] = 65.into();
-            self.call("Input.dispatchKeyEvent", params)?;
+            params["type"] = kind.into();
+            self.call("Input.dispatchKeyEvent", params.clone())?;
         }
         Ok(())
     }

@@ -6,9 +6,11 @@
 mod chromium;
 mod compiler;
 mod compiles;
+mod measure;
 mod pages;
 mod playground;
 mod server;
+mod site;
 mod table;
 mod three;
 
@@ -37,7 +39,8 @@ fn main() {
         let is_missing = missing
             || (name.starts_with("three") && three::is_missing())
             || (name.starts_with("the_package") && compiler::is_missing())
-            || (name.starts_with("the_playground") && playground::is_missing());
+            || ((name.starts_with("the_playground") || name.starts_with("the_site"))
+                && playground::is_missing());
         trials.push(Trial::test(name, move || in_session(&check)).with_ignored_flag(is_missing));
     };
     for target in [Target::Wgsl, Target::GlslEs, Target::Shadertoy] {
@@ -72,6 +75,11 @@ fn main() {
     add("the_playground_shares_by_link".to_owned(), Box::new(playground::shares_by_link));
     let name = "the_playground_survives_a_long_compilation".to_owned();
     add(name, Box::new(playground::survives_a_long_compilation));
+    add("the_site_leads_to_the_playground".to_owned(), Box::new(site::leads_to_the_playground));
+    if std::env::var_os(measure::MEASURE).is_some() {
+        add("the_playground_times".to_owned(), Box::new(measure::times));
+        add("the_playground_screenshots".to_owned(), Box::new(measure::screenshots));
+    }
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
     // A static is not dropped, so the browser would keep running.
     drop(SESSION.lock().unwrap_or_else(PoisonError::into_inner).take());

@@ -21,7 +21,7 @@ const FEW_EXAMPLES: usize = 4;
 
 const BALL: &str = "camera(eye: [3, 2, 4])\nsphere(1).color(#c04a6a)\nplane(y: -1)";
 /// A scene in which a misspelt name is the only error, and the name that the compiler suggests.
-const MISSPELT: &str = "camera(eye: [3, 2, 4])\ntorsu(major: 1, minor: 0.4)";
+pub const MISSPELT: &str = "camera(eye: [3, 2, 4])\ntorsu(major: 1, minor: 0.4)";
 const SPELT: &str = "camera(eye: [3, 2, 4])\ntorus(major: 1, minor: 0.4)";
 const PARAMS: &str = "param r = 0.6 in 0.2..1
 param n: int = 2 in 1..5
@@ -110,7 +110,7 @@ impl<'c> Page<'c> {
         self.expect_state(state)
     }
 
-    fn expect_state(&mut self, state: &str) -> Result<(), Failed> {
+    pub fn expect_state(&mut self, state: &str) -> Result<(), Failed> {
         let found = self.chromium.apply(SETTLED, &(state == "busy").into())?;
         if found == state {
             return Ok(());
@@ -302,26 +302,20 @@ const COPIED: &str = "new Promise(done => {
 })";
 
 /// A GPU that is lost is reported. The last picture stays until a button draws again.
-pub fn survives_a_lost_gpu(session: &mut Session, backend: &str) -> Result<(), Failed> {
-    let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
+pub fn survives_a_lost_gpu(_: &mut Session, backend: &str) -> Result<(), Failed> {
+    // A browser gives pages no GPU after some crashes, so this one is used for nothing else.
+    let mut chromium = Chromium::start()?;
+    let mut page = Page::open(&mut chromium, &format!("?backend={backend}"))?;
     page.write(BALL, "drawn")?;
     let before = page.picture()?;
     page.chromium.evaluate(KEPT)?;
-      page.chromium.evaluate("window.L = []; window.Worker = class extends Worker { constructor(...a) { super(...a); L.push('new ' + a[0]); this.addEventListener('message', e => L.push((e.data.type ?? 'compiled') + ' ' + (e.data.reason ?? ''))); this.addEventListener('error', e => L.push('error')) } postMessage(m, ...r) { L.push('> ' + (m.type ?? 'compile')); super.postMessage(m, ...r) } }; 0")?;
     page.after("failed", Chromium::crash_gpu)?;
-    for _ in 0..6 {
-      let v = page.chromium.evaluate("new Promise(d => setTimeout(() => { const c = document.querySelector('#picture'); const x = c.getContext('2d'); d([x.isContextLost(), 'kept' in c.dataset, window.restored, c.toDataURL().length, JSON.stringify(x.getContextAttributes())]) }, 700))")?;
-      println!("{v}");
-    }
+    page.chromium.evaluate(RESTORED)?;
     keeps(&mut page, &before, "The GPU was lost")?;
-      let v = page.chromium.evaluate("new Promise(d => { requestAnimationFrame(() => d('frame')); setTimeout(() => d('no frame'), 3000) })")?;
-      println!("{v}");
-      page.chromium.evaluate("document.querySelector('#again').click()")?;
-    for _ in 0..6 {
-      let v = page.chromium.evaluate("new Promise(d => setTimeout(() => d([document.body.dataset.state, document.querySelector('#status').textContent,document.querySelector('#notice').innerText, L ]), 700))")?;
-      println!("{v}");
-    }
-    page.expect_picture(&compiled(BALL)?, None, "the picture of another GPU")
+    page.after("drawn", |chromium| chromium.click("#again", [0.5, 0.5]))?;
+    page.expect_picture(&compiled(BALL)?, None, "the picture of another GPU")?;
+    page.write(SPELT, "drawn")?;
+    page.expect_picture(&compiled(SPELT)?, None, "the next scene")
 }
 
 /// Waits until the page has a copy of the picture.
@@ -336,7 +330,8 @@ const KEPT: &str = "new Promise(done => {
 
 /// Waits until the browser has given the canvas its content again.
 const RESTORED: &str = "new Promise(done => {
-    const look = () => window.restored ? done(true) : setTimeout(look, 20);
+    const look = () => window.restored && 'kept' in document.querySelector('#picture').dataset
+        ? done(true) : setTimeout(look, 20);
     look();
 })";
 
@@ -369,9 +364,7 @@ fn keeps(page: &mut Page, before: &([u32; 2], Pixels), expected: &str) -> Result
     if !notice.as_str().is_some_and(|notice| notice.starts_with(expected)) {
         return Err(format!("the notice is {notice}").into());
     }
-    let after = page.picture()?;
-    if after != *before {
-        for (name, (size, pixels)) in [("before", before), ("after", &after)] { image::save_buffer(format!("/tmp/site-{name}.png"), pixels.as_flattened(), size[0], size[1], image::ColorType::Rgb8)?; }
+    if page.picture()? != *before {
         return Err("the last picture is gone".into());
     }
     Ok(())
