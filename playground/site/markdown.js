@@ -78,26 +78,27 @@ function sources(tokens) {
 
 /// Gives headings the anchors that GitHub gives them, and finds the sections of the page.
 function addAnchors(tokens, page) {
-  page.anchors = new Set();
+  // Pages may state anchors in HTML, above the heading that they belong to.
+  const html = tokens.filter(({ type }) => type.startsWith("html") || type === "inline");
+  const stated = html.flatMap(({ content }) => [...content.matchAll(/<a id="([^"]+)">/g)].map(([, id]) => id));
+  const headings = new Set();
   page.sections = [];
   let section = null;
   for (const [at, token] of tokens.entries()) {
     if (token.type === "heading_open") {
       const { children } = tokens[at + 1];
       const title = children.map(({ type, content }) => (/^(?:text|code_inline)$/.test(type) ? content : "")).join("");
-      const anchor = unused(slug(title), page.anchors);
-      page.anchors.add(anchor);
-      token.attrSet("id", anchor);
+      const anchor = unused(slug(title), headings);
+      headings.add(anchor);
+      if (!stated.includes(anchor)) token.attrSet("id", anchor);
       page.title ??= title;
       section = { title, anchor: token.tag === "h1" ? "" : anchor, text: [] };
       page.sections.push(section);
     } else if (/^(?:inline|fence|code_block)$/.test(token.type) && tokens[at - 1]?.type !== "heading_open") {
       section?.text.push(token.content);
     }
-    if (token.type.startsWith("html") || token.type === "inline") {
-      for (const [, id] of token.content.matchAll(/<a id="([^"]+)">/g)) page.anchors.add(id);
-    }
   }
+  page.anchors = new Set([...stated, ...headings]);
 }
 
 const slug = (title) => title.toLowerCase().replace(/[^\p{L}\p{N}\s_-]/gu, "").trim().replace(/\s/g, "-");

@@ -76,6 +76,7 @@ fn main() {
     let name = "the_playground_survives_a_long_compilation".to_owned();
     add(name, Box::new(playground::survives_a_long_compilation));
     add("the_site_leads_to_the_playground".to_owned(), Box::new(site::leads_to_the_playground));
+    add("the_site_fits_a_phone".to_owned(), Box::new(site::fits_a_phone));
     if std::env::var_os(measure::MEASURE).is_some() {
         add("the_playground_times".to_owned(), Box::new(measure::times));
         add("the_playground_screenshots".to_owned(), Box::new(measure::screenshots));

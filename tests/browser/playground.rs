@@ -1,6 +1,6 @@
 //! The playground: a page in which scenes are written and drawn.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::Command;
 use std::sync::OnceLock;
 
@@ -59,18 +59,21 @@ pub fn is_missing() -> bool {
         || !chromium::is_required() && !repository().join("playground/node_modules").exists()
 }
 
+/// Runs a build script of the folder `playground`, and serves what it writes into `folder`.
+pub fn build(script: &str, folder: &Path) -> Result<Server, String> {
+    let source = repository().join("playground");
+    let built = Command::new("node").arg(script).current_dir(source).output();
+    let built = built.map_err(|e| format!("node: {e}"))?;
+    if !built.status.success() {
+        return Err(String::from_utf8_lossy(&built.stderr).into_owned());
+    }
+    Server::start(folder).map_err(|e| e.to_string())
+}
+
 /// Builds the page once, and returns the server of its files.
 fn server() -> Result<&'static Server, Failed> {
     static SERVER: OnceLock<Result<Server, String>> = OnceLock::new();
-    let start = || {
-        let folder: PathBuf = repository().join("playground");
-        let built = Command::new("node").arg("build.js").current_dir(folder).output();
-        let built = built.map_err(|e| format!("node: {e}"))?;
-        if !built.status.success() {
-            return Err(String::from_utf8_lossy(&built.stderr).into_owned());
-        }
-        Server::start(&repository().join("target/playground")).map_err(|e| e.to_string())
-    };
+    let start = || build("build.js", &repository().join("target/playground"));
     SERVER.get_or_init(start).as_ref().map_err(|e| e.as_str().into())
 }
 

@@ -1,25 +1,33 @@
 //! The site of the documentation, with the playground in it.
 
-use std::process::Command;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use libtest_mimic::Failed;
 use sdfc_tests::repository;
 
 use crate::Session;
-use crate::playground::Page;
+use crate::playground::{Page, build};
 use crate::server::Server;
 
 const WINDOW: [u32; 2] = [1400, 700];
 
-/// The build succeeds, which checks all links. A search leads to a section, and a scene of the page
-/// opens in the playground. Nothing comes from another server.
+const PHONE: [u32; 2] = [390, 844];
+
+fn folder() -> PathBuf {
+    repository().join("target/site")
+}
+
+/// Builds the site once, which checks all links, and returns the server of its files.
+fn server() -> Result<&'static Server, Failed> {
+    static SERVER: OnceLock<Result<Server, String>> = OnceLock::new();
+    SERVER.get_or_init(|| build("site/build.js", &folder())).as_ref().map_err(|e| e.as_str().into())
+}
+
+/// A search leads to a section, and its example opens in the playground. Nothing comes from another
+/// server.
 pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
-    let folder = repository().join("playground");
-    let built = Command::new("node").arg("site/build.js").current_dir(folder).output()?;
-    if !built.status.success() {
-        return Err(String::from_utf8_lossy(&built.stderr).into_owned().into());
-    }
-    let server = Server::start(&repository().join("target/site"))?;
+    let server = server()?;
     let chromium = &mut session.chromium;
     chromium.open(&server.url("index.html"), WINDOW)?;
     chromium.evaluate(LOADED)?;
@@ -32,7 +40,7 @@ pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
     chromium.evaluate("void document.querySelector('#found a').click()")?;
     let source = chromium.evaluate(SOURCE)?;
     let source = source.as_str().ok_or("no example")?;
-    only_from(chromium, &server)?;
+    only_from(chromium, server)?;
 
     let link = chromium.evaluate("window.example.nextElementSibling.href")?;
     chromium.open(link.as_str().ok_or("no link")?, WINDOW)?;
@@ -43,8 +51,50 @@ pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
         return Err(format!("the playground shows {shown}, not {source}").into());
     }
     page.expect_no_complaint()?;
-    only_from(page.chromium, &server)
+    only_from(page.chromium, server)
 }
+
+/// No page is wider than the window of a phone: what is wide scrolls by itself.
+pub fn fits_a_phone(session: &mut Session) -> Result<(), Failed> {
+    let server = server()?;
+    let mut wide = Vec::new();
+    for page in pages(&folder())? {
+        session.chromium.open(&server.url(&page), PHONE)?;
+        let excess = session.chromium.evaluate(EXCESS)?;
+        if excess != 0 {
+            wide.push(format!("{page}: {excess}"));
+        }
+    }
+    if wide.is_empty() { Ok(()) } else { Err(format!("{wide:#?}").into()) }
+}
+
+/// Returns the pages of the site without the playground.
+fn pages(folder: &Path) -> Result<Vec<String>, Failed> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(inner) = folders.pop() {
+        for entry in std::fs::read_dir(inner)? {
+            let path = entry?.path();
+            let name = path.strip_prefix(folder)?.display().to_string().replace('\\', "/");
+            if path.is_dir() && name != "playground" {
+                folders.push(path);
+            } else if name.ends_with(".html") {
+                found.push(name);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Waits for the page, and returns how much wider it is than the window.
+const EXCESS: &str = "new Promise(done => {
+    const look = () => {
+        if (document.readyState !== 'complete') return setTimeout(look, 10);
+        const { scrollWidth, clientWidth } = document.documentElement;
+        done(scrollWidth - clientWidth);
+    };
+    look();
+})";
 
 const LOADED: &str = "new Promise(done => {
     const look = () => document.querySelector('#contents')?.open ? done(true) : setTimeout(look, 20);
