@@ -54,8 +54,9 @@ await build({
 execFileSync("node", [join(root, "playground/build.js")], { stdio: "ignore" });
 await cp(join(root, "target/playground"), join(dist, "playground"), { recursive: true });
 const playground = await readFile(join(dist, "playground/index.html"), "utf8");
-const docs = '<a href="../index.html">Documentation</a>';
-await write("playground/index.html", playground.replace("<!--SITE-->", docs));
+const heading = '<h1><a href="../index.html">sdfc</a> <span>playground</span></h1>';
+const docs = '<a class="site" href="../index.html">Documentation</a>';
+await write("playground/index.html", playground.replace(/<h1>.*<\/h1>/, `${heading}\n  ${docs}`));
 
 const count = pages.reduce((sum, { opens }) => sum + opens, 0);
 const seconds = ((performance.now() - started) / 1000).toFixed(1);

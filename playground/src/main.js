@@ -176,7 +176,7 @@ function report(rows) {
     const head = document.createElement("b");
     head.textContent = [row.code ?? row.severity, row.line > 0 && `line ${row.line}`].filter(Boolean).join(", ");
     const help = document.createElement("small");
-    help.textContent = row.help && ` ${row.help}`;
+    help.textContent = row.help && ` ${row.help[0].toUpperCase()}${row.help.slice(1)}`;
     where.append(head, `: ${row.message}.`, help);
     where.addEventListener("click", () => editor.reveal(row));
     item.append(where);
