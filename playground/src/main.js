@@ -197,6 +197,7 @@ function open({ source, ...state }) {
   editor.open(source);
 }
 
+/// Returns the scene of the link, or of the query, or the last one that was written here.
 async function startScene() {
   try {
     const shared = await fromFragment(location.hash);
@@ -255,8 +256,13 @@ function connect() {
 
 async function choose(name) {
   find("gallery").close();
-  history.replaceState(null, "", location.pathname);
-  open({ source: await exampleSource(name) });
+  try {
+    const source = await exampleSource(name);
+    history.replaceState(null, "", location.pathname);
+    open({ source });
+  } catch (error) {
+    complain(error);
+  }
 }
 
 async function share() {

@@ -72,6 +72,7 @@ fn main() {
             add(name, Box::new(move |session| check(session, backend)));
         }
     }
+    add("the_playground_follows_lists".to_owned(), Box::new(playground::follows_lists));
     add("the_playground_shares_by_link".to_owned(), Box::new(playground::shares_by_link));
     let name = "the_playground_survives_a_long_compilation".to_owned();
     add(name, Box::new(playground::survives_a_long_compilation));

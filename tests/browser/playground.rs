@@ -28,6 +28,10 @@ param n: int = 2 in 1..5
 param tint = #2f7f86
 camera(eye: [3, 2, 7])
 union(for i in 0..n: sphere(r).translate(x: 1.5 * i - 2)).color(tint)";
+/// A star with an inner radius. Its corners are a list, which is no part of a WGSL shader.
+const STAR: &str = "camera(eye: [1, 2, 3])
+let corner = fn(i) = (if i % 2 == 0 { 1 } else { 0.6 }) * [cos(4deg * i), sin(4deg * i)]
+polygon([for i in 0..90: corner(i)]).extrude(0.5)";
 /// The compiler tries some rays of this scene, with a million iterations at each of their points.
 const HOSTILE: &str = "camera(eye: [3, 2, 4])
 solid slow(k: number) = length(p) - 1 +
@@ -213,6 +217,17 @@ pub fn follows_the_text(session: &mut Session, backend: &str) -> Result<(), Fail
     let left = page.chromium.evaluate("document.querySelectorAll('#problems li').length")?;
     if left != 0 {
         return Err(format!("{left} problems are left").into());
+    }
+    page.expect_no_complaint()
+}
+
+/// An edit that changes nothing but a list of the shader is drawn.
+pub fn follows_lists(session: &mut Session) -> Result<(), Failed> {
+    let window = [900, 420];
+    let mut page = Page::open_in(&mut session.chromium, "?backend=webgpu", window)?;
+    for text in [STAR, &STAR.replace("0.6", "0.8")] {
+        page.write(text, "drawn")?;
+        page.expect_picture(&compiled(text)?, None, "a list")?;
     }
     page.expect_no_complaint()
 }
