@@ -1,7 +1,8 @@
 // The page's side of the compiler: a worker that can be ended and started again.
 
-/// The longest wait for a compilation, in milliseconds. After it the worker is ended.
-const MAX_WAIT = 20_000;
+/// The longest wait for a compilation, in milliseconds. After it the worker is ended. The compiler
+/// tries some rays of a scene without a known Lipschitz constant, which can take half a minute.
+const MAX_WAIT = 120_000;
 
 export class CompilerClient {
   #worker = null;

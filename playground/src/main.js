@@ -154,12 +154,15 @@ async function compileOnce() {
   const source = editor.text();
   // Without a backend the scene is compiled for its errors.
   const options = { ...(target ?? ANY_TARGET), name: "scene.sdf", values: stage.values };
-  const { text, reflection, diagnostics, milliseconds } = await compiler.compile(source, options);
+  const waiting = setTimeout(() => say("compiling: an edit ends it"), LONG);
+  const compiled = await compiler.compile(source, options).finally(() => clearTimeout(waiting));
+  const { text, reflection, diagnostics, milliseconds } = compiled;
   times.compiled = milliseconds;
   // Positions in an old text would be wrong.
   if (source === editor.text()) report(diagnostics);
   if (text === null) {
     if (!isOutdated) setState("errors");
+    tell();
     return;
   }
   stage.show(source, text, reflection, !calm);

@@ -11,7 +11,7 @@ use sdfc_tests::repository;
 use crate::chromium::{self, Chromium};
 use crate::pages::{Pixels, check_at, drawn_at};
 use crate::server::Server;
-use crate::{Session, compiler};
+use crate::{Session, compiler, survival};
 
 /// A window in which the picture is wider than high, so that the page does not widen its view.
 const WINDOW: [u32; 2] = [1400, 560];
@@ -19,11 +19,11 @@ const WINDOW: [u32; 2] = [1400, 560];
 const EXAMPLES: &str = "SDFC_PLAYGROUND_EXAMPLES";
 const FEW_EXAMPLES: usize = 4;
 
-const BALL: &str = "camera(eye: [3, 2, 4])\nsphere(1).color(#c04a6a)\nplane(y: -1)";
+pub const BALL: &str = "camera(eye: [3, 2, 4])\nsphere(1).color(#c04a6a)\nplane(y: -1)";
 /// A scene in which a misspelt name is the only error, and the name that the compiler suggests.
 pub const MISSPELT: &str = "camera(eye: [3, 2, 4])\ntorsu(major: 1, minor: 0.4)";
-const SPELT: &str = "camera(eye: [3, 2, 4])\ntorus(major: 1, minor: 0.4)";
-const PARAMS: &str = "param r = 0.6 in 0.2..1
+pub const SPELT: &str = "camera(eye: [3, 2, 4])\ntorus(major: 1, minor: 0.4)";
+pub const PARAMS: &str = "param r = 0.6 in 0.2..1
 param n: int = 2 in 1..5
 param tint = #2f7f86
 camera(eye: [3, 2, 7])
@@ -32,18 +32,6 @@ union(for i in 0..n: sphere(r).translate(x: 1.5 * i - 2)).color(tint)";
 const STAR: &str = "camera(eye: [1, 2, 3])
 let corner = fn(i) = (if i % 2 == 0 { 1 } else { 0.6 }) * [cos(4deg * i), sin(4deg * i)]
 polygon([for i in 0..90: corner(i)]).extrude(0.5)";
-/// The compiler tries some rays of this scene, with a million iterations at each of their points.
-const HOSTILE: &str = "camera(eye: [3, 2, 4])
-solid slow(k: number) = length(p) - 1 +
-  iterate(256, 0, fn(a) = iterate(256, a, fn(b) = b * 0.5 + sin(b + k * p.x) * 0.001))
-union(for i in 0..16: slow(i + 1).translate(x: i / 10))";
-/// The most iterations of one loop, for each evaluation of the field. It compiles at once, because
-/// the clause needs no trial.
-const SLOW: &str = "camera(eye: [3, 2, 4])
-solid slow() lipschitz 2 = length(p) - 1 +
-  iterate(256, 0, fn(a) = iterate(256, a, fn(b) = b * 0.5 + sin(b + p.x) * 0.001))
-slow()";
-
 /// A check of the page with one backend, `webgpu` or `webgl2`.
 type Check = fn(&mut Session, &str) -> Result<(), Failed>;
 
@@ -51,9 +39,9 @@ type Check = fn(&mut Session, &str) -> Result<(), Failed>;
 pub const BY_BACKEND: [(&str, Check); 6] = [
     ("follows_the_text", follows_the_text),
     ("follows_sliders", follows_sliders),
-    ("survives_a_lost_gpu", survives_a_lost_gpu),
-    ("survives_a_refused_shader", survives_a_refused_shader),
-    ("survives_a_slow_scene", survives_a_slow_scene),
+    ("survives_a_lost_gpu", survival::lost_gpu),
+    ("survives_a_refused_shader", survival::refused_shader),
+    ("survives_a_slow_scene", survival::slow_scene),
     ("opens_examples", opens_examples),
 ];
 
@@ -170,7 +158,7 @@ impl<'c> Page<'c> {
     }
 }
 
-fn replace_text(chromium: &mut Chromium, text: &str) -> Result<(), Failed> {
+pub fn replace_text(chromium: &mut Chromium, text: &str) -> Result<(), Failed> {
     chromium.click(".cm-content", [0.5, 0.5])?;
     chromium.select_all()?;
     chromium.insert(text)
@@ -187,16 +175,16 @@ const SETTLED: &str = "isFinalBusy => new Promise(done => {
 })";
 
 /// The notice over the picture.
-const NOTICE: &str = "(notice => notice.hidden ? '' : notice.firstElementChild.textContent)\
+pub const NOTICE: &str = "(notice => notice.hidden ? '' : notice.firstElementChild.textContent)\
                       (document.querySelector('#notice'))";
 
 const VALUE: &str = "name => Number(document.querySelector(`#params [name=${name}]`)?.value)";
 
-fn compiled(text: &str) -> Result<Scene, Failed> {
+pub fn compiled(text: &str) -> Result<Scene, Failed> {
     Ok(Compiler::new().compile("typed.sdf", text)?)
 }
 
-/// A typed scene is shown; an error is shown with its fix, which mends the scene.
+/// A typed scene is shown; an error is shown with its fix, which corrects the scene.
 pub fn follows_the_text(session: &mut Session, backend: &str) -> Result<(), Failed> {
     let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
     page.write(BALL, "drawn")?;
@@ -319,119 +307,9 @@ const COPIED: &str = "new Promise(done => {
     look();
 })";
 
-/// A GPU that is lost is reported. The last picture stays until a button draws again.
-pub fn survives_a_lost_gpu(_: &mut Session, backend: &str) -> Result<(), Failed> {
-    // A browser gives pages no GPU after some crashes, so this one is used for nothing else.
-    let mut chromium = Chromium::start()?;
-    let mut page = Page::open(&mut chromium, &format!("?backend={backend}"))?;
-    page.write(BALL, "drawn")?;
-    let before = page.picture()?;
-    page.chromium.evaluate(KEPT)?;
-    page.after("failed", Chromium::crash_gpu)?;
-    page.chromium.evaluate(RESTORED)?;
-    keeps(&mut page, &before, "The GPU was lost")?;
-    page.after("drawn", |chromium| chromium.click("#again", [0.5, 0.5]))?;
-    page.expect_picture(&compiled(BALL)?, None, "the picture of another GPU")?;
-    page.write(SPELT, "drawn")?;
-    page.expect_picture(&compiled(SPELT)?, None, "the next scene")
-}
-
-/// Waits until the page has a copy of the picture.
-const KEPT: &str = "new Promise(done => {
-    const look = () =>
-        'kept' in document.querySelector('#picture').dataset ? done(true) : setTimeout(look, 20);
-    look();
-    document.querySelector('#picture').addEventListener('contextrestored', () => {
-        window.restored = true;
-    });
-})";
-
-/// Waits until the browser has given the canvas its content again.
-const RESTORED: &str = "new Promise(done => {
-    const look = () => window.restored && 'kept' in document.querySelector('#picture').dataset
-        ? done(true) : setTimeout(look, 20);
-    look();
-})";
-
-/// A shader that the browser refuses is reported. The last picture stays until the next edit.
-pub fn survives_a_refused_shader(session: &mut Session, backend: &str) -> Result<(), Failed> {
-    let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
-    page.write(BALL, "drawn")?;
-    let before = page.picture()?;
-    page.chromium.evaluate(SPOIL)?;
-    page.write(SPELT, "failed")?;
-    keeps(&mut page, &before, "The browser refused the shader")?;
-    page.chromium.evaluate("window.spoils = false")?;
-    page.write(PARAMS, "drawn")?;
-    page.expect_picture(&compiled(PARAMS)?, None, "the next scene")?;
-    let notice = page.chromium.evaluate(NOTICE)?;
-    if notice == "" { Ok(()) } else { Err(format!("the notice stays: {notice}").into()) }
-}
-
-/// Writes an unknown type into every shader on its way to the worker that draws.
-const SPOIL: &str = "window.spoils = true;
-    const post = Worker.prototype.postMessage;
-    Worker.prototype.postMessage = function(message, ...rest) {
-        const spoilt = window.spoils && message.type === 'scene';
-        const text = spoilt ? message.text + '\\nunknown nothing;' : message.text;
-        return post.call(this, { ...message, text }, ...rest);
-    };";
-
-fn keeps(page: &mut Page, before: &([u32; 2], Pixels), expected: &str) -> Result<(), Failed> {
-    let notice = page.chromium.evaluate(NOTICE)?;
-    if !notice.as_str().is_some_and(|notice| notice.starts_with(expected)) {
-        return Err(format!("the notice is {notice}").into());
-    }
-    if page.picture()? != *before {
-        return Err("the last picture is gone".into());
-    }
-    Ok(())
-}
-
-/// While a scene is drawn that takes very long, the page answers, and can stop the drawing.
-pub fn survives_a_slow_scene(session: &mut Session, backend: &str) -> Result<(), Failed> {
-    let mut page = Page::open(&mut session.chromium, &format!("?backend={backend}"))?;
-    page.write(BALL, "drawn")?;
-    let before = page.picture()?;
-    page.after("stopped", |chromium| {
-        replace_text(chromium, SLOW)?;
-        if chromium.evaluate(OFFERS_STOP)? != true {
-            return Err("the page does not offer to stop".into());
-        }
-        chromium.click("#stop", [0.5, 0.5])
-    })?;
-    keeps(&mut page, &before, "Drawing was stopped")?;
-    page.write(SPELT, "drawn")?;
-    page.expect_picture(&compiled(SPELT)?, None, "the next scene")
-}
-
-/// While a scene is compiled that takes very long, the page answers, and the next edit ends the
-/// compilation.
-pub fn survives_a_long_compilation(session: &mut Session) -> Result<(), Failed> {
-    let mut page = Page::open(&mut session.chromium, "")?;
-    page.write(BALL, "drawn")?;
-    let before = page.picture()?;
-    page.after("busy", |chromium| replace_text(chromium, HOSTILE))?;
-    if page.picture()? != before {
-        return Err("the last picture is gone".into());
-    }
-    page.write(SPELT, "drawn")?;
-    page.expect_picture(&compiled(SPELT)?, None, "the next scene")?;
-    page.expect_no_complaint()
-}
-
-/// Waits for the button that stops the drawing, or for the end of the drawing.
-const OFFERS_STOP: &str = "new Promise(done => {
-    const look = () => {
-        if (!document.querySelector('#stop').hidden) return done(true);
-        if (!['waiting', 'busy'].includes(document.body.dataset.state)) return done(false);
-        setTimeout(look, 20);
-    };
-    look();
-})";
-
 /// Examples are opened one after the other from the gallery, all in one page. The page does not
 /// grow, and no context is lost.
+#[expect(clippy::print_stdout, reason = "people read the sizes of the page")]
 pub fn opens_examples(session: &mut Session, backend: &str) -> Result<(), Failed> {
     let most = std::env::var(EXAMPLES).ok().and_then(|value| value.parse().ok());
     let most: usize = most.unwrap_or(FEW_EXAMPLES);
