@@ -28,11 +28,11 @@ pub fn times(_: &mut Session) -> Result<(), Failed> {
     for (backend, leaves) in BACKENDS {
         let query = format!("?backend={backend}");
         let mut chromium = Chromium::start()?;
-        for cache in ["cold", "warm"] {
+        for visit in ["first", "second"] {
             Page::open_in(&mut chromium, &query, WINDOW)?;
             let drawn = chromium.evaluate("performance.getEntriesByName('drawn')[0].startTime")?;
             println!(
-                "{backend}: first picture, {cache}: {} ms, {}",
+                "{backend}: picture of the {visit} visit: {} ms, {}",
                 whole(&drawn),
                 status(&mut chromium)?
             );
