@@ -10,7 +10,7 @@ const SHOWN = 140;
 export function index(pages) {
   const search = new MiniSearch(OPTIONS);
   const entries = pages.flatMap((page) => page.sections.map(({ title, anchor, text }) => {
-    const plain = text.join(" ").replace(/\]\([^)]*\)|<[^>]*>|[[\]`*|]/g, " ").replace(/\s+/g, " ").trim();
+    const plain = text.join(" ").replace(/\]\([^)]*\)|<[^>]*>|[[\]`*]/g, " ").replace(/\s+/g, " ").trim();
     const url = anchor ? `${page.url}#${anchor}` : page.url;
     return { title, page: page.title, url, text: plain, start: plain.slice(0, SHOWN) };
   }));
