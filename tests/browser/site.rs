@@ -37,7 +37,7 @@ pub fn leads_to_the_playground(session: &mut Session) -> Result<(), Failed> {
     if !first.as_str().is_some_and(|url| url.ends_with("reference/fractals.html#menger")) {
         return Err(format!("the first result is {first}").into());
     }
-    chromium.evaluate("void document.querySelector('#found a').click()")?;
+    chromium.open(first.as_str().ok_or("no link")?, WINDOW)?;
     let source = chromium.evaluate(SOURCE)?;
     let source = source.as_str().ok_or("no example")?;
     only_from(chromium, server)?;
