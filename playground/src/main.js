@@ -126,7 +126,9 @@ async function compile() {
   if (isCompiling) {
     isOutdated = true;
     // A long compilation is ended. A short one is not: while someone types, nothing would be shown.
-    if (performance.now() - started > LONG) compiler.cancel();
+    const run = started;
+    const end = () => isCompiling && started === run && compiler.cancel();
+    setTimeout(end, LONG - (performance.now() - started));
     return;
   }
   isCompiling = true;
