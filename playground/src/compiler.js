@@ -1,7 +1,8 @@
 // The page's side of the compiler: a worker that can be ended and started again.
 
-/// The longest wait for a compilation, in milliseconds. After it the worker is ended.
-const MAX_WAIT = 20_000;
+/// The longest wait for a compilation, in milliseconds. After it the worker is ended. The compiler
+/// tries some rays of a scene without a known Lipschitz constant, which can take half a minute.
+const MAX_WAIT = 120_000;
 
 export class CompilerClient {
   #worker = null;
@@ -31,6 +32,11 @@ export class CompilerClient {
     this.#worker.terminate();
     for (const id of [...this.#waiting.keys()]) this.#settle(id, { failure });
     this.#start();
+  }
+
+  /// Ends all compilations, with an error.
+  cancel() {
+    if (this.#waiting.size > 0) this.#restart("the compilation was ended");
   }
 
   /// Compiles a scene; see crates/web/npm/index.d.ts.

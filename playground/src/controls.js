@@ -5,15 +5,42 @@ import { decode, encode } from "../../examples/embed/reflection.js";
 /// Params that change by themselves.
 export const CLOCK = ["time", "frame"];
 
-/// Replaces the inputs in `parent` by those of a scene. `values` has the params that are not at
-/// their defaults; it is changed, and `changed` is called. Inputs of params that stay are kept, so
-/// that they keep the focus.
-export function showControls(parent, params, values, changed) {
-  const rows = params.filter(({ param }) => !CLOCK.includes(param));
+/// Returns the rows of all params that have an input. Another value of a fixed param compiles the
+/// scene again.
+export const inputRows = ({ params, fixed_params }) => [
+  ...fixed_params.map((row) => ({ ...row, default: row.value, isFixed: true })),
+  ...params.filter(({ param }) => !CLOCK.includes(param)),
+];
+
+/// Returns the value of a param, one number per lane: that of `values` if the param takes it,
+/// otherwise its default. Values come from links, and from older texts of the scene.
+export function lanesOf({ param, type, min, max, choices, default: standard }, values) {
+  const lanes = [Object.hasOwn(values, param) ? values[param] : standard].flat();
+  const [lane] = lanes;
+  const takes = {
+    int: () => Number.isInteger(lane),
+    bool: () => lane === 0 || lane === 1,
+    choice: () => choices[lane] !== undefined,
+  };
+  const fits = lanes.length === standard.length && lanes.every(Number.isFinite)
+    && lane >= (min ?? -Infinity) && lane <= (max ?? Infinity) && (takes[type]?.() ?? true);
+  return fits ? lanes : standard;
+}
+
+/// The functions that show another value, by the element of the param.
+const updates = new WeakMap();
+
+/// Replaces the inputs in `parent` by those of some rows. `values` has the params that are not at
+/// their defaults; it is changed, and `changed` is called with the row. Inputs of params that stay
+/// are kept, so that they keep the focus.
+export function showControls(parent, rows, values, changed) {
   const old = new Map([...parent.children].map((child) => [child.dataset.key, child]));
   parent.replaceChildren(...rows.map((row) => {
-    const key = JSON.stringify(row);
-    return old.get(key) ?? control(key, row, values, changed);
+    // The default of a fixed param is the value that the scene was compiled with.
+    const key = JSON.stringify(row.isFixed ? { ...row, value: null, default: null } : row);
+    const found = old.get(key) ?? control(key, row, values, changed);
+    updates.get(found)(lanesOf(row, values));
+    return found;
   }));
   parent.hidden = rows.length === 0;
 }
@@ -25,22 +52,22 @@ function control(key, row, values, changed) {
   const { input, read, write, tell } = kinds[row.type]?.(row) ?? number(row);
   input.name = row.param;
   name.textContent = row.param;
-  const set = (lanes) => {
-    write(lanes);
+  updates.set(label, (lanes) => {
+    // The text of a field is not written again while it is typed.
+    if (String(read()) !== String(lanes)) write(lanes);
     shown.textContent = tell(lanes);
-  };
-  set([values[row.param] ?? row.default].flat());
+  });
   input.addEventListener("input", () => {
     values[row.param] = read();
     shown.textContent = tell([values[row.param]].flat());
-    changed();
+    changed(row);
   });
   // A double click on the name restores the default.
   name.title = "Double-click to reset";
   name.addEventListener("dblclick", () => {
     delete values[row.param];
-    set(row.default);
-    changed();
+    if (!row.isFixed) updates.get(label)(row.default);
+    changed(row);
   });
   label.dataset.key = key;
   label.append(name, input, shown);

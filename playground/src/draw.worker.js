@@ -7,6 +7,8 @@ import { painter } from "./tiles.js";
 let backend;
 let program = null;
 let paint = null;
+/// The scene of the program. Frames of a scene that was refused are not drawn by an older program.
+let shown = null;
 let asked = null;
 let works = false;
 
@@ -45,7 +47,7 @@ async function work() {
     asked = null;
     try {
       if (scene) await replace(scene);
-      if (frame && paint) await draw(frame);
+      if (frame && frame.id === shown) await draw(frame);
     } catch (error) {
       postMessage({ type: "refused", id: (scene ?? frame).id, reason: error.message });
     }
@@ -60,6 +62,7 @@ async function replace({ id, text, reflection }) {
   const built = await opened.build(text, reflection);
   program?.free();
   program = built;
+  shown = id;
   paint = painter(program, reflection, (tiles, width, height, part = 0) => {
     const bitmaps = tiles.map(({ bitmap }) => bitmap);
     postMessage({ type: "tiles", tiles, width, height, part }, bitmaps);

@@ -31,10 +31,10 @@ export function makeEditor(parent, text, changed) {
   return {
     text: () => view.state.doc.toString(),
     focus: () => view.focus(),
-    /// Replaces the whole text and forgets its history.
+    /// Replaces the whole text. The old text can be brought back with undo.
     open(text) {
-      view.setState(state(text));
-      changed();
+      const changes = { from: 0, to: view.state.doc.length, insert: text };
+      view.dispatch({ changes, selection: { anchor: 0 }, scrollIntoView: true });
     },
     report: (rows) => view.dispatch(setDiagnostics(view.state, rows.map((row) => shown(view, row)))),
     /// Moves the cursor to what a row is about.

@@ -8,8 +8,8 @@ export const TARGETS = Object.keys(EXTENSIONS);
 export const PARTS = { field: "distance only", march: "with the ray", render: "whole picture" };
 
 /// Compiles the shader that the fields of the dialog name. Returns its text or words.
-export async function exported(compiler, source, { target, emit }) {
-  const options = { target, emit };
+export async function exported(compiler, { source, values }, { target, emit }) {
+  const options = { target, emit, values };
   if (emit === "render" && target !== "shadertoy") options.stage = "fragment";
   const { text, words, diagnostics } = await compiler.compile(source, options);
   if (text === null && words === null) {
@@ -26,11 +26,12 @@ export function save(content, name, type = "text/plain") {
 }
 
 /// Returns a page that draws the scene, with its inputs, without any other file.
-export async function standalone(compiler, source, state) {
+export async function standalone(compiler, { source, ...state }) {
+  const { values } = state;
   const [code, wgsl, glsl] = await Promise.all([
     fetch("standalone.html").then((response) => response.text()),
-    compiler.compile(source, { target: "wgsl", emit: "render", stage: "fragment" }),
-    compiler.compile(source, { target: "glsl-es", emit: "render" }),
+    compiler.compile(source, { target: "wgsl", emit: "render", stage: "fragment", values }),
+    compiler.compile(source, { target: "glsl-es", emit: "render", values }),
   ]);
   const shaders = { wgsl, "glsl-es": glsl };
   const failed = Object.values(shaders).find(({ text }) => text === null);

@@ -9,7 +9,7 @@ const CLAUSES = /^(?:exact|bound|lipschitz|bounds|material|intersect|copies|requ
 const ATOMS = /^(?:true|false|inf|pi|tau)$/;
 const TYPES = /^(?:number|length|int|angle|bool|string|vec2|vec3|vec4|color|range|point|blend|pattern)$/;
 
-const sdf = StreamLanguage.define({
+export const sdf = StreamLanguage.define({
   name: "sdf",
   languageData: {
     commentTokens: { line: "//" },
@@ -48,16 +48,19 @@ function kind(word, stream, state) {
   return TYPES.test(word) ? "typeName" : "variableName";
 }
 
+/// The colour of each kind of token, by name. The page has a variable `--code-NAME` for each.
+export const COLORS = [
+  { tag: tags.comment, name: "comment", fontStyle: "italic" },
+  { tag: [tags.keyword, tags.typeName], name: "keyword" },
+  { tag: [tags.number, tags.atom, tags.color], name: "number" },
+  { tag: tags.string, name: "string" },
+  { tag: tags.function(tags.variableName), name: "call" },
+  { tag: tags.labelName, name: "label" },
+  { tag: tags.definition(tags.variableName), name: "name", fontWeight: "600" },
+  { tag: [tags.operator, tags.punctuation], name: "mark" },
+];
+
 // The colours are variables of the page, so that they follow its theme.
-const style = HighlightStyle.define([
-  { tag: tags.comment, color: "var(--code-comment)", fontStyle: "italic" },
-  { tag: [tags.keyword, tags.typeName], color: "var(--code-keyword)" },
-  { tag: [tags.number, tags.atom, tags.color], color: "var(--code-number)" },
-  { tag: tags.string, color: "var(--code-string)" },
-  { tag: tags.function(tags.variableName), color: "var(--code-call)" },
-  { tag: tags.labelName, color: "var(--code-label)" },
-  { tag: tags.definition(tags.variableName), color: "var(--code-name)", fontWeight: "600" },
-  { tag: [tags.operator, tags.punctuation], color: "var(--code-mark)" },
-]);
+const style = HighlightStyle.define(COLORS.map(({ name, ...rest }) => ({ ...rest, color: `var(--code-${name})` })));
 
 export const language = () => [new LanguageSupport(sdf), syntaxHighlighting(style)];

@@ -22,11 +22,27 @@ export async function fromFragment(fragment) {
     const bytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
     const shared = JSON.parse(new TextDecoder().decode(
       await piped(bytes, new DecompressionStream("deflate-raw"))));
-    if (typeof shared.source !== "string") throw new Error("no scene");
-    return shared;
+    return checked(shared);
   } catch {
     throw new Error("the link is damaged: it holds no scene");
   }
+}
+
+/// Returns the parts of a link that have the right types. Anyone can write a link.
+function checked({ source, values, camera, time }) {
+  if (typeof source !== "string") throw new Error("no scene");
+  const numbers = (found, fits) =>
+    Object.fromEntries(Object.entries(found ?? {}).filter(([, value]) => fits(value)));
+  const isValue = (value) => {
+    const lanes = [value].flat();
+    return lanes.length > 0 && lanes.length <= 4 && lanes.every(Number.isFinite);
+  };
+  return {
+    source,
+    values: numbers(values, isValue),
+    camera: numbers(camera, Number.isFinite),
+    time: Number.isFinite(time) ? time : 0,
+  };
 }
 
 async function piped(bytes, stream) {

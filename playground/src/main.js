@@ -14,13 +14,17 @@ const DRAFT = "sdfc-draft";
 const THEME = "sdfc-theme";
 /// After this many milliseconds of drawing the page offers to stop it.
 const SLOW = 500;
+/// A compilation that has taken more milliseconds than this is ended by the next edit.
+const LONG = 1500;
+const ANY_TARGET = { target: "wgsl", emit: "render", stage: "fragment" };
 
 const compiler = new CompilerClient();
 const times = {};
 let editor;
+/// What the compiler writes for the backend that the drawing worker has opened.
 let target = null;
 let opened;
-const isOpen = new Promise((resolve) => (opened = resolve));
+let isOpen;
 
 const makeWorker = () => new Worker(new URL("draw.worker.js", import.meta.url), { type: "module" });
 const stage = new Stage(
@@ -31,6 +35,7 @@ const stage = new Stage(
       times.name = message.name;
       opened();
     },
+    fixedChanged: () => compile(),
     built({ milliseconds }) {
       times.built = milliseconds;
       tell();
@@ -46,13 +51,14 @@ const stage = new Stage(
       times.drawn = milliseconds;
       if (!stage.clock.isPlaying && !(isWhole && isLast && !moves)) return;
       setBusy(false);
-      notice(null);
+      notice(complaint);
       setState(find("problems").querySelector(".error") ? "errors" : "drawn");
       tell();
     },
     refused: ({ reason }) => failed(`The browser refused the shader: ${reason}`),
     lost({ reason }) {
       stage.picture.stop();
+      opened();
       failed(`The GPU was lost, or there is none: ${reason}`);
     },
   },
@@ -60,8 +66,11 @@ const stage = new Stage(
   query.get("backend"),
 );
 
+/// The state is in the page and, with the time when it began, among the marks of the browser.
 function setState(state) {
   document.body.dataset.state = state;
+  performance.clearMarks(state);
+  performance.mark(state);
 }
 
 function say(text) {
@@ -77,9 +86,18 @@ function tell() {
   say(parts.join(" · "));
 }
 
+/// What is wrong with the link or the example that was opened. It stays until the next edit.
+let complaint = null;
+
 function notice(text) {
   find("notice").hidden = text === null;
   find("notice").firstElementChild.textContent = text ?? "";
+  find("again").textContent = complaint !== null && text === complaint ? "Close" : "Draw again";
+}
+
+function complain(error) {
+  complaint = error.message;
+  notice(complaint);
 }
 
 function failed(text) {
@@ -102,35 +120,51 @@ function setBusy(busy) {
 // Edits are compiled one after the other. Of the edits that wait, only the last is compiled.
 let isCompiling = false;
 let isOutdated = false;
+let started = 0;
 async function compile() {
   setState("busy");
   if (isCompiling) {
     isOutdated = true;
+    // A long compilation is ended. A short one is not: while someone types, nothing would be shown.
+    const run = started;
+    const end = () => isCompiling && started === run && compiler.cancel();
+    setTimeout(end, LONG - (performance.now() - started));
     return;
   }
   isCompiling = true;
   do {
     isOutdated = false;
+    started = performance.now();
     try {
       await compileOnce();
     } catch (error) {
-      failed(error.message);
+      if (!isOutdated) failed(error.message);
     }
   } while (isOutdated);
   isCompiling = false;
 }
 
+/// Starts the worker that draws. `isOpen` waits until it has a backend, or has found none.
+function startDrawing() {
+  isOpen = new Promise((resolve) => (opened = resolve));
+  stage.picture.start();
+}
+
 async function compileOnce() {
-  if (!stage.picture.isRunning) stage.picture.start();
+  if (!stage.picture.isRunning) startDrawing();
   await isOpen;
   const source = editor.text();
-  const options = { ...target, name: "scene.sdf" };
-  const { text, reflection, diagnostics, milliseconds } = await compiler.compile(source, options);
+  // Without a backend the scene is compiled for its errors.
+  const options = { ...(target ?? ANY_TARGET), name: "scene.sdf", values: stage.values };
+  const waiting = setTimeout(() => say("compiling: an edit ends it"), LONG);
+  const compiled = await compiler.compile(source, options).finally(() => clearTimeout(waiting));
+  const { text, reflection, diagnostics, milliseconds } = compiled;
   times.compiled = milliseconds;
   // Positions in an old text would be wrong.
   if (source === editor.text()) report(diagnostics);
   if (text === null) {
     if (!isOutdated) setState("errors");
+    tell();
     return;
   }
   stage.show(source, text, reflection, !calm);
@@ -147,7 +181,7 @@ function report(rows) {
     const head = document.createElement("b");
     head.textContent = [row.code ?? row.severity, row.line > 0 && `line ${row.line}`].filter(Boolean).join(", ");
     const help = document.createElement("small");
-    help.textContent = row.help && ` ${row.help}`;
+    help.textContent = row.help && ` ${row.help[0].toUpperCase()}${row.help.slice(1)}`;
     where.append(head, `: ${row.message}.`, help);
     where.addEventListener("click", () => editor.reveal(row));
     item.append(where);
@@ -168,13 +202,14 @@ function open({ source, ...state }) {
   editor.open(source);
 }
 
+/// Returns the scene of the link, or of the query, or the last one that was written here.
 async function startScene() {
   try {
     const shared = await fromFragment(location.hash);
     if (shared) return shared;
     if (query.has("example")) return { source: await exampleSource(query.get("example")) };
   } catch (error) {
-    notice(error.message);
+    complain(error);
   }
   const draft = localStorage.getItem(DRAFT);
   return { source: draft ?? (await exampleSource(FIRST)) };
@@ -187,8 +222,10 @@ const shared = () => {
 
 function connect() {
   find("again").addEventListener("click", () => {
+    const draws = complaint === null;
+    complaint = null;
     notice(null);
-    compile();
+    if (draws) compile();
   });
   find("stop").addEventListener("click", () => {
     stage.picture.stop();
@@ -217,15 +254,20 @@ function connect() {
       const found = await fromFragment(location.hash);
       if (found) open(found);
     } catch (error) {
-      notice(error.message);
+      complain(error);
     }
   });
 }
 
 async function choose(name) {
   find("gallery").close();
-  history.replaceState(null, "", location.pathname);
-  open({ source: await exampleSource(name) });
+  try {
+    const source = await exampleSource(name);
+    history.replaceState(null, "", location.pathname);
+    open({ source });
+  } catch (error) {
+    complain(error);
+  }
 }
 
 async function share() {
@@ -264,7 +306,7 @@ function connectExport() {
       status(error.message);
     }
   });
-  const shader = () => exported(compiler, editor.text(), { target: find("target").value, emit: find("part").value });
+  const shader = () => exported(compiler, shared(), { target: find("target").value, emit: find("part").value });
   on("save-shader", async () => {
     const { content, name } = await shader();
     save(content, name);
@@ -277,17 +319,17 @@ function connectExport() {
   });
   on("save-png", () => new Promise((done) => find("picture").toBlob((blob) => done(save(blob, "scene.png")))));
   on("save-page", async () => {
-    const { source, ...state } = shared();
-    save(await standalone(compiler, source, state), "scene.html", "text/html");
+    save(await standalone(compiler, shared()), "scene.html", "text/html");
   });
   on("save-scene", async () => save(editor.text(), "scene.sdf"));
 }
 
 async function main() {
   connect();
-  stage.picture.start();
+  startDrawing();
   const { source, ...state } = await startScene();
   editor = makeEditor(find("editor"), source, () => {
+    complaint = null;
     localStorage.setItem(DRAFT, editor.text());
     compile();
   });

@@ -3,7 +3,7 @@
 import { paramBytes } from "../../examples/embed/reflection.js";
 import { control, moved, still } from "./camera.js";
 import { makeClock } from "./clock.js";
-import { CLOCK, showControls } from "./controls.js";
+import { CLOCK, inputRows, lanesOf, showControls } from "./controls.js";
 import { Picture } from "./picture.js";
 
 /// Pictures have at most this many pixels per pixel of the style sheet.
@@ -14,17 +14,27 @@ const REST = 160;
 // The text of a shader without the line that names its source.
 const body = (text) => text.replace(/^\/\/ sdfc.*$/m, "");
 
-/// `elements` has `canvas`, `form`, `bar` (of the clock), `play` and `time`.
+/// True if two results of the compiler are drawn by the same program with the same lists.
+function isSameProgram(a, b) {
+  const [before, after] = [a, b].map(({ reflection }) => reflection.lists);
+  return body(a.text) === body(b.text) && before.length === after.length
+    && before.every((number, index) => number === after[index]);
+}
+
+/// `elements` has `canvas`, `form`, `bar` (of the clock), `play` and `time`. `events` has the
+/// functions of a [`Picture`], and `fixedChanged` if fixed params can change.
 export class Stage {
   values = {};
   camera = still();
   #scene = null;
   #isParallel = false;
   #elements;
+  #events;
   #resting = 0;
 
   constructor(elements, events, makeWorker, only) {
     this.#elements = elements;
+    this.#events = events;
     this.picture = new Picture(elements.canvas, events, makeWorker, only);
     this.clock = makeClock(() => {
       this.#showTime();
@@ -57,10 +67,13 @@ export class Stage {
     const uses = ({ params }) => params.some(({ param }) => CLOCK.includes(param));
     const moves = uses(reflection);
     const began = moves && !(this.#scene && uses(this.#scene.reflection));
-    const isSame = this.#scene && body(this.#scene.text) === body(text) && this.picture.isRunning && !this.picture.isRefused;
-    this.#scene = { text, reflection };
+    const next = { text, reflection };
+    const isSame = this.#scene && isSameProgram(this.#scene, next) && this.picture.hasProgram;
+    this.#scene = next;
     this.#isParallel = /\bcamera\s*\([^()]*\bheight\s*:/.test(source.replace(/\/\/.*/g, ""));
-    showControls(this.#elements.form, reflection.params, this.values, () => this.#change());
+    const rows = inputRows(reflection).filter(({ isFixed }) => !isFixed || this.#events.fixedChanged);
+    const changed = ({ isFixed }) => (isFixed ? this.#events.fixedChanged() : this.#change());
+    showControls(this.#elements.form, rows, this.values, changed);
     this.#elements.bar.hidden = !moves;
     if (!moves) this.#play(false);
     // Camera and lights are no part of the shader: changing them builds nothing.
@@ -85,7 +98,8 @@ export class Stage {
     const { reflection } = this.#scene;
     const { width, height } = this.#elements.canvas;
     const { time, frame } = this.clock;
-    const params = paramBytes(reflection, { ...this.values, time, frame });
+    const taken = inputRows(reflection).map((row) => [row.param, lanesOf(row, this.values)]);
+    const params = paramBytes(reflection, { ...Object.fromEntries(taken), time, frame });
     return { width, height, params, moves,
       view: moved(reflection, this.camera, width, height, this.#isParallel) };
   }

@@ -68,6 +68,17 @@ pub fn is_missing() -> bool {
     !is_required() && program().is_none()
 }
 
+/// What a page holds.
+#[derive(Debug)]
+pub struct Size {
+    /// The nodes of its documents.
+    pub nodes: u64,
+    /// The bytes of its objects, without those of workers.
+    #[expect(dead_code, reason = "it is printed")]
+    pub heap: u64,
+    pub workers: usize,
+}
+
 /// A browser with one page.
 pub struct Chromium {
     process: Child,
@@ -109,11 +120,22 @@ impl Chromium {
         Ok(found)
     }
 
-    fn call(&mut self, method: &str, params: Value) -> Result<Value, Failed> {
+    /// Calls a method of the page, or of the browser before a page is attached.
+    pub fn call(&mut self, method: &str, params: Value) -> Result<Value, Failed> {
+        self.call_session(self.session.clone(), method, params)
+    }
+
+    /// Calls a method of the page with this session, or of the browser.
+    fn call_session(
+        &mut self,
+        session: Option<String>,
+        method: &str,
+        params: Value,
+    ) -> Result<Value, Failed> {
         self.calls += 1;
         let mut call = json!({ "id": self.calls, "method": method, "params": params });
-        if let Some(session) = &self.session {
-            call["sessionId"] = session.as_str().into();
+        if let Some(session) = session {
+            call["sessionId"] = session.into();
         }
         self.socket.send(Message::text(call.to_string()))?;
         loop {
@@ -180,6 +202,71 @@ impl Chromium {
     /// The errors of the page since it was opened.
     pub fn errors(&self) -> &[String] {
         &self.errors
+    }
+
+    /// Clicks on an element, at a fraction of its width and height.
+    pub fn click(&mut self, selector: &str, [across, down]: [f64; 2]) -> Result<(), Failed> {
+        let found = self.apply(RECTANGLE, &selector.into())?;
+        let [x, y, width, height] =
+            ["x", "y", "width", "height"].map(|side| found[side].as_f64().unwrap_or_default());
+        let at = [x + across * (width - 1.0), y + down * (height - 1.0)];
+        for kind in ["mousePressed", "mouseReleased"] {
+            let mut params = json!({ "type": kind, "x": at[0], "y": at[1], "button": "left" });
+            params["clickCount"] = 1.into();
+            self.call("Input.dispatchMouseEvent", params)?;
+        }
+        Ok(())
+    }
+
+    /// Selects the whole text of the focused element.
+    pub fn select_all(&mut self) -> Result<(), Failed> {
+        self.key(json!({ "key": "a", "code": "KeyA", "windowsVirtualKeyCode": 65, "modifiers": 2 }))
+    }
+
+    /// Presses a key that has a name and a number.
+    pub fn press(&mut self, name: &str, number: u32) -> Result<(), Failed> {
+        self.key(json!({ "key": name, "code": name, "windowsVirtualKeyCode": number }))
+    }
+
+    fn key(&mut self, mut params: Value) -> Result<(), Failed> {
+        for kind in ["rawKeyDown", "keyUp"] {
+            params["type"] = kind.into();
+            self.call("Input.dispatchKeyEvent", params.clone())?;
+        }
+        Ok(())
+    }
+
+    /// Inserts text at the cursor of the focused element.
+    pub fn insert(&mut self, text: &str) -> Result<(), Failed> {
+        self.call("Input.insertText", json!({ "text": text })).map(drop)
+    }
+
+    /// Lets pages read and write the clipboard.
+    pub fn allow_clipboard(&mut self) -> Result<(), Failed> {
+        let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
+        let params = json!({ "permissions": permissions });
+        self.call_session(None, "Browser.grantPermissions", params).map(drop)
+    }
+
+    /// Ends the process that draws for all pages. The browser starts another one.
+    pub fn crash_gpu(&mut self) -> Result<(), Failed> {
+        self.call_session(None, "Browser.crashGpuProcess", json!({})).map(drop)
+    }
+
+    /// Measures what the page holds after its garbage is collected.
+    pub fn size(&mut self) -> Result<Size, Failed> {
+        self.call("Performance.enable", json!({}))?;
+        self.call("HeapProfiler.collectGarbage", json!({}))?;
+        let found = self.call("Performance.getMetrics", json!({}))?;
+        let metrics = found["metrics"].as_array().ok_or("no metrics")?;
+        let metric = |name: &str| {
+            let row = metrics.iter().find(|row| row["name"] == name);
+            row.and_then(|row| row["value"].as_f64()).unwrap_or_default() as u64
+        };
+        let targets = self.call_session(None, "Target.getTargets", json!({ "filter": [{}] }))?;
+        let targets = targets["targetInfos"].as_array().ok_or("no targets")?;
+        let workers = targets.iter().filter(|target| target["type"] == "worker").count();
+        Ok(Size { nodes: metric("Nodes"), heap: metric("JSHeapUsedSize"), workers })
     }
 
     /// Drags the mouse with its left button down.

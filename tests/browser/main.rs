@@ -6,8 +6,12 @@
 mod chromium;
 mod compiler;
 mod compiles;
+mod measure;
 mod pages;
+mod playground;
 mod server;
+mod site;
+mod survival;
 mod table;
 mod three;
 
@@ -35,7 +39,9 @@ fn main() {
     let mut add = |name: String, check: Check| {
         let is_missing = missing
             || (name.starts_with("three") && three::is_missing())
-            || (name.starts_with("the_package") && compiler::is_missing());
+            || (name.starts_with("the_package") && compiler::is_missing())
+            || ((name.starts_with("the_playground") || name.starts_with("the_site"))
+                && playground::is_missing());
         trials.push(Trial::test(name, move || in_session(&check)).with_ignored_flag(is_missing));
     };
     for target in [Target::Wgsl, Target::GlslEs, Target::Shadertoy] {
@@ -61,6 +67,22 @@ fn main() {
     let package = "the_package_compiles_the_same_in_a_browser".to_owned();
     add(package, Box::new(compiler::compiles_the_same_in_a_browser));
     add("the_package_draws_the_typed_scene".to_owned(), Box::new(compiler::draws_the_typed_scene));
+    for (name, check) in playground::BY_BACKEND {
+        for backend in ["webgpu", "webgl2"] {
+            let name = format!("the_playground_{name}_with_{backend}");
+            add(name, Box::new(move |session| check(session, backend)));
+        }
+    }
+    add("the_playground_follows_lists".to_owned(), Box::new(playground::follows_lists));
+    add("the_playground_shares_by_link".to_owned(), Box::new(playground::shares_by_link));
+    let name = "the_playground_survives_a_long_compilation".to_owned();
+    add(name, Box::new(survival::long_compilation));
+    add("the_site_leads_to_the_playground".to_owned(), Box::new(site::leads_to_the_playground));
+    add("the_site_fits_a_phone".to_owned(), Box::new(site::fits_a_phone));
+    if std::env::var_os(measure::MEASURE).is_some() {
+        add("the_playground_times".to_owned(), Box::new(measure::times));
+        add("the_playground_screenshots".to_owned(), Box::new(measure::screenshots));
+    }
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
     // A static is not dropped, so the browser would keep running.
     drop(SESSION.lock().unwrap_or_else(PoisonError::into_inner).take());

@@ -211,13 +211,33 @@ pub fn drawn(
     frame: Option<FrameValues>,
     pose: Option<Pose>,
 ) -> Result<Pixels, Failed> {
-    let options = PictureOptions::new().size(VIEW_SIZE).samples(Some(1)).frame(frame).pose(pose);
+    drawn_at(VIEW_SIZE, scene, frame, pose)
+}
+
+/// Returns the picture of `sdfc render` with another size.
+pub fn drawn_at(
+    size: [u32; 2],
+    scene: &Scene,
+    frame: Option<FrameValues>,
+    pose: Option<Pose>,
+) -> Result<Pixels, Failed> {
+    let options = PictureOptions::new().size(size).samples(Some(1)).frame(frame).pose(pose);
     let image = scene.render(&options, &mut no_progress)?.image;
     Ok(image.to_srgb8().as_chunks().0.to_vec())
 }
 
 /// Returns how many pixels in a thousand differ by more than [`COLOR`]. Fails above [`EDGES`].
 pub fn check(shown: &Pixels, expected: &Pixels, what: &str) -> Result<f64, Failed> {
+    check_at(VIEW_SIZE, shown, expected, what)
+}
+
+/// As [`check`], for pictures of another size.
+pub fn check_at(
+    [width, height]: [u32; 2],
+    shown: &Pixels,
+    expected: &Pixels,
+    what: &str,
+) -> Result<f64, Failed> {
     if shown.len() != expected.len() {
         return Err("pictures of two sizes".into());
     }
@@ -227,7 +247,6 @@ pub fn check(shown: &Pixels, expected: &Pixels, what: &str) -> Result<f64, Faile
     let per_thousand = 1000.0 * count as f64 / shown.len() as f64;
     if per_thousand > EDGES {
         let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("shown.png");
-        let [width, height] = VIEW_SIZE;
         image::save_buffer(&path, shown.as_flattened(), width, height, image::ColorType::Rgb8)?;
         return Err(format!(
             "{what}: {per_thousand:.1} pixels in a thousand differ by more than {COLOR}; see {}",

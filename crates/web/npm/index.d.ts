@@ -14,6 +14,11 @@ export interface Options {
   live_literals?: boolean;
   /** Values of params by name, written as in a scene: `0.5`, `90deg`, `#d94f30`. */
   set?: Record<string, string>;
+  /**
+   * Values of params by name, as the reflection states them. Only params in `fixed_params` are set;
+   * a value that such a param does not take is ignored. With `set`, all are ignored.
+   */
+  values?: Record<string, number | number[]>;
   /** The sources that the scene may import, by path. */
   files?: Record<string, string>;
 }

@@ -74,8 +74,13 @@ struct CallError {
 ///
 /// `options` is a JSON object. All its keys are optional: `name`, `target`, `emit`, `stage`,
 /// `march`, `prefix`, `group`, `binding` and `live_literals`, as the options of `sdfc compile`;
-/// `set`, an object with the values of params as strings, by name; and `files`, an object with the
-/// sources that the scene may import, by path.
+/// `set`, an object with the values of params as strings, by name; `values`, an object with the
+/// values of fixed params as numbers, by name; and `files`, an object with the sources that the
+/// scene may import, by path.
+///
+/// `set` replaces the defaults of params, and a value that a param does not take is an error. From
+/// `values` only the params are set that are constants of the shader; everything else in it is
+/// ignored. A page passes the values of all its sliders. With `set`, `values` is ignored.
 ///
 /// Returns a JSON object with `text` or `words`, `reflection`, and `diagnostics`, for any input.
 pub fn compile(source: &str, options: &str) -> String {
@@ -96,7 +101,12 @@ fn answer(source: &str, options: Options) -> Answer {
     }
     let rows = |found: &Diagnostics| found.rows().into_iter().map(Row::Scene).collect();
     let set: Vec<_> = options.set.iter().map(|(name, value)| (&**name, &**value)).collect();
-    let scene = match compiler.compile_with(&options.name, source, &set) {
+    let scene = if set.is_empty() {
+        compiler.values(&options.values).compile(&options.name, source).map_err(Into::into)
+    } else {
+        compiler.compile_with(&options.name, source, &set)
+    };
+    let scene = match scene {
         Ok(scene) => scene,
         Err(CompileWithError::Scene(errors)) => {
             return Answer { diagnostics: rows(&errors), ..Answer::default() };
@@ -161,6 +171,22 @@ mod tests {
         let refused = compile(scene, &json!({ "set": { "n": "10" } }));
         let message = refused["diagnostics"][0]["message"].as_str().unwrap();
         assert_eq!(message, "the param `n` takes 1..9; 10 is outside");
+    }
+
+    #[test]
+    fn values_set_fixed_params_alone() {
+        let scene = "param n: int = 2 in 1..9\nparam r = 1 in 0..2\n\
+                     union(for i in 0..n: sphere(r).translate(x: 4 * i))";
+        let values = json!({ "n": 3, "r": 0.5, "gone": [1, 2, 3, 4] });
+        let reflection = &compile(scene, &json!({ "values": values }))["reflection"];
+        assert_eq!(reflection["fixed_params"][0]["value"], json!([3.0]));
+        assert_eq!(reflection["params"][0]["default"], json!([1.0]));
+        // A value outside the range stays from an older text of the scene.
+        let reflection = &compile(scene, &json!({ "values": { "n": 10 } }))["reflection"];
+        assert_eq!(reflection["fixed_params"][0]["value"], json!([2.0]));
+        let refused = compile(scene, &json!({ "values": { "n": [1, 2, 3, 4, 5] } }));
+        let message = refused["diagnostics"][0]["message"].as_str().unwrap();
+        assert!(message.contains("the value of `n` has 5 numbers"), "{message}");
     }
 
     #[test]

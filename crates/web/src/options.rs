@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sdfc::{Emit, Method, Resolver, ShaderOptions, Stage, Target};
+use sdfc::{CompileValues, Emit, Method, Resolver, ShaderOptions, Stage, Target};
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// The options, with the defaults of `sdfc compile`.
@@ -23,15 +23,29 @@ pub(crate) struct Options {
     pub live_literals: bool,
     /// Values of params by name, written as in a scene.
     pub set: BTreeMap<String, String>,
+    /// Values of params by name, as the reflection states them: a number, or one for each lane.
+    #[serde(deserialize_with = "values")]
+    pub values: CompileValues,
     /// The sources that the scene may import, by path.
     pub files: BTreeMap<String, String>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        let (emit, stage, march, prefix, group, binding, set, files) = Default::default();
-        let (name, target, live_literals) = ("scene.sdf".to_owned(), Target::Wgsl, false);
-        Self { name, target, emit, stage, march, prefix, group, binding, live_literals, set, files }
+        Self {
+            name: "scene.sdf".to_owned(),
+            target: Target::Wgsl,
+            emit: None,
+            stage: None,
+            march: None,
+            prefix: None,
+            group: None,
+            binding: None,
+            live_literals: false,
+            set: BTreeMap::new(),
+            values: CompileValues::new(),
+            files: BTreeMap::new(),
+        }
     }
 }
 
@@ -76,6 +90,35 @@ impl Options {
             .group(self.group.unwrap_or(standard.group))
             .binding(self.binding.unwrap_or(standard.binding))
     }
+}
+
+/// One value of a page: a number, or one for each lane.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Lanes {
+    One(f64),
+    Each(Vec<f64>),
+}
+
+/// Reads values of params. Lanes that a value does not state are 0; it has at most four.
+fn values<'a, D: Deserializer<'a>>(deserializer: D) -> Result<CompileValues, D::Error> {
+    let found = BTreeMap::<String, Lanes>::deserialize(deserializer)?;
+    let lanes = |(name, lanes): (String, Lanes)| {
+        let stated = match lanes {
+            Lanes::One(number) => vec![number],
+            Lanes::Each(numbers) => numbers,
+        };
+        let mut all = [0.0; 4];
+        let Some(places) = all.get_mut(..stated.len()) else {
+            let count = stated.len();
+            return Err(D::Error::custom(format!(
+                "the value of `{name}` has {count} numbers; a value has one to four"
+            )));
+        };
+        places.copy_from_slice(&stated);
+        Ok((name, all))
+    };
+    found.into_iter().map(lanes).collect()
 }
 
 fn method<'a, D: Deserializer<'a>>(deserializer: D) -> Result<Option<Method>, D::Error> {
