@@ -463,7 +463,8 @@ pub struct Assignment {
 /// The device that draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// The GPU if there is one, otherwise the CPU
+    /// The GPU if there is one, otherwise the CPU, which also draws long formulas for which a
+    /// software driver would take longer
     #[default]
     Auto,
     /// The GPU
