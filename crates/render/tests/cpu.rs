@@ -391,6 +391,19 @@ fn a_ray_whose_steps_end_before_a_proof_is_unproven() {
 }
 
 #[test]
+fn counting_unproven_rays_stops_early() {
+    let program = common::sphere();
+    let view = sdfc_render::View { steps: 1, ..common::view(&program, [32, 32]) };
+    let frame = FrameValues::default();
+    let scene = CpuScene::new(&program).unwrap();
+    let count = |most| scene.unproven_rays(&view, &frame, Method::Interval, most).unwrap();
+    let all = scene.depth_map::<f32>(&view, &frame, Method::Interval).unwrap().counts().unproven;
+    assert!(all > 100, "{all}");
+    assert_eq!(count(u64::MAX), all);
+    assert!((1..=32).contains(&count(0)), "{}", count(0));
+}
+
+#[test]
 fn odd_sizes_are_drawn_and_impossible_ones_refused() {
     for size in [[1, 1], [4097, 3]] {
         let frame = draw(&common::sphere(), size, Method::Sphere, TileSize::default());

@@ -128,14 +128,14 @@ impl Scene {
         *self.intervals_prove.get_or_init(tried)
     }
 
-    /// Returns how many rays of the trial are left unproven.
+    /// Returns how many rays of the trial are left unproven, as far as that matters.
     fn unproven_by_intervals(&self) -> Result<u64, Error> {
         let frame = self.defaults();
         let view = self.view(&frame, TRIAL_SIZE)?;
         let view = View { tolerance: view.tolerance / FINER, ..view };
         let program = with_segment_bounds(self.drawn(), Method::FALLBACK);
-        let depths = CpuScene::new(&program)?.depth_map::<f32>(&view, &frame, Method::FALLBACK)?;
-        Ok(depths.counts().unproven)
+        let scene = CpuScene::new(&program)?;
+        Ok(scene.unproven_rays(&view, &frame, Method::FALLBACK, MAX_UNPROVEN)?)
     }
 }
 

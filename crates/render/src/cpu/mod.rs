@@ -163,6 +163,39 @@ impl CpuScene {
         Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
     }
 
+    /// Counts the camera rays that `method` leaves unproven, marched in f32. It stops at the first
+    /// rays by which there are more than `most`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::depth_map`].
+    pub fn unproven_rays(
+        &self,
+        view: &View,
+        frame: &FrameValues,
+        method: Method,
+        most: u64,
+    ) -> Result<u64, RenderError> {
+        if self.planar_pixel.is_some() {
+            return Err(RenderError::Planar);
+        }
+        let cells = |tape| Cells::one(tape, frame);
+        let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
+        let mut wave = self.wave::<f32>(view, frame, known_method(method)?, &fields);
+        let [width, height] = view.size;
+        let positions: Vec<[u32; 2]> =
+            (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
+        let mut unproven = 0;
+        for group in positions.chunks(LANES) {
+            let pixels = wave.pixels(group);
+            unproven += pixels.iter().filter(|pixel| pixel.unproven != 0).count() as u64;
+            if unproven > most {
+                break;
+            }
+        }
+        Ok(unproven)
+    }
+
     /// The part of the field that is marched where the rest is intersected analytically.
     fn marched(&self) -> Option<&Arc<Tape>> {
         self.pre_intersection.as_ref().and_then(PreIntersectionTapes::marched)
