@@ -19,7 +19,7 @@ use crate::cost::cost;
 use crate::leaves::count_leaves;
 use crate::report::{Report, shape_reports};
 use crate::reroll::materials::reroll_materials;
-use crate::reroll::rewrite::reroll;
+use crate::reroll::rewrite::{RerolledLoop, reroll};
 use crate::reroll::strategy::LoopStrategy;
 use crate::unit_slope::unit_slopes;
 
@@ -51,6 +51,16 @@ struct Layer {
     has_unit_slope: bool,
 }
 
+/// The formulas of a planar scene: the union of its regions first, then its layers.
+struct Formulas {
+    distances: Vec<NodeId>,
+    /// One for each distance, or none.
+    materials: Vec<Material>,
+    leaves: usize,
+    loops: Vec<RerolledLoop>,
+    unrolled_limit: usize,
+}
+
 /// Fills in the program of a planar scene, whose graph is a copy of the scene's graph.
 pub(crate) fn planar_picture(
     program: &mut Program,
@@ -58,67 +68,36 @@ pub(crate) fn planar_picture(
     root: ShapeId,
     strategy: LoopStrategy,
 ) -> Result<Report, ExpandError> {
+    let point = program.graph.point(0, Dim::Two);
+    let qualities = Qualities::of_scene(&mut program.graph, root, &scene.params);
+    let formulas = formulas(program, scene, root, point, strategy)?;
     let graph = &mut program.graph;
-    let mut expander = Expander::new();
-    let own_point = graph.point(0, Dim::Two);
-    let origin = graph.constant(Type::Vec2, &program.origin[..2]);
-    let point = graph.add(own_point, origin);
-    let qualities = Qualities::of_scene(graph, root, &scene.params);
-    let mut fields = vec![expander.field(graph, root, point)?];
-    for &layer in &scene.layers {
-        fields.push(expander.field(graph, layer, point)?);
-    }
-    let leaves = count_leaves(graph, &mut expander, root, point)?;
-    let mut materials = Vec::new();
-    if scene.has_materials {
-        for &shape in [root].iter().chain(&scene.layers) {
-            let material = expander.material(graph, shape, point)?;
-            materials.extend(seen_from_the_front(graph, material));
-        }
-    }
-    let (uses_loops, unrolled_limit) =
-        strategy.uses_loops(graph, fields[0], &program.settings, None);
-    let count = fields.len();
-    fields.extend(materials);
-    let folded = fold_transforms(graph, &fields);
-    program.names = folded.names(graph, &expander.names());
-    let (fields, materials) = folded.roots.split_at(count);
-    let (mut fields, mut materials, mut loops) = (fields.to_vec(), materials.to_vec(), Vec::new());
-    if uses_loops {
-        let rerolled = reroll(graph, &fields);
-        materials = reroll_materials(graph, &materials, &rerolled.replaced);
-        (fields, loops) = (rerolled.roots, rerolled.loops);
-    }
-    let materials: Vec<Material> = materials.as_chunks().0.to_vec();
     let unit_slopes = unit_slopes(graph, &qualities, root);
-    let layers = scene.layers.iter().zip(&fields[1..]).enumerate();
-    let layers: Vec<Layer> = layers
-        .map(|(index, (shape, &distance))| Layer {
-            distance,
-            material: materials.get(index + 1).copied(),
-            has_unit_slope: unit_slopes.contains(shape),
-        })
-        .collect();
-    let distance = fields[0];
-    let (gradient, gradient_report) = best_gradient(graph, distance, own_point);
-    (program.distance, program.gradient) = (Some(distance), Some(gradient));
-    program.material = materials.first().map(|&nearest| topmost(graph, nearest, &layers));
+    let layer = |(index, shape): (usize, &ShapeId)| Layer {
+        distance: formulas.distances[index],
+        material: formulas.materials.get(index).copied(),
+        has_unit_slope: unit_slopes.contains(shape),
+    };
+    let whole = layer((0, &root));
+    let layers: Vec<Layer> = (1..).zip(&scene.layers).map(layer).collect();
+    let (gradient, gradient_report) = best_gradient(graph, whole.distance, point);
+    (program.distance, program.gradient) = (Some(whole.distance), Some(gradient));
+    program.material = whole.material.map(|nearest| topmost(graph, nearest, &layers));
     let background = program.settings.background;
     let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
-    let mut color = layered(graph, background, &layers, own_point);
+    let mut color = layered(graph, background, &layers, point);
     if let Some(spacing) = program.settings.isolines {
-        let whole = Layer { distance, material: None, has_unit_slope: unit_slopes.contains(&root) };
-        let distance = in_pixels(graph, &whole, own_point);
+        let distance = in_pixels(graph, &whole, point);
         color = with_isolines(graph, [color, background], distance, spacing);
     }
     let [red, green, blue] = [0, 1, 2].map(|lane| graph.component(color, lane));
-    let pixel = graph.compose(&[red, green, blue, distance]);
+    let pixel = graph.compose(&[red, green, blue, whole.distance]);
     program.planar_pixel = Some(pixel);
     Ok(Report {
-        loops,
-        unrolled_limit,
-        leaves,
-        distance_cost: cost(graph, &[distance]),
+        loops: formulas.loops,
+        unrolled_limit: formulas.unrolled_limit,
+        leaves: formulas.leaves,
+        distance_cost: cost(graph, &[whole.distance]),
         gradient_cost: cost(graph, &[gradient]),
         gradient: gradient_report,
         pixel_cost: cost(graph, &[pixel]),
@@ -127,6 +106,44 @@ pub(crate) fn planar_picture(
         inexact_outside: inexact_outside(graph, &qualities, root),
         ..Report::default()
     })
+}
+
+/// Expands the regions and their materials, and simplifies them like fields of solids.
+fn formulas(
+    program: &mut Program,
+    scene: &Scene,
+    root: ShapeId,
+    own_point: NodeId,
+    strategy: LoopStrategy,
+) -> Result<Formulas, ExpandError> {
+    let graph = &mut program.graph;
+    let mut expander = Expander::new();
+    let origin = graph.constant(Type::Vec2, &program.origin[..2]);
+    let point = graph.add(own_point, origin);
+    let shapes: Vec<ShapeId> = [root].iter().chain(&scene.layers).copied().collect();
+    let mut nodes = Vec::new();
+    for &shape in &shapes {
+        nodes.push(expander.field(graph, shape, point)?);
+    }
+    let leaves = count_leaves(graph, &mut expander, root, point)?;
+    for &shape in shapes.iter().filter(|_| scene.has_materials) {
+        let material = expander.material(graph, shape, point)?;
+        nodes.extend(seen_from_the_front(graph, material));
+    }
+    let (uses_loops, unrolled_limit) =
+        strategy.uses_loops(graph, nodes[0], &program.settings, None);
+    let folded = fold_transforms(graph, &nodes);
+    program.names = folded.names(graph, &expander.names());
+    let (distances, materials) = folded.roots.split_at(shapes.len());
+    let (mut distances, mut materials, mut loops) =
+        (distances.to_vec(), materials.to_vec(), Vec::new());
+    if uses_loops {
+        let rerolled = reroll(graph, &distances);
+        materials = reroll_materials(graph, &materials, &rerolled.replaced);
+        (distances, loops) = (rerolled.roots, rerolled.loops);
+    }
+    let materials = materials.as_chunks().0.to_vec();
+    Ok(Formulas { distances, materials, leaves, loops, unrolled_limit })
 }
 
 /// A material whose normal and direction to the eye are z.
