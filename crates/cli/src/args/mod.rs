@@ -1,0 +1,211 @@
+//! The command line arguments, parsed with clap.
+
+mod compile;
+mod geometry;
+mod measurement;
+mod render;
+mod values;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+pub use compile::Compile;
+pub use geometry::{Bake, Contour, Exactness, Measure, Mesh};
+pub use measurement::{Bench, Cache, Chart, Tune};
+pub use render::{Backend, Join, Render};
+use values::{assignment, finite};
+
+/// Compiles scenes of signed distance functions to shaders and pictures.
+#[derive(Debug, Parser)]
+#[command(name = "sdfc", version, propagate_version = true, max_term_width = 100)]
+#[command(
+    after_help = "Exit codes: 0, success; 1, error in the scene; 2, invalid command line; 3, the \
+                  machine cannot do it (no GPU, or a file that cannot be read or written); 130, \
+                  stopped by Ctrl-C."
+)]
+pub struct Args {
+    /// Options of all commands.
+    #[command(flatten)]
+    pub global: Global,
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Options of all commands.
+#[derive(clap::Args, Debug)]
+pub struct Global {
+    /// When to use colour in messages
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    pub color: ColorChoice,
+    /// Print only errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Print more about what is done
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+/// When messages are coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ColorChoice {
+    /// On a terminal, unless NO_COLOR is set
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Print all errors and warnings of scenes
+    Check(Check),
+    /// Format scenes in the standard layout
+    #[command(name = "fmt")]
+    Format(Format),
+    /// Write the shader of a scene
+    Compile(Compile),
+    /// Draw a picture of a scene
+    Render(Render),
+    /// Join the regions of a picture that were drawn separately
+    Join(Join),
+    /// Write a closed mesh of a scene, with a proven error
+    Mesh(Mesh),
+    /// Write the outlines of a section of a scene, with a proven error
+    Contour(Contour),
+    /// Measure volume, center of mass, inertia and extent, as proven intervals
+    Measure(Measure),
+    /// Write a grid of distances, with a proven error of interpolation
+    Bake(Bake),
+    /// Show a scene in a window that updates when its file changes
+    View(View),
+    /// Explain how a scene is compiled: cost, ray method, bounds, Lipschitz constants
+    Explain(Explain),
+    /// Compare the speed of the specialised shader with shaders that interpret the scene
+    Bench(Bench),
+    /// Look up shapes, operators, functions, settings, types and error codes
+    Doc(Doc),
+    /// Print the script with which a shell completes commands and options
+    Completions(Completions),
+    /// Write the manual pages of all commands into a folder
+    Manual(Manual),
+    /// Serve an editor: the Language Server Protocol over stdin and stdout
+    Lsp(Lsp),
+    /// Compare the cost and the error of all ray methods on a scene
+    Chart(Chart),
+    /// Find the cheapest ray method and setting within an error limit
+    Tune(Tune),
+}
+
+/// Arguments of `completions`.
+#[derive(clap::Args, Debug)]
+pub struct Completions {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `manual`.
+#[derive(clap::Args, Debug)]
+pub struct Manual {
+    /// An existing folder
+    pub folder: PathBuf,
+}
+
+/// Arguments of `lsp`.
+#[derive(clap::Args, Debug)]
+pub struct Lsp {
+    /// Has no effect: some editors add it to say what is the default
+    #[arg(long, hide = true)]
+    pub stdio: bool,
+}
+
+/// Arguments of `check`.
+#[derive(clap::Args, Debug)]
+pub struct Check {
+    /// Scenes; `-` is stdin
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Print the diagnostics to stdout as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `fmt`.
+#[derive(clap::Args, Debug)]
+pub struct Format {
+    /// Scenes, formatted in place; `-` formats stdin to stdout
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change nothing, and fail if a file is not formatted
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// Values of params and time.
+#[derive(clap::Args, Debug)]
+pub struct Values {
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Time in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = finite)]
+    pub time: f64,
+}
+
+/// A param and its value as text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The param.
+    pub name: String,
+    /// The value, as written.
+    pub value: String,
+}
+
+/// Arguments of `view`.
+#[derive(clap::Args, Debug)]
+pub struct View {
+    /// The scene
+    pub file: PathBuf,
+}
+
+/// Arguments of `explain`.
+#[derive(clap::Args, Debug)]
+pub struct Explain {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Print JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `doc`.
+#[derive(clap::Args, Debug)]
+pub struct Doc {
+    /// A name, a topic, a code such as E0104, or a word of a description [default: everything]
+    pub name: Option<String>,
+    /// Print JSON to stdout
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Args::command().debug_assert();
+    }
+}

@@ -1,0 +1,124 @@
+//! Arguments of `sdfc render` and `sdfc join`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use sdfc::Method;
+use sdfc_render::MAX_SAMPLES;
+
+use super::Assignment;
+use super::values::{assignment, finite, methods, size};
+use crate::farm::options::Farm;
+use crate::sequence::{self, Frames};
+
+/// Arguments of `render`.
+#[derive(clap::Args, Debug)]
+pub struct Render {
+    /// The scene; `-` is stdin
+    pub file: PathBuf,
+    /// Output file; its extension .png, .exr or .gif gives the format, and `-` writes a PNG to
+    /// stdout [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "640x400", value_parser = size)]
+    pub size: [u32; 2],
+    /// Ray method [default: that of the scene, or auto]
+    #[arg(long, value_name = "METHOD", value_parser = methods())]
+    pub march: Option<Method>,
+    /// Device that draws
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// When to turn similar parts of the scene into loops
+    #[arg(long, value_enum, default_value_t, value_name = "WHEN")]
+    pub loops: Loops,
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Turn the numbers in the scene into params, named at_LINE_COLUMN, that change without
+    /// recompiling
+    #[arg(long)]
+    pub live_literals: bool,
+    /// Time in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = finite, conflicts_with = "frames")]
+    pub time: f64,
+    /// Draw frames A to B - 1 as OUT.0007.png and so on, or as one GIF; the time of frame n is
+    /// n / fps. A-B includes B, and A alone is one frame
+    #[arg(long, value_name = "A..B", value_parser = sequence::frames)]
+    pub frames: Option<Frames>,
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = sequence::rate)]
+    pub fps: f64,
+    /// Rays per pixel, averaged [default: `antialias(...)` of the scene, or 1]
+    #[arg(long, value_name = "N",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
+    pub samples: Option<u32>,
+    /// Draw isolines this far apart, in scene units, in a picture of regions; default the scene's
+    #[arg(long, value_name = "SPACING")]
+    pub isolines: Option<f64>,
+    /// Output file for depths, as EXR: channel Z is the distance along each ray in scene units,
+    /// infinite if the ray hits nothing
+    #[arg(long, value_name = "OUT.exr")]
+    pub depth: Option<PathBuf>,
+    /// Output file for times and counts, as JSON; `-` is stdout. Draws the frame five times
+    #[arg(long, value_name = "OUT.json", conflicts_with = "frames")]
+    pub stats: Option<PathBuf>,
+    /// Fail, and write no picture, if a part of it is unproven: if a ray may have missed a surface
+    #[arg(long)]
+    pub strict: bool,
+    /// Work that is shared between machines.
+    #[command(flatten)]
+    pub farm: Farm,
+}
+
+/// Arguments of `join`.
+#[derive(clap::Args, Debug)]
+pub struct Join {
+    /// Files of `sdfc render --region`: all regions of one picture [default: the files beside OUT
+    /// that are named like its parts, such as OUT.part-0-512-3840x256.png]
+    #[arg(value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// Output file, with the extension of the parts; `-` is stdout
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// Join parts that were drawn on different devices, although borders may be visible
+    #[arg(long)]
+    pub any_device: bool,
+}
+
+/// The device that draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// The GPU if there is one, otherwise the CPU, which also draws long formulas for which a
+    /// software driver would take longer
+    #[default]
+    Auto,
+    /// The GPU
+    Gpu,
+    /// The CPU
+    Cpu,
+}
+
+/// When similar parts of a scene become loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Loops {
+    /// Where that costs less
+    #[default]
+    Auto,
+    /// Never: write out every operation
+    Never,
+    /// Wherever parts are equal up to constants
+    Always,
+}
+
+impl From<Loops> for sdfc::LoopStrategy {
+    fn from(loops: Loops) -> Self {
+        match loops {
+            Loops::Auto => Self::Auto,
+            Loops::Never => Self::Unrolled,
+            Loops::Always => Self::Looped,
+        }
+    }
+}
