@@ -9,8 +9,8 @@ const LOOPS_ENDED: u32 = 0x20000;
 
 // True if the driver has ended the loops of this invocation early, as llvmpipe of Mesa 22.3 does
 // without an error after 65,535 iterations in total. From then on, loops end after one iteration.
-// This one runs two. A constant number would be unrolled, and a number from the uniforms alone would
-// make that driver compile the shader anew for each dispatch.
+// This one runs two. A constant number would be unrolled, and a number from the uniforms alone
+// would make that driver compile the shader anew for each dispatch.
 fn has_ended_loops(column: u32) -> bool {
     let expected = select(1u, 2u, column < view.tile_size.x);
     var iterations = 0u;

@@ -121,8 +121,8 @@ fn picture(pixel: vec2u) -> Pixel {
                     continue;
                 }
             } else {
-                // All lights. The bound depends on the pixel: Mesa's software driver compiles a shader
-                // anew for each dispatch where the uniforms alone bound a loop.
+                // All lights. The bound depends on the pixel: Mesa's software driver compiles a
+                // shader anew for each dispatch where the uniforms alone bound a loop.
                 let lights = select(0u, light_count, hit.trace.t < 2.0 * view.t_max);
                 for (var i = 0u; i < lights; i++) {
                     let incoming = light_at(view.lights[i], hit.surface.point);
