@@ -310,7 +310,9 @@ fn planar() -> Result<(), Failed> {
     fixture.finish()?;
     let model = fixture.model()?;
     expect(model.parallel && model.pipelines == 1, "it is drawn twice")?;
-    let middle = fixture.session.pixel_info([0.5, 0.5]).ok_or("nothing is there")?;
+    let info = |session: &Session| session.pixel_info([0.5, 0.5]);
+    fixture.until(|session| info(session).is_some_and(|middle| middle.shape.is_some()))?;
+    let middle = info(&fixture.session).ok_or("nothing is there")?;
     let shape = middle.shape.unwrap_or_default();
     expect(shape.contains("rect"), &format!("the middle shows {shape}"))?;
     expect(middle.distance.is_some_and(|distance| distance < -0.9), "not the union's field")?;
