@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use sdfc::Method;
 
-use super::Assignment;
-use super::values::{assignment, methods};
+use super::values::{Assignment, assignment, methods};
 
 /// The greatest bind group or binding.
 const MAX_BINDING: i64 = 65_535;

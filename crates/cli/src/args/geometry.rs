@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use sdfc::Plane;
 
-use super::Values;
-use super::values::{above_0, plane};
+use super::values::{Values, above_0, plane};
 
 /// Arguments of `mesh`.
 #[derive(clap::Args, Debug)]

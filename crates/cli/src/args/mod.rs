@@ -14,7 +14,8 @@ pub use compile::Compile;
 pub use geometry::{Bake, Contour, Exactness, Measure, Mesh};
 pub use measurement::{Bench, Cache, Chart, Tune};
 pub use render::{Backend, Join, Render};
-use values::{assignment, finite};
+pub use values::Assignment;
+use values::assignment;
 
 /// Compiles scenes of signed distance functions to shaders and pictures.
 #[derive(Debug, Parser)]
@@ -143,28 +144,6 @@ pub struct Format {
     /// Change nothing, and fail if a file is not formatted
     #[arg(long)]
     pub check: bool,
-}
-
-/// Values of params and time.
-#[derive(clap::Args, Debug)]
-pub struct Values {
-    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
-    /// of a choice
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    pub set: Vec<Assignment>,
-    /// Time in seconds
-    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
-          value_parser = finite)]
-    pub time: f64,
-}
-
-/// A param and its value as text.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Assignment {
-    /// The param.
-    pub name: String,
-    /// The value, as written.
-    pub value: String,
 }
 
 /// Arguments of `view`.

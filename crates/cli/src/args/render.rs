@@ -6,8 +6,7 @@ use clap::ValueEnum;
 use sdfc::Method;
 use sdfc_render::MAX_SAMPLES;
 
-use super::Assignment;
-use super::values::{assignment, finite, methods, size};
+use super::values::{Assignment, assignment, finite, methods, size};
 use crate::farm::options::Farm;
 use crate::sequence::{self, Frames};
 

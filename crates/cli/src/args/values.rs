@@ -5,7 +5,27 @@ use sdfc::{Method, Plane};
 use sdfc_lang::settings::RAY_METHODS;
 use sdfc_render::{MAX_PIXELS, MAX_SIDE};
 
-use super::Assignment;
+/// Values of params and time.
+#[derive(clap::Args, Debug)]
+pub struct Values {
+    /// Set a param, with the value written as in a scene: 0.5, 90deg, true, #d94f30, or the name
+    /// of a choice
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<Assignment>,
+    /// Time in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = finite)]
+    pub time: f64,
+}
+
+/// A param and its value as text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// The param.
+    pub name: String,
+    /// The value, as written.
+    pub value: String,
+}
 
 /// Parses the name of any ray method. The help lists those for users.
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
