@@ -76,6 +76,8 @@ export class Stage {
     showControls(this.#elements.form, rows, this.values, changed);
     this.#elements.bar.hidden = !moves;
     if (!moves) this.#play(false);
+    // The controls leave the canvas another height. Its first frame has it already.
+    this.#fit();
     // Camera and lights are no part of the shader: changing them builds nothing.
     if (isSame) this.redraw(false);
     else this.restart();

@@ -159,7 +159,8 @@ impl<'c> Page<'c> {
 }
 
 pub fn replace_text(chromium: &mut Chromium, text: &str) -> Result<(), Failed> {
-    chromium.click(".cm-content", [0.5, 0.5])?;
+    // The text may be wider than the part of it that is in sight.
+    chromium.click(".cm-scroller", [0.5, 0.5])?;
     chromium.select_all()?;
     chromium.insert(text)
 }
