@@ -64,7 +64,7 @@ pub fn run(args: &Render, console: &Console) -> Result<(), Failure> {
     }
 }
 
-/// What is drawn of a sequence and of each picture.
+/// The frames and the region that this process draws.
 struct Work {
     /// `None` for a single picture.
     frames: Option<Frames>,

@@ -7,7 +7,7 @@ use sdfc_render::RasterKind;
 
 use super::provenance::{Drawing, Provenance};
 
-/// What is known about the file of a picture that is to be drawn.
+/// The state of the file of a picture before the picture is drawn.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Existing {
     /// There is no file.

@@ -21,7 +21,7 @@ const SET_BY_CAMERA: [&str; 5] = ["forward", "right", "up", "pixel_radius", "siz
 
 /// Makes the shader of a program's picture for [`crate::Target::Shadertoy`]. Params are constants
 /// with their defaults, `time` and `frame` follow the site's clock, and the camera is the scene's.
-/// Of a picture with rays, the rest of the view is constant: `view` holds the bytes of a
+/// If the picture has rays, the rest of the view is constant: `view` holds the bytes of a
 /// `sdfc_march::ViewBlock`, as a buffer would.
 ///
 /// # Errors
