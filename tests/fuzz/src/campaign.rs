@@ -22,17 +22,15 @@ const WORTH_SHRINKING: usize = 3;
 /// The most programs that are tried while one is shrunk.
 const TRIES: usize = 2000;
 
-/// The limits of a campaign, and its oracles.
-#[derive(Clone, Debug)]
-pub struct Options {
+/// The limits of a campaign.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
     /// The campaign ends after this time, or after the finding that it is shrinking then.
     pub time: Duration,
     /// The number of programs, if the time allows for them.
     pub programs: u64,
     /// The seed of the first program. The next programs have the next seeds.
     pub seed: u64,
-    /// The oracles that judge each program.
-    pub oracles: Vec<Oracle>,
 }
 
 /// The counts of a campaign.
@@ -44,6 +42,8 @@ pub struct Table {
     pub valid: u64,
     /// The parts of accepted programs.
     pub parts: usize,
+    /// The bytes of all programs.
+    pub bytes: usize,
     /// One row for each oracle.
     pub rows: Vec<Row>,
     /// The faults, in the order in which they were found.
@@ -87,23 +87,29 @@ pub enum Event<'e> {
     Found(&'e Found),
 }
 
-/// Runs a campaign.
+impl Table {
+    /// A table without counts, with a row for each oracle.
+    pub(crate) fn new(oracles: impl Iterator<Item = &'static str>) -> Self {
+        let rows = oracles.map(|oracle| Row { oracle, run: 0, left_out: 0, findings: 0 });
+        Self { rows: rows.collect(), ..Self::default() }
+    }
+}
+
+/// Runs a campaign over generated programs. The oracles judge each.
 ///
 /// # Errors
 ///
 /// The reference has an entry that the generator does not understand.
-pub fn run(options: &Options, on: &mut dyn FnMut(&Event<'_>)) -> Result<Table, String> {
+pub fn run(
+    limits: Limits,
+    oracles: &[Oracle],
+    on: &mut dyn FnMut(&Event<'_>),
+) -> Result<Table, String> {
     let catalogue = Arc::new(Catalogue::read()?);
     let start = Instant::now();
-    let rows = options.oracles.iter().map(|oracle| Row {
-        oracle: oracle.name,
-        run: 0,
-        left_out: 0,
-        findings: 0,
-    });
-    let mut table = Table { rows: rows.collect(), ..Table::default() };
-    for seed in (options.seed..).take(options.programs as usize) {
-        if start.elapsed() >= options.time {
+    let mut table = Table::new(oracles.iter().map(|oracle| oracle.name));
+    for seed in (limits.seed..).take(limits.programs as usize) {
+        if start.elapsed() >= limits.time {
             break;
         }
         table.programs += 1;
@@ -123,8 +129,9 @@ pub fn run(options: &Options, on: &mut dyn FnMut(&Event<'_>)) -> Result<Table, S
         };
         table.valid += 1;
         table.parts += program.size();
+        table.bytes += program.text().len();
         on(&Event::Program(seed, &program.text()));
-        judge(&mut table, &options.oracles, seed, &program, on);
+        judge(&mut table, oracles, seed, &program, on);
     }
     table.time = start.elapsed();
     Ok(table)
@@ -160,7 +167,7 @@ fn judge(
     }
 }
 
-fn note(
+pub(crate) fn note(
     table: &mut Table,
     oracle: &'static str,
     seed: u64,
@@ -204,7 +211,7 @@ fn smallest(
 }
 
 /// The kind of the finding that an oracle does not end in time.
-const SLOW: &str = "slow";
+pub(crate) const SLOW: &str = "slow";
 /// The kind of the finding that an oracle panics.
 const PANIC: &str = "panic";
 
@@ -241,7 +248,7 @@ fn next(answers: &Receiver<Outcome>) -> Option<Outcome> {
 }
 
 /// Calls a function on a thread of its own, with a limited time.
-fn within_limit<T: Send + 'static>(
+pub(crate) fn within_limit<T: Send + 'static>(
     make: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, Finding> {
     let (sender, receiver) = channel();

@@ -23,6 +23,7 @@ mod kernel;
 pub mod oracles;
 mod repair;
 mod shrink;
+pub mod texts;
 pub mod tree;
 pub mod types;
 

@@ -8,10 +8,11 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
-use sdfc_fuzz::campaign::{Event, Found, Options, Table, run};
+use sdfc_fuzz::campaign::{Event, Found, Limits, Table};
 use sdfc_fuzz::catalogue::Catalogue;
 use sdfc_fuzz::oracles::ORACLES;
-use sdfc_fuzz::{generate, repair};
+use sdfc_fuzz::texts::oracles::TEXT_ORACLES;
+use sdfc_fuzz::{campaign, generate, repair, texts};
 
 /// Generates programs and tests what must hold of each. Ends with status 1 if something does not.
 #[derive(Debug, Parser)]
@@ -31,14 +32,17 @@ struct Arguments {
     /// The folder for the programs with faults
     #[arg(long, value_name = "FOLDER", default_value = "target/fuzz")]
     out: PathBuf,
-    /// Only prints the program of the seed
+    /// Judges texts with mistakes in them, instead of programs
     #[arg(long)]
+    texts: bool,
+    /// Only prints the program of the seed
+    #[arg(long, conflicts_with = "texts")]
     print: bool,
 }
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let result = if arguments.print { print(arguments.seed) } else { campaign(&arguments) };
+    let result = if arguments.print { print(arguments.seed) } else { run(&arguments) };
     match result {
         Ok(code) => code,
         Err(error) => {
@@ -55,34 +59,47 @@ fn print(seed: u64) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn campaign(arguments: &Arguments) -> Result<ExitCode, String> {
-    let names = &arguments.oracle;
-    let known = |name: &String| ORACLES.iter().any(|oracle| oracle.name == name);
-    if let Some(name) = names.iter().find(|name| !known(name)) {
-        let names: Vec<&str> = ORACLES.iter().map(|oracle| oracle.name).collect();
-        return Err(format!("there is no oracle `{name}`; there are {}", names.join(", ")));
-    }
-    let is_asked = |name: &str| names.is_empty() || names.iter().any(|asked| asked == name);
-    let options = Options {
+fn run(arguments: &Arguments) -> Result<ExitCode, String> {
+    let limits = Limits {
         time: Duration::try_from_secs_f64(60.0 * arguments.minutes).map_err(|e| e.to_string())?,
         programs: arguments.programs,
         seed: arguments.seed,
-        oracles: ORACLES.into_iter().filter(|oracle| is_asked(oracle.name)).collect(),
     };
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut failed = None;
-    let table = run(&options, &mut |event| {
+    let mut on = |event: &Event<'_>| {
         if let Err(error) = save(folder, event) {
             failed.get_or_insert(error);
         }
-    })?;
+    };
+    let table = if arguments.texts {
+        let oracles = asked(&arguments.oracle, &TEXT_ORACLES, |oracle| oracle.name)?;
+        texts::run(limits, &oracles, &mut on)?
+    } else {
+        let oracles = asked(&arguments.oracle, &ORACLES, |oracle| oracle.name)?;
+        campaign::run(limits, &oracles, &mut on)?
+    };
     println!("{}", as_text(&table));
     match failed {
         Some(error) => Err(format!("{}: {error}", folder.display())),
         None if table.found.is_empty() => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
     }
+}
+
+/// The oracles with these names; all if there are no names.
+fn asked<O: Copy>(
+    names: &[String],
+    oracles: &[O],
+    name_of: fn(&O) -> &'static str,
+) -> Result<Vec<O>, String> {
+    let known: Vec<&str> = oracles.iter().map(name_of).collect();
+    if let Some(name) = names.iter().find(|name| !known.contains(&name.as_str())) {
+        return Err(format!("there is no oracle `{name}`; there are {}", known.join(", ")));
+    }
+    let is_asked = |oracle: &&O| names.is_empty() || names.iter().any(|it| it == name_of(oracle));
+    Ok(oracles.iter().filter(is_asked).copied().collect())
 }
 
 /// Keeps the program that is judged, in case it ends the process, and writes findings.
@@ -103,16 +120,19 @@ fn save(folder: &Path, event: &Event<'_>) -> std::io::Result<()> {
 
 /// The table of a campaign, as documents show it.
 fn as_text(table: &Table) -> String {
-    let Table { programs, valid, parts, rows, found, time } = table;
+    let Table { programs, valid, parts, bytes, rows, found, time } = table;
     let mut text = format!(
-        "{programs} programs, {valid} valid with {parts} parts, {} findings, {:.1} minutes\n\n\
+        "{programs} programs of {bytes} bytes, {valid} valid with {parts} parts, {} findings, \
+         {:.1} minutes\n\n\
          | oracle | statement | run | left out | findings |\n|---|---|---|---|---|\n",
         found.len(),
         time.as_secs_f64() / 60.0
     );
     for row in rows {
-        let summary = ORACLES.iter().find(|oracle| oracle.name == row.oracle);
-        let summary = summary.map_or("", |oracle| oracle.summary);
+        let programs = ORACLES.iter().map(|oracle| (oracle.name, oracle.summary));
+        let texts = TEXT_ORACLES.iter().map(|oracle| (oracle.name, oracle.summary));
+        let summary = programs.chain(texts).find(|(name, _)| *name == row.oracle);
+        let summary = summary.map_or("", |(_, summary)| summary);
         // Writing to a string does not fail.
         let _ = writeln!(
             text,

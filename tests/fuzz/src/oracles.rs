@@ -94,7 +94,7 @@ const POINTS: u32 = 200;
 /// is off the surface. Both are computed in f64.
 const ROUNDING: f64 = 1e-9;
 
-fn finding(kind: &str, message: impl ToString) -> Finding {
+pub(crate) fn finding(kind: &str, message: impl ToString) -> Finding {
     Finding { kind: kind.to_owned(), message: message.to_string() }
 }
 

@@ -3,14 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod corpus;
-mod files;
-mod mutations;
 mod operators;
 mod queries;
 
 use std::collections::BTreeMap;
 
 use sdfc_diagnostics::{Code, Diagnostic, Sources};
+use sdfc_fuzz::texts::mutated;
 use sdfc_syntax::ast::File;
 use tree_sitter::{Parser, Tree};
 
@@ -96,7 +95,7 @@ fn difference(text: &str) -> Result<Option<&'static str>, String> {
 
 #[test]
 fn every_scene_and_snippet_means_the_same() {
-    let files = files::all();
+    let files = sdfc_fuzz::texts::files().unwrap();
     assert!(files.len() > 300, "{}", files.len());
     for (name, text) in files {
         assert_eq!(difference(&text), Ok(None), "{name}");
@@ -105,13 +104,13 @@ fn every_scene_and_snippet_means_the_same() {
 
 #[test]
 fn five_thousand_mutations_are_accepted_or_refused_alike() {
-    let files = files::all();
+    let files = sdfc_fuzz::texts::files().unwrap();
     let mut random = fastrand::Rng::with_seed(23);
     let mut accepted = 0;
     let mut differences: BTreeMap<&str, usize> = BTreeMap::new();
     let mut wrong = Vec::new();
     for _ in 0..MUTATIONS {
-        let text = mutations::mutated(&files, &mut random);
+        let text = mutated(&files, &mut random);
         accepted += usize::from(!parsed(&text).root_node().has_error());
         match difference(&text) {
             Ok(None) => {}

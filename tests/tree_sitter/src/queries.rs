@@ -6,7 +6,7 @@ use sdfc_syntax::Class;
 use sdfc_test_support::repository;
 use tree_sitter::{Query, QueryCursor, StreamingIterator};
 
-use crate::{files, parsed};
+use crate::parsed;
 
 /// The folders with queries.
 const FOLDERS: [&str; 3] = ["tree-sitter-sdf/queries", "helix/queries/sdf", "zed/languages/sdf"];
@@ -57,7 +57,7 @@ fn every_token_has_a_colour_of_its_role() {
 }
 
 fn check_colours(query: &Query) {
-    for (file, text) in files::all() {
+    for (file, text) in sdfc_fuzz::texts::files().unwrap() {
         let tree = parsed(&text);
         if tree.root_node().has_error() {
             continue;

@@ -59,6 +59,10 @@ const TYPED: [&str; 52] = [
 ];
 
 /// Returns one of the files, changed in one to three places.
+///
+/// # Panics
+///
+/// There are no files.
 pub fn mutated(files: &[(String, String)], random: &mut Rng) -> String {
     let mut text = files[random.usize(..files.len())].1.clone();
     for _ in 0..random.usize(1..=3) {

@@ -1,28 +1,33 @@
 //! The scenes of the repository, and the snippets of its pages.
 
+use std::io;
 use std::path::Path;
 
 use sdfc_test_support::repository;
 
 /// Returns the name and the text of every scene below `examples`, `crates`, `tests` and `docs`, and
 /// of every snippet of the pages.
-pub fn all() -> Vec<(String, String)> {
+///
+/// # Errors
+///
+/// A file or a folder cannot be read.
+pub fn files() -> io::Result<Vec<(String, String)>> {
     let mut found = Vec::new();
     for folder in ["examples", "crates", "tests", "docs", "playground"] {
-        find(&repository().join(folder), &mut found);
+        find(&repository().join(folder), &mut found)?;
     }
     found.sort();
-    found
+    Ok(found)
 }
 
-fn find(folder: &Path, found: &mut Vec<(String, String)>) {
-    for entry in std::fs::read_dir(folder).into_iter().flatten() {
-        let path = entry.unwrap().path();
+fn find(folder: &Path, found: &mut Vec<(String, String)>) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
         let extension = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
         if path.is_dir() && !path.ends_with("node_modules") {
-            find(&path, found);
+            find(&path, found)?;
         } else if matches!(extension, "sdf" | "md") {
-            let text = std::fs::read_to_string(&path).unwrap().replace("\r\n", "\n");
+            let text = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
             let name = path.display().to_string();
             if extension == "sdf" {
                 found.push((name, text));
@@ -32,6 +37,7 @@ fn find(folder: &Path, found: &mut Vec<(String, String)>) {
             }
         }
     }
+    Ok(())
 }
 
 /// The blocks of a page that are fenced as `sdf`, also those with an error.
