@@ -7,6 +7,9 @@ use crate::kernel::RIVAL_SETTINGS;
 use crate::tree::{Program, Tree};
 use crate::types::Ty;
 
+/// The programs that draw regions, in percent.
+const PLANAR: u8 = 12;
+
 impl Generator<'_> {
     pub(super) fn statements(&mut self, shapes: usize) -> Vec<Tree> {
         let mut statements = Vec::new();
@@ -23,11 +26,13 @@ impl Generator<'_> {
         for _ in 0..lets {
             statements.push(self.binding(share));
         }
+        // A program draws solids or regions, never both.
+        let ty = if self.chance(PLANAR) { Ty::Region } else { Ty::Solid };
         for _ in 0..drawn {
-            let solid = self.shape(&Ty::Solid, Want::new(Rate::Frame, share));
-            statements.push(Tree::new(Ty::Statement, "{}", [solid]));
+            let shape = self.shape(&ty, Want::new(Rate::Frame, share));
+            statements.push(Tree::new(Ty::Statement, "{}", [shape]));
         }
-        statements.extend(self.settings());
+        statements.extend(self.settings(ty == Ty::Region));
         statements
     }
 
@@ -254,7 +259,7 @@ impl Generator<'_> {
     }
 
     /// Chooses settings, each at most as often as a scene can have it.
-    fn settings(&mut self) -> Vec<Tree> {
+    fn settings(&mut self, is_planar: bool) -> Vec<Tree> {
         let mut chosen: Vec<String> = Vec::new();
         let mut statements = Vec::new();
         for _ in 0..self.rng.u8(0..7) {
@@ -267,7 +272,11 @@ impl Generator<'_> {
                     .iter()
                     .any(|pair| pair.contains(&name.as_str()) && pair.contains(&other.as_str()))
             };
-            if chosen.iter().any(|other| (setting.once && other == name) || rival(other)) {
+            // The generator's cameras look from all sides, which a planar picture does not allow.
+            let is_aside = is_planar && name == "camera";
+            if is_aside
+                || chosen.iter().any(|other| (setting.once && other == name) || rival(other))
+            {
                 continue;
             }
             chosen.push(name.clone());

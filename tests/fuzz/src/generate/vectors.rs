@@ -5,6 +5,9 @@ use super::{Generator, Rate, Variable, Want};
 use crate::tree::{Element, Layout, Tree};
 use crate::types::Ty;
 
+/// The patterns that depend on the angle between the surface and the eye, in percent.
+const RIM: u8 = 12;
+
 impl Generator<'_> {
     pub(super) fn vector(&mut self, width: u8, want: Want) -> Tree {
         let ty = Ty::Vec(width);
@@ -174,6 +177,10 @@ impl Generator<'_> {
                 Tree::new(result.clone(), "({} + 0.1 * {})", [point, moved])
             }
             (_, Ty::Number) => Tree::new(Ty::Number, "(0.1 * {})", [this.number(inner)]),
+            (_, Ty::Color) if *ty == Ty::pattern() && this.chance(RIM) => {
+                let colors = [this.color(inner), this.color(inner)];
+                Tree::new(Ty::Color, "mix({}, {}, abs(dot(normal, view)))", colors)
+            }
             _ => this.value(result, inner),
         });
         let typed = self.rng.bool();

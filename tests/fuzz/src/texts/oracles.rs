@@ -87,7 +87,7 @@ fn layout(text: &str) -> Outcome {
     Ok(Verdict::Holds)
 }
 
-fn service(text: &str) -> Outcome {
+pub(crate) fn service(text: &str) -> Outcome {
     let scene = Analysis::new(NAME, text, &NoFiles);
     let shown: Errors = sdfc_ide::diagnostics(&scene)
         .into_iter()

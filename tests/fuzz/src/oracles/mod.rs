@@ -1,11 +1,15 @@
 //! What must hold of every program: a list of free functions.
 
+mod claims;
+mod surfaces;
+
 use sdfc::{Compiler, Emit, Scene, Target};
 use sdfc_render::testing;
 use sdfc_tests::agree::{self, Disagreement};
-use sdfc_tests::validators::{PARTS, Part, TOOLS, is_supported, write};
+use sdfc_tests::validators::{PARTS, Part, TOOLS, is_written, write};
 
 use crate::repair::NAME;
+use crate::texts;
 
 /// A program that the checker accepts.
 #[derive(Debug)]
@@ -49,7 +53,7 @@ pub struct Oracle {
 }
 
 /// All oracles, the quick ones first.
-pub const ORACLES: [Oracle; 8] = [
+pub const ORACLES: [Oracle; 15] = [
     Oracle {
         name: "format",
         summary: "formatting twice is formatting once, and compiles to the same shader",
@@ -65,6 +69,41 @@ pub const ORACLES: [Oracle; 8] = [
         name: "live",
         summary: "with live literals the camera is the same, and no point changes its side",
         holds: live,
+    },
+    Oracle {
+        name: "gradient",
+        summary: "the gradient is the slope of the field where it is smooth",
+        holds: claims::gradient,
+    },
+    Oracle {
+        name: "certificate",
+        summary: "a certified field is no more than the distance to the surface",
+        holds: claims::certificate,
+    },
+    Oracle {
+        name: "bounds",
+        summary: "nothing is inside outside of the bounds",
+        holds: claims::bounds,
+    },
+    Oracle {
+        name: "loops",
+        summary: "loops over lists and plain formulas are one field",
+        holds: claims::loops,
+    },
+    Oracle {
+        name: "service",
+        summary: "the language service answers everywhere, with the errors of the compiler",
+        holds: service,
+    },
+    Oracle {
+        name: "mesh",
+        summary: "a mesh is closed, on the surface, and has the inside of the field",
+        holds: surfaces::mesh,
+    },
+    Oracle {
+        name: "regions",
+        summary: "a region of a picture has the pixels of the picture",
+        holds: surfaces::regions,
     },
     Oracle { name: "clauses", summary: "no clause is refuted by samples", holds: clauses },
     Oracle {
@@ -180,6 +219,10 @@ fn live(subject: &Subject) -> Outcome {
     Ok(Verdict::Holds)
 }
 
+fn service(subject: &Subject) -> Outcome {
+    texts::oracles::service(&subject.text)
+}
+
 fn clauses(subject: &Subject) -> Outcome {
     let checked = Compiler::new().verify(true).compile(NAME, &subject.text);
     checked.map(|_| Verdict::Holds).map_err(|errors| finding("refuted", errors.without_warnings()))
@@ -201,7 +244,8 @@ fn targets(subject: &Subject) -> Outcome {
 fn methods(subject: &Subject) -> Outcome {
     // The methods need different numbers of steps, so a limit ends different rays.
     let has_limit = subject.scene.program().settings.march.steps.is_some();
-    if has_limit || !subject.scene.is_certified() || !is_drawn(&subject.scene) {
+    let has_rays = !subject.scene.is_planar() && is_drawn(&subject.scene);
+    if has_limit || !has_rays || !subject.scene.is_certified() {
         return Ok(Verdict::LeftOut);
     }
     agreed(agree::methods(&subject.scene).map(drop))
@@ -219,10 +263,10 @@ fn is_drawn(scene: &Scene) -> bool {
 }
 
 /// The parts of a scene's shader that a target supports.
-fn parts(scene: &Scene, target: Target) -> impl Iterator<Item = Part> {
+fn parts(scene: &Scene, target: Target) -> impl Iterator<Item = Part> + '_ {
     let is_drawn = is_drawn(scene);
     let is_asked = move |part: &Part| is_drawn || part.emit == Emit::Field;
-    PARTS.into_iter().filter(move |part| is_asked(part) && is_supported(target, *part))
+    PARTS.into_iter().filter(move |part| is_asked(part) && is_written(scene, target, *part))
 }
 
 fn agreed(compared: Result<(), Disagreement>) -> Outcome {
