@@ -13,6 +13,7 @@ use sdfc_graph::{
     SurfaceVector, Ternary, Type, Unary, best_gradient, fold_transforms, substitute,
 };
 
+use crate::certify::conservative::{Uncertified, conservative_field};
 use crate::certify::inexact::{inexact_operators, inexact_outside};
 use crate::certify::quality::Qualities;
 use crate::cost::cost;
@@ -51,8 +52,14 @@ struct Layer {
     has_unit_slope: bool,
 }
 
-/// The formulas of a planar scene: the union of its regions first, then its layers.
+/// The formulas of a planar scene.
 struct Formulas {
+    /// The conservative field of the union of all regions.
+    conservative: NodeId,
+    uncertified: Vec<Uncertified>,
+    /// The shapes that were divided by a constant in it.
+    divided: Vec<ShapeId>,
+    /// The fields of the union and of each layer, undivided.
     distances: Vec<NodeId>,
     /// One for each distance, or none.
     materials: Vec<Material>,
@@ -70,7 +77,7 @@ pub(crate) fn planar_picture(
 ) -> Result<Report, ExpandError> {
     let point = program.graph.point(0, Dim::Two);
     let qualities = Qualities::of_scene(&mut program.graph, root, &scene.params);
-    let formulas = formulas(program, scene, root, point, strategy)?;
+    let formulas = formulas(program, scene, root, &qualities, strategy)?;
     let graph = &mut program.graph;
     let unit_slopes = unit_slopes(graph, &qualities, root);
     let layer = |(index, shape): (usize, &ShapeId)| Layer {
@@ -80,8 +87,9 @@ pub(crate) fn planar_picture(
     };
     let whole = layer((0, &root));
     let layers: Vec<Layer> = (1..).zip(&scene.layers).map(layer).collect();
-    let (gradient, gradient_report) = best_gradient(graph, whole.distance, point);
-    (program.distance, program.gradient) = (Some(whole.distance), Some(gradient));
+    let distance = formulas.conservative;
+    let (gradient, gradient_report) = best_gradient(graph, distance, point);
+    (program.distance, program.gradient) = (Some(distance), Some(gradient));
     program.material = whole.material.map(|nearest| topmost(graph, nearest, &layers));
     let background = program.settings.background;
     let background = background.unwrap_or_else(|| graph.constant(Type::Vec3, &BACKGROUND));
@@ -97,11 +105,12 @@ pub(crate) fn planar_picture(
         loops: formulas.loops,
         unrolled_limit: formulas.unrolled_limit,
         leaves: formulas.leaves,
-        distance_cost: cost(graph, &[whole.distance]),
+        distance_cost: cost(graph, &[distance]),
         gradient_cost: cost(graph, &[gradient]),
         gradient: gradient_report,
         pixel_cost: cost(graph, &[pixel]),
-        shapes: shape_reports(graph, &qualities, root, &[]),
+        shapes: shape_reports(graph, &qualities, root, &formulas.divided),
+        uncertified: formulas.uncertified,
         inexact_operators: inexact_operators(graph, &qualities, root),
         inexact_outside: inexact_outside(graph, &qualities, root),
         ..Report::default()
@@ -113,15 +122,17 @@ fn formulas(
     program: &mut Program,
     scene: &Scene,
     root: ShapeId,
-    own_point: NodeId,
+    qualities: &Qualities,
     strategy: LoopStrategy,
 ) -> Result<Formulas, ExpandError> {
     let graph = &mut program.graph;
     let mut expander = Expander::new();
+    let own_point = graph.point(0, Dim::Two);
     let origin = graph.constant(Type::Vec2, &program.origin[..2]);
     let point = graph.add(own_point, origin);
     let shapes: Vec<ShapeId> = [root].iter().chain(&scene.layers).copied().collect();
-    let mut nodes = Vec::new();
+    let field = conservative_field(graph, &mut expander, qualities, root, point)?;
+    let mut nodes = vec![field.distance];
     for &shape in &shapes {
         nodes.push(expander.field(graph, shape, point)?);
     }
@@ -134,16 +145,26 @@ fn formulas(
         strategy.uses_loops(graph, nodes[0], &program.settings, None);
     let folded = fold_transforms(graph, &nodes);
     program.names = folded.names(graph, &expander.names());
-    let (distances, materials) = folded.roots.split_at(shapes.len());
-    let (mut distances, mut materials, mut loops) =
-        (distances.to_vec(), materials.to_vec(), Vec::new());
+    let (fields, materials) = folded.roots.split_at(1 + shapes.len());
+    let (mut fields, mut materials, mut loops) = (fields.to_vec(), materials.to_vec(), Vec::new());
     if uses_loops {
-        let rerolled = reroll(graph, &distances);
+        let rerolled = reroll(graph, &fields);
         materials = reroll_materials(graph, &materials, &rerolled.replaced);
-        (distances, loops) = (rerolled.roots, rerolled.loops);
+        (fields, loops) = (rerolled.roots, rerolled.loops);
     }
+    let (conservative, distances) = (fields[0], fields[1..].to_vec());
     let materials = materials.as_chunks().0.to_vec();
-    Ok(Formulas { distances, materials, leaves, loops, unrolled_limit })
+    let (uncertified, divided) = (field.uncertified, field.divided);
+    Ok(Formulas {
+        conservative,
+        uncertified,
+        divided,
+        distances,
+        materials,
+        leaves,
+        loops,
+        unrolled_limit,
+    })
 }
 
 /// A material whose normal and direction to the eye are z.

@@ -85,7 +85,7 @@ impl Scene {
     pub(crate) fn trusts_uncertified(&self, method: Method) -> bool {
         let bounds = [stubs::RANGE, stubs::SLOPE_RANGE];
         let is_bounded = bounds.into_iter().any(|stub| method.definition().calls(stub));
-        !self.is_certified() && !is_bounded
+        !self.is_planar() && !self.is_certified() && !is_bounded
     }
 
     /// Returns a form of the program with the functions that draw it if `method` is requested.

@@ -289,3 +289,23 @@ fn many_similar_regions_become_loops() {
     assert_eq!((&explained.loops[..], explained.layers), (&[1199][..], 1));
     assert!(explained.code_why.contains("pixels evaluate all"), "{}", explained.code_why);
 }
+
+#[test]
+fn a_region_is_certified_as_a_solid_is() {
+    let sides = [0.5, 1.0, 2.0].map(|x| [x, 2.0 * x, 0.0]);
+    // The edge is a circle around the origin in both.
+    let divided = scene("region grown(a: region) = a(1.1 * p) - 0.1\ncircle().grown()");
+    assert!(divided.is_certified());
+    for point in sides {
+        let truth = point[0] * 5.0_f64.sqrt() - 0.6 / 1.1;
+        let distance = divided.distance(point).unwrap();
+        assert!(distance <= truth * (1.0 + 1e-12), "{distance} at {point:?}, {truth} away");
+    }
+    let unknown = scene("region under() = p.y - exp(p.x)\nunder()");
+    assert!(!unknown.is_certified());
+    // Its picture needs no proof.
+    assert!(unknown.diagnostics().is_empty(), "{}", unknown.diagnostics());
+    let options = PictureOptions::new().size([32, 32]).backend(Backend::Cpu);
+    let picture = unknown.render(&options, &mut no_progress).unwrap();
+    assert_eq!(picture.unproven, None);
+}

@@ -19,6 +19,10 @@ use crate::error::Error;
 /// The name of the point that a function is evaluated at.
 pub(crate) const POINT: &str = "p";
 
+/// The literal for infinity: 2^127. The shortest decimal text of the largest number is above it, and
+/// some shader compilers refuse it.
+const FARTHEST: f32 = f32::from_bits(0x7f00_0000);
+
 /// Makes a function of several points, by level, that returns one node's value.
 pub(crate) fn function_of(
     program: &Program,
@@ -276,10 +280,10 @@ impl<'a> Lowering<'a> {
     }
 
     /// A number, rounded to 32 bits. Shader languages have no infinite literals, so the bounds of a
-    /// shape without an end become the largest finite numbers.
+    /// shape without an end become [`FARTHEST`].
     pub(super) fn number(&mut self, node: NodeId, value: f64) -> Result<Value, Error> {
         let rounded = value as f32;
-        let rounded = if value.is_infinite() { f32::MAX.copysign(rounded) } else { rounded };
+        let rounded = if value.is_infinite() { FARTHEST.copysign(rounded) } else { rounded };
         if !rounded.is_finite() {
             return Err(Error::NotFinite { node, value });
         }

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 use sdfc_analyze::{CopiesObstacle, Report, copies_obstacle};
 use sdfc_diagnostics::{Code, Diagnostic, Sources};
-use sdfc_graph::ShapeId;
+use sdfc_graph::{Dim, ShapeId};
 use sdfc_lang::{Declared, Elaborated, Site};
 
 use super::origins::Origins;
@@ -18,7 +18,9 @@ pub(crate) fn warnings(
     let origins = Origins::new(elaborated);
     let mut seen = FxHashSet::default();
     let mut warnings = Vec::new();
-    for part in &report.uncertified {
+    // No ray steps through regions.
+    let stepped = report.uncertified.iter().filter(|_| !is_planar(elaborated));
+    for part in stepped {
         let Some(site) = origins.nearest_call(part.shape) else { continue };
         if seen.insert((Code::UNCERTIFIED, site.span)) {
             let message = format!("`{}` is uncertified: {}", site.name, part.reason);
@@ -46,6 +48,11 @@ pub(crate) fn warnings(
     warnings.extend(soft_shadows(elaborated, report, &origins, sources));
     warnings.extend(elaborated.declared.iter().filter_map(|shape| idle(elaborated, shape)));
     warnings
+}
+
+fn is_planar(elaborated: &Elaborated) -> bool {
+    let graph = &elaborated.scene.graph;
+    elaborated.scene.root.is_some_and(|root| graph.shape(root).dim == Dim::Two)
 }
 
 /// Warns about a clause `copies` that helps no instance of its declaration (W0606).
