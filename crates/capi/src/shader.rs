@@ -161,7 +161,10 @@ pub unsafe extern "C" fn sdfc_shader_free(shader: *mut Shader) {
 
 fn target_of(name: &str) -> Result<Target, Failure> {
     let found = Target::ALL.into_iter().find(|target| target.name() == name);
-    found.ok_or_else(|| Failure::argument(format!("unknown target `{name}`")))
+    found.ok_or_else(|| {
+        let names = Target::ALL.map(Target::name).join(", ");
+        Failure::argument(format!("unknown target `{name}`; the targets are {names}"))
+    })
 }
 
 fn emit_of(name: &str) -> Result<Emit, Failure> {
