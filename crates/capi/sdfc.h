@@ -24,8 +24,8 @@ typedef enum {
    */
   SDFC_STATUS_NOT_UTF8 = 2,
   /*
-   An unknown name, a value that an argument, param or option does not take, or a buffer that is
-   too small.
+   An unknown name, a value that an argument, param or option does not take, or a buffer that
+   is too small.
    */
   SDFC_STATUS_ARGUMENT = 3,
   /*
@@ -85,8 +85,8 @@ typedef struct sdfc_scene sdfc_scene;
 typedef struct sdfc_shader sdfc_shader;
 
 /*
- Callback that is told how far a call is: `done` of `total` units of its current step. It runs in
- the thread of the call, and returns 0 to go on. Any other value stops the work, and the call
+ Callback that receives how far a call is: `done` of `total` units of its current step. It runs
+ in the thread of the call, and returns 0 to go on. Any other value stops the work, and the call
  fails with `SDFC_STATUS_STOPPED`. `context` is the pointer that was passed to the call.
  */
 typedef int (*sdfc_progress)(void *context, uint64_t done, uint64_t total);

@@ -1,10 +1,10 @@
-//! Progress of long work, told to the calling program.
+//! Progress of long work, reported to the calling program.
 
 use std::ffi::{c_int, c_void};
 use std::ops::ControlFlow;
 
-/// Callback that is told how far a call is: `done` of `total` units of its current step. It runs in
-/// the thread of the call, and returns 0 to go on. Any other value stops the work, and the call
+/// Callback that receives how far a call is: `done` of `total` units of its current step. It runs
+/// in the thread of the call, and returns 0 to go on. Any other value stops the work, and the call
 /// fails with `SDFC_STATUS_STOPPED`. `context` is the pointer that was passed to the call.
 pub type Progress =
     Option<unsafe extern "C" fn(context: *mut c_void, done: u64, total: u64) -> c_int>;

@@ -10,8 +10,8 @@ pub enum Status {
     Null = 1,
     /// A string is not UTF-8.
     NotUtf8 = 2,
-    /// An unknown name, a value that an argument, param or option does not take, or a buffer that is
-    /// too small.
+    /// An unknown name, a value that an argument, param or option does not take, or a buffer that
+    /// is too small.
     Argument = 3,
     /// The scene has errors, draws nothing, or cannot be written with these options.
     Scene = 4,
