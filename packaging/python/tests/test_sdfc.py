@@ -8,8 +8,8 @@ import math
 import re
 import signal
 import tempfile
-import threading
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -88,15 +88,15 @@ class Field(unittest.TestCase):
         slopes = [scene.distance(at + axis) - scene.distance(at - axis) for axis in step]
         np.testing.assert_allclose(scene.gradient(at), np.stack(slopes, -1) / 2e-6, atol=1e-5)
 
-    def test_other_threads_run_while_the_library_computes(self) -> None:
+    def test_threads_share_a_scene(self) -> None:
         scene = sdfc.compile("gyroid(0.3, 0.05) & sphere(2)")
-        at = points(300_000)
-        thread = threading.Thread(target=lambda: [scene.distance(at) for _ in range(5)])
-        thread.start()
-        turns = 0
-        while thread.is_alive():
-            turns += 1
-        self.assertGreater(turns, 1000)
+        at = points(100_000)
+        with ThreadPoolExecutor(4) as pool:
+            first, *others = pool.map(lambda _: scene.distance(at), range(4))
+        for other in others:
+            np.testing.assert_array_equal(first, other)
+        # This kind of library would keep the lock of the interpreter during calls.
+        self.assertNotIsInstance(_native.lib, _native.ctypes.PyDLL)
 
     def test_bounds_are_corners(self) -> None:
         bounds = sdfc.compile(SHELL).bounds
@@ -304,7 +304,7 @@ class Meshes(unittest.TestCase):
     def test_measurements_are_intervals_that_hold_the_truth(self) -> None:
         found = sdfc.compile("box([1, 2, 3]).translate(x: 5)").measure(0.01)
         low, high = found.volume
-        self.assertTrue(low <= 6 <= high and high < 1.02 * low)
+        self.assertTrue(low <= 6 <= high < 1.02 * low)
         self.assertTrue((found.center_of_mass[:, 0] <= [5, 0, 0]).all())
         self.assertTrue((found.center_of_mass[:, 1] >= [5, 0, 0]).all())
         self.assertEqual(found.inertia.shape, (6, 2))
