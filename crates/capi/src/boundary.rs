@@ -41,13 +41,20 @@ impl From<sdfc::Error> for Failure {
             Status::Stopped
         } else if error.is_machine() {
             Status::Machine
-        } else if error.is_call() {
+        } else if error.is_call() || is_option(&error) {
             Status::Argument
         } else {
             Status::Scene
         };
         Self { status, message: error.to_string() }
     }
+}
+
+/// True if an option of a picture is the cause. The façade does not count these as errors of the
+/// call, because `sdfc render` checks them before.
+fn is_option(error: &sdfc::Error) -> bool {
+    use sdfc::{Error, RenderError};
+    matches!(error, Error::Render(RenderError::Region { .. } | RenderError::Samples(_)))
 }
 
 /// True if the progress callback stopped the work.

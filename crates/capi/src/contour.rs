@@ -67,7 +67,15 @@ pub unsafe extern "C" fn sdfc_contour_make(
         let plane = Plane::new(normal, offset).ok_or_else(no_plane)?;
         let options = mesh_options(scene, error, error_relative, max_cells)?;
         let mut report = |at: sdfc::MeshProgress| reporter.report(at.done, at.total);
-        let contour = scene.scene.contour(plane, &options, &mut report)?;
+        let contour = scene.scene.contour(plane, &options, &mut report);
+        let contour = contour.map_err(|error| match error {
+            // Its message names an argument of the command line.
+            sdfc::Error::PlaneOfRegions => Failure::argument(
+                "the scene draws regions, which lie in the plane z=0: leave `normal` and `offset` \
+                 out",
+            ),
+            error @ (sdfc::Error::Mesh(_) | _) => error.into(),
+        })?;
         let described = c_string(describe(&contour, &plane).to_string())?;
         made = Box::into_raw(Box::new(Contour { contour, described }));
         Ok(())

@@ -78,6 +78,10 @@ impl Camera {
             let message = "the camera's `fov` must be above 0 and below pi, and `height` above 0";
             return Err(Failure::argument(message));
         }
+        if self.eye == self.target {
+            let message = format!("the camera's eye is its target: {:?}", self.eye);
+            return Err(Failure::argument(message));
+        }
         let (eye, target, up) = (self.eye.into(), self.target.into(), self.up.into());
         Ok(Pose { eye, target, up, parallel, half_height })
     }

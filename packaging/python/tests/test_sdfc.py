@@ -301,6 +301,8 @@ class Meshes(unittest.TestCase):
             self.assertIn("<svg", (Path(folder) / "a.svg").read_text())
         with self.assertRaisesRegex(sdfc.ArgumentError, "meets no inside"):
             sdfc.compile("sphere(1)").contour([1, 0, 0], 2)
+        with self.assertRaisesRegex(sdfc.ArgumentError, "leave `normal` and `offset` out"):
+            sdfc.compile("circle(1)").contour([1, 0, 0])
 
     def test_measurements_are_intervals_that_hold_the_truth(self) -> None:
         found = sdfc.compile("box([1, 2, 3]).translate(x: 5)").measure(0.01)
