@@ -13,6 +13,7 @@
 //! unwind into C. No input is known to cause one; lints and tests with arbitrary input check this.
 
 mod boundary;
+#[cfg(any(feature = "mesh", feature = "render"))]
 mod bytes;
 #[cfg(feature = "mesh")]
 mod contour;
@@ -23,6 +24,7 @@ mod mesh;
 mod options;
 #[cfg(feature = "render")]
 mod picture;
+#[cfg(any(feature = "mesh", feature = "render"))]
 mod progress;
 mod scene;
 mod shader;
@@ -30,6 +32,7 @@ mod status;
 
 use std::ffi::{CString, c_char};
 
+#[cfg(any(feature = "mesh", feature = "render"))]
 pub use bytes::{Bytes, sdfc_bytes_data, sdfc_bytes_free};
 #[cfg(feature = "mesh")]
 pub use contour::{
@@ -47,6 +50,7 @@ pub use picture::{
     Picture, sdfc_picture_depths, sdfc_picture_describe, sdfc_picture_free, sdfc_picture_png,
     sdfc_picture_rgba, sdfc_picture_size, sdfc_render,
 };
+#[cfg(any(feature = "mesh", feature = "render"))]
 pub use progress::Progress;
 pub use scene::{
     Scene, sdfc_compile, sdfc_compile_with_files, sdfc_compile_with_values, sdfc_scene_copy,
