@@ -35,8 +35,39 @@ impl Failure {
     }
 }
 
+impl From<sdfc::Error> for Failure {
+    fn from(error: sdfc::Error) -> Self {
+        let status = if is_stopped(&error) {
+            Status::Stopped
+        } else if error.is_machine() {
+            Status::Machine
+        } else if error.is_call() || is_option(&error) {
+            Status::Argument
+        } else {
+            Status::Scene
+        };
+        Self { status, message: error.to_string() }
+    }
+}
+
+/// True if an option of a picture is the cause. The façade does not count these as errors of the
+/// call, because `sdfc render` checks them before.
+fn is_option(error: &sdfc::Error) -> bool {
+    use sdfc::{Error, RenderError};
+    matches!(error, Error::Render(RenderError::Region { .. } | RenderError::Samples(_)))
+}
+
+/// True if the progress callback stopped the work.
+fn is_stopped(error: &sdfc::Error) -> bool {
+    #[cfg(feature = "mesh")]
+    if matches!(error, sdfc::Error::Mesh(sdfc::MeshError::Cancelled)) {
+        return true;
+    }
+    matches!(error, sdfc::Error::Render(sdfc::RenderError::Cancelled))
+}
+
 thread_local! {
-    static LAST: RefCell<CString> = RefCell::default();
+    static LAST: RefCell<(Status, CString)> = RefCell::new((Status::Ok, CString::default()));
 }
 
 /// Runs a call and stores the reason if it failed.
@@ -49,12 +80,17 @@ pub(crate) fn guarded(call: impl FnOnce() -> Result<(), Failure>) -> Status {
         Err(Failure { status, message }) => (status, message.replace('\0', "\u{fffd}")),
     };
     // The storage of a thread that is ending may be gone.
-    let _ = LAST.try_with(|last| last.replace(CString::new(message).unwrap_or_default()));
+    let message = CString::new(message).unwrap_or_default();
+    let _ = LAST.try_with(|last| last.replace((status, message)));
     status
 }
 
 pub(crate) fn last_error() -> *const c_char {
-    LAST.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+    LAST.try_with(|last| last.borrow().1.as_ptr()).unwrap_or(c"".as_ptr())
+}
+
+pub(crate) fn last_status() -> Status {
+    LAST.try_with(|last| last.borrow().0).unwrap_or(Status::Internal)
 }
 
 /// Converts a C string.
@@ -137,4 +173,9 @@ pub(crate) fn fill(buffer: &mut [u8], bytes: &[u8]) -> Result<(), Failure> {
     let short = || Failure::argument(format!("the buffer is too small for {} bytes", bytes.len()));
     buffer.get_mut(..bytes.len()).ok_or_else(short)?.copy_from_slice(bytes);
     Ok(())
+}
+
+/// Converts JSON to a C string. JSON escapes null bytes, so it has none.
+pub(crate) fn c_string(text: String) -> Result<CString, Failure> {
+    CString::new(text).map_err(Failure::internal)
 }

@@ -10,10 +10,15 @@ pub enum Status {
     Null = 1,
     /// A string is not UTF-8.
     NotUtf8 = 2,
-    /// Unknown target, part, param or value, or a buffer that is too small.
+    /// An unknown name, a value that an argument, param or option does not take, or a buffer that
+    /// is too small.
     Argument = 3,
     /// The scene has errors, draws nothing, or cannot be written with these options.
     Scene = 4,
     /// A bug in sdfc.
     Internal = 5,
+    /// The machine cannot do it: there is no GPU, or not enough memory.
+    Machine = 6,
+    /// The progress callback stopped the work.
+    Stopped = 7,
 }

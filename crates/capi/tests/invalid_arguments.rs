@@ -36,6 +36,32 @@ fn null_pointers_are_errors_everywhere() {
         assert_eq!(sdfc_distance(null(), null(), 0, null_mut()), Status::Null);
         assert_eq!(sdfc_gradient(null(), null(), 0, null_mut()), Status::Null);
         assert_eq!(sdfc_bounds(null(), null_mut(), null_mut()), Status::Null);
+        let (name, none) = (c"a".as_ptr(), null_mut());
+        assert!(
+            sdfc_compile_with_values(name, null(), 3, null(), None, none, null_mut()).is_null()
+        );
+        assert!(sdfc_scene_copy(null()).is_null());
+        assert!(sdfc_scene_describe(null()).is_null());
+        assert!(sdfc_mesh_make(null(), null(), None, none).is_null());
+        assert!(sdfc_mesh_vertices(null(), null_mut()).is_null());
+        assert!(sdfc_mesh_describe(null()).is_null());
+        assert!(sdfc_mesh_write(null(), c"stl".as_ptr()).is_null());
+        assert!(sdfc_measure(null(), null(), None, none).is_null());
+        assert!(sdfc_contour_make(null(), null(), None, none).is_null());
+        assert!(sdfc_contour_describe(null()).is_null());
+        assert!(sdfc_contour_write(null(), c"svg".as_ptr()).is_null());
+        assert!(sdfc_render(null(), null(), None, none).is_null());
+        assert!(sdfc_picture_rgba(null()).is_null());
+        assert!(sdfc_picture_depths(null()).is_null());
+        assert!(sdfc_picture_describe(null()).is_null());
+        assert!(sdfc_picture_png(null()).is_null());
+        assert_eq!(sdfc_picture_size(null(), null_mut(), null_mut()), Status::Null);
+        assert_eq!(sdfc_error_status(), Status::Null);
+        assert!(sdfc_bytes_data(null(), null_mut()).is_null());
+        sdfc_bytes_free(null_mut());
+        sdfc_mesh_free(null_mut());
+        sdfc_contour_free(null_mut());
+        sdfc_picture_free(null_mut());
         assert!(sdfc_shader_write(null(), null(), null(), null(), 0, 0).is_null());
         assert!(sdfc_shader_code(null(), null_mut()).is_null());
         assert!(sdfc_shader_reflection(null()).is_null());

@@ -66,12 +66,7 @@ pub struct FaultVariant {
 
 /// Returns names and sources of the scenes.
 pub fn fault_scenes() -> [(&'static str, &'static str); 4] {
-    [
-        ("overshoot", include_str!("../../../examples/faults/overshoot.sdf")),
-        ("stall", include_str!("../../../examples/faults/stall.sdf")),
-        ("small", include_str!("../../../examples/faults/small.sdf")),
-        ("far", include_str!("../../../examples/faults/far.sdf")),
-    ]
+    sdfc_examples::FAULTS
 }
 
 /// Name, field and ray method of the compared pictures.

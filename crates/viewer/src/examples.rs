@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use sdfc_examples::BASICS;
+
 /// The most edited versions of an example that are kept.
 const MAX_VERSIONS: u32 = 1000;
 
@@ -14,21 +16,17 @@ pub struct Example {
     pub source: &'static str,
 }
 
-macro_rules! examples {
-    ($($name:literal)*) => {
-        &[$(Example {
-            name: $name,
-            source: include_str!(concat!("../../../examples/", $name, ".sdf")),
-        }),*]
-    };
-}
-
 /// All examples, by name.
-pub const EXAMPLES: &[Example] = examples![
-    "balloon" "blends" "booleans" "comprehension" "conditions" "gear" "gyroid_lattice" "lambdas" "lantern" "lettering" "mandelbulb" "materials"
-    "menger_sponge" "minimal_surfaces" "own_shapes" "params" "pawn" "pebbles" "planar" "polyhedra" "profiles" "recursion" "round"
-    "snowman" "solids" "surface_directions" "table" "terrain" "time" "transforms" "twist"
-];
+pub const EXAMPLES: &[Example] = &{
+    let mut examples = [Example { name: "", source: "" }; BASICS.len()];
+    let mut index = 0;
+    while index < BASICS.len() {
+        let (name, source) = BASICS[index];
+        examples[index] = Example { name, source };
+        index += 1;
+    }
+    examples
+};
 
 impl Example {
     /// Copies the example to a folder, which is created. An existing file is kept: the user may

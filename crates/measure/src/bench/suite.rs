@@ -10,14 +10,7 @@ const SEED: u64 = 7;
 
 /// Returns names and sources of the suite's scenes.
 pub fn suite() -> Vec<(String, String)> {
-    let files = [
-        ("course/union.sdf", include_str!("../../../../examples/course/union.sdf")),
-        ("course/subtraction.sdf", include_str!("../../../../examples/course/subtraction.sdf")),
-        ("course/intersection.sdf", include_str!("../../../../examples/course/intersection.sdf")),
-        ("course/blend.sdf", include_str!("../../../../examples/course/blend.sdf")),
-        ("bench/thirty.sdf", include_str!("../../../../examples/bench/thirty.sdf")),
-    ];
-    let files = files.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    let files = sdfc_examples::BENCH.map(|(name, text)| (name.to_owned(), text.to_owned()));
     let generated = LEAVES.map(|leaves| (format!("generated {leaves}"), generated(leaves)));
     files.into_iter().chain(generated).collect()
 }

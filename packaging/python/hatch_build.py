@@ -1,0 +1,65 @@
+"""Puts the library into the wheel, and names the platform that it runs on."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+ROOT = Path(__file__).resolve().parents[2]
+LIBRARY = {"win32": "sdfc_capi.dll", "darwin": "libsdfc_capi.dylib"}.get(
+    sys.platform, "libsdfc_capi.so"
+)
+
+
+def library() -> Path:
+    """Returns the library that SDFC_LIBRARY names, or builds it."""
+    if "SDFC_LIBRARY" in os.environ:
+        return Path(os.environ["SDFC_LIBRARY"])
+    build = ["cargo", "build", "--release", "--locked", "-p", "sdfc-capi"]
+    subprocess.run(build, cwd=ROOT, check=True)
+    target = Path(os.environ.get("CARGO_TARGET_DIR", "target"))
+    return ROOT / target / "release" / LIBRARY
+
+
+def stripped(binary: Path, folder: str) -> Path:
+    """Returns the library without the names of its functions, a fifth of it, where that is safe."""
+    if not sys.platform.startswith("linux") or shutil.which("strip") is None:
+        return binary
+    small = Path(folder) / binary.name
+    subprocess.run(["strip", "--strip-all", "-o", small, binary], check=True)
+    return small
+
+
+def platform(binary: Path) -> str:
+    """Returns the platform tag of a wheel with this library.
+
+    On Linux it names the oldest glibc that has all symbols of the library (PEP 600).
+    """
+    tag = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    versions = re.findall(rb"GLIBC_2\.(\d+)", binary.read_bytes())
+    if not sys.platform.startswith("linux") or not versions:
+        return tag
+    return tag.replace("linux", f"manylinux_2_{max(map(int, versions))}", 1)
+
+
+class Hook(BuildHookInterface):
+    """The wheel has no code for one version of Python, but a library for one platform."""
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        binary = stripped(library(), self.folder.name)
+        build_data["tag"] = f"py3-none-{platform(binary)}"
+        build_data["pure_python"] = False
+        build_data["force_include"][str(binary)] = f"sdfc/{LIBRARY}"
+        for name in ("LICENSE-MIT", "LICENSE-APACHE"):
+            build_data["force_include"][str(ROOT / name)] = f"sdfc/{name}"
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        self.folder.cleanup()
