@@ -207,15 +207,20 @@ impl Scene {
             let prefix = prefix.clone();
             FieldOptions { prefix, group, binding, lists, ..FieldOptions::default() }
         };
-        let program = self.with_bounds_for(&self.program, method);
-        let method = self.marched_by(method);
+        // The choice of a method may trace rays on the CPU. A field does without.
+        let marched = || (self.with_bounds_for(&self.program, method), self.marched_by(method));
         let shader = match options.emit {
             Emit::Field => field_module(&self.program, &functions())?,
-            Emit::March => march_module(&program, method, &functions())?,
+            Emit::March => {
+                let (program, method) = marched();
+                march_module(&program, method, &functions())?
+            }
             Emit::Render if target == Target::Shadertoy => {
+                let (program, method) = marched();
                 shadertoy_module(&program, method, &self.default_view()?)?
             }
             Emit::Render => {
+                let (program, method) = marched();
                 let rows_up = target.counts_rows_upwards();
                 let options =
                     PictureOptions { method, stage, rows_up, prefix, group, binding, lists };
