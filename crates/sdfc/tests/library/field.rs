@@ -1,7 +1,7 @@
 //! Evaluates a shape's field, and finds points of its surface, as the oracle of the checks.
 //!
 //! The oracle finds the surface by changes of sign alone. It never uses a value of the field as a
-//! distance; slopes only say where to search next.
+//! distance; values and slopes only say where to search next.
 
 use sdfc_graph::eval::{Dual, Evaluator, FrameValues, Tape, evaluate_frame};
 use sdfc_graph::{Dim, Expander, Graph, Scene, ShapeId, bounds};
@@ -13,8 +13,11 @@ const REACH: f64 = 1.5;
 /// Number of points among which changes of sign are searched, and number of surface points to find.
 const SEEDS: usize = 1500;
 const SURFACE: usize = 500;
-/// Bisection steps between two signs: more than f64 has digits.
-const HALVINGS: usize = 60;
+/// A change of sign is narrowed to this length, relative to the scale of the field, if the segment
+/// that it is searched on is long enough that f64 has points so near to each other. Nearer to the
+/// surface the signs are those of rounding errors.
+const NARROW: f64 = 1e-14;
+const FINEST: f64 = 4.0 * f64::EPSILON;
 /// Steps along the surface towards a point.
 const MOVES: usize = 40;
 /// Relative distance along the surface below which the search stops.
@@ -59,7 +62,7 @@ impl Field {
     pub fn evaluator(&self) -> FieldEvaluator<'_> {
         let value = self.tape.prepare(&self.frame);
         let dual = self.tape.prepare(&self.frame);
-        FieldEvaluator { field: self, value, dual }
+        FieldEvaluator { field: self, scale: self.scale(), value, dual }
     }
 
     /// Returns the bounds, cut where they are infinite.
@@ -88,6 +91,7 @@ impl Field {
 /// A field with its registers.
 pub struct FieldEvaluator<'f> {
     field: &'f Field,
+    scale: f64,
     value: Evaluator<'f, f64>,
     dual: Evaluator<'f, Dual>,
 }
@@ -125,7 +129,7 @@ impl FieldEvaluator<'_> {
 
     /// Returns points of the surface, found between points of opposite sign.
     pub fn surface(&mut self, random: &mut Random) -> Vec<Point> {
-        let margin = 0.1 * self.field.scale();
+        let margin = 0.1 * self.scale;
         let seeds: Vec<Point> =
             (0..SEEDS).map(|i| self.point(random, if i % 2 == 0 { 0.0 } else { margin })).collect();
         // Where the field is 0, the point is on neither side.
@@ -145,18 +149,41 @@ impl FieldEvaluator<'_> {
             .collect()
     }
 
-    /// Returns the last point inside on the segment from a point inside to one outside, by
-    /// bisection.
-    fn between(&mut self, mut inside: Point, mut outside: Point) -> Point {
-        for _ in 0..HALVINGS {
-            let middle = mix(inside, outside, 0.5);
-            if middle == inside || middle == outside {
+    /// Returns the last point inside on the segment from a point inside to one outside.
+    ///
+    /// This is the ITP method (Oliveira and Takahashi, ACM TOMS 47, 2020): it tests signs near the
+    /// zero of the line through the values at both ends, but never needs more than one step more
+    /// than bisection, whatever the values are.
+    fn between(&mut self, inside: Point, outside: Point) -> Point {
+        let narrow = NARROW * self.scale / distance(inside, outside);
+        if narrow >= 1.0 {
+            return inside;
+        }
+        let narrow = narrow.max(FINEST);
+        let steps = 1 + (-narrow.log2()).ceil() as i32;
+        let (mut lo, mut hi) = (0.0, 1.0);
+        let (mut at_lo, mut at_hi) = (self.at(inside), self.at(outside));
+        for step in 0..steps {
+            let (width, middle) = (hi - lo, 0.5 * (lo + hi));
+            if width <= narrow {
                 break;
             }
-            let end = if self.at(middle) < 0.0 { &mut inside } else { &mut outside };
-            *end = middle;
+            let zero = (at_hi * lo - at_lo * hi) / (at_hi - at_lo);
+            // Beside the zero towards the middle, so that the next sign moves the farther end.
+            let beside = (0.2 * width * width).max(0.5 * narrow);
+            let aim = if (zero - middle).abs() > beside {
+                zero + beside.copysign(middle - zero)
+            } else {
+                middle
+            };
+            // As far from the middle as the rest of the steps makes up for by bisection.
+            let reach = (0.5 * narrow * 2_f64.powi(steps - step) - 0.5 * width).max(0.0);
+            let at =
+                if aim.is_finite() { aim.clamp(middle - reach, middle + reach) } else { middle };
+            let value = self.at(mix(inside, outside, at));
+            if value < 0.0 { (lo, at_lo) = (at, value) } else { (hi, at_hi) = (at, value) }
         }
-        inside
+        mix(inside, outside, lo)
     }
 
     /// Returns where a line crosses the surface within `reach` of `p`, if it does.
@@ -216,7 +243,7 @@ impl FieldEvaluator<'_> {
         }
         // On a face, or right above it, the descent may run along the face; from a nearby point it
         // does not.
-        let near = NEARBY * self.field.scale();
+        let near = NEARBY * self.scale;
         let axes = self.field.axes;
         for round in 0..5 {
             let reach = if round == 0 { 0.0 } else { near };
@@ -238,7 +265,7 @@ impl FieldEvaluator<'_> {
         let mut ways: Vec<Point> = aims.map(|&aim| sub(aim, foot)).collect();
         ways.extend((0..AIMS).map(|_| [0; 3].map(|_| random.signed())));
         for way in ways {
-            let mut beside = add(foot, scaled(way, NEARBY * self.field.scale() / length(way)));
+            let mut beside = add(foot, scaled(way, NEARBY * self.scale / length(way)));
             // From there, follow the field's gradient; only the sign of the field counts.
             for _ in 0..3 {
                 let found = self.at(beside);
@@ -263,7 +290,7 @@ impl FieldEvaluator<'_> {
         let beyond = add(p, scaled(down, f.abs() * (1.0 + 1e-7) + 1e-9));
         let before = add(p, scaled(down, f.abs() * (1.0 - 1e-4)));
         // A zero inside the solid is no surface; at the surface the sign stays changed.
-        let past = add(p, scaled(down, f.abs() + 1e-4 * self.field.scale()));
+        let past = add(p, scaled(down, f.abs() + 1e-4 * self.scale));
         let is_inside = f < 0.0;
         let crossed = (self.at(beyond) <= 0.0) != is_inside || self.at(beyond) == 0.0;
         let stays = (self.at(past) < 0.0) != is_inside;

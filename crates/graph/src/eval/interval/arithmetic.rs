@@ -22,13 +22,22 @@ impl Interval {
                 return Self { lo: exact, hi: exact };
             }
         }
-        let ends = [
-            product(self.lo, y.lo),
-            product(self.lo, y.hi),
-            product(self.hi, y.lo),
-            product(self.hi, y.hi),
-        ];
-        signed(self, y, around(ends))
+        // Rounding keeps the order of products, so the signs say which ends give the extremes.
+        let (x_positive, y_positive) = (self.lo >= 0.0, y.lo >= 0.0);
+        let (x_negative, y_negative) = (self.hi <= 0.0, y.hi <= 0.0);
+        if x_positive && y_positive {
+            positive(product(self.lo, y.lo), product(self.hi, y.hi))
+        } else if x_negative && y_negative {
+            positive(product(self.hi, y.hi), product(self.lo, y.lo))
+        } else if x_positive && y_negative {
+            negative(product(self.hi, y.lo), product(self.lo, y.hi))
+        } else if x_negative && y_positive {
+            negative(product(self.lo, y.hi), product(self.hi, y.lo))
+        } else {
+            let lo = product(self.lo, y.hi).min(product(self.hi, y.lo));
+            let hi = product(self.lo, y.lo).max(product(self.hi, y.hi));
+            Self { lo: lower(lo), hi: upper(hi) }
+        }
     }
 
     /// The quotient. A divisor with 0 at one end makes one side unbounded, a divisor with 0 inside
@@ -49,13 +58,14 @@ impl Interval {
             }
         }
         if y.lo > 0.0 {
-            let ends = [
-                quotient(self.lo, y.lo),
-                quotient(self.lo, y.hi),
-                quotient(self.hi, y.lo),
-                quotient(self.hi, y.hi),
-            ];
-            signed(self, y, around(ends))
+            if self.lo >= 0.0 {
+                positive(quotient(self.lo, y.hi), quotient(self.hi, y.lo))
+            } else if self.hi <= 0.0 {
+                negative(quotient(self.lo, y.lo), quotient(self.hi, y.hi))
+            } else {
+                let lo = lower(quotient(self.lo, y.lo));
+                Self { lo, hi: upper(quotient(self.hi, y.lo)) }
+            }
         } else if y.lo < 0.0 || y.hi <= 0.0 {
             Self::ENTIRE
         } else if self.lo >= 0.0 {
@@ -131,7 +141,15 @@ fn sum_below(a: f64, b: f64) -> f64 {
     let sum = a + b;
     let part = sum - a;
     let error = (a - (sum - part)) + (b - part);
-    if error >= 0.0 && sum.is_finite() { sum } else { infinite_or_below(sum, a, b) }
+    if !sum.is_finite() {
+        return infinite_or_below(sum, a, b);
+    }
+    // The next number below has the next lower bits, or above 0 higher ones. Half of all sums are
+    // rounded up, in no order, so a branch would often be predicted wrongly. A sum of 0 is exact.
+    let bits = sum.to_bits() as i64;
+    let away = 1 | (bits >> 63);
+    let is_above = i64::from(error >= 0.0) ^ 1;
+    f64::from_bits((bits - away * is_above) as u64)
 }
 
 /// The sum itself if it is infinite because a term is, else the next number below.
@@ -149,24 +167,14 @@ fn quotient(a: f64, b: f64) -> f64 {
     if a.is_infinite() && b.is_infinite() { 0.0 } else { a / b }
 }
 
-/// The hull of four rounded ends.
-fn around([a, b, c, d]: [f64; 4]) -> Interval {
-    let lo = a.min(b).min(c.min(d));
-    let hi = a.max(b).max(c.max(d));
-    Interval { lo: lower(lo), hi: upper(hi) }
+/// The interval between two rounded ends of which neither is negative.
+fn positive(lo: f64, hi: f64) -> Interval {
+    Interval { lo: lower(lo).max(0.0), hi: upper(hi) }
 }
 
-/// A product or quotient, clipped to the sign that the signs of its arguments imply.
-fn signed(x: Interval, y: Interval, result: Interval) -> Interval {
-    let (x_positive, y_positive) = (x.lo >= 0.0, y.lo >= 0.0);
-    let (x_negative, y_negative) = (x.hi <= 0.0, y.hi <= 0.0);
-    if (x_positive && y_positive) || (x_negative && y_negative) {
-        result.clipped(0.0, f64::INFINITY)
-    } else if (x_positive && y_negative) || (x_negative && y_positive) {
-        result.clipped(f64::NEG_INFINITY, 0.0)
-    } else {
-        result
-    }
+/// The interval between two rounded ends of which neither is positive.
+fn negative(lo: f64, hi: f64) -> Interval {
+    Interval { lo: lower(lo), hi: upper(hi).min(0.0) }
 }
 
 #[cfg(test)]
@@ -179,6 +187,58 @@ mod tests {
         for (x, y) in [(0, 16), (16, 0), (-3, 0), (0, 0), (7, -5), (16, 12)] {
             assert_eq!(one(x).mul(one(y)), one(x * y), "{x} * {y}");
             assert_eq!(one(x).mul(one(16)).add(one(y)), one(16 * x + y), "16 * {x} + {y}");
+        }
+    }
+    /// Each pair of ends in order, with ends that are 0, infinite, or near the limits of f64.
+    fn awkward() -> impl Iterator<Item = Interval> + Clone {
+        let ends =
+            [f64::NEG_INFINITY, -f64::MAX, -3.0, -0.1, -1e-310, 0.0, 5e-324, 0.3, 7.0, 1e300]
+                .into_iter()
+                .chain([f64::INFINITY]);
+        ends.clone().flat_map(move |lo| {
+            ends.clone().filter(move |&hi| lo <= hi).map(move |hi| Interval { lo, hi })
+        })
+    }
+
+    fn all_pairs() -> impl Iterator<Item = (Interval, Interval)> {
+        awkward().flat_map(|x| awkward().map(move |y| (x, y)))
+    }
+
+    fn ends([x, y]: [Interval; 2], op: impl Fn(f64, f64) -> f64) -> [f64; 2] {
+        let all = [op(x.lo, y.lo), op(x.lo, y.hi), op(x.hi, y.lo), op(x.hi, y.hi)];
+        [
+            all.into_iter().fold(f64::INFINITY, f64::min),
+            all.into_iter().fold(-f64::INFINITY, f64::max),
+        ]
+    }
+
+    #[test]
+    fn products_and_quotients_span_those_of_all_ends() {
+        for (x, y) in all_pairs() {
+            let mut found = vec![(x.mul(y), ends([x, y], product), "*")];
+            if y.lo > 0.0 {
+                found.push((x.div(y), ends([x, y], quotient), "/"));
+            }
+            for (Interval { lo, hi }, [least, greatest], op) in found {
+                // One step from the extremes, or none where the signs or exactness allow it.
+                assert!(lo == least || lo == least.next_down(), "{x:?} {op} {y:?}: {lo}");
+                assert!(hi == greatest || hi == greatest.next_up(), "{x:?} {op} {y:?}: {hi}");
+            }
+        }
+    }
+
+    #[test]
+    fn sums_are_rounded_outward_unless_they_are_exact() {
+        for (x, y) in all_pairs() {
+            let Interval { lo, hi } = x.add(y);
+            let sums = [(lo, x.lo, y.lo), (-hi, -x.hi, -y.hi)];
+            for (end, a, b) in sums.into_iter().filter(|(_, a, b)| (a + b).is_finite()) {
+                // The error of a rounded sum is a number of f64.
+                let part = (a + b) - a;
+                let error = (a - ((a + b) - part)) + (b - part);
+                let expected = if error < 0.0 { (a + b).next_down() } else { a + b };
+                assert_eq!(end, expected, "{a} + {b}");
+            }
         }
     }
 }
