@@ -71,7 +71,7 @@ pub fn compiles_the_same_in_a_browser(session: &mut Session) -> Result<(), Faile
     )?;
     let mut inputs: Vec<[String; 2]> = Vec::new();
     for (name, _) in compiled_examples()? {
-        let text = std::fs::read_to_string(examples_folder().join(&name))?;
+        let text = std::fs::read_to_string(examples_folder().join(name))?;
         for target in ["wgsl", "glsl-es", "spirv"] {
             inputs.push([text.clone(), json!({ "name": name, "target": target }).to_string()]);
         }

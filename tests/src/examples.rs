@@ -1,23 +1,34 @@
 //! The scenes under `examples/`, compiled.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use libtest_mimic::Failed;
+use rayon::prelude::*;
 use sdfc::Scene;
 use sdfc_test_support::{example_sources, examples_folder};
 
-/// Returns the path below `examples` and the scene of each example, sorted by path.
+/// Returns the path below `examples` and the scene of each example, sorted by path. They are
+/// compiled once for all tests of a program.
 ///
 /// # Errors
 ///
 /// An example cannot be read or does not compile.
-pub fn compiled_examples() -> Result<Vec<(String, Scene)>, Failed> {
-    let mut scenes = Vec::new();
-    for (name, _) in example_sources()? {
-        let scene = compiled_example(&name)?;
-        scenes.push((name, scene));
-    }
-    Ok(scenes)
+pub fn compiled_examples() -> Result<&'static [(String, Scene)], Failed> {
+    static EXAMPLES: OnceLock<Result<Vec<(String, Scene)>, String>> = OnceLock::new();
+    let compile =
+        || compile_examples().map_err(|error| error.message().unwrap_or_default().to_owned());
+    EXAMPLES.get_or_init(compile).as_deref().map_err(|error| error.as_str().into())
+}
+
+/// Compiles all examples anew, on all threads.
+///
+/// # Errors
+///
+/// An example cannot be read or does not compile.
+pub fn compile_examples() -> Result<Vec<(String, Scene)>, Failed> {
+    let names = example_sources()?.into_par_iter().map(|(name, _)| name);
+    names.map(|name| Ok((name.clone(), compiled_example(&name)?))).collect()
 }
 
 /// Compiles the example with this path below `examples`.

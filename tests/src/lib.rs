@@ -6,7 +6,7 @@ mod markdown;
 mod pictures;
 pub mod validators;
 
-pub use examples::{compiled_example, compiled_examples};
+pub use examples::{compile_examples, compiled_example, compiled_examples};
 pub use markdown::wrapped;
 pub use pictures::is_same_picture;
 pub use sdfc_test_support::{example_sources, examples_folder, repository};

@@ -7,12 +7,17 @@
 mod draw;
 mod paste;
 mod table;
+mod written;
+
+use std::collections::BTreeMap;
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use rayon::prelude::*;
 use sdfc::{Scene, Target};
 use sdfc_render::testing;
-use sdfc_tests::compiled_examples;
-use sdfc_tests::validators::{PARTS, TOOLS, Tool, is_written, write};
+use sdfc_tests::validators::{TOOLS, Tool, is_written, write};
+use sdfc_tests::{compile_examples, compiled_examples};
+use written::Written;
 
 fn main() {
     let mut trials = vec![
@@ -45,46 +50,46 @@ type Compared = fn(&draw::Devices, &Scene) -> Result<(), Failed>;
 fn every_example_is_drawn(compared: Compared) -> Result<(), Failed> {
     let devices = draw::Devices::open()?;
     for (name, scene) in compiled_examples()? {
-        compared(&devices, &scene)
+        compared(&devices, scene)
             .map_err(|error| format!("{name}: {}", error.message().unwrap_or("")))?;
     }
     Ok(())
 }
 
 fn every_example_is_written(target: Target) -> Result<(), Failed> {
-    for (name, scene) in compiled_examples()? {
-        for part in PARTS {
-            let written = write(&scene, target, part);
-            if written.is_ok() != is_written(&scene, target, part) {
-                return Err(format!("{name}, {}: {:?}", part.name, written.map(drop)).into());
-            }
+    for Written { example, scene, part, code, .. } in of_target(target)? {
+        if code.is_ok() != is_written(scene, target, *part) {
+            return Err(format!("{example}, {}: {:?}", part.name, code.as_ref().map(drop)).into());
         }
     }
     Ok(())
 }
 
 fn every_example_is_accepted(tool: &Tool) -> Result<(), Failed> {
-    for (name, scene) in compiled_examples()? {
-        for part in PARTS.into_iter().filter(|part| is_written(&scene, tool.target, *part)) {
-            let code = write(&scene, tool.target, part).map_err(|e| e.to_string())?;
-            let label = format!("{name}, {}", part.name);
-            tool.check(part, &code).map_err(|error| format!("{label}: {error}"))?;
+    let mut codes = Vec::new();
+    for Written { example, scene, part, code, .. } in of_target(tool.target)? {
+        if is_written(scene, tool.target, *part) {
+            let label = format!("{example}, {}", part.name);
+            codes.push((label, *part, code.as_ref()?));
         }
     }
-    Ok(())
+    Ok(tool.check_all(codes)?)
+}
+
+fn of_target(target: Target) -> Result<impl Iterator<Item = &'static Written>, Failed> {
+    Ok(written::all()?.iter().filter(move |written| written.target == target))
 }
 
 fn the_same_source_gives_the_same_bytes() -> Result<(), Failed> {
-    let twins = compiled_examples()?;
-    for ((name, scene), (_, twin)) in compiled_examples()?.iter().zip(&twins) {
-        for target in Target::ALL {
-            for part in PARTS.into_iter().filter(|part| is_written(scene, target, *part)) {
-                let [one, other] = [scene, twin].map(|s| write(s, target, part));
-                if one.map_err(|e| e.to_string())? != other.map_err(|e| e.to_string())? {
-                    return Err(format!("{name} as {}: the sources differ", target.name()).into());
-                }
-            }
+    let twins: BTreeMap<String, Scene> = compile_examples()?.into_iter().collect();
+    let differs = |written: &&Written| {
+        let twin = write(&twins[written.example], written.target, written.part);
+        twin.map_err(|e| e.to_string()) != written.code
+    };
+    match written::all()?.par_iter().find_any(differs) {
+        Some(Written { example, target, .. }) => {
+            Err(format!("{example} as {}: the sources differ", target.name()).into())
         }
+        None => Ok(()),
     }
-    Ok(())
 }

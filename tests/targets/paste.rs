@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use libtest_mimic::Failed;
+use rayon::prelude::*;
 use sdfc::{Code, Compiler, Emit, Scene, ShaderOptions, Stage, Target};
 use sdfc_tests::compiled_examples;
 
@@ -23,31 +24,40 @@ solid dots() = length(p - places[floor(clamp(p.x, 0, 4))]) - 0.2
 /// and installed validators accept them in one file.
 pub fn two_prefixes_go_into_one_file() -> Result<(), Failed> {
     let lists = Compiler::new().compile("short lists", SHORT_LISTS).map_err(|e| e.to_string())?;
-    for (name, scene) in compiled_examples()?.into_iter().chain([("short lists".to_owned(), lists)])
-    {
-        for target in TEXT_TARGETS {
-            for emit in [Emit::Field, Emit::March] {
-                // Regions have no rays to march.
-                if emit == Emit::March && scene.is_planar() {
-                    continue;
-                }
-                let label = format!("{name} as {}, {emit:?}", target.name());
-                let [one, other] = [("one_", 0), ("other_", 1)]
-                    .map(|(prefix, binding)| text(&scene, target, emit, prefix, binding));
-                let (one, other) = (one?, other?);
-                let both =
-                    declared(&one).intersection(&declared(&other)).cloned().collect::<Vec<_>>();
-                if !both.is_empty() {
-                    return Err(format!("{label}: both declare {}", both.join(", ")).into());
-                }
-                let Some(tool) = Tool::of(target) else { continue };
-                let part = Part { name: "both", emit, stage: Stage::Fragment };
-                let pasted = Code::Text(format!("{one}{}", pasteable(&other, target)));
-                tool.check(part, &pasted).map_err(|error| format!("{label}: {error}"))?;
-            }
+    let examples = compiled_examples()?.iter().map(|(name, scene)| (name.as_str(), scene));
+    let scenes: Vec<(&str, &Scene)> = examples.chain([("short lists", &lists)]).collect();
+    for target in TEXT_TARGETS {
+        let pasted = scenes.par_iter().flat_map_iter(|(name, scene)| pasted(name, scene, target));
+        let pasted: Vec<(String, Part, Code)> = pasted.collect::<Result<_, Failed>>()?;
+        if let Some(tool) = Tool::of(target) {
+            tool.check_all(pasted.iter().map(|(name, part, code)| (name.clone(), *part, code)))?;
         }
     }
     Ok(())
+}
+
+/// Returns the functions of a scene twice in one file, for each part that has a prefix, with a name
+/// for messages.
+fn pasted(
+    name: &str,
+    scene: &Scene,
+    target: Target,
+) -> impl Iterator<Item = Result<(String, Part, Code), Failed>> {
+    // Regions have no rays to march.
+    let emits = [Emit::Field, Emit::March].into_iter();
+    let emits = emits.filter(|emit| *emit != Emit::March || !scene.is_planar());
+    emits.map(move |emit| {
+        let label = format!("{name} as {}, {emit:?}", target.name());
+        let [one, other] = [("one_", 0), ("other_", 1)]
+            .map(|(prefix, binding)| text(scene, target, emit, prefix, binding));
+        let (one, other) = (one?, other?);
+        let both = declared(&one).intersection(&declared(&other)).cloned().collect::<Vec<_>>();
+        if !both.is_empty() {
+            return Err(format!("{label}: both declare {}", both.join(", ")).into());
+        }
+        let part = Part { name: "both", emit, stage: Stage::Fragment };
+        Ok((label, part, Code::Text(format!("{one}{}", pasteable(&other, target)))))
+    })
 }
 
 fn text(

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use libtest_mimic::Failed;
 use sdfc::Target;
-use sdfc_tests::{compiled_examples, repository};
+use sdfc_tests::repository;
+use sdfc_tests::validators::TOOLS;
 
-use sdfc_tests::validators::{PARTS, TOOLS, write};
+use crate::written;
 
 const BEGIN: &str = "<!-- The table is written by tests/targets. -->\n";
 const END: &str = "<!-- End of the table. -->\n";
@@ -29,11 +30,13 @@ fn table() -> Result<String, Failed> {
     let mut text =
         format!("| example | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
     writeln!(text, "| *validated by* | {} |", Target::ALL.map(validators).join(" | "))?;
-    for (name, scene) in compiled_examples()? {
+    // The parts of an example are grouped by target.
+    for of_example in written::all()?.chunk_by(|a, b| a.example == b.example) {
+        let name = of_example.first().map_or("", |first| first.example);
         write!(text, "| {name} |")?;
-        for target in Target::ALL {
-            let written = PARTS.iter().filter(|part| write(&scene, target, **part).is_ok());
-            let parts: Vec<_> = written.map(|part| part.name).collect();
+        for of_target in of_example.chunk_by(|a, b| a.target == b.target) {
+            let written = of_target.iter().filter(|written| written.code.is_ok());
+            let parts: Vec<_> = written.map(|written| written.part.name).collect();
             write!(text, " {} |", parts.join(" "))?;
         }
         text.push('\n');

@@ -59,7 +59,7 @@ fn measure() -> Result<Table, Failed> {
         let options = ShaderOptions::new().target(Target::Spirv).emit(Emit::Render);
         let code = scene.write_shader(&options)?.code.into_bytes();
         std::fs::write(folder.path().join(format!("{:03}.spv", names.len())), code)?;
-        names.push(name);
+        names.push(name.clone());
     }
     // Each chip needs a process of its own: the driver reads the environment once.
     let [first, second, third] = std::thread::scope(|scope| {
