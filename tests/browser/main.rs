@@ -15,21 +15,22 @@ mod survival;
 mod table;
 mod three;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use chromium::Chromium;
 use libtest_mimic::{Arguments, Failed, Trial};
 use sdfc::Target;
 use server::Server;
 
-/// The browser of all tests, and the server of its pages.
+/// A browser, and the server of its pages.
 struct Session {
     chromium: Chromium,
     server: Server,
 }
 
-/// The tests run one after the other, because the browser has one page.
-static SESSION: Mutex<Option<Session>> = Mutex::new(None);
+/// The sessions that no test uses. A browser has one page, so tests that run at the same time have
+/// browsers of their own.
+static SESSIONS: Mutex<Vec<Session>> = Mutex::new(Vec::new());
 
 type Check = Box<dyn Fn(&mut Session) -> Result<(), Failed> + Send>;
 
@@ -84,23 +85,31 @@ fn main() {
         add("the_playground_screenshots".to_owned(), Box::new(measure::screenshots));
     }
     let conclusion = libtest_mimic::run(&Arguments::from_args(), trials);
-    // A static is not dropped, so the browser would keep running.
-    drop(SESSION.lock().unwrap_or_else(PoisonError::into_inner).take());
+    // A static is not dropped, so the browsers would keep running.
+    sessions().clear();
     conclusion.exit();
 }
 
+fn sessions() -> MutexGuard<'static, Vec<Session>> {
+    SESSIONS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 fn in_session(check: &Check) -> Result<(), Failed> {
-    let mut session = SESSION.lock().unwrap_or_else(PoisonError::into_inner);
-    if session.is_none() {
+    let idle = sessions().pop();
+    let mut session = idle.map_or_else(Session::start, Ok)?;
+    let result = check(&mut session);
+    // After a failure the browser may be busy or may have crashed.
+    if result.is_ok() {
+        sessions().push(session);
+    }
+    result
+}
+
+impl Session {
+    fn start() -> Result<Self, Failed> {
         let server = Server::start(&sdfc_tests::examples_folder().join("embed"))?;
         server.put("shadertoy/index.html", include_bytes!("shadertoy.html").to_vec());
         server.put("shadertoy/head.glsl", include_bytes!("../targets/shadertoy.glsl").to_vec());
-        *session = Some(Session { chromium: Chromium::start()?, server });
+        Ok(Self { chromium: Chromium::start()?, server })
     }
-    let result = check(session.as_mut().ok_or("no browser")?);
-    if result.is_err() {
-        // The browser may be busy or may have crashed.
-        *session = None;
-    }
-    result
 }

@@ -1,5 +1,7 @@
 //! The table in `docs/embedding-web.md`: the differences of pages from `sdfc render`.
 
+use std::sync::{Mutex, PoisonError};
+
 use libtest_mimic::Failed;
 use sdfc_tests::repository;
 
@@ -8,9 +10,13 @@ use crate::pages::{EDGES, SCENES};
 /// The environment variable that rewrites the rows.
 const UPDATE: &str = "EMBEDDINGS_UPDATE";
 
+/// The table belongs to one test at a time.
+static TABLE: Mutex<()> = Mutex::new(());
+
 /// Checks that a page has a valid row for the scenes in [`SCENES`]. The values differ between
 /// machines and are not compared.
 pub fn check(page: &str, found: &[f64]) -> Result<(), Failed> {
+    let _table = TABLE.lock().unwrap_or_else(PoisonError::into_inner);
     let path = repository().join("docs/embedding-web.md");
     let text = std::fs::read_to_string(&path)?.replace("\r\n", "\n");
     let head = format!("| page | {} |", SCENES.join(" | "));
