@@ -6,7 +6,11 @@ use std::time::{Duration, Instant};
 
 use image::RgbImage;
 use libtest_mimic::Failed;
-use x11rb::protocol::xproto::{ClientMessageEvent, ConnectionExt, EventMask, Window as XWindow};
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{
+    ClientMessageEvent, ConnectionExt, EventMask, ImageFormat, Window as XWindow,
+};
+use x11rb::rust_connection::RustConnection;
 
 use crate::drag_and_drop::drop_file;
 
@@ -82,6 +86,9 @@ impl Scene {
 pub struct Display {
     server: Child,
     name: String,
+    connection: RustConnection,
+    /// The window that covers the screen.
+    root: XWindow,
 }
 
 impl Display {
@@ -99,9 +106,22 @@ impl Display {
             std::io::BufRead::read_line(&mut std::io::BufReader::new(out), &mut number)?;
         }
         let name = format!(":{}", number.trim());
-        let display = Self { server, name };
-        expect(display.name.len() > 1, "Xvfb prints no display number")?;
-        Ok(display)
+        expect(name.len() > 1, "Xvfb prints no display number")?;
+        let (connection, screen) = x11rb::connect(Some(&name))?;
+        let root = connection.setup().roots.get(screen).ok_or("no screen")?.root;
+        Ok(Self { server, name, connection, root })
+    }
+
+    /// Returns what the screen shows.
+    fn screen(&self) -> Result<RgbImage, Failed> {
+        let ([width, height], all_planes) = (SIZE, u32::MAX);
+        let [columns, rows] = SIZE.map(|side| side as u16);
+        let (format, root) = (ImageFormat::Z_PIXMAP, self.root);
+        let image = self.connection.get_image(format, root, 0, 0, columns, rows, all_planes)?;
+        // A pixel of 24 bits takes 32: blue, green, red and padding.
+        let pixels = image.reply()?.data;
+        let channels = pixels.as_chunks::<4>().0.iter().flat_map(|&[b, g, r, _]| [r, g, b]);
+        RgbImage::from_raw(width, height, channels.collect()).ok_or("a part of the screen".into())
     }
 }
 
@@ -189,7 +209,7 @@ impl<'a> Window<'a> {
 
     /// Requests closing, as the button of a window manager does.
     pub fn request_close(&self) -> Result<(), Failed> {
-        let (connection, _) = x11rb::connect(Some(&self.display.name))?;
+        let connection = &self.display.connection;
         let atom = |name: &str| -> Result<u32, Failed> {
             Ok(connection.intern_atom(false, name.as_bytes())?.reply()?.atom)
         };
@@ -207,7 +227,7 @@ impl<'a> Window<'a> {
         drop_file(&self.display.name, self.id()?, SIZE.map(|side| side / 2), file)
     }
 
-    fn id(&self) -> Result<XWindow, Failed> {
+    pub fn id(&self) -> Result<XWindow, Failed> {
         let output = self.output(&["search", "--name", "sdfc$"])?;
         Ok(String::from_utf8_lossy(&output.stdout).trim().parse()?)
     }
@@ -279,31 +299,27 @@ impl<'a> Window<'a> {
 
     /// Waits until the screen is as expected and no longer changes, and returns it.
     pub fn settled(&self, expected: impl Fn(&RgbImage) -> bool) -> Result<RgbImage, Failed> {
-        // On a slow machine the next finer picture takes longer than one interval.
-        const SAME: u32 = 4;
+        // On a slow machine the next finer picture takes long.
+        const STILL: Duration = Duration::from_millis(1200);
         let start = Instant::now();
-        let (mut before, mut same) = (self.screen()?, 0);
+        let (mut before, mut changed) = (self.screen()?, start);
         loop {
-            std::thread::sleep(Duration::from_millis(300));
+            std::thread::sleep(Duration::from_millis(50));
             let now = self.screen()?;
-            same = if now == before { same + 1 } else { 0 };
-            if same >= SAME && expected(&now) {
+            if now != before {
+                (before, changed) = (now, Instant::now());
+            } else if changed.elapsed() > STILL && expected(&now) {
                 return Ok(now);
             }
             if start.elapsed() > TIMEOUT {
-                self.keep(&now, "unexpected")?;
+                self.keep(&before, "unexpected")?;
                 return Err("the window does not show what is expected: see target/window".into());
             }
-            before = now;
         }
     }
 
     fn screen(&self) -> Result<RgbImage, Failed> {
-        let output = Command::new("import")
-            .args(["-window", "root", "png:-"])
-            .env("DISPLAY", &self.display.name)
-            .output()?;
-        Ok(image::load_from_memory(&output.stdout)?.to_rgb8())
+        self.display.screen()
     }
 
     /// Saves a screenshot for people to look at.

@@ -1,12 +1,13 @@
 //! Drives the real window on a virtual display, as a user would: drags, turns the wheel, edits,
 //! breaks and repairs the file, and looks at the screen.
 //!
-//! Needs `Xvfb`, `xdotool` and `import`, and a GPU driver that can show a window. The tests are
-//! ignored if a program is missing, unless `SDFC_REQUIRE_GPU` is set.
+//! Needs `Xvfb` and `xdotool`, and a GPU driver that can show a window. The tests are ignored if a
+//! program is missing, unless `SDFC_REQUIRE_GPU` is set.
 
 mod display;
 mod drag_and_drop;
 
+use std::cell::Cell;
 use std::process::{ExitCode, Stdio};
 use std::time::Duration;
 
@@ -24,8 +25,7 @@ type Test = fn(Display) -> Result<(), Failed>;
 
 fn main() -> ExitCode {
     let arguments = Arguments::from_args();
-    let missing: Vec<&str> =
-        ["Xvfb", "xdotool", "import"].into_iter().filter(|it| !is_there(it)).collect();
+    let missing: Vec<&str> = ["Xvfb", "xdotool"].into_iter().filter(|it| !is_there(it)).collect();
     let required = std::env::var_os("SDFC_REQUIRE_GPU").is_some();
     let trials: [(&str, Test); 14] = [
         ("an_edit_is_shown_and_a_broken_scene_keeps_the_picture", edits),
@@ -224,16 +224,20 @@ fn closing(display: Display) -> Result<(), Failed> {
 /// As when a driver is updated. The new window has the same camera.
 fn lost(display: Display) -> Result<(), Failed> {
     let scene = Scene::new(&BALL.replace("sphere(1)", "box([1, 1, 1])"))?;
-    // More frames than opening takes, fewer than dragging takes.
-    let window = Window::open_with(&display, &scene, &[(LOSE_WINDOW, "60")])?;
+    // More frames than opening and dragging take.
+    let window = Window::open_with(&display, &scene, &[(LOSE_WINDOW, "100")])?;
     let before = window.settled(|picture| is_red(picture, ON_SHAPE))?;
+    let lost = window.id()?;
     window.drag(ON_SHAPE, [120, 60])?;
     let turned = window.settled(|picture| differ(picture, &before, PICTURE) > 2000)?;
-    let pointer = |step: i32| (ON_SHAPE[0] as i32 + step % 30).to_string();
-    for step in 0..120 {
-        window.input(&["mousemove", &pointer(step), "370"])?;
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    // Each move is a frame. Only the new window must get the keyboard: X11 takes it from a window
+    // that closes.
+    let step = Cell::new(0);
+    window.until("the window is not replaced", || {
+        step.set((step.get() + 1) % 30);
+        window.input(&["mousemove", &(ON_SHAPE[0] + step.get()).to_string(), "370"])?;
+        Ok(window.id().is_ok_and(|id| id != lost))
+    })?;
     window.arrange("scene.sdf")?;
     let other = window.settled(|picture| differ(picture, &turned, PICTURE) < 200)?;
     window.keep(&other, "replaced")?;
