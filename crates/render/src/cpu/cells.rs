@@ -34,12 +34,18 @@ impl<'a> Cells<'a> {
         Self { frame, whole: Cell::everything(tape), octree: None }
     }
 
-    /// An octree around the eye, if the field is large enough to pay for it.
-    pub(super) fn around(tape: &Arc<Tape>, frame: &'a FrameValues, view: &View) -> Self {
+    /// An octree around the eye, if the field is large enough to pay for it. With `proves` its
+    /// cells are also divided to prove that they hold no surface.
+    pub(super) fn around(
+        tape: &Arc<Tape>,
+        frame: &'a FrameValues,
+        view: &View,
+        proves: bool,
+    ) -> Self {
         if tape.operations() < MIN_OPERATIONS {
             return Self::one(tape, frame);
         }
-        let octree = Octree::new(view);
+        let octree = Octree::new(view, proves);
         Self { frame, whole: Cell::everything(tape), octree: Some(octree) }
     }
 

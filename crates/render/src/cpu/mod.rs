@@ -135,7 +135,7 @@ impl CpuScene {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
         let method = known_method(method)?;
-        let cells = |tape| Cells::around(tape, frame, view);
+        let cells = |tape| Cells::around(tape, frame, view, method.skips_proven());
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let wave = self.wave::<T>(view, frame, method, &fields);
         self.draw(view, options, progress, &self.shaded(wave, frame))

@@ -51,6 +51,8 @@ pub(crate) struct Cell {
     pub(super) cube: Cube,
     /// The field there.
     pub(super) tape: Arc<Tape>,
+    /// True if there is no surface in the cube: the field is positive.
+    pub(super) is_free: bool,
     /// True if smaller cells take its place.
     pub(super) is_divided: bool,
 }
@@ -60,6 +62,7 @@ impl Cell {
         Self {
             cube: Cube { center: [0.0; 3], half: f64::INFINITY },
             tape: Arc::clone(tape),
+            is_free: false,
             is_divided: false,
         }
     }
@@ -67,6 +70,11 @@ impl Cell {
     /// A number that two cells share if they have one tape.
     pub(crate) fn id(&self) -> usize {
         Arc::as_ptr(&self.tape).addr()
+    }
+
+    /// True if there is no surface in the cell: the field is positive.
+    pub(crate) fn is_free(&self) -> bool {
+        self.is_free
     }
 
     /// The number of operations of the field there.

@@ -51,11 +51,13 @@ pub(super) struct Octree {
     pixels: f64,
     /// Number of operations of all shorter tapes.
     operations: AtomicUsize,
+    /// True if cells are divided to prove that they hold no surface.
+    proves: bool,
 }
 
 impl Octree {
     /// An octree around the eye.
-    pub(super) fn new(view: &View) -> Self {
+    pub(super) fn new(view: &View, proves: bool) -> Self {
         let (center, half) = (view.eye.to_array(), ROOT_RAYS * view.t_max);
         let extent = half + center.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         Self {
@@ -66,6 +68,7 @@ impl Octree {
             footprint: view.footprint(),
             pixels: f64::from(view.size[0].max(view.size[1])),
             operations: AtomicUsize::new(0),
+            proves,
         }
     }
 
@@ -104,10 +107,10 @@ impl Octree {
         let over = around.tape.over(frame, cube.coordinates(self.margin));
         let is_free = over.value.range().lo() > 0.0;
         let (tape, price) = self.shortened(around, frame, cube, over);
-        let finest = FINEST_PIXELS * price.sqrt();
-        let is_worth = tape.operations() >= FEW_OPERATIONS;
+        let finest = if self.proves { FINEST_PIXELS } else { FINEST_PIXELS * price.sqrt() };
+        let is_worth = self.proves || tape.operations() >= FEW_OPERATIONS;
         let is_divided = !is_free && is_worth && is_open && side > finest * width;
-        Cell { cube, tape, is_divided }
+        Cell { cube, tape, is_free: is_free && self.proves, is_divided }
     }
 
     /// The tape of a cube, and the price of another division: the number of operations that it
