@@ -396,11 +396,15 @@ fn counting_unproven_rays_stops_early() {
     let view = sdfc_render::View { steps: 1, ..common::view(&program, [32, 32]) };
     let frame = FrameValues::default();
     let scene = CpuScene::new(&program).unwrap();
-    let count = |most| scene.unproven_rays(&view, &frame, Method::Interval, most).unwrap();
+    let limited =
+        |most, work| scene.unproven_rays(&view, &frame, Method::Interval, most, work).unwrap();
+    let count = |most| limited(most, u64::MAX);
     let all = scene.depth_map::<f32>(&view, &frame, Method::Interval).unwrap().counts().unproven;
     assert!(all > 100, "{all}");
     assert_eq!(count(u64::MAX), all);
     assert!((1..=32).contains(&count(0)), "{}", count(0));
+    // Without the work for a step of each ray, nothing is proven.
+    assert_eq!(limited(u64::MAX, 32 * 32), 32 * 32);
 }
 
 #[test]

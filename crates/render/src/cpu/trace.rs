@@ -177,6 +177,9 @@ impl<T: Real> Walk<T> {
     /// Moves on, unless the ray has ended.
     fn follow(&mut self, next: Next<T>, limits: &Limits<T>) -> Option<Trace<T>> {
         self.pending = None;
+        if self.unproven && limits.ends_unproven {
+            return Some(self.result(self.known.start + self.t, CAPPED));
+        }
         match next {
             Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),
             Next::At(t) => self.t = t,
