@@ -85,10 +85,11 @@ fn cross<'c, T: Real>(
     let has_bounds = fields.range.is_some();
     let mut waiting =
         Crossings { samples: crossings.iter().rev().copied().collect(), bounds: Vec::new() };
-    while let Some((group, is_sample)) = waiting.take() {
+    let mut group = Vec::with_capacity(LANES);
+    while let Some(is_sample) = waiting.take(&mut group) {
         let results =
             if is_sample { fields.samples(&group, walks) } else { fields.bounds(&group, walks) };
-        for (crossing, result) in group.into_iter().zip(results).rev() {
+        for (crossing, result) in group.drain(..).zip(results).rev() {
             let (walk, [enter, exit]) = (&mut walks[crossing.index], crossing.span);
             let stretch = crossing.stretch(has_bounds, limits);
             let ended = if is_sample {
@@ -115,13 +116,13 @@ impl<'c, T: Real> Crossings<'c, T> {
         }
     }
 
-    /// The rays that are evaluated next, and whether they wait for samples. Bounds cost more, so
-    /// they wait until they fill a packet.
-    fn take(&mut self) -> Option<(Vec<Crossing<'c, T>>, bool)> {
+    /// Takes the rays that are evaluated next; returns whether they wait for samples. Bounds cost
+    /// more, so they wait until they fill a packet.
+    fn take(&mut self, group: &mut Vec<Crossing<'c, T>>) -> Option<bool> {
         let is_sample = !self.samples.is_empty() && self.bounds.len() < LANES;
         let queue = if is_sample { &mut self.samples } else { &mut self.bounds };
-        let group = queue.split_off(queue.len().saturating_sub(LANES));
-        (!group.is_empty()).then_some((group, is_sample))
+        group.extend(queue.drain(queue.len().saturating_sub(LANES)..));
+        (!group.is_empty()).then_some(is_sample)
     }
 }
 
