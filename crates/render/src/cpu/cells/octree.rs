@@ -14,7 +14,7 @@ const LEAST_SHARE: f64 = 0.05;
 /// A shorter tape has at most this fraction of the operations.
 const SHORTER: f64 = 0.75;
 /// Cells of these first levels are divided at once: the tape is seldom shorter there.
-const COARSE_LEVELS: u32 = 4;
+const COARSE_LEVELS: u32 = 5;
 /// The maximum number of divisions from the root to a cell.
 const MAX_DEPTH: u32 = 24;
 /// The root reaches from the origin to this many lengths of rays behind the eye, or to the next

@@ -27,9 +27,7 @@ impl Sight {
     /// True if smaller cells take a cell's place.
     pub(super) fn divides(&self, cell: &Cell) -> bool {
         let is_worth = self.proves || cell.operations() >= FEW_OPERATIONS;
-        // Rays that pass near a surface take most of their samples there.
-        let is_far = cell.least > cell.cube.half || (self.proves && cell.is_free());
-        if is_far || !is_worth {
+        if cell.is_free() || !is_worth {
             return false;
         }
         let finest = if self.proves { FINEST_PIXELS } else { FINEST_PIXELS * cell.price.sqrt() };
