@@ -1,5 +1,5 @@
-//! Balls in a smooth union by `log` of a sum of `exp`, clipped by a box, as other programs write it:
-//! a flat formula without a known constant.
+//! Balls in a smooth union by `log` of a sum of `exp`, clipped by a box, as other programs write
+//! it: a flat formula without a known constant.
 
 use std::fmt::Write;
 

@@ -16,8 +16,8 @@ const FINER: f64 = 80.0;
 /// If more rays of the trial than this are left unproven, all rays are sampled from the start.
 const MAX_UNPROVEN: u64 = 12;
 
-/// The most scalar operations of the trial, about a second. A scene that takes more is not proven in
-/// a reasonable time either.
+/// The most scalar operations of the trial, about a second. A scene that takes more is not proven
+/// in a reasonable time either.
 const MAX_TRIAL_OPERATIONS: u64 = 1 << 31;
 
 /// A program with the ray method that marches it: see [`Scene::marched`].

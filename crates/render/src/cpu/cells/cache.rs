@@ -13,30 +13,25 @@ const MAX_KEPT_OPERATIONS: usize = 1 << 22;
 
 /// A field, with the cells of its last frame.
 #[derive(Clone, Debug)]
-pub(in crate::cpu) struct CachedField {
-    pub(in crate::cpu) tape: Arc<Tape>,
+pub(crate) struct CachedField {
+    pub(crate) tape: Arc<Tape>,
     octree: Arc<Mutex<Option<Arc<Octree>>>>,
 }
 
 impl CachedField {
-    pub(in crate::cpu) fn new(tape: Tape) -> Self {
+    pub(crate) fn new(tape: Tape) -> Self {
         Self { tape: Arc::new(tape), octree: Arc::default() }
     }
 
     /// All of space as one cell.
-    pub(in crate::cpu) fn whole<'a>(&self, frame: &'a FrameValues) -> Cells<'a> {
+    pub(crate) fn whole<'a>(&self, frame: &'a FrameValues) -> Cells<'a> {
         Cells::one(&self.tape, frame)
     }
 
     /// The cells of a picture, if the field is large enough to pay for them. Cells that the last
     /// picture has made are used again if the values that the field depends on are the same. With
     /// `proves`, cells are also divided to prove that they hold no surface.
-    pub(in crate::cpu) fn cells<'a>(
-        &self,
-        frame: &'a FrameValues,
-        view: &View,
-        proves: bool,
-    ) -> Cells<'a> {
+    pub(crate) fn cells<'a>(&self, frame: &'a FrameValues, view: &View, proves: bool) -> Cells<'a> {
         if self.tape.operations() < MIN_OPERATIONS {
             return self.whole(frame);
         }
@@ -50,7 +45,7 @@ impl CachedField {
     }
 
     /// Frees the cells if they are too many to be kept.
-    pub(in crate::cpu) fn end_frame(&self) {
+    pub(crate) fn end_frame(&self) {
         let mut kept = self.octree.lock().unwrap_or_else(PoisonError::into_inner);
         if kept.as_ref().is_some_and(|octree| octree.operations() > MAX_KEPT_OPERATIONS) {
             *kept = None;
