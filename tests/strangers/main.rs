@@ -6,10 +6,15 @@
 //! march. Outside edges no pixel may be wrong that the picture does not call unproven, few may be
 //! wrong that it does, and 99 of 100 depths must agree to a twentieth of a pixel.
 
+mod balls;
 mod dense;
 mod formulas;
 mod page;
 
+use std::fs;
+use std::path::Path;
+
+use balls::Balls;
 use dense::dense;
 use formulas::{FORMULAS, Formula};
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -41,7 +46,17 @@ sun(direction: [-1, 1.6, 2], shadow: hard)
 /// Largest difference of a colour channel that does not count, in steps of 1/255.
 const COLOR: u8 = 8;
 
+/// The scenes with these numbers of letters and of balls are written for measurements.
+const LETTERS_OF_PAGES: [u32; 6] = [10, 20, 40, 80, 160, 320];
+const BALLS: [u32; 3] = [10, 30, 60];
+
 fn main() {
+    if let Some(folder) = std::env::var_os("STRANGERS_SCENES") {
+        if let Err(error) = write_scenes(Path::new(&folder)) {
+            println!("{error}");
+        }
+        return;
+    }
     let without_gpu = testing::without_gpu();
     let trials = FORMULAS.iter().map(|formula| {
         let trial = Trial::test(formula.name, move || check(formula));
@@ -52,9 +67,37 @@ fn main() {
     trials.push(shadows.with_ignored_flag(without_gpu));
     let page = Trial::test("page of letters", page_is_right);
     trials.push(page.with_ignored_flag(without_gpu));
+    trials.push(Trial::test("balls in a smooth union", balls_are_right));
     let long = Trial::test("long page of letters", long_page_is_drawn_on_the_cpu);
     trials.push(long.with_ignored_flag(without_gpu));
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
+}
+
+/// Writes scenes whose times the documentation states.
+fn write_scenes(folder: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(folder)?;
+    for letters in LETTERS_OF_PAGES {
+        fs::write(folder.join(format!("page_{letters}.sdf")), Page::new(letters).scene())?;
+    }
+    for balls in BALLS {
+        fs::write(folder.join(format!("balls_{balls}.sdf")), Balls::new(balls).scene())?;
+    }
+    Ok(())
+}
+
+/// Balls in a smooth union are right, and most of the picture is proven.
+fn balls_are_right() -> Result<(), Failed> {
+    let balls = Balls::new(30);
+    let scene = Compiler::new().compile("balls", &balls.scene())?;
+    let view = scene.view(&scene.defaults(), PAGE)?;
+    let expected = dense(|p| balls.at(p), &view)?;
+    let image = drawn_on_cpu(&scene, PAGE)?;
+    is_right(&expected, &image)?;
+    let (hits, unproven) = (image.counts().hit, image.counts().unproven);
+    if hits < 300 || 10 * unproven > hits {
+        return Err(format!("{unproven} unproven pixels, {hits} hits").into());
+    }
+    Ok(())
 }
 
 /// Rays to a light by `interval` end where those by `sphere` do, in a field with loops. A driver
@@ -84,7 +127,9 @@ fn page_is_right() -> Result<(), Failed> {
     let page = Page::new(35);
     let scene = Compiler::new().compile("page", &page.scene())?;
     let view = scene.view(&scene.defaults(), PAGE)?;
-    is_right(&dense(|p| page.at(p), &view)?, &drawn(&scene, Method::Auto, PAGE)?)
+    let expected = dense(|p| page.at(p), &view)?;
+    is_right(&expected, &drawn_on_cpu(&scene, PAGE)?)?;
+    is_right(&expected, &drawn(&scene, Method::Auto, PAGE)?)
 }
 
 /// By default, the CPU draws a flat formula that is too long for a software driver, and the picture
@@ -127,11 +172,17 @@ fn check(formula: &Formula) -> Result<(), Failed> {
     if hits < LEAST_HITS {
         return Err(format!("only {hits} pixels show the surface").into());
     }
+    is_right(&expected, &drawn_on_cpu(&scene, SIZE)?)?;
     is_right(&expected, &drawn(&scene, Method::Auto, SIZE)?)
 }
 
 fn drawn(scene: &Scene, method: Method, size: [u32; 2]) -> Result<Image, Failed> {
     let options = PictureOptions::new().size(size).method(method).backend(Backend::Gpu);
+    Ok(scene.render(&options.samples(1), &mut no_progress)?.image)
+}
+
+fn drawn_on_cpu(scene: &Scene, size: [u32; 2]) -> Result<Image, Failed> {
+    let options = PictureOptions::new().size(size).backend(Backend::Cpu);
     Ok(scene.render(&options.samples(1), &mut no_progress)?.image)
 }
 

@@ -10,7 +10,7 @@ use sdfc_graph::{Program, Shadow};
 use sdfc_march::Method;
 use sdfc_render::{
     CAPPED, CpuScene, Frame, HIT, Image, MISS, Progress, Real, RenderError, RenderOptions,
-    TileSize, compare, edges, no_progress,
+    TileSize, View, compare, edges, no_progress,
 };
 
 fn draw(program: &Program, size: [u32; 2], method: Method, tile_size: TileSize) -> Frame {
@@ -103,6 +103,45 @@ fn rays_that_share_work_see_what_single_rays_see() {
         let (differing, depth) = difference(&shared, &single);
         assert!(differing <= 2 && depth < 0.05, "{method}: {differing} pixels, {depth}");
         assert!(method == Method::Interval || shared.counts().unproven == 0, "{method}");
+    }
+}
+
+#[test]
+fn rays_skip_cells_without_a_surface() {
+    let program = common::crowd(3.0).with_segment_bounds(true, false);
+    let evaluations = |image: &Image| -> u32 {
+        image.pixels().iter().map(|pixel| pixel.primary_evaluations).sum()
+    };
+    let shared = draw(&program, [96, 72], Method::Interval, TileSize::default()).image;
+    let single = depths::<f32>(&program, [96, 72], Method::Interval);
+    let [shared, single] = [shared, single].map(|image| evaluations(&image));
+    assert!(2 * shared < single, "{shared} of {single} evaluations");
+}
+
+#[test]
+fn cells_that_frames_share_do_not_change_their_pictures() {
+    let program = common::swelling_crowd().with_segment_bounds(true, false);
+    let scene = CpuScene::new(&program).unwrap();
+    for method in [Method::Auto, Method::Interval] {
+        let picture = |scene: &CpuScene, eye: [f64; 3], time| {
+            let view = View { eye: eye.into(), ..common::view(&program, [64, 48]) };
+            let (frame, options) =
+                (FrameValues { time, ..FrameValues::default() }, RenderOptions::default());
+            scene.render(&view, &frame, method, &options, &mut no_progress).unwrap().image
+        };
+        let mut hits = Vec::new();
+        for (eye, time) in [
+            ([0.0, 0.0, 5.0], 0.0),
+            ([0.3, 0.2, 4.0], 0.0),
+            ([0.3, 0.2, 4.0], 0.3),
+            ([0.0, 0.0, 5.0], 0.0),
+        ] {
+            let shared = picture(&scene, eye, time);
+            let alone = picture(&CpuScene::new(&program).unwrap(), eye, time);
+            assert_eq!(shared, alone, "{method}: {eye:?} at {time}");
+            hits.push(shared.counts().hit);
+        }
+        assert!(hits[0] > 300 && hits[2] > hits[1] + 50 && hits[3] == hits[0], "{hits:?}");
     }
 }
 
@@ -393,14 +432,18 @@ fn a_ray_whose_steps_end_before_a_proof_is_unproven() {
 #[test]
 fn counting_unproven_rays_stops_early() {
     let program = common::sphere();
-    let view = sdfc_render::View { steps: 1, ..common::view(&program, [32, 32]) };
+    let view = View { steps: 1, ..common::view(&program, [32, 32]) };
     let frame = FrameValues::default();
     let scene = CpuScene::new(&program).unwrap();
-    let count = |most| scene.unproven_rays(&view, &frame, Method::Interval, most).unwrap();
+    let limited =
+        |most, work| scene.unproven_rays(&view, &frame, Method::Interval, most, work).unwrap();
+    let count = |most| limited(most, u64::MAX);
     let all = scene.depth_map::<f32>(&view, &frame, Method::Interval).unwrap().counts().unproven;
     assert!(all > 100, "{all}");
     assert_eq!(count(u64::MAX), all);
     assert!((1..=32).contains(&count(0)), "{}", count(0));
+    // Without the work for a step of each ray, nothing is proven.
+    assert_eq!(limited(u64::MAX, 32 * 32), 32 * 32);
 }
 
 #[test]

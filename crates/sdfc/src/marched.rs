@@ -16,6 +16,10 @@ const FINER: f64 = 80.0;
 /// If more rays of the trial than this are left unproven, all rays are sampled from the start.
 const MAX_UNPROVEN: u64 = 12;
 
+/// The most scalar operations of the trial, about a second. A scene that takes more is not proven
+/// in a reasonable time either.
+const MAX_TRIAL_OPERATIONS: u64 = 1 << 31;
+
 /// A program with the ray method that marches it: see [`Scene::marched`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -135,7 +139,8 @@ impl Scene {
         let view = View { tolerance: view.tolerance / FINER, ..view };
         let program = with_segment_bounds(self.drawn(), Method::FALLBACK);
         let scene = CpuScene::new(&program)?;
-        Ok(scene.unproven_rays(&view, &frame, Method::FALLBACK, MAX_UNPROVEN)?)
+        let (method, most, work) = (Method::FALLBACK, MAX_UNPROVEN, MAX_TRIAL_OPERATIONS);
+        Ok(scene.unproven_rays(&view, &frame, method, most, work)?)
     }
 }
 

@@ -21,7 +21,7 @@ struct Liveness {
 
 impl Recorder {
     /// The tape that computes these values.
-    pub(super) fn finish(self, outputs: Vec<Lanes<u32>>) -> Tape {
+    pub(super) fn finish(&mut self, outputs: Vec<Lanes<u32>>) -> Tape {
         let liveness = self.liveness(&outputs);
         let mut locations = vec![0; self.definitions.len()];
         let prelude = self.prelude(&liveness, &mut locations);
@@ -31,7 +31,7 @@ impl Recorder {
             .iter()
             .map(|lanes| Lanes::new(lanes.as_slice().len(), |i| locations[lanes.get(i) as usize]))
             .collect();
-        Tape { prelude, kept, body, lists: self.lists, registers, outputs }
+        Tape { prelude, kept, body, lists: std::mem::take(&mut self.lists), registers, outputs }
     }
 
     fn liveness(&self, outputs: &[Lanes<u32>]) -> Liveness {

@@ -26,6 +26,21 @@ impl Tape {
         frame: &FrameValues<F>,
         convert: impl Fn(F) -> N,
     ) -> Evaluator<'_, N> {
+        let zero = N::constant(0.0);
+        let mut registers = vec![zero; self.registers];
+        for (register, value) in registers.iter_mut().zip(self.kept_values(frame)) {
+            *register = convert(value);
+        }
+        Evaluator { tape: self, registers, outputs: vec![[zero; 4]; self.outputs.len()] }
+    }
+
+    /// The per-frame values that points need: what the tape computes at a point depends on the
+    /// frame by these alone.
+    pub fn point_inputs(&self, frame: &FrameValues) -> Vec<f64> {
+        self.kept_values(frame).collect()
+    }
+
+    fn kept_values<F: Number>(&self, frame: &FrameValues<F>) -> impl Iterator<Item = F> {
         let mut values: Vec<F> = Vec::with_capacity(self.prelude.len());
         for definition in &self.prelude {
             values.push(match *definition {
@@ -41,12 +56,7 @@ impl Tape {
                 | Definition::Register => F::constant(f64::NAN),
             });
         }
-        let zero = N::constant(0.0);
-        let mut registers = vec![zero; self.registers];
-        for (register, &value) in registers.iter_mut().zip(&self.kept) {
-            *register = convert(values[value as usize]);
-        }
-        Evaluator { tape: self, registers, outputs: vec![[zero; 4]; self.outputs.len()] }
+        self.kept.iter().map(move |&value| values[value as usize])
     }
 }
 

@@ -145,6 +145,25 @@ impl Recorder {
         Self { samples: Some(samples), ..Self::default() }
     }
 
+    /// A per-frame value of another tape. These differ from each other, so none is looked up.
+    pub(super) fn kept(&mut self, value: f64) -> u32 {
+        self.define(Definition::Constant(value), false)
+    }
+
+    /// Forgets everything that was recorded.
+    pub(super) fn clear(&mut self) {
+        let Self { definitions, varying, constants, lists, loops, open, around, levels, samples } =
+            self;
+        definitions.clear();
+        varying.clear();
+        constants.clear();
+        lists.clear();
+        loops.clear();
+        open.clear();
+        around.clear();
+        (*levels, *samples) = (0, None);
+    }
+
     /// A recorder with the points of this many levels.
     pub(super) fn of_levels(levels: u16) -> Self {
         Self { levels, ..Self::default() }

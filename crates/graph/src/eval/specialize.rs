@@ -69,7 +69,7 @@ impl Tape {
     /// # Ok::<(), sdfc_graph::eval::TapeError>(())
     /// ```
     pub fn over(&self, frame: &FrameValues, region: [Affine; 3]) -> FieldOver {
-        let trace = Trace::default();
+        let trace = Trace { recorder: RefCell::new(RECORDER.take()), operations: Cell::new(0) };
         let axes = trace.recorder.borrow_mut().point();
         let point = std::array::from_fn(|axis| Traced {
             form: region[axis],
@@ -77,15 +77,17 @@ impl Tape {
             source: Some((&trace, axes[axis])),
         });
         let kept = |value: f64| Traced {
-            source: Some((&trace, trace.recorder.borrow_mut().constant(value))),
+            source: Some((&trace, trace.recorder.borrow_mut().kept(value))),
             ..Traced::constant(value)
         };
         let result = self.evaluator(frame, kept).scalar(point);
         let output = result.id(&trace);
-        let (recorder, operations) = (trace.recorder.take(), trace.operations.get());
+        let (mut recorder, operations) = (trace.recorder.take(), trace.operations.get());
         let is_whole = recorder.definitions.len() <= MOST_OPERATIONS;
         let output = output.filter(|_| is_whole);
         let tape = output.map(|output| recorder.finish(vec![Lanes::scalar(output)]));
+        recorder.clear();
+        RECORDER.set(recorder);
         FieldOver { value: result.form, tape, operations }
     }
 }
@@ -102,8 +104,12 @@ pub struct FieldOver {
     pub operations: usize,
 }
 
+thread_local! {
+    /// An empty recorder with the memory of the last one: regions are small and many.
+    static RECORDER: RefCell<Recorder> = RefCell::default();
+}
+
 /// The evaluation so far.
-#[derive(Default)]
 struct Trace {
     /// The operations that are recorded.
     recorder: RefCell<Recorder>,
@@ -138,18 +144,25 @@ impl<'t> Traced<'t> {
 
     /// Returns true if the number is less than another one everywhere.
     fn is_below(self, other: Self) -> bool {
-        Number::sub(self.form, other.form).range().hi() < 0.0
+        self.order(other)[0]
+    }
+
+    /// Returns whether the number is less than another one everywhere, and whether it is greater.
+    fn order(self, other: Self) -> [bool; 2] {
+        let difference = Number::sub(self.form, other.form).range();
+        [difference.hi() < 0.0, difference.lo() > 0.0]
     }
 
     /// Returns an operation's result: one of its arguments if it is that everywhere.
     fn apply(op: Op, x: [Self; 3]) -> Self {
-        let form: Affine = op.apply(|i| x[i].form);
         if let Some((trace, _)) = x[..op.arity()].iter().find_map(|x| x.source) {
             trace.operations.set(trace.operations.get() + 1);
         }
         match Self::picked(op, x) {
-            Some(i) => Self { form, ..x[i] },
-            None => Self::recorded(op, x, form),
+            // Affine forms pick the same argument.
+            Some(i) if matches!(op, Op::Min | Op::Max) => x[i],
+            Some(i) => Self { form: op.apply(|i| x[i].form), ..x[i] },
+            None => Self::recorded(op, x, op.apply(|i| x[i].form)),
         }
     }
 
@@ -158,8 +171,14 @@ impl<'t> Traced<'t> {
         let first_of = |conditions: [bool; 3]| conditions.iter().position(|is_equal| *is_equal);
         let is_true = |x: Self| !x.form.range().contains(0.0);
         first_of(match op {
-            Op::Min => [a.is_below(b), b.is_below(a), false],
-            Op::Max => [b.is_below(a), a.is_below(b), false],
+            Op::Min => {
+                let [a_below, b_below] = a.order(b);
+                [a_below, b_below, false]
+            }
+            Op::Max => {
+                let [a_below, b_below] = a.order(b);
+                [b_below, a_below, false]
+            }
             Op::Abs => [a.form.range().lo() > 0.0, false, false],
             Op::Saturate => {
                 let range = a.form.range();

@@ -1,11 +1,13 @@
-//! The cells of space that the rays and points of one frame share.
+//! The cells of space that the rays and points of a picture share.
 //!
 //! Each cell holds a shorter tape of the field, from one evaluation in affine arithmetic: it leaves
 //! out the operands that cannot matter in the cell's cube. So a large formula is examined once for
 //! each cell and not for each ray. Values at points do not change.
 
+mod cache;
 mod cell;
 mod octree;
+mod sight;
 
 use std::sync::Arc;
 
@@ -13,42 +15,46 @@ use sdfc_graph::eval::{Evaluator, FrameValues, Number, Packet, Tape};
 
 use super::ray::{LANES, Real, packed_from};
 use crate::view::View;
+pub(super) use cache::CachedField;
 pub(super) use cell::Cell;
 use octree::Octree;
+use sight::Sight;
 
 /// Smaller fields have one cell.
 const MIN_OPERATIONS: usize = 200;
 
-/// The cells of one field in one frame.
+/// The cells of one field in one picture.
 #[derive(Debug)]
 pub(super) struct Cells<'a> {
     frame: &'a FrameValues,
     /// All of space.
     whole: Cell,
-    octree: Option<Octree>,
+    octree: Option<(Arc<Octree>, Sight)>,
 }
 
 impl<'a> Cells<'a> {
     /// All of space as one cell.
-    pub(super) fn one(tape: &Arc<Tape>, frame: &'a FrameValues) -> Self {
+    fn one(tape: &Arc<Tape>, frame: &'a FrameValues) -> Self {
         Self { frame, whole: Cell::everything(tape), octree: None }
     }
 
-    /// An octree around the eye, if the field is large enough to pay for it.
-    pub(super) fn around(tape: &Arc<Tape>, frame: &'a FrameValues, view: &View) -> Self {
-        if tape.operations() < MIN_OPERATIONS {
-            return Self::one(tape, frame);
-        }
-        let octree = Octree::new(view);
-        Self { frame, whole: Cell::everything(tape), octree: Some(octree) }
+    /// The cells of an octree.
+    fn of(
+        octree: Arc<Octree>,
+        tape: &Arc<Tape>,
+        frame: &'a FrameValues,
+        view: &View,
+        proves: bool,
+    ) -> Self {
+        Self { octree: Some((octree, Sight::new(view, proves))), ..Self::one(tape, frame) }
     }
 
     /// The smallest cell around a point; all of space for a point outside of the octree.
     pub(super) fn at(&self, point: [f64; 3]) -> &Cell {
-        let Some(octree) = self.octree.as_ref().filter(|octree| octree.contains(point)) else {
-            return &self.whole;
-        };
-        octree.at(&self.whole, self.frame, point)
+        match &self.octree {
+            Some((octree, sight)) => octree.at(sight, point),
+            None => &self.whole,
+        }
     }
 
     /// The field in a cell, with registers.

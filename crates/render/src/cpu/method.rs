@@ -54,6 +54,14 @@ impl CpuMethod {
         }
     }
 
+    /// Returns true if rays skip what is proven to hold no surface.
+    pub(crate) fn skips_proven(self) -> bool {
+        match self {
+            Self::Sphere | Self::Auto => false,
+            Self::Interval => true,
+        }
+    }
+
     /// Returns true if it asks for the analytic pre-intersection.
     pub(crate) fn pre_intersects(self) -> bool {
         match self {

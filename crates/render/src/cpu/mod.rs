@@ -17,7 +17,6 @@ mod surroundings;
 mod trace;
 mod wave;
 
-use std::sync::Arc;
 use std::time::Instant;
 
 #[cfg(feature = "threads")]
@@ -34,7 +33,7 @@ use crate::frame::{Frame, OnProgress, Progress, RenderOptions, no_progress, regi
 use crate::image::Image;
 use crate::tiles::{Tile, Tiler};
 use crate::view::View;
-use cells::Cells;
+use cells::{CachedField, Cells};
 use gradients::Gradient;
 use method::CpuMethod;
 use pixels::Pixels;
@@ -54,7 +53,7 @@ const MAX_TILE_PIXELS: u32 = 1 << 20;
 /// A program, compiled for the CPU.
 #[derive(Clone, Debug)]
 pub struct CpuScene {
-    field: Arc<Tape>,
+    field: CachedField,
     /// The analytic pre-intersection, for methods that ask for it.
     pre_intersection: Option<PreIntersectionTapes>,
     /// Bounds of the field on a segment, for the method that asks for them.
@@ -87,7 +86,7 @@ impl CpuScene {
             program.planar_pixel.map(|pixel| Tape::for_rays(&program.graph, &[pixel]));
         let range = program.range.map(|range| Tape::for_rays(&program.graph, &[range]));
         Ok(Self {
-            field: Arc::new(tape(&[distance])?),
+            field: CachedField::new(tape(&[distance])?),
             pre_intersection: PreIntersectionTapes::new(program).map_err(refused)?,
             range: range.transpose().map_err(refused)?,
             gradient: program.gradient.map(|gradient| tape(&[gradient])).transpose()?,
@@ -135,10 +134,13 @@ impl CpuScene {
             return Err(RenderError::Evaluator("the program has no gradient".to_owned()));
         }
         let method = known_method(method)?;
-        let cells = |tape| Cells::around(tape, frame, view);
+        let cells = |field: &CachedField| field.cells(frame, view, method.skips_proven());
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let wave = self.wave::<T>(view, frame, method, &fields);
-        self.draw(view, options, progress, &self.shaded(wave, frame))
+        let drawn = self.draw(view, options, progress, &self.shaded(wave, frame));
+        drop(fields);
+        [Some(&self.field), self.marched()].into_iter().flatten().for_each(CachedField::end_frame);
+        drawn
     }
 
     /// Traces the camera rays alone, marched in `T`: depth, status and evaluations, without
@@ -157,14 +159,16 @@ impl CpuScene {
         if self.planar_pixel.is_some() {
             return Err(RenderError::Planar);
         }
-        let cells = |tape| Cells::one(tape, frame);
+        let cells = |field: &CachedField| field.whole(frame);
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let wave = self.wave::<T>(view, frame, known_method(method)?, &fields);
         Ok(self.draw(view, &RenderOptions::default(), &mut no_progress, &wave)?.image)
     }
 
     /// Counts the camera rays that `method` leaves unproven, marched in f32. It stops at the first
-    /// rays by which there are more than `most`.
+    /// rays by which there are more than `most`. A ray has fewer steps than the view says, if all
+    /// rays together might take more than `work` scalar operations. If there is not one step for
+    /// each, all count as unproven.
     ///
     /// # Errors
     ///
@@ -175,14 +179,24 @@ impl CpuScene {
         frame: &FrameValues,
         method: Method,
         most: u64,
+        work: u64,
     ) -> Result<u64, RenderError> {
         if self.planar_pixel.is_some() {
             return Err(RenderError::Planar);
         }
-        let cells = |tape| Cells::one(tape, frame);
+        let cells = |field: &CachedField| field.whole(frame);
         let fields = Fields { whole: cells(&self.field), marched: self.marched().map(cells) };
         let mut wave = self.wave::<f32>(view, frame, known_method(method)?, &fields);
         let [width, height] = view.size;
+        let rays = u64::from(width) * u64::from(height);
+        let range = self.range.as_ref().map_or(0, Tape::operations);
+        let step = rays.saturating_mul(self.field.tape.operations().saturating_add(range) as u64);
+        let steps = u32::try_from(work / step.max(1)).unwrap_or(u32::MAX);
+        if steps == 0 {
+            return Ok(rays);
+        }
+        wave.limits.steps = wave.limits.steps.min(steps);
+        wave.limits.ends_unproven = true;
         let positions: Vec<[u32; 2]> =
             (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
         let mut unproven = 0;
@@ -197,7 +211,7 @@ impl CpuScene {
     }
 
     /// The part of the field that is marched where the rest is intersected analytically.
-    fn marched(&self) -> Option<&Arc<Tape>> {
+    fn marched(&self) -> Option<&CachedField> {
         self.pre_intersection.as_ref().and_then(PreIntersectionTapes::marched)
     }
 
@@ -215,6 +229,7 @@ impl CpuScene {
                 epsilon: T::constant(view.epsilon),
                 steps: view.steps,
                 records_clearance: false,
+                ends_unproven: false,
                 is_loose: self.is_loose,
             },
             field: &fields.whole,

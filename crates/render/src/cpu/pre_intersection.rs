@@ -1,11 +1,10 @@
 //! The analytic pre-intersection of rays: where they hit the analytic part of the scene, and the
 //! interval in which the rest is marched.
 
-use std::sync::Arc;
-
 use sdfc_graph::eval::{FrameValues, Packet, Tape, TapeError};
 use sdfc_graph::{FAR, Program};
 
+use super::cells::CachedField;
 use super::ray::{Batch, LANES, Ray, Real, packed};
 
 /// Functions of rays, compiled for the CPU.
@@ -16,7 +15,7 @@ pub(super) struct PreIntersectionTapes {
     has_hits: bool,
     has_clip: bool,
     /// The field of the marched part; `None` if there is none.
-    marched: Option<Arc<Tape>>,
+    marched: Option<CachedField>,
     /// The intersection of copies, as in the program's rays.
     copies: Option<Tape>,
 }
@@ -33,13 +32,14 @@ impl PreIntersectionTapes {
         let copies = rays.copies.map(|copies| Tape::for_rays(graph, &[copies])).transpose()?;
         let (has_hits, has_clip) = (rays.first_hit.is_some(), rays.clip.is_some());
         let hits_and_clips = Tape::for_rays(graph, &roots)?;
-        let marched =
-            marched.map(|marched| Tape::new(graph, &[marched]).map(Arc::new)).transpose()?;
+        let marched = marched
+            .map(|marched| Tape::new(graph, &[marched]).map(CachedField::new))
+            .transpose()?;
         Ok(Some(Self { hits_and_clips, has_hits, has_clip, marched, copies }))
     }
 
     /// The part of the field that is marched, if that is not all of it.
-    pub(super) fn marched(&self) -> Option<&Arc<Tape>> {
+    pub(super) fn marched(&self) -> Option<&CachedField> {
         self.marched.as_ref().filter(|_| self.has_hits)
     }
 

@@ -5,8 +5,6 @@ mod interval;
 mod limits;
 mod march;
 
-use sdfc_graph::eval::Evaluator;
-
 use super::method::CpuMethod;
 use super::pre_intersection::PreIntersection;
 use super::ray::{Ray, Real};
@@ -73,18 +71,35 @@ struct Walk<T> {
     slope: T,
     /// True if the last position outside is nearer to a surface than the tolerance (`auto`).
     close: bool,
-    /// Length of the next segment to examine (`interval`).
+    /// Length of the next segment to examine, and whether it is part of a longer one (`interval`).
     segment: T,
+    shortened: bool,
+    /// The end of the segment from the last position outside whose bounds the ray waits for
+    /// (`interval`).
+    pending: Option<T>,
     /// How steep the field has been of late, and whether a stretch was passed without a proof
     /// (`interval`).
     steepness: T,
     unproven: bool,
 }
 
-/// The decision after a sample of the field.
+/// The decision after a sample or bounds of the field.
 enum Next<T> {
     At(T),
     Hit(T),
+    /// Bounds of the field are needed, from the last position outside to here.
+    Bounds(T),
+}
+
+/// What is known of the field where a ray is.
+#[derive(Clone, Copy)]
+struct Stretch<T> {
+    /// The position up to which it holds.
+    end: T,
+    /// True if there is no surface.
+    is_free: bool,
+    /// True if the scene has bounds along segments.
+    has_bounds: bool,
 }
 
 impl<T: Real> Walk<T> {
@@ -105,6 +120,8 @@ impl<T: Real> Walk<T> {
             slope: T::constant(-1.0),
             close: false,
             segment: ray.t_max,
+            shortened: false,
+            pending: None,
             steepness: T::constant(1.0),
             unproven: false,
         }
@@ -125,12 +142,13 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// Takes the distance at the current position: either the ray has ended, or it has moved.
+    /// Takes the distance at the current position: either the ray has ended, or it has moved, or it
+    /// waits for bounds.
     fn take_sample(
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: Option<&mut Evaluator<'_, T>>,
+        stretch: &Stretch<T>,
     ) -> Option<Trace<T>> {
         self.evaluations += limits.method.evaluations_per_sample();
         if limits.records_clearance {
@@ -140,11 +158,35 @@ impl<T: Real> Walk<T> {
             CpuMethod::Sphere if distance < limits.epsilon => Next::Hit(self.t),
             CpuMethod::Sphere => Next::At(self.t + distance),
             CpuMethod::Auto => self.auto(distance, limits),
-            CpuMethod::Interval => self.interval(distance, limits, range),
+            CpuMethod::Interval => self.interval(distance, limits, stretch),
         };
+        self.follow(next, limits)
+    }
+
+    /// Takes the lower bound that the ray waits for.
+    fn take_bound(
+        &mut self,
+        least: T,
+        limits: &Limits<T>,
+        stretch: &Stretch<T>,
+    ) -> Option<Trace<T>> {
+        let next = self.bounded(least, limits, stretch);
+        self.follow(next, limits)
+    }
+
+    /// Moves on, unless the ray has ended.
+    fn follow(&mut self, next: Next<T>, limits: &Limits<T>) -> Option<Trace<T>> {
+        self.pending = None;
+        if self.unproven && limits.ends_unproven {
+            return Some(self.result(self.known.start + self.t, CAPPED));
+        }
         match next {
             Next::Hit(t) => return Some(self.result(self.known.start + t, HIT)),
             Next::At(t) => self.t = t,
+            Next::Bounds(end) => {
+                self.pending = Some(end);
+                return None;
+            }
         }
         // A position that is NaN ends the ray too.
         self.ended(self.inside.is_some() || self.t <= self.end, limits)

@@ -1,7 +1,6 @@
 //! Drawing a group of pixels in waves: all camera rays, then all shadow rays, then all reflections.
 
 use glam::DVec3;
-use sdfc_graph::eval::Evaluator;
 use sdfc_march::{PixelBlock, UNPROVEN};
 
 use super::cells::Cells;
@@ -32,7 +31,7 @@ pub(super) struct Wave<'a, T> {
     pub(super) marched: Option<&'a Cells<'a>>,
     pub(super) pre_intersection: Option<PreIntersectionBatch<'a, T>>,
     /// Bounds of the field on a segment.
-    pub(super) range: Option<Evaluator<'a, T>>,
+    pub(super) range: Option<Batch<'a, T>>,
     /// `None` if only depths are drawn.
     pub(super) gradient: Option<Gradient<'a, T>>,
     pub(super) material: Option<Batch<'a, T>>,

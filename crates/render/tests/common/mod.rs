@@ -164,6 +164,22 @@ pub fn steep_sphere() -> Program {
 /// Two hundred spheres in a ball, seen from [0, 0, 5], with a shadow: a formula of over a thousand
 /// operations, of which a few matter at each point. `steepness` multiplies the field.
 pub fn crowd(steepness: f64) -> Program {
+    crowd_of(|graph, distance| {
+        let steepness = graph.number(steepness);
+        graph.mul(distance, steepness)
+    })
+}
+
+/// The same spheres, larger by a tenth of the time.
+pub fn swelling_crowd() -> Program {
+    crowd_of(|graph, distance| {
+        let (time, tenth) = (graph.frame_input(FrameInput::Time, Type::Scalar), graph.number(0.1));
+        let growth = graph.mul(time, tenth);
+        graph.sub(distance, growth)
+    })
+}
+
+fn crowd_of(change: impl FnOnce(&mut Graph, NodeId) -> NodeId) -> Program {
     let mut program = Program::default();
     let graph = &mut program.graph;
     let p = point(graph);
@@ -177,8 +193,7 @@ pub fn crowd(steepness: f64) -> Program {
         let sphere = sphere_field(graph, center, 0.05 + 0.03 * part).distance;
         distance = graph.min(distance, sphere);
     }
-    let steepness = graph.number(steepness);
-    distance = graph.mul(distance, steepness);
+    distance = change(graph, distance);
     let (gradient, _) = best_gradient(graph, distance, p);
     (program.distance, program.gradient) = (Some(distance), Some(gradient));
     look_from(&mut program, [0.0, 0.0, 5.0]);

@@ -51,8 +51,11 @@ pub(crate) struct Cell {
     pub(super) cube: Cube,
     /// The field there.
     pub(super) tape: Arc<Tape>,
-    /// True if smaller cells take its place.
-    pub(super) is_divided: bool,
+    /// A lower bound of the field in the cube.
+    pub(super) least: f64,
+    /// The number of operations that a division takes for each operation that it is expected to
+    /// save at a point.
+    pub(super) price: f64,
 }
 
 impl Cell {
@@ -60,13 +63,19 @@ impl Cell {
         Self {
             cube: Cube { center: [0.0; 3], half: f64::INFINITY },
             tape: Arc::clone(tape),
-            is_divided: false,
+            least: f64::NEG_INFINITY,
+            price: 1.0,
         }
     }
 
     /// A number that two cells share if they have one tape.
     pub(crate) fn id(&self) -> usize {
         Arc::as_ptr(&self.tape).addr()
+    }
+
+    /// True if there is no surface in the cell: the field is positive.
+    pub(crate) fn is_free(&self) -> bool {
+        self.least > 0.0
     }
 
     /// The number of operations of the field there.

@@ -6,31 +6,30 @@ use std::sync::{Arc, OnceLock};
 use sdfc_graph::eval::{Affine, FieldOver, FrameValues, Tape};
 
 use super::cell::{Cell, Cube};
+use super::sight::Sight;
 use crate::view::View;
-use crate::view::footprint::Footprint;
 
-/// A cell whose side is at most this many pixels wide is not divided; more where a division costs
-/// more or gains less.
-const FINEST_PIXELS: f64 = 16.0;
 /// The least part of a tape that a division is expected to leave out.
 const LEAST_SHARE: f64 = 0.05;
 /// A shorter tape has at most this fraction of the operations.
 const SHORTER: f64 = 0.75;
-/// Tapes with fewer operations are not shortened further.
-const FEW_OPERATIONS: usize = 40;
-/// Cells that are larger in the picture than this fraction of it are divided at once: the tape is
-/// seldom shorter there.
-const COARSEST: f64 = 0.5;
+/// Cells of these first levels are divided at once: the tape is seldom shorter there.
+const COARSE_LEVELS: u32 = 5;
 /// The maximum number of divisions from the root to a cell.
-const MAX_DEPTH: u32 = 20;
-/// Half the side of the root in lengths of rays: a ray that starts at the end of another one stays
-/// in it.
+const MAX_DEPTH: u32 = 24;
+/// The root reaches from the origin to this many lengths of rays behind the eye, or to the next
+/// power of two: a ray that starts at the end of another one stays in it.
 const ROOT_RAYS: f64 = 2.0;
+/// The middle of the root, in halves of its side: scenes often have surfaces in the planes through
+/// the origin, which would then lie in two cells.
+const ROOT_CENTER: [f64; 3] = [0.013, 0.017, 0.011];
 /// Cells overlap by this fraction of the root, for the rounding of points in f32.
 const MARGIN: f64 = 4e-6;
 /// The maximum number of operations of all shorter tapes together; beyond it no tape is shortened.
 /// It keeps them below 600 MB.
 const MAX_OPERATIONS: usize = 1 << 25;
+/// The memory of a cell, in operations.
+const CELL_OPERATIONS: usize = 8;
 
 /// A cube of the octree. Its contents are made when they are first needed.
 #[derive(Debug, Default)]
@@ -39,53 +38,62 @@ struct Node {
     children: OnceLock<Box<[Node; 8]>>,
 }
 
-/// The cubes around the eye.
+/// The cubes around the origin, for one field and the values of one frame. A cell depends on these
+/// and the root alone: not on the camera, nor on the order in which cells are made.
 #[derive(Debug)]
 pub(super) struct Octree {
     cube: Cube,
     root: Node,
     margin: f64,
-    eye: [f64; 3],
-    footprint: Footprint,
-    /// The larger side of the picture.
-    pixels: f64,
-    /// Number of operations of all shorter tapes.
+    whole: Cell,
+    frame: FrameValues,
+    /// The per-frame values that the field depends on.
+    inputs: Vec<f64>,
+    /// Memory of all cells, in operations.
     operations: AtomicUsize,
 }
 
 impl Octree {
     /// An octree around the eye.
-    pub(super) fn new(view: &View) -> Self {
-        let (center, half) = (view.eye.to_array(), ROOT_RAYS * view.t_max);
-        let extent = half + center.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    pub(super) fn new(tape: &Arc<Tape>, frame: &FrameValues, view: &View) -> Self {
+        let half = root_half(view);
         Self {
-            cube: Cube { center, half },
+            cube: Cube { center: ROOT_CENTER.map(|part| part * half), half },
             root: Node::default(),
-            margin: MARGIN * extent,
-            eye: center,
-            footprint: view.footprint(),
-            pixels: f64::from(view.size[0].max(view.size[1])),
+            margin: MARGIN * half,
+            whole: Cell::everything(tape),
+            frame: frame.clone(),
+            inputs: tape.point_inputs(frame),
             operations: AtomicUsize::new(0),
         }
     }
 
-    pub(super) fn contains(&self, point: [f64; 3]) -> bool {
-        self.cube.contains(point)
+    /// True if a frame with these values and this view has the same cells.
+    pub(super) fn serves(&self, frame: &FrameValues, view: &View) -> bool {
+        let inputs = self.whole.tape.point_inputs(frame);
+        let is_same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits();
+        self.cube.half.to_bits() == root_half(view).to_bits()
+            && self.inputs.iter().zip(&inputs).all(is_same)
     }
 
-    /// The smallest cell around a point.
-    pub(super) fn at<'c>(
-        &'c self,
-        whole: &'c Cell,
-        frame: &FrameValues,
-        point: [f64; 3],
-    ) -> &'c Cell {
-        let (mut node, mut cube, mut around) = (&self.root, self.cube, whole);
-        for depth in 0.. {
-            let cell = node.cell.get_or_init(|| self.examine(around, frame, cube, depth));
-            around = cell;
-            if !cell.is_divided {
-                break;
+    /// The memory of all cells, in operations of tapes.
+    pub(super) fn operations(&self) -> usize {
+        self.operations.load(Ordering::Relaxed)
+    }
+
+    /// The smallest cell around a point for an eye; all of space for a point outside.
+    pub(super) fn at(&self, sight: &Sight, point: [f64; 3]) -> &Cell {
+        let (mut node, mut cube, mut around) = (&self.root, self.cube, &self.whole);
+        if !cube.contains(point) {
+            return around;
+        }
+        for depth in 0..=MAX_DEPTH {
+            if depth >= COARSE_LEVELS {
+                around = node.cell.get_or_init(|| self.examine(around, cube));
+                let is_open = depth < MAX_DEPTH && 2.0 * cube.half > 64.0 * self.margin;
+                if !(is_open && sight.divides(around)) {
+                    break;
+                }
             }
             let (index, child) = cube.child(point);
             (node, cube) = (&node.children.get_or_init(Box::default)[index], child);
@@ -94,20 +102,12 @@ impl Octree {
     }
 
     /// The cell of a cube, given the cell around it.
-    fn examine(&self, around: &Cell, frame: &FrameValues, cube: Cube, depth: u32) -> Cell {
-        let side = 2.0 * cube.half;
-        let width = 2.0 * self.footprint.at(cube.distance(self.eye));
-        let is_open = depth < MAX_DEPTH && side > 64.0 * self.margin;
-        if is_open && side > COARSEST * self.pixels * width {
-            return Cell { cube, is_divided: true, ..Cell::everything(&around.tape) };
-        }
-        let over = around.tape.over(frame, cube.coordinates(self.margin));
-        let is_free = over.value.range().lo() > 0.0;
-        let (tape, price) = self.shortened(around, frame, cube, over);
-        let finest = FINEST_PIXELS * price.sqrt();
-        let is_worth = tape.operations() >= FEW_OPERATIONS;
-        let is_divided = !is_free && is_worth && is_open && side > finest * width;
-        Cell { cube, tape, is_divided }
+    fn examine(&self, around: &Cell, cube: Cube) -> Cell {
+        let over = around.tape.over(&self.frame, cube.coordinates(self.margin));
+        let least = over.value.range().lo();
+        let (tape, price) = self.shortened(around, cube, over);
+        self.operations.fetch_add(CELL_OPERATIONS, Ordering::Relaxed);
+        Cell { cube, tape, least, price }
     }
 
     /// The tape of a cube, and the price of another division: the number of operations that it
@@ -115,7 +115,6 @@ impl Octree {
     fn shortened(
         &self,
         around: &Cell,
-        frame: &FrameValues,
         cube: Cube,
         FieldOver { tape, operations, .. }: FieldOver,
     ) -> (Arc<Tape>, f64) {
@@ -123,7 +122,7 @@ impl Octree {
         // A loop may run fewer iterations at a point than it can run in the cube.
         let at_point = if has_loops {
             let middle = cube.center.map(|x| Affine::coordinate(x, [0.0; 3]));
-            operations.min(around.tape.over(frame, middle).operations)
+            operations.min(around.tape.over(&self.frame, middle).operations)
         } else {
             operations
         };
@@ -139,4 +138,11 @@ impl Octree {
         let price = operations as f64 / at_point / (1.0 - left / at_point).max(LEAST_SHARE);
         (shorter.map_or_else(|| Arc::clone(&around.tape), Arc::new), price)
     }
+}
+
+/// Half the side of the root: a power of two, so that it seldom changes with the eye.
+fn root_half(view: &View) -> f64 {
+    let farthest = view.eye.to_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let shift = ROOT_CENTER.into_iter().fold(0.0, f64::max);
+    ((farthest + ROOT_RAYS * view.t_max) / (1.0 - shift)).log2().ceil().exp2()
 }

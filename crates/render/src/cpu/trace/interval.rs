@@ -1,8 +1,6 @@
 //! The method `interval` on the CPU, as in the shader.
 
-use sdfc_graph::eval::Evaluator;
-
-use super::{Limits, Next, Walk};
+use super::{Limits, Next, Stretch, Walk};
 use crate::cpu::ray::Real;
 
 /// Bounds on the fraction of a segment that is examined next.
@@ -24,18 +22,19 @@ const SLOPE_MEMORY: f64 = 0.75;
 const BRACKET_STEPS: u32 = 48;
 
 impl<T: Real> Walk<T> {
-    /// Returns the position up to which the ray is free, or which is too near to tell; after a
-    /// change of sign, the next position of false position. The rest of a ray that runs out of
-    /// steps, or that has no bounds, is sampled without a proof.
+    /// Takes a sample. The ray moves to the next position of false position after a change of sign,
+    /// to the end of a stretch that is free, or to the next sample where there are no bounds.
+    /// Otherwise it waits for the bounds of a segment.
     pub(super) fn interval(
         &mut self,
         distance: T,
         limits: &Limits<T>,
-        range: Option<&mut Evaluator<'_, T>>,
+        stretch: &Stretch<T>,
     ) -> Next<T> {
         let zero = T::constant(0.0);
         let hit = self.hit_within(limits.tolerance(&self.ray, self.t));
-        if self.evaluations == 0 && distance < hit {
+        let is_first = self.outside.is_none() && self.inside.is_none();
+        if is_first && distance < hit {
             self.evaluations = 1;
             return Next::Hit(self.t);
         }
@@ -50,54 +49,86 @@ impl<T: Real> Walk<T> {
         if self.t >= self.ray.t_max {
             return Next::At(self.ray.t_max + self.ray.t_max);
         }
-        if let Some(range) = range
-            && let Some(end) = self.proven_end([last, above], limits, range)
-        {
-            return Next::At(end);
+        if stretch.is_free {
+            self.evaluations += 1;
+            return Next::At(stretch.end.min(self.ray.t_max));
         }
-        self.unproven = true;
-        let step = self.sampling_step(distance, limits);
-        self.evaluations += 1;
-        Next::At((self.t + step).min(self.ray.t_max))
-    }
-
-    /// Returns the position up to which the ray is free, or which is too near to tell; `None` if
-    /// the steps for proofs are spent before.
-    fn proven_end(
-        &mut self,
-        [last, above]: [T; 2],
-        limits: &Limits<T>,
-        range: &mut Evaluator<'_, T>,
-    ) -> Option<T> {
-        let zero = T::constant(0.0);
-        let near = limits.tolerance(&self.ray, last);
+        if !stretch.has_bounds {
+            return self.unproven_step(limits);
+        }
         let rounding = self.ray.rounding(self.t);
         self.segment = self.segment.max(above.max(rounding));
         if limits.records_clearance {
             self.segment = self.segment.min(above.max(near));
         }
-        let mut shortened = false;
-        while self.evaluations < limits.steps {
-            let end = (last + self.segment).min(self.ray.t_max);
-            self.evaluations += 1;
-            let least = range.eval_ray(self.ray.at(last), self.ray.at(end))[0][0];
-            let spent = f64::from(self.evaluations) / f64::from(limits.steps);
-            let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
-            let finest = finest.max(rounding);
-            if least > zero || self.segment <= finest {
-                let proven = least > zero || end - last <= near.max(rounding);
-                self.unproven = self.unproven || !proven;
-                self.segment = if shortened { zero } else { self.segment + self.segment };
-                return Some(end);
-            }
-            // As far as the field would stay positive if it fell linearly to its lower bound.
-            let fall = (above - least).max(T::constant(1e-30));
-            let part = (T::constant(MAX_FRACTION) * above).div(fall);
-            let part = part.clamp(T::constant(MIN_FRACTION), T::constant(MAX_FRACTION));
-            self.segment = (part * (end - last)).max(finest);
-            shortened = true;
+        self.shortened = false;
+        self.bounds(limits, stretch)
+    }
+
+    /// Asks for bounds of the next segment, unless the steps for proofs are spent.
+    fn bounds(&mut self, limits: &Limits<T>, stretch: &Stretch<T>) -> Next<T> {
+        if self.evaluations >= limits.steps {
+            return self.unproven_step(limits);
         }
-        None
+        self.evaluations += 1;
+        let (last, _) = self.outside.unwrap_or((T::constant(0.0), T::constant(0.0)));
+        Next::Bounds((last + self.segment).min(self.ray.t_max).min(stretch.end))
+    }
+
+    /// Takes a lower bound of the field on a segment. The ray moves to its end if it is free or too
+    /// short to tell. Otherwise its nearer part is examined next.
+    pub(super) fn bounded(
+        &mut self,
+        least: T,
+        limits: &Limits<T>,
+        stretch: &Stretch<T>,
+    ) -> Next<T> {
+        let zero = T::constant(0.0);
+        let (last, above) = self.outside.unwrap_or((zero, zero));
+        let end = self.pending.unwrap_or(last);
+        let near = limits.tolerance(&self.ray, last);
+        let rounding = self.ray.rounding(self.t);
+        let spent = f64::from(self.evaluations) / f64::from(limits.steps);
+        let finest = T::constant(FINEST.max(COARSEST * spent)) * near;
+        let finest = finest.max(rounding);
+        if least > zero || self.segment <= finest {
+            let proven = least > zero || end - last <= near.max(rounding);
+            self.unproven = self.unproven || !proven;
+            self.segment = if self.shortened { zero } else { self.segment + self.segment };
+            return Next::At(end);
+        }
+        // As far as the field would stay positive if it fell linearly to its lower bound.
+        let fall = (above - least).max(T::constant(1e-30));
+        let part = (T::constant(MAX_FRACTION) * above).div(fall);
+        let part = part.clamp(T::constant(MIN_FRACTION), T::constant(MAX_FRACTION));
+        self.segment = (part * (end - last)).max(finest);
+        self.shortened = true;
+        self.bounds(limits, stretch)
+    }
+
+    /// The next sample where nothing is proven.
+    fn unproven_step(&mut self, limits: &Limits<T>) -> Next<T> {
+        let (zero, t_max) = (T::constant(0.0), self.ray.t_max);
+        let (_, above) = self.outside.unwrap_or((zero, zero));
+        self.unproven = true;
+        let step = self.sampling_step(above, limits);
+        self.evaluations += 1;
+        Next::At((self.t + step).min(t_max))
+    }
+
+    /// The ends of the segment whose bounds the ray waits for.
+    pub(super) fn segment_to_bound(&self) -> [[T; 3]; 2] {
+        let zero = T::constant(0.0);
+        let (last, _) = self.outside.unwrap_or((zero, zero));
+        [last, self.pending.unwrap_or(last)].map(|t| self.ray.at(t))
+    }
+
+    /// True if a ray need not be sampled where there is no surface.
+    pub(super) fn skips_free_cells(&self, limits: &Limits<T>) -> bool {
+        limits.method.skips_proven()
+            && !limits.records_clearance
+            && self.outside.is_some()
+            && self.inside.is_none()
     }
 
     /// How steep the field has been of late, with one more sample.

@@ -1,11 +1,11 @@
 //! Rays on their way through the cells of space.
 
-use sdfc_graph::eval::{Evaluator, Packet};
+use sdfc_graph::eval::Packet;
 
-use super::{Limits, Trace, Walk};
+use super::{Limits, Stretch, Trace, Walk};
 use crate::cpu::cells::{Cell, Cells};
 use crate::cpu::pre_intersection::PreIntersection;
-use crate::cpu::ray::{Batch, LANES, Ray, Real, packed};
+use crate::cpu::ray::{Batch, LANES, Ray, Real, packed_from};
 
 /// A ray in a cell.
 #[derive(Clone, Copy)]
@@ -17,10 +17,23 @@ struct Crossing<'c, T> {
     span: [T; 2],
 }
 
+/// Rays in cells with one tape, by what they wait for.
+struct Crossings<'c, T> {
+    samples: Vec<Crossing<'c, T>>,
+    bounds: Vec<Crossing<'c, T>>,
+}
+
+/// The functions of rays in cells with one tape.
+struct Fields<'c, 'w, 'r, T> {
+    field: Batch<'c, T>,
+    /// Bounds of the field on a segment.
+    range: Option<&'w mut Batch<'r, T>>,
+}
+
 /// Marches all rays; the result has their order. Rays in one cell are marched together.
 pub(crate) fn trace<T: Real>(
     cells: &Cells<'_>,
-    mut range: Option<&mut Evaluator<'_, T>>,
+    mut range: Option<&mut Batch<'_, T>>,
     rays: &[(Ray<T>, PreIntersection<T>)],
     limits: &Limits<T>,
 ) -> Vec<Trace<T>> {
@@ -39,9 +52,9 @@ pub(crate) fn trace<T: Real>(
         waiting.sort_unstable_by_key(|crossing| (crossing.cell.id(), crossing.index));
         for crossings in waiting.chunk_by(|a, b| a.cell.id() == b.cell.id()) {
             let Some(&Crossing { cell, .. }) = crossings.first() else { continue };
-            let mut field = cells.evaluator(cell);
-            let range = range.as_deref_mut();
-            cross(crossings, &mut walks, &mut field, range, limits, |index, walk, ended| {
+            let mut fields = Fields { field: cells.evaluator(cell), range: range.as_deref_mut() };
+            cross(crossings, &mut walks, &mut fields, limits, |index, walk, ended| {
+                let ended = ended.or_else(|| walk.past_free_cells(cells, limits));
                 if let Some(ended) = ended {
                     traces[index] = ended;
                     return None;
@@ -61,40 +74,105 @@ pub(crate) fn trace<T: Real>(
 }
 
 /// Marches rays in cells with one tape until they end or leave these cells. When a ray ends or
-/// leaves its cell, `next` returns its next crossing of a cell with this tape. Lanes whose ray has
-/// none take another ray.
+/// leaves its cell, `next` returns its next crossing of a cell with this tape.
 fn cross<'c, T: Real>(
     crossings: &[Crossing<'c, T>],
     walks: &mut [Walk<T>],
-    field: &mut Batch<'_, T>,
-    mut range: Option<&mut Evaluator<'_, T>>,
+    fields: &mut Fields<'_, '_, '_, T>,
     limits: &Limits<T>,
-    mut next: impl FnMut(usize, &Walk<T>, Option<Trace<T>>) -> Option<Crossing<'c, T>>,
+    mut next: impl FnMut(usize, &mut Walk<T>, Option<Trace<T>>) -> Option<Crossing<'c, T>>,
 ) {
-    let mut waiting = crossings.iter().copied();
-    let mut lanes: [Option<Crossing<'c, T>>; LANES] = std::array::from_fn(|_| waiting.next());
-    let mut points = [[T::constant(0.0); 3]; LANES];
-    while lanes.iter().any(Option::is_some) {
-        for (point, lane) in points.iter_mut().zip(&lanes) {
-            if let Some(Crossing { index, .. }) = lane {
-                let walk = &walks[*index];
-                *point = walk.ray.at(walk.t);
-            }
-        }
-        let Packet(distances) = field.scalar(packed(&points));
-        for (lane, distance) in lanes.iter_mut().zip(distances) {
-            let Some(Crossing { index, span: [enter, exit], .. }) = *lane else { continue };
-            let walk = &mut walks[index];
-            let ended = walk.take_sample(distance, limits, range.as_deref_mut());
+    let has_bounds = fields.range.is_some();
+    let mut waiting =
+        Crossings { samples: crossings.iter().rev().copied().collect(), bounds: Vec::new() };
+    let mut group = Vec::with_capacity(LANES);
+    while let Some(is_sample) = waiting.take(&mut group) {
+        let results =
+            if is_sample { fields.samples(&group, walks) } else { fields.bounds(&group, walks) };
+        for (crossing, result) in group.drain(..).zip(results).rev() {
+            let (walk, [enter, exit]) = (&mut walks[crossing.index], crossing.span);
+            let stretch = crossing.stretch(has_bounds, limits);
+            let ended = if is_sample {
+                walk.take_sample(result, limits, &stretch)
+            } else {
+                walk.take_bound(result, limits, &stretch)
+            };
             // A position that is NaN has ended the ray.
-            if ended.is_some() || walk.t < enter || walk.t >= exit {
-                *lane = next(index, walk, ended).or_else(|| waiting.next());
+            let leaves = ended.is_some() || walk.t < enter || walk.t >= exit;
+            if !leaves {
+                waiting.put(crossing, walk);
+            } else if let Some(crossing) = next(crossing.index, walk, ended) {
+                waiting.put(crossing, &walks[crossing.index]);
             }
         }
     }
 }
 
+impl<'c, T: Real> Crossings<'c, T> {
+    fn put(&mut self, crossing: Crossing<'c, T>, walk: &Walk<T>) {
+        match walk.pending {
+            Some(_) => self.bounds.push(crossing),
+            None => self.samples.push(crossing),
+        }
+    }
+
+    /// Takes the rays that are evaluated next; returns whether they wait for samples. Bounds cost
+    /// more, so they wait until they fill a packet.
+    fn take(&mut self, group: &mut Vec<Crossing<'c, T>>) -> Option<bool> {
+        let is_sample = !self.samples.is_empty() && self.bounds.len() < LANES;
+        let queue = if is_sample { &mut self.samples } else { &mut self.bounds };
+        group.extend(queue.drain(queue.len().saturating_sub(LANES)..));
+        (!group.is_empty()).then_some(is_sample)
+    }
+}
+
+impl<T: Real> Fields<'_, '_, '_, T> {
+    /// The field where each ray is.
+    fn samples(&mut self, group: &[Crossing<'_, T>], walks: &[Walk<T>]) -> [T; LANES] {
+        let walks = group.iter().map(|crossing| &walks[crossing.index]);
+        let Packet(distances) =
+            self.field.scalar(packed_from(walks.map(|walk| walk.ray.at(walk.t))));
+        distances
+    }
+
+    /// The lower bounds for which rays wait.
+    fn bounds(&mut self, group: &[Crossing<'_, T>], walks: &[Walk<T>]) -> [T; LANES] {
+        let segments = group.iter().map(|crossing| walks[crossing.index].segment_to_bound());
+        let Some(range) = &mut self.range else { return [T::constant(f64::NAN); LANES] };
+        let [starts, ends] = [0, 1].map(|end| packed_from(segments.clone().map(|s| s[end])));
+        let Packet(least) = range.eval_ray(starts, ends)[0][0];
+        least
+    }
+}
+
+impl<T: Real> Walk<T> {
+    /// Moves to the first cell that may contain a surface, if the ray need not be sampled before;
+    /// returns the result of a ray that finds none.
+    fn past_free_cells(&mut self, cells: &Cells<'_>, limits: &Limits<T>) -> Option<Trace<T>> {
+        while self.skips_free_cells(limits) {
+            let crossing = Crossing::new(cells, 0, self);
+            let [_, exit] = crossing.span;
+            if !crossing.cell.is_free() || exit <= self.t {
+                break;
+            }
+            self.t = exit;
+            if exit > self.end {
+                return Some(self.without_hit());
+            }
+        }
+        None
+    }
+}
+
 impl<'c, T: Real> Crossing<'c, T> {
+    fn stretch(&self, has_bounds: bool, limits: &Limits<T>) -> Stretch<T> {
+        if limits.records_clearance {
+            // A ray that records its clearance takes its samples wherever cells are.
+            return Stretch { end: T::constant(f64::INFINITY), is_free: false, has_bounds };
+        }
+        Stretch { end: self.span[1], is_free: self.cell.is_free(), has_bounds }
+    }
+
     /// The crossing of the cell around the next sample of a ray.
     fn new(cells: &'c Cells<'_>, index: usize, walk: &Walk<T>) -> Self {
         let ray = [walk.ray.origin, walk.ray.direction].map(|v| v.map(Into::into));
